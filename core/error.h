@@ -1,0 +1,22 @@
+// Input errors are for users and explain themselves; broken invariants are for us and throw std::logic_error.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace umbra {
+
+/// Input that cannot be read. what() is the whole message: "FILE[:PLACE]: what was found (what would be right)".
+/// Commands print it and exit with 4.
+class InputError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A wrong command line or parameter. Commands print it and exit with 2.
+class UsageError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace umbra

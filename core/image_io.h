@@ -1,0 +1,28 @@
+// Image files through OpenImageIO. A library of its own, since OpenImageIO costs every process 0.3 s at start.
+#pragma once
+
+#include <filesystem>
+
+#include "core/image.h"
+
+namespace umbra {
+
+/// How the numbers of a file stand for light.
+enum class Encoding : std::uint8_t { linear, srgb };
+
+struct LoadedImage {
+    Image image;                           ///< values as the file stores them, scaled to [0, 1] for integer formats
+    Encoding encoding = Encoding::linear;  ///< srgb for 8- and 16-bit integer files, linear for float ones
+};
+
+/// Reads any image that OpenImageIO reads (first subimage, no conversion). Throws InputError. Files that claim more
+/// pixels than `kMaxPixels` are refused before memory is taken.
+inline constexpr std::size_t kMaxPixels = 1u << 28;
+[[nodiscard]] LoadedImage read_image(const std::filesystem::path& file);
+
+/// Writes .exr (float, ZIP) as is, or .png (8 bit): the first one or three (or four) channels, which must be display
+/// values in [0, 1] already encoded; values are clamped and rounded. Written beside and moved into place. Throws
+/// InputError.
+void write_image(const std::filesystem::path& file, const Image& image);
+
+}  // namespace umbra

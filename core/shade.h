@@ -1,0 +1,20 @@
+// The sum: Phong's terms with S_j, evaluated in world space, and what makes a displayable picture of it.
+#pragma once
+
+#include <span>
+
+#include "core/image.h"
+#include "core/points.h"
+#include "core/visibility_error.h"
+
+namespace umbra {
+
+/// R G B, scene-linear, of a raster batch: I_e + I_a k_a O_d + sum_j S_j f_att,j I_j (...). `visibility` holds one
+/// plane a light; undefined points count as lit (S_j = 1) and are not part of image errors. Terms that no material or
+/// light asks for are not computed. Parallel; the same bits for any number of threads.
+[[nodiscard]] Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility);
+
+/// Exposure, then the scene's tone map (REQUIREMENTS B7), then sRGB encoding: R G B in [0, 1] to be written as PNG.
+[[nodiscard]] Image displayed(const Image& linear, ToneMap tone, float exposure);
+
+}  // namespace umbra
