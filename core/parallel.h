@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 namespace umbra {
@@ -17,7 +19,7 @@ public:
     ThreadLimit& operator=(const ThreadLimit&) = delete;
 
 private:
-    void* control_;
+    std::unique_ptr<tbb::global_control> control_;
 };
 [[nodiscard]] int thread_count();
 

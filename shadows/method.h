@@ -66,6 +66,11 @@ struct MethodInfo {
     std::unique_ptr<Method> (*make)(const Settings& settings) = nullptr;
 };
 
+/// Each method's file defines its own: `const MethodInfo NAME{...};`
+#define METHOD(name) extern const MethodInfo name;
+#include "shadows/methods.def"
+#undef METHOD
+
 /// All methods, in report order.
 [[nodiscard]] std::span<const MethodInfo* const> methods();
 

@@ -2,20 +2,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
-
 #include "core/error.h"
 #include "shadows/method.h"
 
 namespace umbra {
 
-#define METHOD(name) extern const MethodInfo name;
-#include "shadows/methods.def"
-#undef METHOD
-
 namespace {
 
-const std::array kMethods = {
+const std::vector<const MethodInfo*> kMethods = {
 #define METHOD(name) &name,
 #include "shadows/methods.def"
 #undef METHOD
