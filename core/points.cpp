@@ -37,7 +37,9 @@ void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId 
     }
     const dvec3 p       = a + u2 * (b - a) + static_cast<double>(v) * (c - a);
     const auto material = scene.objects[scene.triangle_object[t]].material;
-    const bool flip     = scene.materials[material].two_sided && glm::dot(normal, dvec3(batch.eye) - p) < 0;
+    const bool window   = batch.raster && batch.raster->projection == Projection::orthographic;
+    const dvec3 to_eye  = window ? -batch.raster->forward : dvec3(batch.eye) - p;
+    const bool flip     = scene.materials[material].two_sided && glm::dot(normal, to_eye) < 0;
     const vec3 n(normal * ((flip ? -1 : 1) / length));
 
     batch.triangle[i] = t;

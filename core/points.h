@@ -37,8 +37,8 @@ struct PointBatch {
     void resize(std::size_t n);
 };
 
-/// Writes point i from its name: position, normal (towards `batch.eye` if two-sided). Clamps u, v into the triangle
-/// first. A degenerate triangle gives kNoTriangle.
+/// Writes point i from its name: position, normal (if two-sided towards `batch.eye`, or against the view direction of
+/// an orthographic raster). Clamps u, v into the triangle first. A degenerate triangle gives kNoTriangle.
 void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, float u, float v);
 
 /// Fills batch.facing for all lights of the scene (or for one, where a light moved). Signs are exact: decided in

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 
 #include "core/points.h"
@@ -19,6 +20,42 @@ enum class OffsetPolicy : std::uint8_t {
     epsilon          ///< starts at a constant distance (a share of the scene's diagonal) along the normal
 };
 
+/// Where rays are traced: x' = (x - centre) * scale, so that scenes far from the origin, huge ones and tiny ones all
+/// meet Embree's floats near 1. For every vertex and surface point x' is exact: `scale` is a power of two, and an axis
+/// is moved only where its vertices lie within a factor of three of each other, so that their differences are floats.
+struct RaySpace {
+    vec3 centre{0};
+    float scale = 1;
+
+    [[nodiscard]] vec3 point(vec3 p) const { return (p - centre) * scale; }
+    [[nodiscard]] vec3 point(dvec3 p) const { return vec3((p - dvec3(centre)) * static_cast<double>(scale)); }
+    [[nodiscard]] vec3 vector(dvec3 d) const { return vec3(d * static_cast<double>(scale)); }
+};
+
+/// Eight shadow rays in ray space, in Embree's layout. Every member of every lane is to be set, `time` and `flags` to 0
+/// and `mask` to -1; a fresh packet has them so.
+struct alignas(32) ShadowPacket {
+    float org_x[8]{}, org_y[8]{}, org_z[8]{}, tnear[8]{};
+    float dir_x[8]{}, dir_y[8]{}, dir_z[8]{}, time[8]{};
+    float tfar[8]{};  ///< negative after the call where the ray was blocked
+    std::uint32_t mask[8]{~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
+    TriangleId id[8]{};  ///< this triangle is no hit; kNoTriangle: every triangle is
+    std::uint32_t flags[8]{};
+};
+
+/// Flushes denormal floats to zero on this thread while it lives, which Embree is several times faster with. Keep it
+/// around the tracing alone: exact arithmetic needs denormals.
+class FlushDenormals {
+public:
+    FlushDenormals();
+    ~FlushDenormals();
+    FlushDenormals(const FlushDenormals&)            = delete;
+    FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+private:
+    unsigned saved_;
+};
+
 /// An Embree scene over all triangles of a Scene. Built once; all queries are const and may run from many threads at
 /// once.
 class RayScene {
@@ -30,6 +67,11 @@ public:
     RayScene(const RayScene&)            = delete;
     RayScene& operator=(const RayScene&) = delete;
 
+    [[nodiscard]] const RaySpace& space() const { return space_; }
+
+    /// Tests the lanes with valid[k] == -1 (others are 0) for any hit in (tnear, tfar]. Call under FlushDenormals.
+    void occluded(const int (&valid)[8], ShadowPacket& rays) const;
+
     [[nodiscard]] std::size_t memory_bytes() const;
 
     struct Impl;
@@ -37,6 +79,7 @@ public:
 
 private:
     std::unique_ptr<Impl> impl_;
+    RaySpace space_;
 };
 
 /// The G-buffer: the surface point that each pixel centre sees, in parallel, packets of 8.
