@@ -34,7 +34,7 @@ struct SceneFile {
 [[nodiscard]] Scene finish_scene(SceneFile&& read, const std::filesystem::path& file);
 
 /// Refused before memory is taken, in one scene.
-inline constexpr std::uint64_t kMaxTriangles = 100'000'000;
+inline constexpr std::uint64_t kMaxTriangles = 50'000'000;
 inline constexpr std::size_t kMaxLights      = 1024;
 inline constexpr int kMaxImageSide           = 16384;
 

@@ -16,7 +16,8 @@ constexpr std::size_t kShown = 100;  // columns of a line that a message shows; 
 
 // Meshes that no package of the project holds are obtained at set-up. Their absence has one usual reason.
 std::string_view hint_for_missing(const std::filesystem::path& file) {
-    const auto folder = file.parent_path();
+    std::error_code error;
+    const auto folder = std::filesystem::absolute(file, error).lexically_normal().parent_path();
     return folder.filename() == "real" && folder.parent_path().filename() == "scenes"
                ? " (real meshes are obtained at set-up: run `./umbra setup`)"
                : "";
