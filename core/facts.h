@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "core/planes.h"
 #include "core/scene.h"
 
 namespace umbra {
@@ -22,7 +24,8 @@ struct ObjectFacts {
     bool closed                        = false;  ///< closed 2-manifold: none of the faults above, duplicates included
     bool outward                       = false;  ///< closed and of positive volume
     bool planar                        = false;  ///< all its triangles lie in one plane
-    double area = 0, volume = 0;                 ///< volume by the divergence theorem; means something where closed
+    double area = 0, volume = 0;                 ///< volume by the divergence theorem; where the object is not closed,
+                                                 ///< that of the cones from the world's origin to its triangles
     Box box;
 };
 
@@ -35,15 +38,6 @@ struct LightFacts {
     LightKind kind   = LightKind::point;
     LightPlace place = LightPlace::at_infinity;
     bool hard() const { return !is_area(kind); }  ///< S_j is 0 or 1
-};
-
-/// Triangles that lie in one plane (exactly, or to the rounding of their float vertices), of any object.
-struct PlanarReceiver {
-    dvec3 normal{0, 1, 0};  ///< unit
-    double offset    = 0;   ///< dot(normal, x) = offset
-    double tolerance = 0;   ///< largest distance of a vertex of its triangles from the plane
-    double area      = 0;
-    std::vector<TriangleId> triangles;  ///< sorted
 };
 
 struct SceneFacts {
@@ -65,5 +59,9 @@ struct SceneFacts {
 inline constexpr double kPlanarShare = 0.005;
 
 [[nodiscard]] SceneFacts find_facts(const Scene& scene);
+
+/// What the scene asks a renderer for, and what it does not ask for: a phrase each, for people.
+[[nodiscard]] std::vector<std::string> requires_list(const SceneFacts& facts);
+[[nodiscard]] std::vector<std::string> not_required_list(const SceneFacts& facts);
 
 }  // namespace umbra
