@@ -20,7 +20,7 @@ struct Parameter {
     std::string_view doc;  ///< one sentence, with the unit
     double min = 0;        ///< integer, real: closed range
     double max = 0;
-    std::string_view choices;  ///< choice: "a|b|c"
+    std::string_view choices{};  ///< choice: "a|b|c"
 };
 
 /// Values for all parameters of one method; those not given have their defaults. Values are checked when set.

@@ -1,0 +1,349 @@
+// Ray-traced shadows: a ray from the surface point to the light asks whether anything lies between; an area light is
+// asked at many of its points.
+//
+// This work is based on:
+// Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
+// Turner Whitted. An Improved Illumination Model for Shaded Display. 1980
+// Robert Cook, Thomas Porter, Loren Carpenter. Distributed Ray Tracing. 1984
+// Carsten Waechter, Nikolaus Binder. A Fast and Robust Method for Avoiding Self-Intersection. 2019
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "core/parallel.h"
+#include "core/ray.h"
+#include "core/sampling.h"
+#include "shadows/method.h"
+
+namespace umbra {
+namespace {
+
+constexpr Parameter kParameters[] = {
+    {.name     = "offset",
+     .type     = Parameter::Type::choice,
+     .fallback = "skip_triangle",
+     .doc      = "how a ray keeps from hitting the surface that it starts on",
+     .choices  = "skip_triangle|integer_offset|epsilon"},
+    {.name     = "epsilon",
+     .type     = Parameter::Type::real,
+     .fallback = "1e-4",
+     .doc      = "offset=epsilon: start this far along the normal, as a share of the scene's diagonal",
+     .min      = 0,
+     .max      = 1},
+    {.name     = "samples",
+     .type     = Parameter::Type::integer,
+     .fallback = "16",
+     .doc      = "rays a point for an area light",
+     .min      = 1,
+     .max      = 65536},
+    {.name     = "sampler",
+     .type     = Parameter::Type::choice,
+     .fallback = "sobol",
+     .doc      = "how an area light's samples are spread; sobol is Owen-scrambled",
+     .choices  = kSamplers},
+    {.name     = "seed",
+     .type     = Parameter::Type::integer,
+     .fallback = "0",
+     .doc      = "picks the samples; equal seeds give equal bits",
+     .min      = 0,
+     .max      = 2147483647},
+};
+
+OffsetPolicy policy_named(const std::string& name) {
+    return name == "epsilon"          ? OffsetPolicy::epsilon
+           : name == "integer_offset" ? OffsetPolicy::integer_offset
+                                      : OffsetPolicy::skip_triangle;
+}
+
+/// Rays end this share of their way before the light, so that a lamp's own triangles, on which the light lies, do not
+/// block it. 256 float steps: enough for incidence down to about a degree.
+constexpr float kAlmostThere = 1 - 0x1p-16f;
+
+/// The light in ray space. Rays to a light at distance D run in units of `unit`, a power of two near D where D is far
+/// beyond the scene and 1 else, so that nothing over- or underflows.
+struct Target {
+    LightKind kind = LightKind::point;
+    float unit     = 1;
+    vec3 centre{0};             ///< in units; directional: the unit vector to the light
+    vec3 axis_u{0}, axis_v{0};  ///< in units: rectangle: half edges; disk: perpendicular radii
+    dvec3 sphere{0};            ///< sphere: centre and radius, not in units
+    double radius = 0;
+};
+
+Target make_target(const Light& light, const RaySpace& space) {
+    Target target;
+    target.kind = light.kind;
+    if (light.kind == LightKind::directional) {
+        target.centre = vec3(-glm::normalize(dvec3(light.direction)));
+        return target;
+    }
+    const double scale    = space.scale;
+    const dvec3 centre    = (dvec3(light.position) - dvec3(space.centre)) * scale;
+    const double distance = glm::length(centre);
+    if (distance > 0x1p20) target.unit = static_cast<float>(std::exp2(std::floor(std::log2(distance))));
+    target.centre = vec3(centre / static_cast<double>(target.unit));
+    target.sphere = centre;
+    target.radius = static_cast<double>(light.radius) * scale;
+    dvec3 u = dvec3(light.edge_u) * 0.5, v = dvec3(light.edge_v) * 0.5;
+    if (light.kind == LightKind::disk) {
+        const dvec3 n = glm::normalize(dvec3(light.direction));
+        u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))) * double(light.radius);
+        v = glm::cross(n, u);
+    }
+    target.axis_u = vec3(u * (scale / static_cast<double>(target.unit)));
+    target.axis_v = vec3(v * (scale / static_cast<double>(target.unit)));
+    return target;
+}
+
+/// Where the rays of up to eight points start, in ray space.
+struct Starts {
+    float x[8]{}, y[8]{}, z[8]{};
+    float nx[8]{}, ny[8]{}, nz[8]{};
+    float height[8]{};  ///< what the ray meets before it has risen so far above the point's plane is no hit
+    TriangleId id[8]{};
+};
+
+/// Moves p along n by float steps, which grow with the distance from the origin as the rounding of p does, or by a
+/// constant close to the origin, where they would vanish.
+vec3 integer_offset(vec3 p, vec3 n) {
+    constexpr float near = 1 / 32.0f, constant = 1 / 65536.0f, steps = 256;
+    for (int k = 0; k < 3; ++k) {
+        const auto step = static_cast<std::int32_t>(steps * n[k]);
+        const auto bits = std::bit_cast<std::int32_t>(p[k]);
+        p[k] = std::abs(p[k]) < near ? p[k] + constant * n[k] : std::bit_cast<float>(bits + (p[k] < 0 ? -step : step));
+    }
+    return p;
+}
+
+class RayTraced final : public Method {
+public:
+    explicit RayTraced(const Settings& settings)
+        : policy_(policy_named(settings.choice("offset"))),
+          epsilon_(static_cast<float>(settings.real("epsilon"))),
+          sampler_(sampler_named(settings.choice("sampler"))),
+          samples_(settings.integer("samples")),
+          seed_(static_cast<std::uint32_t>(settings.integer("seed"))) {}
+
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        if (!facts.hard_lights_only)
+            return {How::approximately, fmt::format("area lights are sampled, {} rays a point", samples_)};
+        if (policy_ != OffsetPolicy::skip_triangle)
+            return {How::approximately, "rays start off the surface, so that contact shadows move"};
+        return {How::exactly, "one ray to each light that is a point or a direction; exact to the rounding of the ray"};
+    }
+
+    void build(const Scene& scene, const SceneFacts&) override {
+        scene_ = &scene;
+        lift_  = epsilon_ * bounds(scene).diagonal();
+        rays_.emplace(scene);
+    }
+
+    void aim(LightId light) override {
+        target_ = make_target(scene_->lights[light], rays_->space());
+        set_.emplace(sampler_, is_area(target_.kind) ? samples_ : 1, seed_ + 0x9e3779b9u * light);
+    }
+
+    void visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) override;
+
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0);
+    }
+
+private:
+    [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
+    void start(const PointBatch& points, const std::size_t (&at)[8], Starts& starts) const;
+    void hard(const PointBatch& points, const std::size_t (&at)[8], int (&valid)[8], std::span<float> s) const;
+    void area(const PointBatch& points, const std::size_t (&at)[8], const int (&valid)[8], std::span<float> s) const;
+    [[nodiscard]] float seen_share(const Starts& starts, int lane, PointKey key) const;
+
+    OffsetPolicy policy_;
+    float epsilon_;
+    Sampler sampler_;
+    int samples_;
+    std::uint32_t seed_;
+
+    const Scene* scene_ = nullptr;
+    float lift_         = 0;  ///< epsilon in world units
+    std::optional<RayScene> rays_;
+    Target target_;
+    std::optional<SampleSet> set_;
+};
+
+/// The point from its name, rounded in ray space only: where that is moved, its floats are finer than the world's.
+vec3 RayTraced::exact_start(const PointBatch& points, std::size_t i) const {
+    const TriangleId t    = points.triangle[i];
+    const RaySpace& space = rays_->space();
+    const dvec3 a(space.point(scene_->vertex(t, 0))), b(space.point(scene_->vertex(t, 1))),
+        c(space.point(scene_->vertex(t, 2)));
+    return vec3(a + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a));
+}
+
+void RayTraced::start(const PointBatch& points, const std::size_t (&at)[8], Starts& starts) const {
+    const RaySpace& space = rays_->space();
+    for (int k = 0; k < 8; ++k) {
+        const std::size_t i = at[k];
+        starts.x[k] = points.px[i], starts.y[k] = points.py[i], starts.z[k] = points.pz[i];
+        starts.nx[k] = points.nx[i], starts.ny[k] = points.ny[i], starts.nz[k] = points.nz[i];
+        starts.id[k] = points.triangle[i];
+    }
+    if (policy_ != OffsetPolicy::skip_triangle) {
+        for (int k = 0; k < 8; ++k) {
+            const vec3 p(starts.x[k], starts.y[k], starts.z[k]), n(starts.nx[k], starts.ny[k], starts.nz[k]);
+            const vec3 q = policy_ == OffsetPolicy::epsilon ? p + lift_ * n : integer_offset(p, n);
+            starts.x[k] = q.x, starts.y[k] = q.y, starts.z[k] = q.z;
+            starts.id[k] = kNoTriangle;
+        }
+    }
+    for (int k = 0; k < 8; ++k) {
+        starts.x[k] = (starts.x[k] - space.centre.x) * space.scale;
+        starts.y[k] = (starts.y[k] - space.centre.y) * space.scale;
+        starts.z[k] = (starts.z[k] - space.centre.z) * space.scale;
+    }
+    if (policy_ != OffsetPolicy::skip_triangle) return;
+    if (space.centre != vec3(0)) {
+        for (int k = 0; k < 8; ++k) {
+            if (starts.id[k] == kNoTriangle) continue;
+            const vec3 p = exact_start(points, at[k]);
+            starts.x[k] = p.x, starts.y[k] = p.y, starts.z[k] = p.z;
+        }
+    }
+    // How far the start may lie below its plane, with u = 2^-24 and unit normal n:
+    //   p's coordinates are rounded once, each by at most u |p_k|: together by sum |n_k| u |p_k| along n;
+    //   a triangle in that plane (a neighbour, a duplicate) is met where Embree's (v - p).N vanishes, v a vertex, N its
+    //   normal. v - p lies in the plane, so |v_k - p_k| <= E sqrt(1 - n_k^2), E <= 2 the scene's extent; the
+    //   difference, N's coordinates, the products and their sums are rounded, each by a few u of that.
+    // Both vanish for planes that the axes span, so that a floor at y = 0 needs no tolerance and gets none.
+    constexpr float u = 0x1p-24f;
+    for (int k = 0; k < 8; ++k) {
+        const float nx = starts.nx[k], ny = starts.ny[k], nz = starts.nz[k];
+        const auto lean  = [](float n) { return std::abs(n) * std::sqrt(std::max(0.0f, 1 - n * n)); };
+        starts.height[k] = u * (std::abs(nx * starts.x[k]) + std::abs(ny * starts.y[k]) + std::abs(nz * starts.z[k])) +
+                           (4 * u) * (lean(nx) + lean(ny) + lean(nz));
+    }
+}
+
+/// One ray a point.
+void RayTraced::hard(const PointBatch& points, const std::size_t (&at)[8], int (&valid)[8], std::span<float> s) const {
+    Starts starts;
+    start(points, at, starts);
+    ShadowPacket packet;
+    const bool parallel  = target_.kind == LightKind::directional;
+    const float per_unit = parallel ? 0 : 1 / target_.unit;
+    const float tfar     = parallel ? kInfinity : kAlmostThere * target_.unit;
+    for (int k = 0; k < 8; ++k) {
+        const float dx   = target_.centre.x - per_unit * starts.x[k];
+        const float dy   = target_.centre.y - per_unit * starts.y[k];
+        const float dz   = target_.centre.z - per_unit * starts.z[k];
+        const float rise = starts.nx[k] * dx + starts.ny[k] * dy + starts.nz[k] * dz;
+        packet.org_x[k] = starts.x[k], packet.org_y[k] = starts.y[k], packet.org_z[k] = starts.z[k];
+        packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
+        packet.tnear[k] = starts.height[k] / std::max(rise, 1e-30f);
+        packet.tfar[k]  = tfar;
+        packet.id[k]    = starts.id[k];
+    }
+    rays_->occluded(valid, packet);
+    for (int k = 0; k < 8; ++k)
+        if (valid[k] != 0) s[at[k]] = packet.tfar[k] < 0 ? 0.0f : 1.0f;
+}
+
+/// Of all samples of the light, the share that the point sees. What lies behind the point's plane is not seen.
+float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const {
+    const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]), n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
+    vec3 to_centre = target_.centre - o * (1 / target_.unit), axis_u = target_.axis_u, axis_v = target_.axis_v;
+    if (target_.kind == LightKind::sphere) {
+        TangentDisk disk;
+        if (!tangent_disk(dvec3(o), target_.sphere, target_.radius, disk)) return 1;  // in the lamp
+        const double per_unit = 1 / static_cast<double>(target_.unit);
+        to_centre             = vec3((disk.centre - dvec3(o)) * per_unit);
+        axis_u                = vec3(disk.axis_u * per_unit);
+        axis_v                = vec3(disk.axis_v * per_unit);
+    }
+    ShadowPacket packet;
+    for (int k = 0; k < 8; ++k) {
+        packet.org_x[k] = o.x, packet.org_y[k] = o.y, packet.org_z[k] = o.z;
+        packet.id[k] = starts.id[lane];
+    }
+    int seen = 0;
+    for (int first = 0; first < samples_; first += 8) {
+        Samples8 samples;
+        set_->eight(key, first, samples);
+        if (target_.kind == LightKind::rectangle)
+            for (int k = 0; k < 8; ++k) samples.x[k] = 2 * samples.x[k] - 1, samples.y[k] = 2 * samples.y[k] - 1;
+        else
+            map_to_disk(samples);
+        alignas(32) int valid[8];
+        for (int k = 0; k < 8; ++k) {
+            const float dx   = to_centre.x + samples.x[k] * axis_u.x + samples.y[k] * axis_v.x;
+            const float dy   = to_centre.y + samples.x[k] * axis_u.y + samples.y[k] * axis_v.y;
+            const float dz   = to_centre.z + samples.x[k] * axis_u.z + samples.y[k] * axis_v.z;
+            const float rise = n.x * dx + n.y * dy + n.z * dz;
+            packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
+            packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
+            packet.tfar[k]  = kAlmostThere * target_.unit;
+            valid[k]        = rise > 0 && first + k < samples_ ? -1 : 0;
+        }
+        rays_->occluded(valid, packet);
+        for (int k = 0; k < 8; ++k) seen += valid[k] != 0 && packet.tfar[k] >= 0;
+    }
+    return static_cast<float>(seen) / static_cast<float>(samples_);
+}
+
+void RayTraced::area(const PointBatch& points, const std::size_t (&at)[8], const int (&valid)[8],
+                     std::span<float> s) const {
+    Starts starts;
+    start(points, at, starts);
+    for (int k = 0; k < 8; ++k)
+        if (valid[k] != 0) s[at[k]] = seen_share(starts, k, set_->key(at[k]));
+}
+
+void RayTraced::visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) {
+    // Tiles of 16 x 8 pixels in packets of 4 x 2, so that a packet's rays stay close; without a raster 128 points.
+    const bool raster        = points.raster.has_value();
+    const std::size_t width  = raster ? points.raster->width : 16,
+                      height = raster ? points.raster->height : (points.size() + 15) / 16;
+    const std::size_t across = (width + 15) / 16, down = (height + 7) / 8;
+    const std::vector<Facing>& facing = points.facing[light];
+    parallel_ranges(across * down, 8, [&](std::size_t begin, std::size_t end) {
+        const FlushDenormals flush;
+        for (std::size_t packet = 16 * begin; packet < 16 * end; ++packet) {
+            const std::size_t tile = packet / 16, x0 = tile % across * 16 + packet % 4 * 4,
+                              y0 = tile / across * 8 + packet % 16 / 4 * 2;
+            std::size_t at[8];
+            alignas(32) int valid[8];
+            int any = 0;
+            for (int k = 0; k < 8; ++k) {
+                const std::size_t x = x0 + (k & 3), y = y0 + (k >> 2), i = y * width + x;
+                const bool inside = x < width && i < points.size();
+                at[k]             = inside ? i : 0;
+                valid[k]          = inside && facing[i] >= Facing::partly ? -1 : 0;
+                any |= valid[k];
+            }
+            if (any == 0) continue;
+            if (is_area(target_.kind))
+                area(points, at, valid, s);
+            else
+                hard(points, at, valid, s);
+        }
+    });
+}
+
+}  // namespace
+
+extern const MethodInfo ray_traced;
+constinit const MethodInfo ray_traced{
+    .name  = "ray_traced",
+    .title = "Ray-traced shadows",
+    .paper =
+        "Arthur Appel, Some Techniques for Shading Machine Renderings of Solids, 1968; Turner Whitted, An Improved "
+        "Illumination Model for Shaded Display, 1980; Robert Cook, Thomas Porter, Loren Carpenter, Distributed Ray "
+        "Tracing, 1984",
+    .summary =
+        "A ray from each surface point to the light, or to many points of an area light, asks whether anything "
+        "lies between. Errs by noise in penumbrae, and by the offset that keeps rays off their own surface.",
+    .parameters = kParameters,
+    .make       = make_method<RayTraced>};
+
+}  // namespace umbra
