@@ -1,0 +1,632 @@
+// Shadow z-buffer: draw depth from the light, then compare every surface point with it.
+//
+// This work is based on:
+// Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
+// William Reeves, David Salesin, Robert Cook. Rendering Antialiased Shadows with Depth Maps. 1987 (PCF)
+// Yulan Wang, Steven Molnar. Second-Depth Shadow Mapping. 1994 (faces=back)
+// Christian Schueler. Eliminating Surface Acne with Gradient Shadow Mapping. 2005 (the receiver's plane as bias)
+// Daniel Holbert. Saying Goodbye to Shadow Acne. 2011 (normal offset)
+//
+// The directions that a light sees are covered by *views*, each with a map of its own:
+//   directional     one orthographic view, fitted to the scene, in the roll about the light's direction of least area
+//   point, area     one perspective view fitted to the scene where that fits into a cone of 50 degrees; else six faces
+//                   of a cube. Area lights stand in their centres
+//   spot            one view of the cone, shrunk to the scene, and where the scene reaches out of it six faces at
+//                   `surround` of the resolution: the spot's factor in the sum is 0 there, S_j is not
+// Maps reach over their view's border by as much as the filter does, so that no filter ever crosses a cube's seam.
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "shadows/depth_map.h"
+#include "shadows/method.h"
+
+namespace umbra {
+namespace {
+
+constexpr int kRolls         = 16;          // orientations of the map tried about the light's direction
+constexpr double kWide       = 1.19175359;  // tan 50 degrees: beyond this one map wastes more than six
+constexpr double kWideCone   = 1.7320509;   // tan 60 degrees, for a spot's own cone
+constexpr double kFloatNear  = 1e-6;        // near / far; reversed floats resolve any such ratio evenly
+constexpr std::size_t kGrain = 4096;
+
+// ---- views ---------------------------------------------------------------------------------------------------------
+
+/// An interval of numbers, empty at first.
+struct Range {
+    double min = +std::numeric_limits<double>::infinity();
+    double max = -std::numeric_limits<double>::infinity();
+    void add(double v) { min = std::min(min, v), max = std::max(max, v); }
+    void add(const Range& r) { min = std::min(min, r.min), max = std::max(max, r.max); }
+    [[nodiscard]] double centre() const { return 0.5 * (min + max); }
+    [[nodiscard]] double half() const { return 0.5 * (max - min); }
+};
+
+/// Where a view looks from and what it shows, before there is a map. Light space: x right, y down, z away from the
+/// light, right-handed, about `origin`. The window is in x/z and y/z (perspective) or in x and y (orthographic).
+struct Frame {
+    bool perspective = true;
+    dvec3 origin{0};
+    dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    dvec2 centre{0}, half{1};
+    double near = 0, far = 1;
+    double reach = 1;  ///< points are looked up here where |X|, |Y| <= reach W
+
+    [[nodiscard]] dvec3 light_space(dvec3 p) const {
+        const dvec3 v = p - origin;
+        return {glm::dot(x, v), glm::dot(y, v), glm::dot(z, v)};
+    }
+    [[nodiscard]] double nearness(double depth) const {
+        return perspective ? near * (far - depth) / (depth * (far - near)) : (far - depth) / (far - near);
+    }
+    /// How fast nearness falls with depth.
+    [[nodiscard]] double nearness_per_depth(double depth) const {
+        return perspective ? near * far / (depth * depth * (far - near)) : 1 / (far - near);
+    }
+    /// See DepthMap::draw; W is z / far, or 1.
+    [[nodiscard]] dmat4 clip_from_world() const {
+        dvec4 X, Y, R, W;
+        if (perspective) {
+            X = dvec4((x - centre.x * z) / half.x, 0) / far;
+            Y = dvec4((y - centre.y * z) / half.y, 0) / far;
+            R = dvec4(-near * z, near * far) / ((far - near) * far);
+            W = dvec4(z, 0) / far;
+        } else {
+            X = dvec4(x, -centre.x) / half.x;
+            Y = dvec4(y, -centre.y) / half.y;
+            R = dvec4(-z, far) / (far - near);
+            W = dvec4(0, 0, 0, 1);
+        }
+        for (dvec4* row : {&X, &Y, &R, &W}) row->w -= glm::dot(dvec3(*row), origin);
+        return glm::transpose(dmat4(X, Y, R, W));
+    }
+};
+
+struct View {
+    Frame frame;
+    DepthMap map;
+};
+
+/// Any right-handed frame that looks along `z`.
+Frame looking_along(dvec3 origin, dvec3 z, bool perspective) {
+    Frame frame;
+    frame.perspective = perspective;
+    frame.origin      = origin;
+    frame.z           = glm::normalize(z);
+    const dvec3 a     = glm::abs(frame.z);
+    const dvec3 aside = a.x <= a.y && a.x <= a.z ? dvec3(1, 0, 0) : a.y <= a.z ? dvec3(0, 1, 0) : dvec3(0, 0, 1);
+    frame.x           = glm::normalize(glm::cross(aside, frame.z));
+    frame.y           = glm::cross(frame.z, frame.x);
+    return frame;
+}
+
+double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
+    const dvec3 n     = glm::cross(b - a, c - a);
+    const auto within = [&](dvec3 from, dvec3 to) { return glm::dot(glm::cross(to - from, p - from), n) >= 0; };
+    if (glm::dot(n, n) > 0 && within(a, b) && within(b, c) && within(c, a))
+        return std::abs(glm::dot(p - a, n)) / glm::length(n);
+    const auto to_segment = [&](dvec3 from, dvec3 to) {
+        const dvec3 d       = to - from;
+        const double length = glm::dot(d, d);
+        const double t      = length > 0 ? std::clamp(glm::dot(p - from, d) / length, 0.0, 1.0) : 0.0;
+        return glm::length(from + t * d - p);
+    };
+    return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
+// ---- the scene as seen from a light --------------------------------------------------------------------------------
+
+/// What fitting asks of the scene's geometry, found once.
+class Casters {
+public:
+    explicit Casters(const Scene& scene) : scene_(&scene), used_(scene.positions.size(), 0) {
+        for (const uvec3& t : scene.triangles)
+            for (int k = 0; k < 3; ++k) used_[t[k]] = 1;
+        for (const Object& object : scene.objects) {
+            Box box;
+            for (const uvec3& t : triangles(object))
+                for (int k = 0; k < 3; ++k) box = extend(box, scene.positions[t[k]]);
+            boxes_.push_back(box);
+        }
+        box_ = bounds(scene);
+    }
+
+    [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] const Box& box() const { return box_; }
+    [[nodiscard]] std::size_t memory_bytes() const { return used_.size() + boxes_.size() * sizeof(Box); }
+
+    /// Range of each of the n values that `values` gives for a position, over all positions in use.
+    template <std::size_t n, class Values>
+    [[nodiscard]] std::array<Range, n> ranges(const Values& values) const {
+        const std::size_t parts = (used_.size() + kGrain - 1) / kGrain;
+        std::vector<std::array<Range, n>> partial(parts);
+        parallel_ranges(parts, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t part = begin; part < end; ++part)
+                for (std::size_t i = part * kGrain; i < std::min((part + 1) * kGrain, used_.size()); ++i) {
+                    if (!used_[i]) continue;
+                    const std::array<double, n> v = values(dvec3(scene_->positions[i]));
+                    for (std::size_t k = 0; k < n; ++k) partial[part][k].add(v[k]);
+                }
+        });
+        std::array<Range, n> all;
+        for (const auto& p : partial)
+            for (std::size_t k = 0; k < n; ++k) all[k].add(p[k]);
+        return all;
+    }
+
+    [[nodiscard]] double distance(dvec3 p) const {
+        const std::size_t count = scene_->triangles.size();
+        std::vector<Range> partial((count + kGrain - 1) / kGrain);
+        parallel_ranges(partial.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t part = begin; part < end; ++part)
+                for (std::size_t i = part * kGrain; i < std::min((part + 1) * kGrain, count); ++i) {
+                    const auto t = static_cast<TriangleId>(i);
+                    partial[part].add(distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
+                                                           dvec3(scene_->vertex(t, 2))));
+                }
+        });
+        Range all;
+        for (const Range& r : partial) all.add(r);
+        return all.min;
+    }
+
+    /// Triangles of the objects whose boxes are not wholly beyond one side of the view.
+    [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world) const {
+        std::vector<std::span<const uvec3>> runs;
+        for (std::size_t o = 0; o < boxes_.size(); ++o) {
+            const Box& box = boxes_[o];
+            if (box.empty()) continue;
+            std::array<int, 5> outside{};
+            for (int corner = 0; corner < 8; ++corner) {
+                const dvec4 c =
+                    clip_from_world * dvec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
+                                            corner & 4 ? box.max.z : box.min.z, 1);
+                const std::array<bool, 5> is_outside{c.w <= 0, c.x > c.w, c.x<-c.w, c.y> c.w, c.y < -c.w};
+                for (int side = 0; side < 5; ++side) outside[side] += is_outside[side];
+            }
+            if (std::ranges::find(outside, 8) == outside.end()) runs.push_back(triangles(scene_->objects[o]));
+        }
+        return runs;
+    }
+
+private:
+    [[nodiscard]] std::span<const uvec3> triangles(const Object& object) const {
+        return std::span(scene_->triangles).subspan(object.first_triangle, object.triangle_count);
+    }
+
+    const Scene* scene_;
+    std::vector<std::uint8_t> used_;  ///< positions that a triangle names; others must not loosen a fit
+    std::vector<Box> boxes_;          ///< one an object
+    Box box_;
+};
+
+/// Rolls the frame about its z and sets window, near and far so that it just holds the scene. False, with the frame as
+/// it was, where a perspective window would reach further than `widest` from the middle or behind the light.
+bool fit_to_scene(Frame& frame, const Casters& casters, double widest) {
+    // The scene's own axes make good edges of the window (floors, walls); the other rolls are spread evenly.
+    std::array<double, kRolls> angles;
+    for (int i = 0; i < 3; ++i) angles[i] = std::atan2(frame.y[i], frame.x[i]);
+    for (int i = 3; i < kRolls; ++i) angles[i] = (i - 3) * (kPi / 2) / (kRolls - 3);
+    std::array<dvec2, kRolls> rolls;
+    for (int i = 0; i < kRolls; ++i) rolls[i] = {std::cos(angles[i]), std::sin(angles[i])};
+
+    const auto ranges = casters.ranges<2 * kRolls + 1>([&](dvec3 p) {
+        std::array<double, 2 * kRolls + 1> values;
+        dvec3 v            = frame.light_space(p);
+        values[2 * kRolls] = v.z;
+        if (frame.perspective) v /= v.z;
+        for (int i = 0; i < kRolls; ++i) {
+            values[2 * i]     = rolls[i].x * v.x + rolls[i].y * v.y;
+            values[2 * i + 1] = rolls[i].x * v.y - rolls[i].y * v.x;
+        }
+        return values;
+    });
+    const Range depth = ranges.back();
+    int best          = 0;
+    const auto area   = [&](int i) { return ranges[2 * i].half() * ranges[2 * i + 1].half(); };
+    for (int i = 1; i < kRolls; ++i)
+        if (area(i) < area(best)) best = i;
+    if (frame.perspective) {
+        if (!(depth.min > 0)) return false;
+        for (const Range& r : {ranges[2 * best], ranges[2 * best + 1]})
+            if (std::max(-r.min, r.max) > widest) return false;
+    }
+
+    const dvec3 x = frame.x;
+    frame.x       = rolls[best].x * x + rolls[best].y * frame.y;
+    frame.y       = rolls[best].x * frame.y - rolls[best].y * x;
+    frame.centre  = {ranges[2 * best].centre(), ranges[2 * best + 1].centre()};
+    frame.half    = {ranges[2 * best].half(), ranges[2 * best + 1].half()};
+    frame.near    = depth.min;
+    frame.far     = depth.max;
+    frame.reach   = kInfinity;
+    // Scenes that the light sees edge-on have no area, those that it sees flat no depth.
+    frame.half = glm::max(frame.half, dvec2(1e-6 * std::max(frame.half.x, frame.half.y)));
+    return true;
+}
+
+// ---- comparing -----------------------------------------------------------------------------------------------------
+
+enum class Bias : std::uint8_t { automatic, receiver_plane, manual };
+
+struct Options {
+    int resolution;
+    DepthFormat format;
+    Bias bias;
+    double constant, slope, normal_offset;
+    int radius;  ///< of the PCF kernel; 0 with `nearest`
+    bool bilinear;
+    Faces faces;
+    double surround;
+};
+
+/// A surface point's triangle, exact in double.
+struct Facet {
+    dvec3 a, ab, ac;
+    dvec3 normal;  ///< unit, on the side of the batch's normal
+};
+
+/// The receiver in one map: where the point lies, and its triangle's plane r(x, y) there.
+struct Receiver {
+    double x, y;      ///< samples
+    double r;         ///< nearness of the point
+    double r_x, r_y;  ///< nearness of its plane, a sample
+    double r_max;     ///< nearness of the triangle's nearest corner: the plane means nothing beyond
+    double bias;      ///< nearness added to all comparisons
+};
+
+/// The receiver in a view, or nothing where the view does not cover it.
+std::optional<Receiver> receive(const View& view, const Facet& facet, dvec3 p, const Options& options) {
+    const Frame& f = view.frame;
+    dvec3 v        = f.light_space(p);
+    const dvec3 n{glm::dot(f.x, facet.normal), glm::dot(f.y, facet.normal), glm::dot(f.z, facet.normal)};
+    const auto ndc = [&](dvec3 q) { return (dvec2(q) / (f.perspective ? q.z : 1.0) - f.centre) / f.half; };
+    if (f.perspective && v.z <= 0) return {};
+    if (const dvec2 at = glm::abs(ndc(v)); at.x > f.reach || at.y > f.reach) return {};
+
+    const dvec2 sample = 2.0 * f.half / dvec2(view.map.width(), view.map.height());   // in window units
+    const double width = std::max(sample.x, sample.y) * (f.perspective ? v.z : 1.0);  // in world units
+    if (options.normal_offset > 0) {
+        // A plane seen head-on needs no offset, a grazing one all of it.
+        const double cosine = f.perspective ? glm::dot(n, v) / glm::length(v) : n.z;
+        v += options.normal_offset * width * std::sqrt(std::max(0.0, 1 - cosine * cosine)) * n;
+        if (f.perspective && v.z <= 0) return {};
+    }
+
+    Receiver receiver;
+    const dvec2 at = ndc(v);
+    receiver.x     = (at.x + 1) * 0.5 * view.map.width();
+    receiver.y     = (at.y + 1) * 0.5 * view.map.height();
+    receiver.r     = f.nearness(v.z);
+
+    // dot(n, v) = d is, with s = x/z and t = y/z, 1/z = (n.x s + n.y t + n.z) / d, and nearness is affine in 1/z.
+    // Orthographic: z = (d - n.x x - n.y y) / n.z.
+    const double scale =
+        f.perspective ? f.near * f.far / ((f.far - f.near) * glm::dot(n, v)) : 1 / ((f.far - f.near) * n.z);
+    receiver.r_x = std::isfinite(scale) ? scale * n.x * sample.x : 0;
+    receiver.r_y = std::isfinite(scale) ? scale * n.y * sample.y : 0;
+
+    receiver.r_max = receiver.r;
+    for (dvec3 corner : {facet.a, facet.a + facet.ab, facet.a + facet.ac}) {
+        const double depth = glm::dot(f.z, corner - f.origin);
+        receiver.r_max     = std::max(receiver.r_max, f.perspective && depth < f.near ? 1.0 : f.nearness(depth));
+    }
+
+    receiver.bias = options.constant * width * f.nearness_per_depth(v.z) +
+                    options.slope * std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
+    // The map's own errors: its values are rounded, its corners snapped.
+    if (options.bias == Bias::automatic)
+        receiver.bias +=
+            view.map.quantum(receiver.r) + (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / DepthMap::kSnap;
+    return receiver;
+}
+
+/// Does the map show anything nearer than the receiver at sample (i, j)?
+bool is_blocked(const DepthMap& map, const Receiver& p, int i, int j, Bias bias) {
+    if (i < 0 || j < 0 || i >= map.width() || j >= map.height()) return false;
+    double r = p.r;
+    if (bias != Bias::manual) {
+        const double plane = std::min(p.r + p.r_x * (i + 0.5 - p.x) + p.r_y * (j + 0.5 - p.y), p.r_max);
+        r                  = bias == Bias::automatic ? std::max(r, plane) : plane;
+    }
+    return map.nearness(i, j) > r + p.bias;
+}
+
+/// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth.
+float lit_share(const DepthMap& map, const Receiver& p, const Options& options) {
+    const int radius = options.radius;
+    if (!options.bilinear) {
+        const int x = static_cast<int>(std::floor(p.x));
+        const int y = static_cast<int>(std::floor(p.y));
+        if (radius == 0) return is_blocked(map, p, x, y, options.bias) ? 0.0f : 1.0f;
+        int lit = 0;
+        for (int j = -radius; j <= radius; ++j)
+            for (int i = -radius; i <= radius; ++i) lit += !is_blocked(map, p, x + i, y + j, options.bias);
+        return static_cast<float>(lit) / static_cast<float>((2 * radius + 1) * (2 * radius + 1));
+    }
+    // A box of 2 radius + 1 samples that moves with the point: its border samples count by how much of them it covers.
+    const int x     = static_cast<int>(std::floor(p.x - 0.5));
+    const int y     = static_cast<int>(std::floor(p.y - 0.5));
+    const double fx = p.x - 0.5 - x;
+    const double fy = p.y - 0.5 - y;
+    double lit      = 0;
+    for (int j = -radius; j <= radius + 1; ++j)
+        for (int i = -radius; i <= radius + 1; ++i) {
+            if (is_blocked(map, p, x + i, y + j, options.bias)) continue;
+            const double wx = i == -radius ? 1 - fx : i == radius + 1 ? fx : 1;
+            const double wy = j == -radius ? 1 - fy : j == radius + 1 ? fy : 1;
+            lit += wx * wy;
+        }
+    return static_cast<float>(std::clamp(lit / ((2 * radius + 1) * (2 * radius + 1)), 0.0, 1.0));
+}
+
+// ---- the method ----------------------------------------------------------------------------------------------------
+
+constexpr Parameter kParameters[] = {
+    {"resolution",
+     Parameter::Type::integer,
+     "2048",
+     "samples along each side of a map (a cube has six)",
+     16,
+     16384,
+     {}},
+    {"depth", Parameter::Type::choice, "float", "bits of a depth value; float is kept reversed", 0, 0,
+     "16|24|32|float"},
+    {"bias", Parameter::Type::choice, "auto",
+     "what a point is compared with: auto: the nearer of the point and its triangle's plane at the sample, and what "
+     "rounding and snapping cost; receiver_plane: that plane alone; manual: the point",
+     0, 0, "auto|receiver_plane|manual"},
+    {"constant",
+     Parameter::Type::real,
+     "0",
+     "moves the point towards the light, in widths of a sample there",
+     0,
+     1e6,
+     {}},
+    {"slope",
+     Parameter::Type::real,
+     "0",
+     "moves the point towards the light, in times its plane's depth gradient a sample",
+     0,
+     1e6,
+     {}},
+    {"normal_offset",
+     Parameter::Type::real,
+     "0",
+     "moves the point along its normal, in widths of a sample times the sine of the light's angle",
+     0,
+     64,
+     {}},
+    {"filter", Parameter::Type::choice, "nearest", "nearest: one comparison; pcf: the mean of those about the point", 0,
+     0, "nearest|pcf"},
+    {"radius", Parameter::Type::integer, "1", "pcf: takes (2 radius + 1)^2 samples", 0, 16, {}},
+    {"bilinear",
+     Parameter::Type::boolean,
+     "true",
+     "pcf: weights samples by how much of them the moving kernel covers",
+     0,
+     0,
+     {}},
+    {"faces", Parameter::Type::choice, "all",
+     "which side of triangles casts; back (second depth) and front want closed, outward occluders", 0, 0,
+     "all|front|back"},
+    {"surround",
+     Parameter::Type::real,
+     "0.5",
+     "spot lights: resolution of the maps around the cone, in times the cone's own; 0: no maps, points undefined there",
+     0,
+     1,
+     {}},
+};
+
+Options read(const Settings& s) {
+    Options o;
+    o.resolution         = s.integer("resolution");
+    const std::string& d = s.choice("depth");
+    o.format             = d == "16"   ? DepthFormat::unorm16
+                           : d == "24" ? DepthFormat::unorm24
+                           : d == "32" ? DepthFormat::unorm32
+                                       : DepthFormat::float32;
+    const std::string& b = s.choice("bias");
+    o.bias               = b == "auto" ? Bias::automatic : b == "manual" ? Bias::manual : Bias::receiver_plane;
+    o.constant           = s.real("constant");
+    o.slope              = s.real("slope");
+    o.normal_offset      = s.real("normal_offset");
+    const bool pcf       = s.choice("filter") == "pcf";
+    o.radius             = pcf ? s.integer("radius") : 0;
+    o.bilinear           = pcf && s.boolean("bilinear");
+    const std::string& f = s.choice("faces");
+    o.faces              = f == "front" ? Faces::front : f == "back" ? Faces::back : Faces::all;
+    o.surround           = s.real("surround");
+    return o;
+}
+
+class ShadowZBuffer final : public Method {
+public:
+    explicit ShadowZBuffer(const Settings& settings) : options_(read(settings)) {}
+
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        std::string why = "any triangles and lights, through a map that samples depth";
+        if (!facts.hard_lights_only) why += "; area lights stand in their centres, so that penumbrae are missing";
+        if (options_.faces != Faces::all && (facts.open_objects > 0 || facts.nonmanifold_objects > 0))
+            why += "; open meshes cast with one side only";
+        return {How::approximately, why + "."};
+    }
+
+    void build(const Scene& scene, const SceneFacts&) override {
+        views_.clear();
+        casters_.emplace(scene);
+    }
+
+    void aim(LightId light) override {
+        views_.clear();
+        if (casters_->box().empty()) return;
+        const Light& l = casters_->scene().lights[light];
+        if (l.kind == LightKind::directional)
+            aim_directional(dvec3(l.direction));
+        else
+            aim_around(l);
+        for (View& view : views_) {
+            const dmat4 clip_from_world = view.frame.clip_from_world();
+            view.map.draw(clip_from_world, casters_->scene().positions, casters_->seen_by(clip_from_world),
+                          options_.faces);
+        }
+    }
+
+    void visibility(const PointBatch& points, LightId light, std::span<float> s,
+                    std::span<std::uint8_t> defined) override {
+        const std::vector<Facing>& facing = points.facing[light];
+        parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            Facet facet{};
+            TriangleId facet_of = kNoTriangle;
+            bool facet_flipped  = false;
+            for (std::size_t i = begin; i < end; ++i) {
+                if (facing[i] == Facing::none || facing[i] == Facing::away) continue;
+                if (points.triangle[i] != facet_of || (points.flipped[i] != 0) != facet_flipped) {
+                    facet_of      = points.triangle[i];
+                    facet_flipped = points.flipped[i] != 0;
+                    facet         = make_facet(facet_of, facet_flipped);
+                }
+                const dvec3 p =
+                    facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac;
+                defined[i] = look_up(facet, p, facing[i], casters_->scene().lights[light], s[i]);
+            }
+        });
+    }
+
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        std::size_t bytes = casters_ ? casters_->memory_bytes() : 0;
+        for (const View& view : views_) bytes += view.map.memory_bytes();
+        return bytes;
+    }
+
+private:
+    /// Samples by which a map reaches over its view: what the filter and the offset may ask for, and a rounding.
+    [[nodiscard]] double border(int resolution) const {
+        return std::min(options_.radius + options_.normal_offset + 2.0, 0.25 * resolution);
+    }
+
+    void add_view(Frame frame, int resolution) {
+        const double inner = 1 - 2 * border(resolution) / resolution;
+        frame.half /= inner;
+        if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
+        if (frame.perspective) {
+            // Of unorm depth, a step at `far` must not exceed a sample's width there: near bounds that step.
+            const double floor = frame.far * (options_.format == DepthFormat::float32
+                                                  ? kFloatNear
+                                                  : resolution * DepthMap(1, 1, options_.format).quantum(1) / 2);
+            frame.near         = std::min(std::max(frame.near, floor), 0.5 * frame.far);
+        } else {
+            const double depth = std::max(frame.far - frame.near, 1e-6 * std::max(frame.half.x, frame.half.y));
+            frame.near         = frame.far - depth;
+        }
+        if (casters_->seen_by(frame.clip_from_world()).empty()) return;
+        const double bytes = 4.0 * resolution * resolution;
+        const double physical =
+            static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+        if (static_cast<double>(memory_bytes()) + bytes > 0.5 * physical)
+            throw UsageError(
+                fmt::format("shadow_zbuffer: resolution={} takes more than half of the machine's memory "
+                            "({:.0f} MiB a map, {} of them as yet; choose a smaller one)",
+                            options_.resolution, bytes / (1 << 20), views_.size()));
+        views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
+    }
+
+    void aim_directional(dvec3 direction) {
+        Frame frame = looking_along(dvec3(casters_->box().centre()), direction, false);
+        fit_to_scene(frame, *casters_, kInfinity);
+        add_view(frame, options_.resolution);
+    }
+
+    void aim_around(const Light& light) {
+        const dvec3 origin(light.position);
+        const double nearest = casters_->distance(origin);
+        Frame cube =
+            looking_along(origin, light.kind == LightKind::spot ? dvec3(light.direction) : dvec3(0, 0, 1), true);
+        int resolution = options_.resolution;
+        if (light.kind == LightKind::spot) {
+            const double rim = std::tan(static_cast<double>(light.spot.cutoff));
+            Frame cone       = cube;
+            if (rim > 0 && fit_to_scene(cone, *casters_, std::min(rim, kWideCone))) return add_view(cone, resolution);
+            if (rim > 0 && rim <= kWideCone) {
+                cone.half = dvec2(rim);
+                set_depth(cone, nearest);
+                add_view(cone, resolution);
+                resolution = static_cast<int>(std::lround(options_.surround * resolution));
+                if (resolution == 0) return;
+            }
+        }
+        const dvec3 to_scene = dvec3(casters_->box().centre()) - origin;
+        if (views_.empty() && glm::length(to_scene) > 0) {
+            Frame whole = looking_along(origin, to_scene, true);
+            if (fit_to_scene(whole, *casters_, kWide)) return add_view(whole, resolution);
+        }
+        // Sides of the cube as even permutations and turns of one right-handed frame.
+        const std::array<dvec3, 3> axes{cube.x, cube.y, cube.z};
+        for (int k = 0; k < 3; ++k)
+            for (double sign : {1.0, -1.0}) {
+                Frame side = cube;
+                side.x     = sign * axes[(k + 1) % 3];
+                side.y     = axes[(k + 2) % 3];
+                side.z     = sign * axes[k];
+                set_depth(side, nearest);
+                add_view(side, resolution);
+            }
+    }
+
+    /// Depth limits of a perspective window about the axis, with no geometry nearer to the light than `nearest`.
+    void set_depth(Frame& frame, double nearest) const {
+        const auto depth = casters_->ranges<1>([&](dvec3 p) { return std::array{frame.light_space(p).z}; });
+        frame.far        = depth[0].max > 0 ? depth[0].max : 1;
+        frame.near       = std::max(depth[0].min, nearest / std::sqrt(1 + glm::dot(frame.half, frame.half)));
+    }
+
+    [[nodiscard]] Facet make_facet(TriangleId t, bool flipped) const {
+        const Scene& scene = casters_->scene();
+        const dvec3 a(scene.vertex(t, 0));
+        Facet facet{a, dvec3(scene.vertex(t, 1)) - a, dvec3(scene.vertex(t, 2)) - a, {}};
+        facet.normal = glm::normalize(glm::cross(facet.ab, facet.ac)) * (flipped ? -1.0 : 1.0);
+        return facet;
+    }
+
+    /// Writes S_j of one point; false where no view covers it.
+    bool look_up(const Facet& facet, dvec3 p, Facing facing, const Light& light, float& s) const {
+        // An area light that the receiver's plane cuts may have its centre behind.
+        if (facing == Facing::partly && glm::dot(facet.normal, dvec3(light.position) - p) <= 0) {
+            s = 0;
+            return true;
+        }
+        for (const View& view : views_)
+            if (const std::optional<Receiver> receiver = receive(view, facet, p, options_)) {
+                s = lit_share(view.map, *receiver, options_);
+                return true;
+            }
+        return false;
+    }
+
+    Options options_;
+    std::optional<Casters> casters_;
+    std::vector<View> views_;
+};
+
+}  // namespace
+
+extern const MethodInfo shadow_zbuffer;
+const MethodInfo shadow_zbuffer{
+    "shadow_zbuffer",
+    "Shadow z-buffer",
+    "Lance Williams, Casting Curved Shadows on Curved Surfaces, 1978",
+    "Draws the depth of what the light sees into a map, then compares each surface point with it. Serves any geometry; "
+    "errs by the map's samples along shadow edges and where surfaces are seen at a grazing angle from the light.",
+    kParameters,
+    make_method<ShadowZBuffer>,
+};
+
+}  // namespace umbra
