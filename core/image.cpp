@@ -1,8 +1,20 @@
 #include "core/image.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace umbra {
+
+std::array<std::size_t, 3> colour_channels(const Image& image) {
+    std::array<std::size_t, 3> found{};
+    const char* const names[] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = std::find(image.channels.begin(), image.channels.end(), names[c]);
+        if (at == image.channels.end()) return {0, 0, 0};
+        found[c] = std::size_t(at - image.channels.begin());
+    }
+    return found;
+}
 
 // In double: 1.055f - 0.055f falls short of 1, and white must be white.
 

@@ -1,6 +1,7 @@
 // Images in memory: scene-linear floats with named channels.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <vector>
@@ -23,6 +24,9 @@ struct Image {
     [[nodiscard]] float& at(std::size_t pixel, std::size_t c) { return data[pixel * channels.size() + c]; }
     [[nodiscard]] float at(std::size_t pixel, std::size_t c) const { return data[pixel * channels.size() + c]; }
 };
+
+/// Where R, G and B are among the channels; the first channel three times, as grey, in an image that lacks one of them.
+[[nodiscard]] std::array<std::size_t, 3> colour_channels(const Image& image);
 
 /// Encodes one linear value to sRGB (IEC 61966-2-1) and back; both for [0, 1], odd beyond.
 [[nodiscard]] float srgb_from_linear(float x);
