@@ -1,0 +1,49 @@
+// results.json, read with care: what is there must have the right type, what is not there is absent.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace umbra {
+
+/// One place of a results.json, which may be absent (not there, or null). Asking for a type that it has not throws
+/// InputError with the file and the place as a JSON pointer. Copies share the file's contents.
+class Field {
+public:
+    [[nodiscard]] Field operator[](std::string_view key) const;  ///< absent where this is absent
+    [[nodiscard]] bool present() const { return value_ != nullptr; }
+
+    [[nodiscard]] std::string text() const;           ///< empty where absent
+    [[nodiscard]] std::string required_text() const;  ///< neither absent nor empty
+    [[nodiscard]] std::optional<double> number() const;
+    [[nodiscard]] bool flag() const;                 ///< false where absent
+    [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent
+    [[nodiscard]] std::vector<std::pair<std::string, Field>> members() const;
+
+    /// "FILE:/place: found WHAT (EXPECTED would be right)".
+    [[noreturn]] void refuse(std::string_view expected) const;
+
+private:
+    friend Field read_results(const std::filesystem::path& file);
+    struct Document;
+    Field(std::shared_ptr<const Document> document, const nlohmann::json* value, std::string pointer)
+        : document_(std::move(document)), value_(value), pointer_(std::move(pointer)) {}
+
+    std::shared_ptr<const Document> document_;
+    const nlohmann::json* value_ = nullptr;
+    std::string pointer_;
+};
+
+/// The root of a results.json of the schema that this version writes. Throws InputError.
+[[nodiscard]] Field read_results(const std::filesystem::path& file);
+
+/// The version of the schema, as in the member `schema`.
+inline constexpr int kResultsSchema = 1;
+
+}  // namespace umbra
