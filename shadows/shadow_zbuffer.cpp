@@ -278,7 +278,6 @@ struct Receiver {
     double x, y;      ///< samples
     double r;         ///< nearness of the point
     double r_x, r_y;  ///< nearness of its plane, a sample
-    double r_max;     ///< nearness of the triangle's nearest corner: the plane means nothing beyond
     double bias;      ///< nearness added to all comparisons
 };
 
@@ -313,16 +312,12 @@ std::optional<Receiver> receive(const View& view, const Facet& facet, dvec3 p, c
     receiver.r_x = std::isfinite(scale) ? scale * n.x * sample.x : 0;
     receiver.r_y = std::isfinite(scale) ? scale * n.y * sample.y : 0;
 
-    receiver.r_max = receiver.r;
-    for (dvec3 corner : {facet.a, facet.a + facet.ab, facet.a + facet.ac}) {
-        const double depth = glm::dot(f.z, corner - f.origin);
-        receiver.r_max     = std::max(receiver.r_max, f.perspective && depth < f.near ? 1.0 : f.nearness(depth));
-    }
-
-    receiver.bias = options.constant * width * f.nearness_per_depth(v.z) +
+    // The map's values are rounded and its corners snapped. Between the point and a sample, the surface may rise above
+    // the point's plane: over half a sample's width by half a width, where it turns by 45 degrees.
+    const double constant = options.constant + (options.bias == Bias::automatic ? 0.5 : 0.0);
+    receiver.bias         = constant * width * f.nearness_per_depth(v.z) +
                     options.slope * std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
-    // The map's own errors: its values are rounded, its corners snapped.
-    if (options.bias == Bias::automatic)
+    if (options.bias != Bias::manual)
         receiver.bias +=
             view.map.quantum(receiver.r) + (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / DepthMap::kSnap;
     return receiver;
@@ -333,7 +328,7 @@ bool is_blocked(const DepthMap& map, const Receiver& p, int i, int j, Bias bias)
     if (i < 0 || j < 0 || i >= map.width() || j >= map.height()) return false;
     double r = p.r;
     if (bias != Bias::manual) {
-        const double plane = std::min(p.r + p.r_x * (i + 0.5 - p.x) + p.r_y * (j + 0.5 - p.y), p.r_max);
+        const double plane = p.r + p.r_x * (i + 0.5 - p.x) + p.r_y * (j + 0.5 - p.y);
         r                  = bias == Bias::automatic ? std::max(r, plane) : plane;
     }
     return map.nearness(i, j) > r + p.bias;
@@ -519,14 +514,15 @@ private:
         if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
         if (frame.perspective) {
             // Of unorm depth, a step at `far` must not exceed a sample's width there: near bounds that step.
-            const double floor = frame.far * (options_.format == DepthFormat::float32
-                                                  ? kFloatNear
-                                                  : resolution * DepthMap(1, 1, options_.format).quantum(1) / 2);
-            frame.near         = std::min(std::max(frame.near, floor), 0.5 * frame.far);
+            const double floor = options_.format == DepthFormat::float32
+                                     ? kFloatNear
+                                     : resolution * DepthMap(1, 1, options_.format).quantum(1) / 2;
+            frame.near         = std::min(std::max(frame.near, floor * frame.far), 0.5 * frame.far);
         } else {
-            const double depth = std::max(frame.far - frame.near, 1e-6 * std::max(frame.half.x, frame.half.y));
-            frame.near         = frame.far - depth;
+            frame.near = std::min(frame.near, frame.far - 1e-6 * std::max(frame.half.x, frame.half.y));
         }
+        // The scene's last depth is not nearness 0, where the steps of floats no longer tell how far they are rounded.
+        frame.far += 0.01 * (frame.far - frame.near);
         if (casters_->seen_by(frame.clip_from_world()).empty()) return;
         const double bytes = 4.0 * resolution * resolution;
         const double physical =
