@@ -1,0 +1,18 @@
+// Polygons of mesh files, cut into triangles. Internal to core.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math.h"
+
+namespace umbra {
+
+/// Appends the n - 2 triangles of a polygon (n >= 3 indices into `positions`, all in range) with its orientation:
+/// a fan from its first corner where it is convex, ears cut off one by one where it is not.
+/// Returns false where no such triangles exist, as in a polygon that crosses itself: then it is a fan nevertheless.
+bool triangulate(const std::vector<vec3>& positions, std::span<const std::uint32_t> polygon,
+                 std::vector<uvec3>& triangles);
+
+}  // namespace umbra
