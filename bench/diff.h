@@ -25,14 +25,14 @@ enum class Verdict : std::uint8_t {
 
 /// Limits. Those that are not set are not asked; where none is, `fail` is kDefaultFail (rounding).
 struct DiffOptions {
-    std::optional<double> fail;       ///< largest difference of a value
-    double fail_percent = 0;          ///< this share of all pixels may be beyond `fail`
-    std::optional<double> fail_rmse;  ///< root mean square difference over all values
-    std::optional<double> fail_flip;  ///< mean FLIP
-    std::optional<double> fail_psnr;  ///< dB against a peak of 1; less is too little
-    std::optional<double> fail_ssim;  ///< less is too little
-    double warn = 0;                  ///< largest difference of a value that still counts as the same
-    std::filesystem::path map;        ///< .png: FLIP of each pixel in grey; .exr: FLIP, and B - A of every channel
+    std::optional<double> fail{};       ///< largest difference of a value
+    double fail_percent = 0;            ///< this share of all pixels may be beyond `fail`
+    std::optional<double> fail_rmse{};  ///< root mean square difference over all values
+    std::optional<double> fail_flip{};  ///< mean FLIP
+    std::optional<double> fail_psnr{};  ///< dB against a peak of 1; less is too little
+    std::optional<double> fail_ssim{};  ///< less is too little
+    double warn = 0;                    ///< largest difference of a value that still counts as the same
+    std::filesystem::path map{};        ///< .png: FLIP of each pixel in grey; .exr: FLIP, and B - A of every channel
 };
 inline constexpr double kDefaultFail = 1e-6;
 

@@ -35,25 +35,30 @@ void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec
                         file.string(), spec.width, spec.height, spec.nchannels, kMaxPixels >> 20));
 }
 
-/// Reads row by row, or by rows of tiles, and lets memory grow with what has been read: a header may lie about its
-/// size.
+/// Reads a few rows at a time, or a row of tiles, and lets memory grow with what has been read: headers lie about
+/// sizes.
 void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Image& image) {
     const OIIO::ImageSpec& spec = input.spec();
     const std::size_t row       = std::size_t(spec.width) * std::size_t(spec.nchannels);
-    const int strip             = spec.tile_height > 0 ? spec.tile_height : 64;
+    const bool tiled            = spec.tile_height > 0;
+    const int strip             = tiled ? spec.tile_height : 64;
     for (int y = 0; y < spec.height; y += strip) {
         const int rows = std::min(strip, spec.height - y);
-        image.data.resize(image.data.size() + row * std::size_t(rows));
+        const int top  = spec.y + y;
+        image.data.resize(row * std::size_t(y + rows));
         float* const begin = image.data.data() + row * std::size_t(y);
-        const int top      = spec.y + y;
-        const bool done =
-            spec.tile_height > 0
-                ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z, spec.z + 1, 0,
-                                   spec.nchannels, OIIO::TypeDesc::FLOAT, begin)
-                : input.read_scanlines(0, 0, top, top + rows, spec.z, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, begin);
+        const bool done    = tiled ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z,
+                                                      spec.z + 1, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, begin)
+                                   : input.read_scanlines(0, 0, top, top + rows, spec.z, 0, spec.nchannels,
+                                                          OIIO::TypeDesc::FLOAT, begin);
         if (!done || input.has_error())
             throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(input.geterror())));
     }
+}
+
+/// The library multiplies by a rounded 1 / levels; this divides, so that 8 and 16 bits of one value are one float.
+void round_once(Image& image, double levels) {
+    for (float& x : image.data) x = float(std::round(double(x) * levels) / levels);
 }
 
 /// A name beside `file` that no other process writes to; the ending is kept, since it tells the format.
@@ -140,6 +145,8 @@ LoadedImage read_image(const std::filesystem::path& file) {
             if (attribute.type() == OIIO::TypeDesc::STRING)
                 loaded.image.metadata[attribute.name().string()] = attribute.get_string();
         read_pixels(file, *input, loaded.image);
+        if (stored == OIIO::TypeDesc::UINT8) round_once(loaded.image, 255);
+        if (stored == OIIO::TypeDesc::UINT16) round_once(loaded.image, 65535);
         return loaded;
     } catch (const InputError&) {
         throw;
