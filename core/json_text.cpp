@@ -282,10 +282,10 @@ std::string JsonFields::string(std::string_view key, std::string_view fallback) 
     return v ? text_.string(*v, key) : std::string(fallback);
 }
 void JsonFields::exclude(std::string_view key, std::string_view other) const {
-    if (find(key))
-        if (const JsonValue* b = find(other))
-            text_.fail(*b,
-                       fmt::format("{} has both \"{}\" and \"{}\" (one of them would be right)", what_, key, other));
+    const JsonValue *a = find(key), *b = find(other);
+    if (a && b)
+        text_.fail(a->offset > b->offset ? *a : *b,
+                   fmt::format("{} has both \"{}\" and \"{}\" (one of them would be right)", what_, key, other));
 }
 
 }  // namespace umbra

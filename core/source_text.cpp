@@ -61,7 +61,7 @@ SourceText read_text(const std::filesystem::path& file, std::size_t max_bytes) {
     if (!stream) throw InputError(fmt::format("{}: cannot open: {}", file.string(), std::strerror(errno)));
     SourceText source{file.string(), {}};
     // In pieces, since a pipe or a device has no size to ask for.
-    std::string piece(std::size_t{1} << 20, '\0');
+    std::string piece(std::size_t{1} << 16, '\0');
     while (stream) {
         stream.read(piece.data(), std::streamsize(piece.size()));
         source.text.append(piece, 0, std::size_t(stream.gcount()));
