@@ -1,0 +1,280 @@
+// Every method on every scene whose answer is known, and what the contract asks of all methods.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/facts.h"
+#include "core/parallel.h"
+#include "core/ray.h"
+#include "shadows/method.h"
+#include "tests/known_scenes.h"
+
+namespace umbra {
+namespace {
+
+/// Share of the points that a method may get wrong outside the edge band where it says that it only approximates.
+constexpr double kApproximateShare = 0.01;
+
+/// One method on one scene, its default settings.
+struct Case {
+    const Scene& scene;
+    SceneFacts facts = find_facts(scene);
+    std::unique_ptr<Method> method;
+
+    Case(const MethodInfo& info, const Scene& s) : scene(s), method(info.make(Settings(info.parameters))) {}
+
+    [[nodiscard]] Service serves() const { return method->serves(facts); }
+    void prepare(LightId light) {
+        method->build(scene, facts);
+        method->aim(light);
+    }
+    [[nodiscard]] VisibilityPlane visibility(const PointBatch& points, LightId light) const {
+        VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)};
+        method->visibility(points, light, plane.s, plane.defined);
+        return plane;
+    }
+};
+
+PointBatch primary(const Scene& scene) {
+    return primary_points(RayScene(scene), scene, scene.camera, scene.width, scene.height);
+}
+
+bool is_open(const PointBatch& points, LightId light, std::size_t i) {
+    return points.facing[light][i] == Facing::partly || points.facing[light][i] == Facing::front;
+}
+
+/// The first point that is wrong outside the edge band, in words.
+std::string first_wrong(const Scene& scene, const PointBatch& points, LightId light, const VisibilityPlane& got,
+                        const VisibilityPlane& known, float tolerance) {
+    const auto band = edge_band(points, light, known, tolerance);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!is_open(points, light, i) || !got.defined[i] || !known.defined[i] || band[i]) continue;
+        if (std::abs(got.s[i] - known.s[i]) <= tolerance) continue;
+        const dvec3 p     = place(scene, points, i);
+        const auto pixels = static_cast<std::size_t>(points.raster->width);
+        return fmt::format("pixel {} {} at ({}, {}, {}) on {}: S {} instead of {}", i % pixels, i / pixels, p.x, p.y,
+                           p.z, scene.objects[scene.triangle_object[points.triangle[i]]].name, got.s[i], known.s[i]);
+    }
+    return "none";
+}
+
+TEST(KnownScenes, BruteForceAgreesWithTheFormulas) {
+    for (const NamedScene& named : known_scenes()) {
+        const KnownScene known = named.make();
+        if (!known.closed_form) continue;
+        const PointBatch points = primary(known.scene);
+        for (LightId j = 0; j < known.scene.lights.size(); ++j) {
+            if (is_area(known.scene.lights[j].kind)) continue;
+            const VisibilityPlane formula = by_formula(known, points, j), force = brute_force(known.scene, points, j);
+            std::size_t compared = 0, wrong = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (!is_open(points, j, i) || !formula.defined[i] || !force.defined[i]) continue;
+                ++compared;
+                wrong += formula.s[i] != force.s[i];
+            }
+            EXPECT_GT(compared, 1000u) << named.name;
+            EXPECT_EQ(wrong, 0u) << named.name;
+        }
+    }
+}
+
+TEST(KnownScenes, ShowBothLightAndShadow) {
+    // A scene in which a method that always says lit (or never) would pass proves little; few may be so on purpose.
+    for (const NamedScene& named : known_scenes()) {
+        const KnownScene known  = named.make();
+        const PointBatch points = primary(known.scene);
+        for (LightId j = 0; j < known.scene.lights.size(); ++j) {
+            const VisibilityPlane plane = truth(known, points, j);
+            std::size_t lit = 0, umbra = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (!is_open(points, j, i) || !plane.defined[i]) continue;
+                lit += plane.s[i] == 1;
+                umbra += plane.s[i] == 0;
+            }
+            EXPECT_GT(lit, 200u) << named.name;
+            const bool all_lit = named.name == "light_at_eye" || named.name == "light_over_wall";
+            if (!all_lit && named.name != "no_anti_shadows") {
+                EXPECT_GT(umbra, 40u) << named.name;
+            }
+        }
+    }
+}
+
+class Matrix : public testing::TestWithParam<std::tuple<const MethodInfo*, NamedScene>> {};
+
+TEST_P(Matrix, IsRight) {
+    const auto& [info, named] = GetParam();
+    const KnownScene known    = named.make();
+    Case run(*info, known.scene);
+    const Service service = run.serves();
+    EXPECT_FALSE(service.why.empty());
+    if (!service) GTEST_SKIP() << service.why;
+
+    const PointBatch points = primary(known.scene);
+    run.method->build(known.scene, run.facts);
+    for (LightId j = 0; j < known.scene.lights.size(); ++j) {
+        run.method->aim(j);
+        const VisibilityPlane got = run.visibility(points, j), right = truth(known, points, j);
+        const LightKind kind    = known.scene.lights[j].kind;
+        const float tolerance   = visibility_tolerance(kind);
+        const VisibilityError e = visibility_error(points, j, got, right, tolerance);
+        EXPECT_GT(e.points, 500u);
+        const std::uint64_t interior = e.false_shadow.interior + e.false_light.interior;
+        if (service.how == How::exactly) {
+            EXPECT_EQ(interior, 0u) << first_wrong(known.scene, points, j, got, right, tolerance);
+        } else if (is_area(kind)) {
+            EXPECT_LE(e.mae, known.approximate_mae);
+        } else {
+            EXPECT_LE(static_cast<double>(interior), kApproximateShare * static_cast<double>(e.points))
+                << first_wrong(known.scene, points, j, got, right, tolerance);
+        }
+    }
+}
+
+std::string name_of(const MethodInfo* info) { return std::string(info->name); }
+
+INSTANTIATE_TEST_SUITE_P(All, Matrix,
+                         testing::Combine(testing::ValuesIn(methods().begin(), methods().end()),
+                                          testing::ValuesIn(known_scenes())),
+                         [](const auto& param) {
+                             return name_of(std::get<0>(param.param)) + "_" +
+                                    std::string(std::get<1>(param.param).name);
+                         });
+
+/// What shadows/method.h promises, by each method, on scenes that every kind of method serves somehow.
+class Contract : public testing::TestWithParam<const MethodInfo*> {
+protected:
+    const MethodInfo& info() const { return *GetParam(); }
+};
+
+TEST_P(Contract, AnswersAreInRangeAndClosedPointsStayUntouched) {
+    for (const char* name : {"two_lights", "open_meshes", "room", "penumbra_of_half_plane"}) {
+        const KnownScene known = known_scene(name);
+        Case run(info(), known.scene);
+        if (!run.serves()) continue;
+        const PointBatch points = primary(known.scene);
+        for (LightId j = 0; j < known.scene.lights.size(); ++j) {
+            run.prepare(j);
+            const VisibilityPlane got = run.visibility(points, j);
+            std::size_t defined       = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                ASSERT_GE(got.s[i], 0);
+                ASSERT_LE(got.s[i], 1);
+                ASSERT_LE(got.defined[i], 1);
+                if (!is_open(points, j, i)) {
+                    ASSERT_EQ(got.s[i], 0);
+                    ASSERT_EQ(got.defined[i], 1);
+                }
+                defined += is_open(points, j, i) && got.defined[i];
+                if (!is_area(known.scene.lights[j].kind) && run.serves().how == How::exactly && got.defined[i]) {
+                    ASSERT_TRUE(got.s[i] == 0 || got.s[i] == 1);
+                }
+            }
+            EXPECT_GT(defined, 1000u) << name;
+            EXPECT_GT(run.method->memory_bytes(), 0u);
+        }
+    }
+}
+
+TEST_P(Contract, SameBitsForAnyNumberOfThreads) {
+    for (const char* name : {"two_lights", "badly_oriented", "penumbra_of_half_plane"}) {
+        const KnownScene known  = known_scene(name);
+        const PointBatch points = primary(known.scene);
+        std::vector<VisibilityPlane> planes;
+        for (const int threads : {1, 2, 5}) {
+            const ThreadLimit limit(threads);
+            Case run(info(), known.scene);
+            if (!run.serves()) break;
+            run.prepare(0);
+            planes.push_back(run.visibility(points, 0));
+            EXPECT_EQ(planes.back().s, planes.front().s) << name << " with " << threads << " threads";
+            EXPECT_EQ(planes.back().defined, planes.front().defined) << name << " with " << threads << " threads";
+        }
+    }
+}
+
+TEST_P(Contract, ABatchWithoutARasterGetsTheSameAnswers) {
+    const KnownScene known = known_scene("two_lights");
+    Case run(info(), known.scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    const PointBatch raster = primary(known.scene);
+
+    // Every second point, shuffled, with some entries that are no point.
+    std::vector<std::size_t> from;
+    for (std::size_t i = 0; i < raster.size(); i += 2) from.push_back(i);
+    std::shuffle(from.begin(), from.end(), std::mt19937(7));
+    PointBatch points;
+    points.eye = raster.eye;
+    points.resize(from.size());
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (raster.triangle[from[i]] != kNoTriangle)
+            set_point(points, i, known.scene, raster.triangle[from[i]], raster.u[from[i]], raster.v[from[i]]);
+    face_lights(points, known.scene);
+
+    for (LightId j = 0; j < known.scene.lights.size(); ++j) {
+        run.prepare(j);
+        const VisibilityPlane all = run.visibility(raster, j), some = run.visibility(points, j);
+        const auto band       = edge_band(raster, j, truth(known, raster, j), kHardTolerance);
+        std::size_t differing = 0, compared = 0;
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            if (!is_open(points, j, i) || band[from[i]]) continue;
+            ++compared;
+            differing += all.s[from[i]] != some.s[i] || all.defined[from[i]] != some.defined[i];
+        }
+        EXPECT_GT(compared, 500u);
+        EXPECT_EQ(differing, 0u) << "of " << compared;
+    }
+}
+
+TEST_P(Contract, PhasesMayBeCalledAgain) {
+    KnownScene known = known_scene("two_lights");
+    Case run(info(), known.scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    PointBatch points = primary(known.scene);
+    run.prepare(1);
+    const VisibilityPlane once = run.visibility(points, 1);
+
+    run.method->aim(0);
+    run.method->build(known.scene, run.facts);
+    run.method->aim(1);
+    EXPECT_EQ(run.visibility(points, 1).s, once.s) << "built again";
+
+    // A light moves: aim alone must do, and must give what a new start gives.
+    known.scene.lights[1].position += vec3(4, 0.5f, 0);
+    face_light(points, known.scene, 1);
+    run.method->aim(1);
+    const VisibilityPlane moved = run.visibility(points, 1);
+    EXPECT_NE(moved.s, once.s);
+    Case fresh(info(), known.scene);
+    fresh.prepare(1);
+    EXPECT_EQ(moved.s, fresh.visibility(points, 1).s) << "aimed anew";
+
+    // An object moves: build and aim.
+    for (std::size_t p = 4; p < 12; ++p) known.scene.positions[p] += vec3(0.3f, 0, 0.2f);
+    points                 = primary(known.scene);
+    const SceneFacts facts = find_facts(known.scene);
+    run.method->build(known.scene, facts);
+    run.method->aim(1);
+    Case again(info(), known.scene);
+    again.prepare(1);
+    EXPECT_EQ(run.visibility(points, 1).s, again.visibility(points, 1).s) << "built anew";
+}
+
+TEST_P(Contract, AnEmptyBatchIsServed) {
+    const KnownScene known = known_scene("two_lights");
+    Case run(info(), known.scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    run.prepare(0);
+    PointBatch none;
+    face_lights(none, known.scene);
+    EXPECT_TRUE(run.visibility(none, 0).s.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Contract, testing::ValuesIn(methods().begin(), methods().end()),
+                         [](const auto& param) { return name_of(param.param); });
+
+}  // namespace
+}  // namespace umbra
