@@ -244,22 +244,35 @@ double DepthMap::quantum(double r) const {
 
 void DepthMap::draw(const dmat4& clip_from_world, std::span<const vec3> positions,
                     std::span<const std::span<const uvec3>> runs, Faces faces) {
-    std::vector<std::span<const uvec3>> tasks;
+    // Tasks of kChunk triangles each, however the runs are cut: task i is pieces [starts[i], starts[i + 1]).
+    std::vector<std::span<const uvec3>> pieces;
+    std::vector<std::size_t> starts;
+    std::size_t room = 0;
     for (std::span<const uvec3> run : runs)
-        for (std::size_t i = 0; i < run.size(); i += kChunk)
-            tasks.push_back(run.subspan(i, std::min(kChunk, run.size() - i)));
+        for (std::size_t done = 0; done < run.size();) {
+            if (room == 0) {
+                starts.push_back(pieces.size());
+                room = kChunk;
+            }
+            pieces.push_back(run.subspan(done, std::min(room, run.size() - done)));
+            done += pieces.back().size();
+            room -= pieces.back().size();
+        }
+    const std::size_t tasks = starts.size();
+    starts.push_back(pieces.size());
 
     const std::size_t bands = static_cast<std::size_t>((height_ + kBandRows - 1) / kBandRows);
-    std::vector<Chunk> chunks(std::min(kBatch, tasks.size()));
+    std::vector<Chunk> chunks(std::min(kBatch, tasks));
     for (Chunk& chunk : chunks) chunk.bands.resize(bands);
 
-    for (std::size_t batch = 0; batch < tasks.size(); batch += kBatch) {
-        const std::size_t count = std::min(kBatch, tasks.size() - batch);
+    for (std::size_t batch = 0; batch < tasks; batch += kBatch) {
+        const std::size_t count = std::min(kBatch, tasks - batch);
         parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 chunks[i].triangles.clear();
                 for (auto& band : chunks[i].bands) band.clear();
-                snap_run(clip_from_world, positions, tasks[batch + i], width_, height_, faces, chunks[i]);
+                for (std::size_t piece = starts[batch + i]; piece < starts[batch + i + 1]; ++piece)
+                    snap_run(clip_from_world, positions, pieces[piece], width_, height_, faces, chunks[i]);
             }
         });
         // Bands are disjoint, and the nearest of many does not depend on their order.

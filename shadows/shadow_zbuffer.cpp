@@ -123,37 +123,179 @@ double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
 
 // ---- the scene as seen from a light --------------------------------------------------------------------------------
 
-/// What fitting asks of the scene's geometry, found once.
+/// What can cast a shadow, and where it lies.
+///
+/// Scenes stand on floors and between walls that reach far beyond all else, and a map fitted to those wastes its
+/// samples. What such planes do, seen from a light:
+///   - Where the whole scene lies on the light's side of a plane, it blocks nothing: no segment between two points of a
+///     closed half-space crosses its border. It is not drawn.
+///   - A set of planes, each with the others on the light's side, blocks nothing of these planes. All else that they
+///     or other triangles block lies where other triangles lie, or behind those: the map's window need only hold
+///     triangles outside the set. What is not in the window is lit.
 class Casters {
 public:
-    explicit Casters(const Scene& scene) : scene_(&scene), used_(scene.positions.size(), 0) {
-        for (const uvec3& t : scene.triangles)
-            for (int k = 0; k < 3; ++k) used_[t[k]] = 1;
-        for (const Object& object : scene.objects) {
-            Box box;
-            for (const uvec3& t : triangles(object))
-                for (int k = 0; k < 3; ++k) box = extend(box, scene.positions[t[k]]);
-            boxes_.push_back(box);
+    Casters(const Scene& scene, const SceneFacts& facts, bool leave_out)
+        : scene_(&scene), planes_of_position_(scene.positions.size(), 0) {
+        std::vector<std::uint8_t> plane_of_triangle(scene.triangles.size(), kMaxPlanes);
+        if (leave_out) find_planes(facts, plane_of_triangle);
+        for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+            for (int k = 0; k < 3; ++k)
+                planes_of_position_[scene.triangles[t][k]] |= std::uint64_t{1} << plane_of_triangle[t];
+        for (const Object& object : scene.objects)
+            for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+                const TriangleId t = object.first_triangle + i;
+                if (i == 0 || plane_of_triangle[t] != parts_.back().plane)
+                    parts_.push_back({t, 0, plane_of_triangle[t], {}});
+                parts_.back().count += 1;
+                for (int k = 0; k < 3; ++k) parts_.back().box = extend(parts_.back().box, scene.vertex(t, k));
+            }
+        find_sides();
+    }
+
+    /// Leaves out what need not be drawn, or not be fitted to, as seen from `light`.
+    void select(const Light& light) {
+        const bool infinite = light.kind == LightKind::directional;
+        std::vector<std::size_t> set;
+        std::vector<int> side(planes_.size());
+        drawn_  = ~std::uint64_t{0};
+        fitted_ = ~std::uint64_t{0};
+        for (std::size_t i = 0; i < planes_.size(); ++i) {
+            const Plane& plane    = planes_[i];
+            const double distance = infinite ? -glm::dot(plane.normal, glm::normalize(dvec3(light.direction)))
+                                             : glm::dot(plane.normal, dvec3(light.position)) - plane.offset;
+            const double least    = infinite ? kGrazing : plane.tolerance;
+            side[i]               = distance > least ? 1 : distance < -least ? -1 : 0;
+            if (side[i] == 0) continue;
+            if (plane.has_on_side(plane.scene, side[i])) drawn_ &= ~(std::uint64_t{1} << i);
+            if (std::ranges::all_of(set, [&](std::size_t j) {
+                    return plane.has_on_side(plane.others[j], side[i]) &&
+                           planes_[j].has_on_side(planes_[j].others[i], side[j]);
+                })) {
+                set.push_back(i);
+                fitted_ &= ~(std::uint64_t{1} << i);
+            }
         }
-        box_ = bounds(scene);
+        box_ = {};
+        for (const Part& part : parts_)
+            if (has(fitted_, part)) box_ = extend(box_, part.box);
     }
 
     [[nodiscard]] const Scene& scene() const { return *scene_; }
-    [[nodiscard]] const Box& box() const { return box_; }
-    [[nodiscard]] std::size_t memory_bytes() const { return used_.size() + boxes_.size() * sizeof(Box); }
+    [[nodiscard]] const Box& box() const { return box_; }  ///< of what is fitted to
+    [[nodiscard]] std::size_t memory_bytes() const {
+        return planes_of_position_.size() * sizeof(std::uint64_t) + parts_.size() * sizeof(Part);
+    }
 
-    /// Range of each of the n values that `values` gives for a position, over all positions in use.
+    /// Range of each of the n values that `values` gives for a position, over all that is fitted to.
     template <std::size_t n, class Values>
     [[nodiscard]] std::array<Range, n> ranges(const Values& values) const {
-        const std::size_t parts = (used_.size() + kGrain - 1) / kGrain;
-        std::vector<std::array<Range, n>> partial(parts);
-        parallel_ranges(parts, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t part = begin; part < end; ++part)
-                for (std::size_t i = part * kGrain; i < std::min((part + 1) * kGrain, used_.size()); ++i) {
-                    if (!used_[i]) continue;
-                    const std::array<double, n> v = values(dvec3(scene_->positions[i]));
-                    for (std::size_t k = 0; k < n; ++k) partial[part][k].add(v[k]);
+        return reduce<n>(planes_of_position_.size(), [&](std::size_t i, std::array<Range, n>& all) {
+            if ((planes_of_position_[i] & fitted_) == 0) return;
+            const std::array<double, n> v = values(dvec3(scene_->positions[i]));
+            for (std::size_t k = 0; k < n; ++k) all[k].add(v[k]);
+        });
+    }
+
+    /// From p to the nearest point of what is fitted to.
+    [[nodiscard]] double distance(dvec3 p) const {
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const Part& part : parts_) {
+            if (!has(fitted_, part)) continue;
+            const dvec3 to_box = glm::max(glm::max(dvec3(part.box.min) - p, p - dvec3(part.box.max)), 0.0);
+            if (glm::length(to_box) >= nearest) continue;
+            const std::array<Range, 1> range = reduce<1>(part.count, [&](std::size_t i, std::array<Range, 1>& all) {
+                const auto t = static_cast<TriangleId>(part.first + i);
+                all[0].add(distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
+                                                dvec3(scene_->vertex(t, 2))));
+            });
+            nearest                          = std::min(nearest, range[0].min);
+        }
+        return nearest;
+    }
+
+    /// Those triangles that are drawn, but for parts whose boxes lie wholly beyond one side of the view.
+    [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world) const {
+        std::vector<std::span<const uvec3>> runs;
+        for (const Part& part : parts_) {
+            if (!has(drawn_, part)) continue;
+            std::array<int, 5> outside{};
+            for (int corner = 0; corner < 8; ++corner) {
+                const dvec4 c = clip_from_world * dvec4(corner & 1 ? part.box.max.x : part.box.min.x,
+                                                        corner & 2 ? part.box.max.y : part.box.min.y,
+                                                        corner & 4 ? part.box.max.z : part.box.min.z, 1);
+                const std::array<bool, 5> is_outside{c.w <= 0, c.x > c.w, c.x<-c.w, c.y> c.w, c.y < -c.w};
+                for (int side = 0; side < 5; ++side) outside[side] += is_outside[side];
+            }
+            if (std::ranges::find(outside, 8) == outside.end())
+                runs.push_back(std::span(scene_->triangles).subspan(part.first, part.count));
+        }
+        return runs;
+    }
+
+private:
+    static constexpr std::uint8_t kMaxPlanes = 63;       ///< as many may be left out; also says "in none of them"
+    static constexpr double kRounding        = 0x1p-22;  ///< of a corner that was computed in float, relative
+    static constexpr double kGrazing         = 1e-6;     ///< sine: flatter light may as well lie in the plane
+
+    struct Plane {
+        dvec3 normal;
+        double offset;
+        double tolerance;           ///< how far corners that mean to lie in it, or to touch it, may miss it
+        Range scene;                ///< distances of the whole scene
+        std::vector<Range> others;  ///< distances of the other planes' triangles
+
+        [[nodiscard]] bool has_on_side(const Range& distances, int side) const {
+            return side > 0 ? distances.min >= -tolerance : distances.max <= tolerance;
+        }
+    };
+    /// Consecutive triangles of one object that lie in one of planes_ together, or in none.
+    struct Part {
+        TriangleId first;
+        std::uint32_t count;
+        std::uint8_t plane;
+        Box box;
+    };
+
+    [[nodiscard]] static bool has(std::uint64_t planes, const Part& part) { return (planes >> part.plane & 1) != 0; }
+
+    void find_planes(const SceneFacts& facts, std::vector<std::uint8_t>& plane_of_triangle) {
+        const vec3 corner    = glm::max(glm::abs(facts.box.min), glm::abs(facts.box.max));
+        const double largest = std::max({corner.x, corner.y, corner.z});
+        for (const PlanarReceiver& plane : facts.planes) {
+            if (planes_.size() == kMaxPlanes) break;
+            for (TriangleId t : plane.triangles) plane_of_triangle[t] = static_cast<std::uint8_t>(planes_.size());
+            planes_.push_back({plane.normal, plane.offset, plane.tolerance + kRounding * largest, {}, {}});
+        }
+    }
+
+    /// Where each plane has the others, and the scene.
+    void find_sides() {
+        const std::size_t n = planes_.size();
+        parallel_ranges(n, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                Plane& plane = planes_[i];
+                plane.others.resize(n);
+                for (std::size_t p = 0; p < planes_of_position_.size(); ++p) {
+                    const std::uint64_t in = planes_of_position_[p];
+                    if (in == 0) continue;
+                    const double distance = glm::dot(plane.normal, dvec3(scene_->positions[p])) - plane.offset;
+                    plane.scene.add(distance);
+                    for (std::uint64_t rest = in & ~(std::uint64_t{1} << kMaxPlanes); rest != 0; rest &= rest - 1)
+                        plane.others[std::countr_zero(rest)].add(distance);
                 }
+            }
+        });
+    }
+
+    /// Ranges over `add(i, ranges)` for all i below `count`, in parallel.
+    template <std::size_t n, class Add>
+    [[nodiscard]] static std::array<Range, n> reduce(std::size_t count, const Add& add) {
+        const std::size_t blocks = (count + kGrain - 1) / kGrain;
+        std::vector<std::array<Range, n>> partial(blocks);
+        parallel_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block)
+                for (std::size_t i = block * kGrain; i < std::min((block + 1) * kGrain, count); ++i)
+                    add(i, partial[block]);
         });
         std::array<Range, n> all;
         for (const auto& p : partial)
@@ -161,49 +303,11 @@ public:
         return all;
     }
 
-    [[nodiscard]] double distance(dvec3 p) const {
-        const std::size_t count = scene_->triangles.size();
-        std::vector<Range> partial((count + kGrain - 1) / kGrain);
-        parallel_ranges(partial.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t part = begin; part < end; ++part)
-                for (std::size_t i = part * kGrain; i < std::min((part + 1) * kGrain, count); ++i) {
-                    const auto t = static_cast<TriangleId>(i);
-                    partial[part].add(distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
-                                                           dvec3(scene_->vertex(t, 2))));
-                }
-        });
-        Range all;
-        for (const Range& r : partial) all.add(r);
-        return all.min;
-    }
-
-    /// Triangles of the objects whose boxes are not wholly beyond one side of the view.
-    [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world) const {
-        std::vector<std::span<const uvec3>> runs;
-        for (std::size_t o = 0; o < boxes_.size(); ++o) {
-            const Box& box = boxes_[o];
-            if (box.empty()) continue;
-            std::array<int, 5> outside{};
-            for (int corner = 0; corner < 8; ++corner) {
-                const dvec4 c =
-                    clip_from_world * dvec4(corner & 1 ? box.max.x : box.min.x, corner & 2 ? box.max.y : box.min.y,
-                                            corner & 4 ? box.max.z : box.min.z, 1);
-                const std::array<bool, 5> is_outside{c.w <= 0, c.x > c.w, c.x<-c.w, c.y> c.w, c.y < -c.w};
-                for (int side = 0; side < 5; ++side) outside[side] += is_outside[side];
-            }
-            if (std::ranges::find(outside, 8) == outside.end()) runs.push_back(triangles(scene_->objects[o]));
-        }
-        return runs;
-    }
-
-private:
-    [[nodiscard]] std::span<const uvec3> triangles(const Object& object) const {
-        return std::span(scene_->triangles).subspan(object.first_triangle, object.triangle_count);
-    }
-
     const Scene* scene_;
-    std::vector<std::uint8_t> used_;  ///< positions that a triangle names; others must not loosen a fit
-    std::vector<Box> boxes_;          ///< one an object
+    std::vector<Plane> planes_;
+    std::vector<std::uint64_t> planes_of_position_;  ///< bit i: corner of a triangle in planes_[i]; kMaxPlanes: in none
+    std::vector<Part> parts_;
+    std::uint64_t drawn_ = 0, fitted_ = 0;  ///< bits as in planes_of_position_
     Box box_;
 };
 
@@ -264,6 +368,7 @@ struct Options {
     int radius;  ///< of the PCF kernel; 0 with `nearest`
     bool bilinear;
     Faces faces;
+    bool fit_to_casters;
     double surround;
 };
 
@@ -331,7 +436,7 @@ bool is_blocked(const DepthMap& map, const Receiver& p, int i, int j, Bias bias)
         const double plane = p.r + p.r_x * (i + 0.5 - p.x) + p.r_y * (j + 0.5 - p.y);
         r                  = bias == Bias::automatic ? std::max(r, plane) : plane;
     }
-    return map.nearness(i, j) > r + p.bias;
+    return map.nearness(i, j) > std::max(r + p.bias, 0.0);  // behind all that casts, r is negative
 }
 
 /// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth.
@@ -412,6 +517,9 @@ constexpr Parameter kParameters[] = {
     {"faces", Parameter::Type::choice, "all",
      "which side of triangles casts; back (second depth) and front want closed, outward occluders", 0, 0,
      "all|front|back"},
+    {"fit", Parameter::Type::choice, "casters",
+     "what maps are fitted to: scene: all of it; casters: what can block the light, without planes behind all else", 0,
+     0, "casters|scene"},
     {"surround",
      Parameter::Type::real,
      "0.5",
@@ -439,6 +547,7 @@ Options read(const Settings& s) {
     o.bilinear           = pcf && s.boolean("bilinear");
     const std::string& f = s.choice("faces");
     o.faces              = f == "front" ? Faces::front : f == "back" ? Faces::back : Faces::all;
+    o.fit_to_casters     = s.choice("fit") == "casters";
     o.surround           = s.real("surround");
     return o;
 }
@@ -455,15 +564,17 @@ public:
         return {How::approximately, why + "."};
     }
 
-    void build(const Scene& scene, const SceneFacts&) override {
+    void build(const Scene& scene, const SceneFacts& facts) override {
         views_.clear();
-        casters_.emplace(scene);
+        casters_.emplace(scene, facts, options_.fit_to_casters);
     }
 
     void aim(LightId light) override {
         views_.clear();
-        if (casters_->box().empty()) return;
+        covers_all_    = true;
         const Light& l = casters_->scene().lights[light];
+        casters_->select(l);
+        if (casters_->box().empty()) return;
         if (l.kind == LightKind::directional)
             aim_directional(dvec3(l.direction));
         else
@@ -555,8 +666,9 @@ private:
                 cone.half = dvec2(rim);
                 set_depth(cone, nearest);
                 add_view(cone, resolution);
-                resolution = static_cast<int>(std::lround(options_.surround * resolution));
-                if (resolution == 0) return;
+                resolution  = static_cast<int>(std::lround(options_.surround * resolution));
+                covers_all_ = resolution > 0;
+                if (!covers_all_) return;
             }
         }
         const dvec3 to_scene = dvec3(casters_->box().centre()) - origin;
@@ -604,12 +716,14 @@ private:
                 s = lit_share(view.map, *receiver, options_);
                 return true;
             }
-        return false;
+        s = 1;  // nothing that casts lies where no view looks
+        return covers_all_;
     }
 
     Options options_;
     std::optional<Casters> casters_;
     std::vector<View> views_;
+    bool covers_all_ = true;  ///< false: what lies outside a spot's cone was left out
 };
 
 }  // namespace
