@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <kainjow/mustache.hpp>
@@ -29,14 +30,20 @@ using nlohmann::json;
 
 constexpr const char* kNone = "–";
 
-/// Three significant digits, no exponent between 0.0001 and a million.
+/// Three significant digits, as 1.2·10⁻⁵ where they would stand behind too many zeros, and a minus that is one.
 std::string score(std::optional<double> value) {
     if (!value) return kNone;
-    const double size = std::abs(*value);
+    const double size      = std::abs(*value);
+    const std::string sign = *value < 0 ? "−" : "";
     if (size == 0) return "0";
-    if (size < 1e-4 || size >= 1e6) return fmt::format("{:.1e}", *value);
-    const int decimals = std::max(0, 2 - int(std::floor(std::log10(size))));
-    return fmt::format("{:.{}f}", *value, decimals);
+    const int exponent = int(std::floor(std::log10(size)));
+    if (exponent >= -4 && exponent < 6) return fmt::format("{}{:.{}f}", sign, size, std::max(0, 2 - exponent));
+    std::string raised;
+    for (const char c : std::to_string(exponent)) {
+        static constexpr std::array<const char*, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+        raised += c == '-' ? "⁻" : digits[std::size_t(c - '0')];
+    }
+    return fmt::format("{}{:.1f}·10{}", sign, size / std::pow(10, exponent), raised);
 }
 
 /// Whole numbers in groups of three, parted by a narrow no-break space.

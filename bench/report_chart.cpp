@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kWidth = 560, kHeight = 340, kLeft = 64, kRight = 546, kTop = 14, kBottom = 250, kZero = 278;
+constexpr double kWidth = 440, kHeight = 340, kLeft = 58, kRight = 430, kTop = 14, kBottom = 250, kZero = 278;
 
 std::string coordinate(double x) { return fmt::format("{:.1f}", x); }
 

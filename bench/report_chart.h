@@ -14,7 +14,7 @@ struct ChartPoint {
     std::size_t style = 0;
 };
 
-/// Coordinates in a 560 x 340 box: ticks, marks, and labels placed where they cover neither marks nor one another.
+/// Coordinates in a 440 x 340 box: ticks, marks, and labels placed where they cover neither marks nor one another.
 /// An error of 0 has no logarithm: it lies on a line of its own beneath the axis.
 [[nodiscard]] nlohmann::json error_time_chart(const std::vector<ChartPoint>& points);
 

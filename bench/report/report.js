@@ -142,5 +142,5 @@ function startFinder(form) {
 const compare = document.querySelector(".compare"), finder = document.querySelector(".finder");
 if (compare) startCompare(compare);
 if (finder) startFinder(finder);
-// Pictures that were never scrolled to are on paper, too.
-addEventListener("beforeprint", () => document.querySelectorAll("img[loading]").forEach((img) => { img.loading = "eager"; }));
+// Once the page stands, the pictures that nobody scrolled to yet are loaded, too: paper shows them all.
+addEventListener("load", () => document.querySelectorAll("img[loading]").forEach((img) => { img.loading = "eager"; }));
