@@ -687,10 +687,17 @@ public:
     std::vector<Lens> lenses;
     Seen seen;
 
-    // Every node's references are checked, those of no scene included.
+    // Every node's references are checked, those of no scene included, and how much they would place: many nodes may
+    // share one large mesh.
     void check(const std::vector<Node>& nodes) {
+        std::uint64_t triangles = 0;
         for (const Node& n : nodes) {
-            if (const JsonValue* v = find_member(*n.json, "mesh")) (void)index_into(json_, *v, "mesh", meshes.size());
+            if (const JsonValue* v = find_member(*n.json, "mesh")) {
+                for (const Primitive& p : meshes[index_into(json_, *v, "mesh", meshes.size())])
+                    triangles += p.mesh.triangles.size();
+                if (triangles > kMaxTriangles)
+                    json_.fail(*v, fmt::format("more than {} triangles with this node", kMaxTriangles));
+            }
             if (const JsonValue* v = find_member(*n.json, "camera"))
                 (void)index_into(json_, *v, "camera", lenses.size());
             if (const JsonValue* v = light_of(n)) (void)index_into(json_, *v, "light", lights.size());
@@ -765,8 +772,6 @@ private:
                   const dmat4& m) {
         for (const Primitive& p : primitives) {
             if (p.mesh.triangles.empty()) continue;
-            if (scene_.triangles.size() + p.mesh.triangles.size() > kMaxTriangles)
-                json_.fail(at, fmt::format("more than {} triangles with this node", kMaxTriangles));
             const Mesh mesh = placed(p.mesh, m);
             for (const vec3 q : mesh.positions)
                 if (!(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) <= float(kMaxCoordinate)))

@@ -38,13 +38,14 @@ struct View {
     double pixel = 0;  ///< width of a pixel at distance 1; 0: no view in the file
 };
 
-// The sagitta of a chord, r (1 - cos(pi / n)), is about r/2 (pi / n)^2. Even, so that a sphere has an equator.
+// The sagitta of a chord, r (1 - cos(pi / n)), is about r/2 (pi / n)^2. A multiple of 4, so that a sphere has
+// an equator.
 int segments_around(const View& view, dvec3 centre, double reach, double radius) {
     if (view.pixel == 0) return 32;
     const double distance = std::max(glm::length(centre - view.eye) - reach, 1e-3 * reach);
     const double r_pixels = radius / (distance * view.pixel);
     const double n        = kPi * std::sqrt(r_pixels / (2 * 0.125));
-    return 2 * int(std::ceil(std::clamp(n, double(kFewest), double(kMost)) / 2));
+    return 4 * int(std::ceil(std::clamp(n, double(kFewest), double(kMost)) / 4));
 }
 
 struct Reader {
