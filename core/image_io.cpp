@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/image_headers.h"
 
 namespace umbra {
 namespace {
@@ -123,6 +124,8 @@ LoadedImage read_image(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(status))
         throw InputError(fmt::format("{}: is a folder (an image file is needed)", file.string()));
     try {
+        if (const std::string claim = find_false_claim(file); !claim.empty())
+            throw InputError(fmt::format("{}: cannot read image: {}", file.string(), claim));
         OIIO::ImageSpec wish;
         wish.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not multiplied by alpha
         const auto input = OIIO::ImageInput::open(file.string(), &wish);

@@ -213,13 +213,30 @@ TEST_F(ImageIo, RefusesHeadersThatLieAboutTheSize) {
     }
 }
 
+TEST_F(ImageIo, RefusesChunksAndAttributesLongerThanTheFile) {
+    Image image    = noise(8, 8, {"R", "G", "B"});
+    image.metadata = {{"umbra:scene", "court"}};
+    write_image(folder / "a.exr", image);
+    std::string exr      = bytes_of(folder / "a.exr");
+    const std::size_t at = exr.find("umbra:scene") + std::strlen("umbra:scene") + 1 + std::strlen("string") + 1;
+    ASSERT_EQ(exr[at], 5);
+    exr[at + 3] = 0x55;
+    EXPECT_NE(refusal(write("lie.exr", exr)).find("attribute umbra:scene claims 1426063365 bytes"), std::string::npos);
+
+    write_image(folder / "a.png", image);
+    std::string png           = bytes_of(folder / "a.png");
+    png[png.find("tEXt") - 4] = 0x55;
+    EXPECT_NE(refusal(write("lie.png", png)).find("a chunk claims 14260633"), std::string::npos)
+        << refusal(folder / "lie.png");
+}
+
 TEST_F(ImageIo, SurvivesFlippedBytes) {
     // Any answer will do but a crash (the sanitizers watch).
     const Image image = noise(16, 16, {"R", "G", "B"});
     for (const char* name : {"a.exr", "a.png"}) {
         write_image(folder / name, image);
         const std::string whole = bytes_of(folder / name);
-        for (std::size_t at = 0; at < whole.size(); at += 7) {
+        for (std::size_t at = 0; at < whole.size(); at += at < 600 ? 5 : 61) {
             std::string broken       = whole;
             broken[at]               = static_cast<char>(broken[at] ^ 0x55);
             const std::string reason = refusal(write(name, broken));
