@@ -73,15 +73,16 @@ void find_edges(Topology& topology) {
     const auto triangle_count = static_cast<std::uint32_t>(topology.triangles.size());
     std::vector<std::uint32_t> begin(topology.position.size() + 1, 0);
     for (std::uint32_t t = 0; t < triangle_count; ++t)
-        for (std::uint8_t k = 0; k < 3; ++k)
-            if (const Side s = side_of(t, k); s.a != s.b) ++begin[s.a + 1];
+        for (std::uint8_t k = 0; k < 3 && !topology.repeats_a_corner(t); ++k) ++begin[side_of(t, k).a + 1];
     for (std::size_t v = 1; v < begin.size(); ++v) begin[v] += begin[v - 1];
 
     std::vector<Side> sides(begin.back());
     std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
     for (std::uint32_t t = 0; t < triangle_count; ++t)
-        for (std::uint8_t k = 0; k < 3; ++k)
-            if (const Side s = side_of(t, k); s.a != s.b) sides[next[s.a]++] = s;
+        for (std::uint8_t k = 0; k < 3 && !topology.repeats_a_corner(t); ++k) {
+            const Side s       = side_of(t, k);
+            sides[next[s.a]++] = s;
+        }
 
     parallel_ranges(next.size(), 4096, [&](std::size_t first, std::size_t last) {
         for (std::size_t v = first; v < last; ++v)

@@ -25,8 +25,8 @@ struct Topology {
     TriangleId first_triangle = 0;
     std::vector<uvec3> triangles;          ///< welded vertices of each triangle, in the order of its corners
     std::vector<std::uint32_t> position;   ///< of each welded vertex: an index into Scene::positions
-    std::vector<Edge> edges;               ///< sorted by a, then b; sides whose two ends are one vertex are no edges
-    std::vector<EdgeUse> uses;             ///< every side of every triangle, edge by edge
+    std::vector<Edge> edges;               ///< sorted by a, then b; triangles that repeat a corner have none
+    std::vector<EdgeUse> uses;             ///< every side of the triangles that have edges, edge by edge
     std::vector<std::uint8_t> degenerate;  ///< one a triangle: 1 where its area is exactly zero
 
     [[nodiscard]] bool repeats_a_corner(std::uint32_t t) const {

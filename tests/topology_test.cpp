@@ -60,7 +60,7 @@ TEST(Topology, EveryUseRunsItsEdge) {
     for (std::uint32_t i = 0; i < 500; ++i)
         for (int k = 0; k < 3; ++k) {
             EXPECT_EQ(positions[t.position[t.triangles[i][k]]], positions[triangles[i][k]]);
-            sides += t.triangles[i][k] != t.triangles[i][(k + 1) % 3];
+            sides += !t.repeats_a_corner(i);
         }
     EXPECT_EQ(t.uses.size(), sides);
     std::uint32_t next = 0;
@@ -79,6 +79,14 @@ TEST(Topology, EveryUseRunsItsEdge) {
         next += edge.count;
     }
     EXPECT_EQ(next, t.uses.size());
+}
+
+TEST(Topology, ATriangleThatRepeatsACornerLeavesItsNeighboursAlone) {
+    // A needle without width between two triangles: (0, 1, 1) would run the edge of the two both ways.
+    const Scene scene = scene_of({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}}, {{0, 1, 2}, {0, 1, 1}, {1, 0, 3}});
+    const Topology t  = topology_of(scene);
+    EXPECT_EQ(t.edges.size(), 5u);
+    EXPECT_TRUE(std::all_of(t.edges.begin(), t.edges.end(), [](const Edge& e) { return e.count <= 2; }));
 }
 
 TEST(Topology, OneObjectOfSeveral) {
