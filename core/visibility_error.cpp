@@ -62,9 +62,9 @@ VisibilityError visibility_error(const PointBatch& points, LightId light, const 
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.facing[light][i] == Facing::away) ++e.away;
         if (!is_open(points, light, i)) continue;
-        if (s.defined[i] == 0 || reference.defined[i] == 0) {
-            ++e.undefined;
-            if (reference.defined[i] == 0) ++e.on_boundary;
+        if (s.defined[i] == kUndefined || reference.defined[i] != kDefined) {
+            if (reference.defined[i] == kOnBoundary) ++e.on_boundary;
+            else ++e.undefined;
             continue;
         }
         ++e.points;

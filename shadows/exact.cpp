@@ -77,9 +77,12 @@ public:
         return -positive;
     }
 
-    /// On which side the line through start and end passes the edge from x to y.
+    /// On which side the line through start and end passes the edge from x to y; kUnsure where doubles cannot tell.
+    [[nodiscard]] int quick_edge_side(vec3 x, vec3 y) const {
+        return sign(difference(x), difference(y), Entries{to_, to_error_});
+    }
     [[nodiscard]] int edge_side(vec3 x, vec3 y) const {
-        const int s = sign(difference(x), difference(y), Entries{to_, to_error_});
+        const int s = quick_edge_side(x, y);
         return s != kUnsure ? s
                             : sign_of_determinant(rational(x) - start(), rational(y) - start(),
                                                   infinite_ ? rational(end_) : rational(end_) - start());
@@ -98,13 +101,14 @@ public:
     [[nodiscard]] Rational3 end() const { return rational(end_); }
     [[nodiscard]] bool infinite() const { return infinite_; }
 
+    static constexpr int kUnsure = 2;
+
 private:
     /// A vector in double, and how far each component may be off.
     struct Entries {
         dvec3 value;
         double error;
     };
-    static constexpr int kUnsure = 2;
 
     [[nodiscard]] Entries difference(vec3 x) const {
         const dvec3 d = dvec3(x) - from_;
@@ -171,12 +175,21 @@ Meeting meeting_in_plane(const Segment& segment, vec3 x, vec3 y, vec3 z) {
 }
 
 Meeting meeting(const Segment& segment, vec3 x, vec3 y, vec3 z) {
-    const int start = segment.start_side(x, y, z), end = segment.end_side(x, y, z);
+    // Most lines pass the triangle by, and doubles see it. Asked first, since a neighbour in the plane of the point's
+    // own triangle (a floor of two triangles) would otherwise cost rationals at every point.
+    const int q0 = segment.quick_edge_side(x, y), q1 = segment.quick_edge_side(y, z),
+              q2           = segment.quick_edge_side(z, x);
+    const bool surely_left = q0 == 1 || q1 == 1 || q2 == 1, surely_right = q0 == -1 || q1 == -1 || q2 == -1;
+    if (surely_left && surely_right) return Meeting::none;
+
+    const int end = segment.end_side(x, y, z), start = segment.start_side(x, y, z);
     if (start == 0 && end == 0) return meeting_in_plane(segment, x, y, z);
     // A segment that begins or ends on the triangle's plane does not pass through it: nothing lies on both of its
     // sides.
     if (start == 0 || end == 0 || start == end) return Meeting::none;
-    const int e0 = segment.edge_side(x, y), e1 = segment.edge_side(y, z), e2 = segment.edge_side(z, x);
+    const int e0         = q0 != Segment::kUnsure ? q0 : segment.edge_side(x, y);
+    const int e1         = q1 != Segment::kUnsure ? q1 : segment.edge_side(y, z);
+    const int e2         = q2 != Segment::kUnsure ? q2 : segment.edge_side(z, x);
     const bool some_left = e0 > 0 || e1 > 0 || e2 > 0, some_right = e0 < 0 || e1 < 0 || e2 < 0;
     if (some_left && some_right) return Meeting::none;
     return e0 != 0 && e1 != 0 && e2 != 0 ? Meeting::crosses : Meeting::touches;

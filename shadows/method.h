@@ -12,6 +12,7 @@
 #include "core/facts.h"
 #include "core/points.h"
 #include "core/scene.h"
+#include "core/visibility_error.h"
 #include "shadows/settings.h"
 
 namespace umbra {
@@ -25,12 +26,6 @@ struct Service {
     std::string why;  ///< one sentence, always given
     explicit operator bool() const { return how != How::not_at_all; }
 };
-
-/// What `defined` says of a point.
-inline constexpr std::uint8_t kUndefined = 0;  ///< the method cannot tell
-inline constexpr std::uint8_t kDefined   = 1;
-inline constexpr std::uint8_t kOnBoundary =
-    2;  ///< the way to the light touches an edge or a vertex and nothing more: `exact` only
 
 /// The three phases are timed apart: a moving object reruns all, a light the last two, a camera the last.
 /// Calls come in this order from one thread; a method does its own parallelism (core/parallel.h) and its results do not

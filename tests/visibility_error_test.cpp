@@ -115,14 +115,15 @@ TEST(VisibilityError, AwayNoneAndUndefinedPointsAreCountedApart) {
     set(1, Facing::away);
     set(2, Facing::partly);
     for (int x = 0; x < kWidth; ++x) half.s.defined[Half::at(x, 3)] = 0;
-    for (int x = 0; x < 7; ++x) half.reference.defined[Half::at(x, 4)] = 0;
+    for (int x = 0; x < 7; ++x) half.reference.defined[Half::at(x, 4)] = kUndefined;
+    for (int x = 0; x < 5; ++x) half.reference.defined[Half::at(x, 5)] = kOnBoundary;
     const VisibilityError e = half.error();
     EXPECT_EQ(e.away, 40u);
     EXPECT_EQ(e.undefined, 47u);
-    EXPECT_EQ(e.on_boundary, 7u);
-    EXPECT_EQ(e.points, 1200u - 40 - 40 - 47);
+    EXPECT_EQ(e.on_boundary, 5u);
+    EXPECT_EQ(e.points, 1200u - 40 - 40 - 47 - 5);
     EXPECT_EQ(e.lit + e.umbra + e.penumbra, e.points);
-    EXPECT_EQ(e.false_shadow.interior, 18u * 27 - 7);
+    EXPECT_EQ(e.false_shadow.interior, 18u * 27 - 7 - 5);
     EXPECT_EQ(e.false_shadow.edge, 2u * 27);
 }
 
