@@ -654,7 +654,8 @@ private:
 
     void aim_around(const Light& light) {
         const dvec3 origin(light.position);
-        const double nearest = casters_->distance(origin);
+        // Reversed floats resolve any distance from the light as well as any other, unorm depth does not.
+        const double nearest = options_.format == DepthFormat::float32 ? 0 : casters_->distance(origin);
         Frame cube =
             looking_along(origin, light.kind == LightKind::spot ? dvec3(light.direction) : dvec3(0, 0, 1), true);
         int resolution = options_.resolution;
