@@ -418,8 +418,8 @@ std::optional<Receiver> receive(const View& view, const Facet& facet, dvec3 p, c
     receiver.r_y = std::isfinite(scale) ? scale * n.y * sample.y : 0;
 
     // The map's values are rounded and its corners snapped. Between the point and a sample, the surface may rise above
-    // the point's plane: over half a sample's width by half a width, where it turns by 45 degrees.
-    const double constant = options.constant + (options.bias == Bias::automatic ? 0.5 : 0.0);
+    // the point's plane: by as much as the sample lies off, where the surface turns by 45 degrees.
+    const double constant = options.constant + (options.bias == Bias::automatic ? options.radius + 0.5 : 0.0);
     receiver.bias         = constant * width * f.nearness_per_depth(v.z) +
                     options.slope * std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
     if (options.bias != Bias::manual)
@@ -554,7 +554,13 @@ Options read(const Settings& s) {
 
 class ShadowZBuffer final : public Method {
 public:
-    explicit ShadowZBuffer(const Settings& settings) : options_(read(settings)) {}
+    explicit ShadowZBuffer(const Settings& settings) : options_(read(settings)) {
+        if (4 * border() > options_.resolution)
+            throw UsageError(
+                fmt::format("radius={} and normal_offset={} reach over a quarter of resolution={} "
+                            "(choose a resolution of at least {})",
+                            options_.radius, options_.normal_offset, options_.resolution, std::ceil(4 * border())));
+    }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         std::string why = "any triangles and lights, through a map that samples depth";
@@ -615,12 +621,10 @@ public:
 
 private:
     /// Samples by which a map reaches over its view: what the filter and the offset may ask for, and a rounding.
-    [[nodiscard]] double border(int resolution) const {
-        return std::min(options_.radius + options_.normal_offset + 2.0, 0.25 * resolution);
-    }
+    [[nodiscard]] double border() const { return options_.radius + options_.normal_offset + 2; }
 
     void add_view(Frame frame, int resolution) {
-        const double inner = 1 - 2 * border(resolution) / resolution;
+        const double inner = 1 - 2 * border() / resolution;
         frame.half /= inner;
         if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
         if (frame.perspective) {
@@ -667,9 +671,9 @@ private:
                 cone.half = dvec2(rim);
                 set_depth(cone, nearest);
                 add_view(cone, resolution);
-                resolution  = static_cast<int>(std::lround(options_.surround * resolution));
-                covers_all_ = resolution > 0;
+                covers_all_ = options_.surround > 0;
                 if (!covers_all_) return;
+                resolution = static_cast<int>(std::ceil(std::max(options_.surround * resolution, 4 * border())));
             }
         }
         const dvec3 to_scene = dvec3(casters_->box().centre()) - origin;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include <fmt/format.h>
 
@@ -157,6 +156,244 @@ TEST(ShadowZBuffer, ErrsOnlyWithinASampleOfTheShadowsBorder) {
         const double sample = 3 * kFloor * std::sqrt(2.0) / 1024;
         EXPECT_LT(wrong.farthest, 2 * sample) << to_string(light.kind) << ' ' << light.position.y;
         EXPECT_LT(wrong.all(), wrong.points / 100) << to_string(light.kind) << ' ' << light.position.y;
+    }
+}
+
+TEST(ShadowZBuffer, ErrorFallsAsOneOverResolution) {
+    // Over several lights, since along one straight border all samples may happen to lie well.
+    int rough = 0;
+    int fine  = 0;
+    for (int i = 0; i < 8; ++i) {
+        const auto turn   = static_cast<float>(i);
+        const Light light = directional_light({0.31f * std::cos(turn), -1, 0.31f * std::sin(turn)});
+        rough += against_closed_form(light, "shadow_zbuffer:fit=scene,resolution=64").all();
+        fine += against_closed_form(light, "shadow_zbuffer:fit=scene,resolution=512").all();
+    }
+    // 8 times the samples a side: an eighth of the wrong area, which is the border's length times a sample's width.
+    EXPECT_GT(rough, 5 * fine);
+    EXPECT_LT(rough, 12 * fine);
+    EXPECT_GT(fine, 0);
+}
+
+TEST(ShadowZBuffer, AcneWithoutBiasNoneWithTheDefault) {
+    for (const Light& light : {directional_light({0.3f, -1, 0.2f}), directional_light({-2, -1, 1}),
+                               point_light({3, 4, 1}), spot_light({1, 4, 0}, {-0.3f, -1, 0}, 40)}) {
+        const Wrong bare = against_closed_form(light, "shadow_zbuffer:bias=manual,fit=scene,resolution=1024");
+        EXPECT_GT(bare.false_shadow, bare.points / 5) << to_string(light.kind) << ' ' << light.position.y;
+        const Wrong derived = against_closed_form(light, "shadow_zbuffer:fit=scene,resolution=1024");
+        EXPECT_LT(derived.false_shadow, derived.points / 200) << to_string(light.kind) << ' ' << light.position.y;
+    }
+}
+
+TEST(ShadowZBuffer, OtherBiasesRemoveAcneToo) {
+    const Light light = directional_light({1, -1, 0.4f});
+    for (const char* bias : {"bias=manual,slope=1.5,constant=0.5", "bias=manual,normal_offset=2,constant=0.5",
+                             "bias=receiver_plane", "bias=manual,constant=3"}) {
+        const Wrong wrong =
+            against_closed_form(light, fmt::format("shadow_zbuffer:fit=scene,resolution=1024,{}", bias));
+        EXPECT_LT(wrong.all(), wrong.points / 100) << bias;
+    }
+}
+
+TEST(ShadowZBuffer, HugeBiasDetachesTheShadow) {
+    const Light light  = directional_light({0.3f, -1, 0.2f});
+    const Wrong plain  = against_closed_form(light, "shadow_zbuffer:resolution=1024,fit=scene");
+    const Wrong biased = against_closed_form(light, "shadow_zbuffer:resolution=1024,fit=scene,constant=500");
+    EXPECT_LT(plain.false_light, plain.points / 200);
+    EXPECT_GT(biased.false_light, biased.points / 20);
+}
+
+TEST(ShadowZBuffer, NothingLeaksThroughACubesSeams) {
+    // A sphere of occluders round the light, a room round both: no point of the room sees the light, every point of
+    // the inner sphere does. The light is off the middle, so that the seams meet facets anyhow.
+    Scene scene;
+    add_mesh(scene, "room", make_box({8, 8, 8}));
+    add_mesh(scene, "shade", make_sphere(1, 48, 24));
+    scene.lights.push_back(point_light({0.2f, 0.1f, -0.15f}));
+    scene.camera.eye      = scene.lights[0].position;  // two-sided materials turn inwards
+    const PointBatch room = points_on(scene, 0, 150);
+    const PointBatch ball = points_on(scene, 1, 6);
+    for (const char* choice :
+         {"shadow_zbuffer:resolution=256", "shadow_zbuffer:resolution=256,fit=scene",
+          "shadow_zbuffer:resolution=256,filter=pcf,radius=3",
+          "shadow_zbuffer:resolution=255,filter=pcf,bilinear=false",
+          "shadow_zbuffer:resolution=80,filter=pcf,radius=16", "shadow_zbuffer:resolution=256,depth=16",
+          "shadow_zbuffer:resolution=256,depth=24,fit=scene", "shadow_zbuffer:resolution=256,normal_offset=2"}) {
+        const Plane outside = look_up(scene, room, choice);
+        EXPECT_EQ(std::ranges::count(outside.s, 0.0f), std::ssize(outside.s)) << choice;
+        const Plane inside = look_up(scene, ball, choice);
+        EXPECT_EQ(std::ranges::count(inside.s, 1.0f), std::ssize(inside.s)) << choice;
+        EXPECT_EQ(std::ranges::count(inside.defined, 1), std::ssize(inside.defined)) << choice;
+    }
+}
+
+TEST(ShadowZBuffer, SixteenBitsAreWorseThanFloatsWhereNearAndFarLieFarApart) {
+    // A chip beside the light makes the range of depths large; a leaf lies just above the floor.
+    Scene scene = square_over_floor(point_light({0.3f, 3, 0.4f}));
+    add_mesh(scene, "chip", moved(make_plane(1e-4f, 1e-4f), {0.3f, 2.99f, 0.4f}));
+    add_mesh(scene, "leaf", moved(make_plane(1, 1), {1.4f, 0.001f, 1.4f}));
+    const PointBatch floor = points_on(scene, 0, 200);
+    const auto shadowed    = [&](const char* depth) {
+        const Plane plane = look_up(scene, floor, fmt::format("shadow_zbuffer:bias=receiver_plane,depth={}", depth));
+        int leaf          = 0;
+        for (std::size_t i = 0; i < floor.size(); ++i)
+            leaf += plane.s[i] == 0 && std::max(std::abs(floor.px[i] - 1.4f), std::abs(floor.pz[i] - 1.4f)) < 0.5f;
+        return leaf;
+    };
+    const int expected = static_cast<int>(floor.size()) / 16;  // a square metre of sixteen
+    EXPECT_GT(shadowed("float"), expected * 9 / 10);
+    EXPECT_GT(shadowed("32"), expected * 9 / 10);
+    EXPECT_LT(shadowed("16"), expected / 2);
+}
+
+TEST(ShadowZBuffer, KernelsWiderThanAQuarterOfTheMapAreRefused) {
+    EXPECT_THROW((void)parse_method("shadow_zbuffer")
+                     .info->make(parse_method("shadow_zbuffer:resolution=16,filter=pcf,radius=16").settings),
+                 UsageError);
+    EXPECT_NO_THROW(
+        (void)parse_method("shadow_zbuffer").info->make(parse_method("shadow_zbuffer:resolution=16").settings));
+}
+
+TEST(ShadowZBuffer, LightOnASurfaceAndCloseToOne) {
+    for (const float height : {0.0f, 1e-6f, 1e-3f}) {
+        // On the square's upper side the light sees none of the floor below; the square's own points are `away`.
+        const Scene scene      = square_over_floor(point_light({0.1f, kHeight + height, 0.1f}));
+        const PointBatch floor = points_on(scene, 0, 60);
+        const Plane plane      = look_up(scene, floor, "shadow_zbuffer:resolution=512");
+        int wrong              = 0;
+        for (std::size_t i = 0; i < floor.size(); ++i) {
+            EXPECT_TRUE(std::isfinite(plane.s[i]));
+            wrong += height > 0 && plane.s[i] != 0;
+        }
+        EXPECT_EQ(wrong, 0) << height;
+    }
+}
+
+TEST(ShadowZBuffer, AFloorAloneIsLit) {
+    Scene scene;
+    add_mesh(scene, "floor", make_plane(kFloor, kFloor));
+    scene.camera.eye = {0, 10, 0};
+    for (const Light& light : kLights)
+        for (const char* fit : {"casters", "scene"}) {
+            scene.lights           = {light};
+            const PointBatch floor = points_on(scene, 0, 40);
+            const Plane plane      = look_up(scene, floor, fmt::format("shadow_zbuffer:fit={}", fit));
+            EXPECT_EQ(std::ranges::count(plane.s, 1.0f), std::ssize(plane.s)) << fit;
+        }
+}
+
+TEST(ShadowZBuffer, FittingToCastersLosesNoShadow) {
+    // A floor forty times as wide as what stands on it, and reaches a little into it; walls; and what lies under it.
+    Scene scene;
+    add_mesh(scene, "floor", make_plane(40, 40));
+    add_mesh(
+        scene, "wall",
+        moved(transformed(make_plane(40, 40), mat4(0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)), {-20, 19.9f, 0}));
+    add_mesh(scene, "box", moved(make_box({1, 1, 1}), {0, 0.4f, 0}));
+    add_mesh(scene, "far box", moved(make_box({1, 1, 1}), {-17, 3, 2}));
+    scene.camera.eye = {5, 10, 5};
+    for (const Light& light : {directional_light({-1, -0.7f, 0.2f}), directional_light({-0.4f, -1, 0.1f}),
+                               point_light({6, 7, 1}), point_light({0, -9, 0})}) {
+        scene.lights = {light};
+        for (std::uint32_t object = 0; object < 4; ++object) {
+            const PointBatch points = points_on(scene, object, object < 2 ? 300 : 40);
+            const Plane casters     = look_up(scene, points, "shadow_zbuffer:fit=casters,resolution=4096");
+            const Plane all         = look_up(scene, points, "shadow_zbuffer:fit=scene,resolution=4096");
+            int differ              = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) differ += casters.s[i] != all.s[i];
+            EXPECT_LE(differ, std::ssize(points.triangle) / 50) << object << ' ' << to_string(light.kind);
+        }
+    }
+}
+
+TEST(ShadowZBuffer, SpotsAnswerOutsideTheirConesUnlessToldNotTo) {
+    const Light light      = spot_light({0, 3, 0}, {0, -1, 0}, 20);
+    const Scene scene      = square_over_floor(light);
+    const PointBatch floor = points_on(scene, 0, 100);
+    const Plane all        = look_up(scene, floor, "shadow_zbuffer:fit=scene");
+    const Plane cone       = look_up(scene, floor, "shadow_zbuffer:fit=scene,surround=0");
+    EXPECT_EQ(std::ranges::count(all.defined, 1), std::ssize(all.defined));
+    for (std::size_t i = 0; i < floor.size(); ++i) {
+        const float factor =
+            spot_factor(light.spot, glm::dot(-to_light(light, floor.position(i)).direction, light.direction));
+        const bool far_out = std::max(std::abs(floor.px[i]), std::abs(floor.pz[i])) > 1.2f;
+        EXPECT_TRUE(factor == 0 || cone.defined[i] == 1);
+        EXPECT_TRUE(!far_out || cone.defined[i] == 0);
+    }
+}
+
+TEST(ShadowZBuffer, SecondDepthNeedsNoBiasOnClosedOccluders) {
+    Scene scene;
+    add_mesh(scene, "floor", make_plane(kFloor, kFloor));
+    add_mesh(scene, "ball", moved(make_sphere(0.5f, 64, 32), {0, 1, 0}));
+    scene.lights.push_back(directional_light({0.3f, -1, 0.2f}));
+    scene.camera.eye      = {0, 10, 0};
+    const PointBatch ball = points_on(scene, 1, 3);
+    int all = 0, back = 0, open = 0;
+    const Plane with_all  = look_up(scene, ball, "shadow_zbuffer:bias=manual,faces=all");
+    const Plane with_back = look_up(scene, ball, "shadow_zbuffer:bias=manual,faces=back");
+    for (std::size_t i = 0; i < ball.size(); ++i) {
+        if (ball.flipped[i] || ball.facing[0][i] != Facing::front ||
+            glm::dot(ball.normal(i), vec3(-0.3f, 1, -0.2f)) < 0.3f)
+            continue;
+        ++open;
+        all += with_all.s[i] == 0;
+        back += with_back.s[i] == 0;
+    }
+    EXPECT_GT(all, open / 5);
+    EXPECT_EQ(back, 0);
+    // The floor lies in the ball's shadow all the same.
+    const PointBatch floor = points_on(scene, 0, 100);
+    EXPECT_GT(std::ranges::count(look_up(scene, floor, "shadow_zbuffer:faces=back").s, 0.0f), 100);
+}
+
+TEST(ShadowZBuffer, FilteringGivesSharesAtTheBorderOnly) {
+    const Light light      = directional_light({0.3f, -1, 0.2f});
+    const Scene scene      = square_over_floor(light);
+    const PointBatch floor = points_on(scene, 0, 300);
+    for (const char* bilinear : {"true", "false"}) {
+        const Plane plane =
+            look_up(scene, floor,
+                    fmt::format("shadow_zbuffer:fit=scene,resolution=512,filter=pcf,radius=2,bilinear={}", bilinear));
+        const double reach = 4 * 3.5 * kFloor * std::sqrt(2.0) / 512;  // kernel and a sample, on the floor
+        int between        = 0;
+        for (std::size_t i = 0; i < floor.size(); ++i) {
+            const double depth = depth_in_shadow(light, dvec3(floor.position(i)));
+            EXPECT_TRUE(std::abs(depth) <= reach || plane.s[i] == (depth > 0 ? 0.0f : 1.0f));
+            between += plane.s[i] > 0 && plane.s[i] < 1;
+        }
+        EXPECT_GT(between, 100);
+    }
+}
+
+TEST(ShadowZBuffer, WallSquareToTheLightAtTheEndOfTheScene) {
+    // Nothing lies behind the wall, and its depth is the same everywhere: rounding alone must not shadow it.
+    Scene scene = square_over_floor(point_light({0.3f, 3, 0.4f}));
+    add_mesh(scene, "wall", moved(make_box({20, 0.5f, 20}), {0, -5, 0}));
+    for (const char* depth : {"float", "32", "24", "16"}) {
+        const PointBatch wall = points_on(scene, 2, 30);
+        const Plane plane     = look_up(scene, wall, fmt::format("shadow_zbuffer:fit=scene,depth={}", depth));
+        int seen              = 0;
+        for (std::size_t i = 0; i < wall.size(); ++i) {
+            const vec3 p = wall.position(i);
+            if (wall.flipped[i] || wall.facing[0][i] != Facing::front || std::max(std::abs(p.x), std::abs(p.z)) < 8)
+                continue;
+            ++seen;
+            EXPECT_EQ(plane.s[i], 1) << depth;
+        }
+        EXPECT_GT(seen, 100);
+    }
+}
+
+TEST(ShadowZBuffer, SameForAnyNumberOfThreads) {
+    const Scene scene      = square_over_floor(point_light({0.1f, 1.5f, 0.1f}));
+    const PointBatch floor = points_on(scene, 0, 200);
+    std::vector<float> expected;
+    for (int threads : {1, 3, 8}) {
+        const ThreadLimit limit(threads);
+        const Plane plane = look_up(scene, floor, "shadow_zbuffer:filter=pcf,depth=24");
+        if (expected.empty()) expected = plane.s;
+        EXPECT_EQ(plane.s, expected);
     }
 }
 
