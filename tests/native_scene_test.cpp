@@ -303,6 +303,8 @@ const Fault kFaults[] = {
     {R"({"background": @"#12345g"})", "[r, g, b] or \"#rrggbb\""},
     {R"({"ambient": [1, @-1, 1]})", "ambient is -1 (a number of at least 0"},
     {R"({"viewer": @null})", "viewer is null"},
+    // Quotes, brackets and backslashes inside strings before the fault move nothing.
+    {R"({"title": "a \"b\" ]}, \\", "note": "", "tone": @3})", "tone is the number 3"},
     // The camera.
     {R"({"camera": @{"eye": [0, 0, 1]}})", "the camera has no \"target\""},
     {R"({"camera": {"eye": @[0, 0], "target": [0, 0, 0]}})", "eye is a list of 2 values (three numbers [x, y, z]"},
