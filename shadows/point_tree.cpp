@@ -201,7 +201,10 @@ void PointTree::add(const Region& region, std::int32_t weight) {
 void PointTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t node, unsigned open) {
     Node& n = levels_[level][node];
     if (glm::any(glm::lessThan(n.max, region.box_min)) || glm::any(glm::greaterThan(n.min, region.box_max))) return;
-    for (unsigned rest = open; rest != 0; rest &= rest - 1) {
+    // The box alone rules small regions out of large nodes; their faces are asked where they can tell more.
+    const dvec3 region_size = region.box_max - region.box_min, node_size = n.max - n.min;
+    const bool small = level > 0 && 2 * region_size.x < node_size.x && 2 * region_size.y < node_size.y;
+    for (unsigned rest = small ? 0 : open; rest != 0; rest &= rest - 1) {
         const auto face = static_cast<unsigned>(std::countr_zero(rest));
         switch (cover(region.faces[face], n.min, n.max)) {
             case Cover::none: return;
