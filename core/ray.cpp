@@ -47,6 +47,22 @@ void occluded_incoherent(RTCScene scene, const int* valid, RTCRay8& rays) {
     rtcInitOccludedArguments(&arguments);
     rtcOccluded8(valid, scene, &rays, &arguments);
 }
+void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {  // Embree 4 has no lists any more: packets of eight
+    for (std::size_t first = 0; first < rays.size(); first += 8) {
+        alignas(32) int valid[8]{};
+        RTCRay8 packet{};
+        const std::size_t count = std::min<std::size_t>(8, rays.size() - first);
+        for (std::size_t k = 0; k < count; ++k) {
+            const ShadowRay& r = rays[first + k];
+            valid[k]           = -1;
+            packet.org_x[k] = r.org_x, packet.org_y[k] = r.org_y, packet.org_z[k] = r.org_z;
+            packet.dir_x[k] = r.dir_x, packet.dir_y[k] = r.dir_y, packet.dir_z[k] = r.dir_z;
+            packet.tnear[k] = r.tnear, packet.tfar[k] = r.tfar, packet.mask[k] = r.mask, packet.id[k] = r.id;
+        }
+        occluded_incoherent(scene, valid, packet);
+        for (std::size_t k = 0; k < count; ++k) rays[first + k].tfar = packet.tfar[k];
+    }
+}
 #else
 void intersect_coherent(RTCScene scene, const int* valid, RTCRayHit8& rays) {
     RTCIntersectContext context;
@@ -58,6 +74,13 @@ void occluded_incoherent(RTCScene scene, const int* valid, RTCRay8& rays) {  // 
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded8(valid, scene, &context, &rays);
+}
+void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {
+    static_assert(sizeof(ShadowRay) == sizeof(RTCRay) && offsetof(ShadowRay, id) == offsetof(RTCRay, id));
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1M(scene, &context, reinterpret_cast<RTCRay*>(rays.data()), static_cast<unsigned>(rays.size()),
+                  sizeof(ShadowRay));
 }
 #endif
 
@@ -143,11 +166,15 @@ std::size_t RayScene::memory_bytes() const {
     return static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, impl_->bytes));
 }
 
-void RayScene::occluded(const int (&valid)[8], ShadowPacket& rays) const {
-    static_assert(sizeof(ShadowPacket) == sizeof(RTCRay8) && alignof(ShadowPacket) == alignof(RTCRay8));
+void RayScene::occluded(ShadowPacket& rays) const {
+    static_assert(offsetof(ShadowPacket, valid) == sizeof(RTCRay8) && alignof(ShadowPacket) == alignof(RTCRay8));
     static_assert(offsetof(ShadowPacket, tfar) == offsetof(RTCRay8, tfar) &&
                   offsetof(ShadowPacket, id) == offsetof(RTCRay8, id));
-    occluded_incoherent(impl_->scene, valid, reinterpret_cast<RTCRay8&>(rays));
+    occluded_incoherent(impl_->scene, rays.valid, reinterpret_cast<RTCRay8&>(rays));
+}
+
+void RayScene::occluded(std::span<ShadowRay> rays) const {
+    if (!rays.empty()) occluded_list(impl_->scene, rays);
 }
 
 // ---- the G-buffer ---------------------------------------------------------------------------------------------------
@@ -156,10 +183,10 @@ namespace {
 
 constexpr int kTileWidth = 16, kTileHeight = 8;  // whole packets of 4 x 2 pixels
 
-/// What the eye rays through one tile met.
-struct TileHits {
-    TriangleId triangle[kTileHeight][kTileWidth];
-    float u[kTileHeight][kTileWidth], v[kTileHeight][kTileWidth];
+/// What eight eye rays met, as 4 x 2 pixels.
+struct Hits8 {
+    TriangleId triangle[8];
+    float u[8], v[8];
 };
 
 /// Eye rays as the camera defines them, split into what varies with the column and with the row.
@@ -195,6 +222,8 @@ struct EyeRays {
     }
 };
 
+using TileHits = Hits8[kTileHeight / 2][kTileWidth / 4];
+
 void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, int height, TileHits& hits) {
     const FlushDenormals flush;
     RTCRayHit8 rays{};
@@ -206,42 +235,147 @@ void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, i
             eye.fill(rays.ray, x, y);
             std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
             intersect_coherent(scene, valid, rays);
-            for (int k = 0; k < 8; ++k) {
-                const int row = y - y0 + (k >> 2), column = x - x0 + (k & 3);
-                hits.triangle[row][column] =
-                    rays.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? kNoTriangle : rays.hit.primID[k];
-                hits.u[row][column] = rays.hit.u[k];
-                hits.v[row][column] = rays.hit.v[k];
-            }
+            Hits8& hit = hits[(y - y0) / 2][(x - x0) / 4];
+            for (int k = 0; k < 8; ++k)
+                hit.triangle[k] = rays.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? kNoTriangle : rays.hit.primID[k];
+            std::copy_n(rays.hit.u, 8, hit.u);
+            std::copy_n(rays.hit.v, 8, hit.v);
         }
     }
 }
 
+/// set_point for eight hits at once, to the same bits: all but the loads are loops over lanes. Leaves to set_point what
+/// needs a second look: barycentrics at or over an edge, triangles without area.
+class PointWriter {
+public:
+    PointWriter(const Scene& scene, PointBatch& batch) : scene_(scene), batch_(batch) {
+        window_ = batch.raster->projection == Projection::orthographic;
+        for (const Material& m : scene.materials) all_two_sided_ &= m.two_sided;
+    }
+
+    /// Pixels (x .. x+3, y .. y+1), those inside the raster.
+    void write(const Hits8& hits, int x, int y) const {
+        const CameraFrame& frame = *batch_.raster;
+        Points8 points;
+        place(hits, points);
+        for (int row = 0; row < std::min(2, frame.height - y); ++row) {
+            const int count     = std::min(4, frame.width - x);
+            const std::size_t i = static_cast<std::size_t>(y + row) * frame.width + x;
+            if (count == 4)
+                store(points, 4 * row, i, 4);
+            else
+                store(points, 4 * row, i, count);
+            for (int k = 4 * row; k < 4 * row + count; ++k)
+                if (hits.triangle[k] != kNoTriangle && !points.done[k])
+                    set_point(batch_, i + (k & 3), scene_, hits.triangle[k], hits.u[k], hits.v[k]);
+        }
+    }
+
+private:
+    struct Points8 {
+        TriangleId triangle[8];
+        float u[8], v[8], px[8], py[8], pz[8], nx[8], ny[8], nz[8];
+        std::uint8_t flipped[8], done[8];
+    };
+
+    void place(const Hits8& hits, Points8& out) const {
+        float a[3][8], b[3][8], c[3][8];
+        double two_sided[8];
+        for (int k = 0; k < 8; ++k) {
+            const TriangleId t = hits.triangle[k];
+            if (t == kNoTriangle) {
+                for (int d = 0; d < 3; ++d) a[d][k] = b[d][k] = c[d][k] = 0;
+                two_sided[k] = 1;
+                continue;
+            }
+            const uvec3 corner = scene_.triangles[t];
+            const vec3 p = scene_.positions[corner.x], q = scene_.positions[corner.y], r = scene_.positions[corner.z];
+            for (int d = 0; d < 3; ++d) a[d][k] = p[d], b[d][k] = q[d], c[d][k] = r[d];
+            const auto both = [&] {
+                return scene_.materials[scene_.objects[scene_.triangle_object[t]].material].two_sided;
+            };
+            two_sided[k] = all_two_sided_ || both() ? 1 : 0;
+        }
+        const dvec3 eye(batch_.eye), view = batch_.raster->forward;
+        for (int k = 0; k < 8; ++k) {
+            const double u = static_cast<double>(hits.u[k]), v = static_cast<double>(hits.v[k]);
+            const double ax = static_cast<double>(a[0][k]), ay = static_cast<double>(a[1][k]),
+                         az = static_cast<double>(a[2][k]);
+            const double bx = static_cast<double>(b[0][k]) - ax, by = static_cast<double>(b[1][k]) - ay,
+                         bz = static_cast<double>(b[2][k]) - az;
+            const double cx = static_cast<double>(c[0][k]) - ax, cy = static_cast<double>(c[1][k]) - ay,
+                         cz = static_cast<double>(c[2][k]) - az;
+            const double nx = by * cz - cy * bz, ny = bz * cx - cz * bx, nz = bx * cy - cx * by;
+            const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
+            const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
+            const double ex = window_ ? -view.x : eye.x - px, ey = window_ ? -view.y : eye.y - py,
+                         ez     = window_ ? -view.z : eye.z - pz;
+            const bool against  = (nx * ex + ny * ey + nz * ez) * two_sided[k] < 0;
+            const double factor = (against ? -1.0 : 1.0) / length;
+            out.px[k] = static_cast<float>(px), out.py[k] = static_cast<float>(py), out.pz[k] = static_cast<float>(pz);
+            out.nx[k]      = static_cast<float>(nx * factor);
+            out.ny[k]      = static_cast<float>(ny * factor);
+            out.nz[k]      = static_cast<float>(nz * factor);
+            out.flipped[k] = against;
+            out.done[k]    = (u >= 0) & (v >= 0) & (u + v < 1) & (length > 0);
+        }
+        std::copy_n(hits.triangle, 8, out.triangle);
+        std::copy_n(hits.u, 8, out.u);
+        std::copy_n(hits.v, 8, out.v);
+        for (int k = 0; k < 8; ++k) {
+            if (hits.triangle[k] != kNoTriangle) continue;
+            out.u[k] = out.v[k] = out.px[k] = out.py[k] = out.pz[k] = out.nx[k] = out.ny[k] = out.nz[k] = 0;
+            out.flipped[k]                                                                              = 0;
+        }
+    }
+
+    void store(const Points8& points, int lane, std::size_t i, int count) const {
+        std::copy_n(points.triangle + lane, count, batch_.triangle.data() + i);
+        std::copy_n(points.u + lane, count, batch_.u.data() + i);
+        std::copy_n(points.v + lane, count, batch_.v.data() + i);
+        std::copy_n(points.px + lane, count, batch_.px.data() + i);
+        std::copy_n(points.py + lane, count, batch_.py.data() + i);
+        std::copy_n(points.pz + lane, count, batch_.pz.data() + i);
+        std::copy_n(points.nx + lane, count, batch_.nx.data() + i);
+        std::copy_n(points.ny + lane, count, batch_.ny.data() + i);
+        std::copy_n(points.nz + lane, count, batch_.nz.data() + i);
+        std::copy_n(points.flipped + lane, count, batch_.flipped.data() + i);
+    }
+
+    const Scene& scene_;
+    PointBatch& batch_;
+    bool window_        = false;
+    bool all_two_sided_ = true;
+};
+
 }  // namespace
 
-PointBatch primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height) {
-    PointBatch batch;
+void primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height,
+                    PointBatch& batch) {
     batch.raster = frame(camera, width, height);
     batch.eye    = camera.eye;
     batch.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-
     const EyeRays eye(*batch.raster, rays.space());
+    const PointWriter writer(scene, batch);
     const int across = (width + kTileWidth - 1) / kTileWidth, down = (height + kTileHeight - 1) / kTileHeight;
-    parallel_ranges(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 8,
-                    [&](std::size_t begin, std::size_t end) {
-                        TileHits hits;
-                        for (std::size_t tile = begin; tile < end; ++tile) {
-                            const int x0 = static_cast<int>(tile % across) * kTileWidth;
-                            const int y0 = static_cast<int>(tile / across) * kTileHeight;
-                            trace_tile(rays.impl().scene, eye, x0, y0, width, height, hits);
-                            for (int y = y0; y < std::min(y0 + kTileHeight, height); ++y)
-                                for (int x = x0; x < std::min(x0 + kTileWidth, width); ++x)
-                                    if (const TriangleId t = hits.triangle[y - y0][x - x0]; t != kNoTriangle)
-                                        set_point(batch, static_cast<std::size_t>(y) * width + x, scene, t,
-                                                  hits.u[y - y0][x - x0], hits.v[y - y0][x - x0]);
-                        }
-                    });
+    const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
+    parallel_ranges(tiles, 8, [&](std::size_t begin, std::size_t end) {
+        TileHits hits;
+        for (std::size_t tile = begin; tile < end; ++tile) {
+            const int x0 = static_cast<int>(tile % across) * kTileWidth;
+            const int y0 = static_cast<int>(tile / across) * kTileHeight;
+            trace_tile(rays.impl().scene, eye, x0, y0, width, height, hits);
+            for (int y = y0; y < std::min(y0 + kTileHeight, height); y += 2)
+                for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4)
+                    writer.write(hits[(y - y0) / 2][(x - x0) / 4], x, y);
+        }
+    });
     face_lights(batch, scene);
+}
+
+PointBatch primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height) {
+    PointBatch batch;
+    primary_points(rays, scene, camera, width, height, batch);
     return batch;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "core/points.h"
 #include "core/scene.h"
@@ -41,6 +42,17 @@ struct alignas(32) ShadowPacket {
     std::uint32_t mask[8]{~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
     TriangleId id[8]{};  ///< this triangle is no hit; kNoTriangle: every triangle is
     std::uint32_t flags[8]{};
+    int valid[8]{};  ///< -1: trace this lane, 0: leave it alone. Not part of Embree's layout
+};
+
+/// One shadow ray in ray space, for lists of them; the members are those of ShadowPacket.
+struct alignas(16) ShadowRay {
+    float org_x = 0, org_y = 0, org_z = 0, tnear = 0;
+    float dir_x = 0, dir_y = 0, dir_z = 0, time = 0;
+    float tfar          = 0;
+    std::uint32_t mask  = ~0u;
+    TriangleId id       = kNoTriangle;
+    std::uint32_t flags = 0;
 };
 
 /// Flushes denormal floats to zero on this thread while it lives, which Embree is several times faster with. Keep it
@@ -69,8 +81,11 @@ public:
 
     [[nodiscard]] const RaySpace& space() const { return space_; }
 
-    /// Tests the lanes with valid[k] == -1 (others are 0) for any hit in (tnear, tfar]. Call under FlushDenormals.
-    void occluded(const int (&valid)[8], ShadowPacket& rays) const;
+    /// Tests the valid lanes for any hit in (tnear, tfar]. Call under FlushDenormals.
+    void occluded(ShadowPacket& rays) const;
+    /// The same for a list of neighbouring rays, of a tile's points to one light, which is where lists are the faster
+    /// (by a third on a million triangles); for eight rays from one point a packet is.
+    void occluded(std::span<ShadowRay> rays) const;
 
     [[nodiscard]] std::size_t memory_bytes() const;
 
@@ -86,5 +101,8 @@ private:
 /// face_lights is called on the result. Deterministic for any number of threads.
 [[nodiscard]] PointBatch primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width,
                                         int height);
+/// The same into a batch whose memory is used again, as for the next picture of a moving camera.
+void primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height,
+                    PointBatch& batch);
 
 }  // namespace umbra

@@ -154,9 +154,8 @@ public:
 
 private:
     [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
-    void start(const PointBatch& points, const std::size_t (&at)[8], Starts& starts) const;
-    void hard(const PointBatch& points, const std::size_t (&at)[8], int (&valid)[8], std::span<float> s) const;
-    void area(const PointBatch& points, const std::size_t (&at)[8], const int (&valid)[8], std::span<float> s) const;
+    void start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
+    void hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
     [[nodiscard]] float seen_share(const Starts& starts, int lane, PointKey key) const;
 
     OffsetPolicy policy_;
@@ -181,14 +180,18 @@ vec3 RayTraced::exact_start(const PointBatch& points, std::size_t i) const {
     return vec3(a + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a));
 }
 
-void RayTraced::start(const PointBatch& points, const std::size_t (&at)[8], Starts& starts) const {
+/// Of the points first .. first + count - 1, at most eight. Lanes from `count` on stay as they were.
+void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
     const RaySpace& space = rays_->space();
-    for (int k = 0; k < 8; ++k) {
-        const std::size_t i = at[k];
-        starts.x[k] = points.px[i], starts.y[k] = points.py[i], starts.z[k] = points.pz[i];
-        starts.nx[k] = points.nx[i], starts.ny[k] = points.ny[i], starts.nz[k] = points.nz[i];
-        starts.id[k] = points.triangle[i];
-    }
+    const auto load       = [&](const auto& from, auto& to) {
+        if (count == 8)
+            std::copy_n(from.data() + first, 8, to);
+        else
+            std::copy_n(from.data() + first, count, to);
+    };
+    load(points.px, starts.x), load(points.py, starts.y), load(points.pz, starts.z);
+    load(points.nx, starts.nx), load(points.ny, starts.ny), load(points.nz, starts.nz);
+    load(points.triangle, starts.id);
     if (policy_ != OffsetPolicy::skip_triangle) {
         for (int k = 0; k < 8; ++k) {
             const vec3 p(starts.x[k], starts.y[k], starts.z[k]), n(starts.nx[k], starts.ny[k], starts.nz[k]);
@@ -204,9 +207,9 @@ void RayTraced::start(const PointBatch& points, const std::size_t (&at)[8], Star
     }
     if (policy_ != OffsetPolicy::skip_triangle) return;
     if (space.centre != vec3(0)) {
-        for (int k = 0; k < 8; ++k) {
+        for (std::size_t k = 0; k < count; ++k) {
             if (starts.id[k] == kNoTriangle) continue;
-            const vec3 p = exact_start(points, at[k]);
+            const vec3 p = exact_start(points, first + k);
             starts.x[k] = p.x, starts.y[k] = p.y, starts.z[k] = p.z;
         }
     }
@@ -215,38 +218,34 @@ void RayTraced::start(const PointBatch& points, const std::size_t (&at)[8], Star
     //   a triangle in that plane (a neighbour, a duplicate) is met where Embree's (v - p).N vanishes, v a vertex, N its
     //   normal. v - p lies in the plane, so |v_k - p_k| <= E sqrt(1 - n_k^2), E <= 2 the scene's extent; the
     //   difference, N's coordinates, the products and their sums are rounded, each by a few u of that.
-    // Both vanish for planes that the axes span, so that a floor at y = 0 needs no tolerance and gets none.
-    constexpr float u = 0x1p-24f;
+    // Both vanish for planes that the axes span: a floor at y = 0 needs no tolerance. It gets a billionth of the scene,
+    // since a ray that starts after 0 need not visit the floor's flat box (area lights: a third of the time).
+    constexpr float u = 0x1p-24f, least = 0x1p-30f;
     for (int k = 0; k < 8; ++k) {
         const float nx = starts.nx[k], ny = starts.ny[k], nz = starts.nz[k];
         const auto lean  = [](float n) { return std::abs(n) * std::sqrt(std::max(0.0f, 1 - n * n)); };
         starts.height[k] = u * (std::abs(nx * starts.x[k]) + std::abs(ny * starts.y[k]) + std::abs(nz * starts.z[k])) +
-                           (4 * u) * (lean(nx) + lean(ny) + lean(nz));
+                           (4 * u) * (lean(nx) + lean(ny) + lean(nz)) + least;
     }
 }
 
-/// One ray a point.
-void RayTraced::hard(const PointBatch& points, const std::size_t (&at)[8], int (&valid)[8], std::span<float> s) const {
-    Starts starts;
-    start(points, at, starts);
-    ShadowPacket packet;
+/// One ray a point that faces the light, one after the other from `rays` on.
+void RayTraced::hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const {
     const bool parallel  = target_.kind == LightKind::directional;
     const float per_unit = parallel ? 0 : 1 / target_.unit;
-    const float tfar     = parallel ? kInfinity : kAlmostThere * target_.unit;
+    float dx[8], dy[8], dz[8], tnear[8];
     for (int k = 0; k < 8; ++k) {
-        const float dx   = target_.centre.x - per_unit * starts.x[k];
-        const float dy   = target_.centre.y - per_unit * starts.y[k];
-        const float dz   = target_.centre.z - per_unit * starts.z[k];
-        const float rise = starts.nx[k] * dx + starts.ny[k] * dy + starts.nz[k] * dz;
-        packet.org_x[k] = starts.x[k], packet.org_y[k] = starts.y[k], packet.org_z[k] = starts.z[k];
-        packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
-        packet.tnear[k] = starts.height[k] / std::max(rise, 1e-30f);
-        packet.tfar[k]  = tfar;
-        packet.id[k]    = starts.id[k];
+        dx[k]            = target_.centre.x - per_unit * starts.x[k];
+        dy[k]            = target_.centre.y - per_unit * starts.y[k];
+        dz[k]            = target_.centre.z - per_unit * starts.z[k];
+        const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
+        tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
     }
-    rays_->occluded(valid, packet);
-    for (int k = 0; k < 8; ++k)
-        if (valid[k] != 0) s[at[k]] = packet.tfar[k] < 0 ? 0.0f : 1.0f;
+    const float tfar = parallel ? kInfinity : kAlmostThere * target_.unit;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (facing[k] < Facing::partly) continue;
+        *rays++ = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k], dy[k], dz[k], 0, tfar, ~0u, starts.id[k], 0};
+    }
 }
 
 /// Of all samples of the light, the share that the point sees. What lies behind the point's plane is not seen.
@@ -274,7 +273,6 @@ float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const 
             for (int k = 0; k < 8; ++k) samples.x[k] = 2 * samples.x[k] - 1, samples.y[k] = 2 * samples.y[k] - 1;
         else
             map_to_disk(samples);
-        alignas(32) int valid[8];
         for (int k = 0; k < 8; ++k) {
             const float dx   = to_centre.x + samples.x[k] * axis_u.x + samples.y[k] * axis_v.x;
             const float dy   = to_centre.y + samples.x[k] * axis_u.y + samples.y[k] * axis_v.y;
@@ -283,49 +281,59 @@ float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const 
             packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
             packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
             packet.tfar[k]  = kAlmostThere * target_.unit;
-            valid[k]        = rise > 0 && first + k < samples_ ? -1 : 0;
+            packet.valid[k] = rise > 0 && first + k < samples_ ? -1 : 0;
         }
-        rays_->occluded(valid, packet);
-        for (int k = 0; k < 8; ++k) seen += valid[k] != 0 && packet.tfar[k] >= 0;
+        rays_->occluded(packet);
+        for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
     }
     return static_cast<float>(seen) / static_cast<float>(samples_);
 }
 
-void RayTraced::area(const PointBatch& points, const std::size_t (&at)[8], const int (&valid)[8],
-                     std::span<float> s) const {
-    Starts starts;
-    start(points, at, starts);
-    for (int k = 0; k < 8; ++k)
-        if (valid[k] != 0) s[at[k]] = seen_share(starts, k, set_->key(at[k]));
-}
-
 void RayTraced::visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) {
-    // Tiles of 16 x 8 pixels in packets of 4 x 2, so that a packet's rays stay close; without a raster 128 points.
+    // Tiles of 16 x 8 pixels, so that neighbouring rays meet the same triangles; without a raster 128 points. Hard
+    // lights: all rays of a tile are one list. Area lights: eight rays of one point are a packet.
+    constexpr std::size_t tile_width = 16, tile_height = 8;
     const bool raster        = points.raster.has_value();
-    const std::size_t width  = raster ? points.raster->width : 16,
-                      height = raster ? points.raster->height : (points.size() + 15) / 16;
-    const std::size_t across = (width + 15) / 16, down = (height + 7) / 8;
-    const std::vector<Facing>& facing = points.facing[light];
+    const std::size_t width  = raster ? points.raster->width : tile_width,
+                      height = raster ? points.raster->height : (points.size() + tile_width - 1) / tile_width;
+    const std::size_t across = (width + tile_width - 1) / tile_width, down = (height + tile_height - 1) / tile_height;
+    const Facing* facing = points.facing[light].data();
+    const auto sees      = [&](std::size_t i) { return facing[i] >= Facing::partly; };
     parallel_ranges(across * down, 8, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
-        for (std::size_t packet = 16 * begin; packet < 16 * end; ++packet) {
-            const std::size_t tile = packet / 16, x0 = tile % across * 16 + packet % 4 * 4,
-                              y0 = tile / across * 8 + packet % 16 / 4 * 2;
-            std::size_t at[8];
-            alignas(32) int valid[8];
-            int any = 0;
-            for (int k = 0; k < 8; ++k) {
-                const std::size_t x = x0 + (k & 3), y = y0 + (k >> 2), i = y * width + x;
-                const bool inside = x < width && i < points.size();
-                at[k]             = inside ? i : 0;
-                valid[k]          = inside && facing[i] >= Facing::partly ? -1 : 0;
-                any |= valid[k];
-            }
-            if (any == 0) continue;
-            if (is_area(target_.kind))
-                area(points, at, valid, s);
-            else
-                hard(points, at, valid, s);
+        Starts starts;
+        ShadowRay rays[tile_width * tile_height];
+        for (std::size_t tile = begin; tile < end; ++tile) {
+            const std::size_t x0 = tile % across * tile_width, y0 = tile / across * tile_height;
+            std::size_t traced   = 0;
+            const auto each_span = [&](const auto& body) {  // up to eight points of a row
+                for (std::size_t y = y0; y < std::min(y0 + tile_height, height); ++y)
+                    for (std::size_t x = x0; x < std::min(x0 + tile_width, width); x += 8) {
+                        const std::size_t first = y * width + x;
+                        if (first >= points.size()) continue;
+                        body(first, std::min({std::size_t{8}, width - x, points.size() - first}));
+                    }
+            };
+            each_span([&](std::size_t first, std::size_t count) {
+                const auto facing_light =
+                    std::count_if(facing + first, facing + first + count, [](Facing f) { return f >= Facing::partly; });
+                if (facing_light == 0) return;
+                start(points, first, count, starts);
+                if (!is_area(target_.kind)) {
+                    hard(starts, facing + first, count, rays + traced);
+                    traced += static_cast<std::size_t>(facing_light);
+                    return;
+                }
+                for (std::size_t k = 0; k < count; ++k)
+                    if (sees(first + k)) s[first + k] = seen_share(starts, static_cast<int>(k), set_->key(first + k));
+            });
+            if (traced == 0) continue;
+            rays_->occluded(std::span(rays, traced));
+            std::size_t next = 0;
+            each_span([&](std::size_t first, std::size_t count) {
+                for (std::size_t i = first; i < first + count; ++i)
+                    if (sees(i)) s[i] = rays[next++].tfar < 0 ? 0.0f : 1.0f;
+            });
         }
     });
 }

@@ -248,23 +248,31 @@ TEST(RayScene, OccludedSkipsTheNamedTriangleOnly) {
     const RayScene rays(
         scene_of({{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}, {-1, 1, -1}, {1, 1, -1}, {0, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}));
     ShadowPacket packet;
-    int valid[8]            = {-1, -1, -1, -1, -1, 0, 0, 0};
     const TriangleId skip[] = {kNoTriangle, 0, 1, kNoTriangle, 0};
     const float tfar[]      = {2, 2, 2, 0.25f, 0.75f};  // from y = -0.5 to 1.5, 0 and to above the first
     for (int k = 0; k < 5; ++k) {
         const vec3 origin = rays.space().point(vec3(0, -0.5f, 0)), direction = rays.space().vector(dvec3(0, 1, 0));
         packet.org_x[k] = origin.x, packet.org_y[k] = origin.y, packet.org_z[k] = origin.z;
         packet.dir_x[k] = direction.x, packet.dir_y[k] = direction.y, packet.dir_z[k] = direction.z;
-        packet.tfar[k] = tfar[k];
-        packet.id[k]   = skip[k];
+        packet.tfar[k]  = tfar[k];
+        packet.id[k]    = skip[k];
+        packet.valid[k] = -1;
     }
-    rays.occluded(valid, packet);
+    std::vector<ShadowRay> list(5);
+    for (int k = 0; k < 5; ++k) {
+        list[k].org_x = packet.org_x[k], list[k].org_y = packet.org_y[k], list[k].org_z = packet.org_z[k];
+        list[k].dir_x = packet.dir_x[k], list[k].dir_y = packet.dir_y[k], list[k].dir_z = packet.dir_z[k];
+        list[k].tfar = packet.tfar[k], list[k].id = packet.id[k];
+    }
+    rays.occluded(packet);
     EXPECT_LT(packet.tfar[0], 0);
     EXPECT_LT(packet.tfar[1], 0);  // the other one blocks
     EXPECT_LT(packet.tfar[2], 0);
     EXPECT_EQ(packet.tfar[3], 0.25f);
     EXPECT_EQ(packet.tfar[4], 0.75f);
     EXPECT_EQ(packet.tfar[5], 0);
+    rays.occluded(list);
+    for (int k = 0; k < 5; ++k) EXPECT_EQ(list[k].tfar, packet.tfar[k]) << k;
 }
 
 TEST(FlushDenormals, EndsWithItsScope) {
