@@ -22,6 +22,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
 
 #include "core/parallel.h"
 #include "core/predicates.h"
@@ -45,6 +46,7 @@ constexpr std::array kParameters = {
 struct Receiver {
     dvec3 origin, e1, e2, normal;
     dvec2 low{+kInfinity}, high{-kInfinity};  ///< bounds of its triangles
+    double tolerance = 0;                     ///< greatest distance of their corners from the plane
 
     [[nodiscard]] dvec3 local(dvec3 world) const {
         const dvec3 r = world - origin;
@@ -68,6 +70,7 @@ Receiver make_receiver(const Scene& scene, const PlanarReceiver& plane) {
             const dvec3 x = r.local(dvec3(scene.vertex(t, k)));
             r.low         = glm::min(r.low, dvec2(x));
             r.high        = glm::max(r.high, dvec2(x));
+            r.tolerance   = std::max(r.tolerance, std::abs(x.z));
         }
     return r;
 }
@@ -137,15 +140,20 @@ struct Chunk {
 };
 constexpr std::size_t kChunk = 4096;
 
-float float_below(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }
-float float_above(double x) { return std::nextafter(static_cast<float>(x), +kInfinity); }
+float nearest_float(double x) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
+}
+float float_below(double x) { return std::nextafter(nearest_float(x), -kInfinity); }
+float float_above(double x) { return std::nextafter(nearest_float(x), +kInfinity); }
 
-/// Adds the shadow of a triangle that lies between plane and source, unless it misses the receiver.
-void add_shadow(Chunk& chunk, const Receiver& receiver, int side, const LocalSource& source, const Triangle& triangle,
+/// Adds the shadow of a triangle over the plane, unless it misses the rectangle from `low_reach` to `high_reach`. What
+/// of the triangle lies above the source is not cut away: rays from the source to it do not come down to the plane.
+void add_shadow(Chunk& chunk, dvec2 low_reach, dvec2 high_reach, const LocalSource& source, const Triangle& triangle,
                 Shadow shadow) {
     dvec2 low(+kInfinity), high(-kInfinity);
     for (const dvec3 x : triangle) {
-        if (!source.at_infinity && x.z >= source.at.z) {  // projected to infinity, in a direction that is not asked for
+        if (!source.at_infinity && x.z >= source.at.z) {  // the shadow runs off to infinity
             low  = dvec2(-kInfinity);
             high = dvec2(+kInfinity);
             break;
@@ -158,9 +166,8 @@ void add_shadow(Chunk& chunk, const Receiver& receiver, int side, const LocalSou
         low                 = glm::min(low, q - e);
         high                = glm::max(high, q + e);
     }
-    const dvec2 a = dvec2(turned({receiver.low, 0}, side)), b = dvec2(turned({receiver.high, 0}, side));
-    low  = glm::max(low, glm::min(a, b));
-    high = glm::min(high, glm::max(a, b));
+    low  = glm::max(low, low_reach);
+    high = glm::min(high, high_reach);
     if (low.x > high.x || low.y > high.y) return;
     shadow.low  = {float_below(low.x), float_below(low.y)};
     shadow.high = {float_above(high.x), float_above(high.y)};
@@ -171,18 +178,17 @@ void add_shadow(Chunk& chunk, const Receiver& receiver, int side, const LocalSou
     chunk.shadows.push_back(shadow);
 }
 
-/// Keeps what lies on the plane's upper side (keep = +1) or under the source (keep = -1), at height `z`.
+/// What of a triangle lies on the plane's upper side.
 /// [Ivan Sutherland, Gary Hodgman, Reentrant Polygon Clipping, 1974]
-std::vector<dvec3> clip(const std::vector<dvec3>& polygon, double z, int keep) {
+std::vector<dvec3> clip_at_plane(const Triangle& triangle) {
     std::vector<dvec3> kept;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        dvec3 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-        if (keep * (a.z - z) >= 0) kept.push_back(a);
-        if ((a.z < z && b.z > z) || (a.z > z && b.z < z)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+        dvec3 a = triangle[k], b = triangle[(k + 1) % 3];
+        if (a.z >= 0) kept.push_back(a);
+        if ((a.z < 0 && b.z > 0) || (a.z > 0 && b.z < 0)) {
             if (before(b, a)) std::swap(a, b);
-            dvec3 cut = a + (b - a) * ((z - a.z) / (b.z - a.z));
-            cut.z     = z;
-            kept.push_back(cut);
+            const dvec3 cut = a + (b - a) * (a.z / (a.z - b.z));
+            kept.emplace_back(cut.x, cut.y, 0);
         }
     }
     return kept;
@@ -193,8 +199,17 @@ std::vector<Chunk> project(const Scene& scene, const std::vector<TriangleId>& oc
                            const std::vector<std::uint32_t>& plane_of, std::uint32_t plane, const Receiver& receiver,
                            int side, const Source& from) {
     const LocalSource source = local_source(receiver, side, from);
-    std::vector<Chunk> chunks((occluders.size() + kChunk - 1) / kChunk);
     if (!(source.at.z > 0)) return {};  // the receiver's other side is lit
+
+    // Points are off the plane by its tolerance, and are moved onto it along their rays.
+    const dvec2 corner(turned({receiver.low, 0}, side)), opposite(turned({receiver.high, 0}, side));
+    const double span  = source.at_infinity ? glm::length(source.at)
+                                            : glm::length(source.at - dvec3(corner, 0)) + glm::length(opposite - corner);
+    const double slope = span / std::max(source.at.z - (source.at_infinity ? 0 : receiver.tolerance), 1e-300);
+    const dvec2 slack(receiver.tolerance * slope);
+    const dvec2 low_reach = glm::min(corner, opposite) - slack, high_reach = glm::max(corner, opposite) + slack;
+
+    std::vector<Chunk> chunks((occluders.size() + kChunk - 1) / kChunk);
     parallel_ranges(chunks.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t c = first; c < last; ++c)
             for (std::size_t i = c * kChunk; i < std::min(occluders.size(), (c + 1) * kChunk); ++i) {
@@ -215,15 +230,15 @@ std::vector<Chunk> project(const Scene& scene, const std::vector<TriangleId>& oc
                 Shadow shadow;
                 shadow.triangle = t;
                 shadow.turned   = facing < 0;
-                if (low >= 0 && (from.at_infinity || high <= source.at.z)) {
-                    add_shadow(chunks[c], receiver, side, source, x, shadow);
+                if (low >= 0) {
+                    add_shadow(chunks[c], low_reach, high_reach, source, x, shadow);
                     continue;
                 }
-                shadow.piece = true;
-                auto polygon = clip({x.begin(), x.end()}, 0, +1);
-                if (!from.at_infinity) polygon = clip(polygon, source.at.z, -1);
+                shadow.piece       = true;
+                const auto polygon = clip_at_plane(x);
                 for (std::size_t k = 2; k < polygon.size(); ++k)
-                    add_shadow(chunks[c], receiver, side, source, {polygon[0], polygon[k - 1], polygon[k]}, shadow);
+                    add_shadow(chunks[c], low_reach, high_reach, source, {polygon[0], polygon[k - 1], polygon[k]},
+                               shadow);
             }
     });
     return chunks;

@@ -6,45 +6,16 @@
 #include <cmath>
 #include <random>
 
-#include "core/facts.h"
 #include "core/parallel.h"
-#include "core/ray.h"
 #include "shadows/method.h"
 #include "tests/known_scenes.h"
+#include "tests/method_case.h"
 
 namespace umbra {
 namespace {
 
 /// Share of the points that a method may get wrong outside the edge band where it says that it only approximates.
 constexpr double kApproximateShare = 0.01;
-
-/// One method on one scene, its default settings.
-struct Case {
-    const Scene& scene;
-    SceneFacts facts = find_facts(scene);
-    std::unique_ptr<Method> method;
-
-    Case(const MethodInfo& info, const Scene& s) : scene(s), method(info.make(Settings(info.parameters))) {}
-
-    [[nodiscard]] Service serves() const { return method->serves(facts); }
-    void prepare(LightId light) {
-        method->build(scene, facts);
-        method->aim(light);
-    }
-    [[nodiscard]] VisibilityPlane visibility(const PointBatch& points, LightId light) const {
-        VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)};
-        method->visibility(points, light, plane.s, plane.defined);
-        return plane;
-    }
-};
-
-PointBatch primary(const Scene& scene) {
-    return primary_points(RayScene(scene), scene, scene.camera, scene.width, scene.height);
-}
-
-bool is_open(const PointBatch& points, LightId light, std::size_t i) {
-    return points.facing[light][i] == Facing::partly || points.facing[light][i] == Facing::front;
-}
 
 /// The first point that is wrong outside the edge band, in words.
 std::string first_wrong(const Scene& scene, const PointBatch& points, LightId light, const VisibilityPlane& got,
@@ -108,7 +79,7 @@ class Matrix : public testing::TestWithParam<std::tuple<const MethodInfo*, Named
 TEST_P(Matrix, IsRight) {
     const auto& [info, named] = GetParam();
     const KnownScene known    = named.make();
-    Case run(*info, known.scene);
+    MethodCase run(*info, known.scene);
     const Service service = run.serves();
     EXPECT_FALSE(service.why.empty());
     if (!service) GTEST_SKIP() << service.why;
@@ -153,7 +124,7 @@ protected:
 TEST_P(Contract, AnswersAreInRangeAndClosedPointsStayUntouched) {
     for (const char* name : {"two_lights", "open_meshes", "room", "penumbra_of_half_plane"}) {
         const KnownScene known = known_scene(name);
-        Case run(info(), known.scene);
+        MethodCase run(info(), known.scene);
         if (!run.serves()) continue;
         const PointBatch points = primary(known.scene);
         for (LightId j = 0; j < known.scene.lights.size(); ++j) {
@@ -186,7 +157,7 @@ TEST_P(Contract, SameBitsForAnyNumberOfThreads) {
         std::vector<VisibilityPlane> planes;
         for (const int threads : {1, 2, 5}) {
             const ThreadLimit limit(threads);
-            Case run(info(), known.scene);
+            MethodCase run(info(), known.scene);
             if (!run.serves()) break;
             run.prepare(0);
             planes.push_back(run.visibility(points, 0));
@@ -198,7 +169,7 @@ TEST_P(Contract, SameBitsForAnyNumberOfThreads) {
 
 TEST_P(Contract, ABatchWithoutARasterGetsTheSameAnswers) {
     const KnownScene known = known_scene("two_lights");
-    Case run(info(), known.scene);
+    MethodCase run(info(), known.scene);
     if (!run.serves()) GTEST_SKIP() << run.serves().why;
     const PointBatch raster = primary(known.scene);
 
@@ -231,16 +202,18 @@ TEST_P(Contract, ABatchWithoutARasterGetsTheSameAnswers) {
 
 TEST_P(Contract, PhasesMayBeCalledAgain) {
     KnownScene known = known_scene("two_lights");
-    Case run(info(), known.scene);
+    MethodCase run(info(), known.scene);
     if (!run.serves()) GTEST_SKIP() << run.serves().why;
     PointBatch points = primary(known.scene);
     run.prepare(1);
     const VisibilityPlane once = run.visibility(points, 1);
 
+    const std::size_t memory = run.method->memory_bytes();
     run.method->aim(0);
     run.method->build(known.scene, run.facts);
     run.method->aim(1);
     EXPECT_EQ(run.visibility(points, 1).s, once.s) << "built again";
+    EXPECT_EQ(run.method->memory_bytes(), memory) << "built again";
 
     // A light moves: aim alone must do, and must give what a new start gives.
     known.scene.lights[1].position += vec3(4, 0.5f, 0);
@@ -248,7 +221,7 @@ TEST_P(Contract, PhasesMayBeCalledAgain) {
     run.method->aim(1);
     const VisibilityPlane moved = run.visibility(points, 1);
     EXPECT_NE(moved.s, once.s);
-    Case fresh(info(), known.scene);
+    MethodCase fresh(info(), known.scene);
     fresh.prepare(1);
     EXPECT_EQ(moved.s, fresh.visibility(points, 1).s) << "aimed anew";
 
@@ -258,14 +231,14 @@ TEST_P(Contract, PhasesMayBeCalledAgain) {
     const SceneFacts facts = find_facts(known.scene);
     run.method->build(known.scene, facts);
     run.method->aim(1);
-    Case again(info(), known.scene);
+    MethodCase again(info(), known.scene);
     again.prepare(1);
     EXPECT_EQ(run.visibility(points, 1).s, again.visibility(points, 1).s) << "built anew";
 }
 
 TEST_P(Contract, AnEmptyBatchIsServed) {
     const KnownScene known = known_scene("two_lights");
-    Case run(info(), known.scene);
+    MethodCase run(info(), known.scene);
     if (!run.serves()) GTEST_SKIP() << run.serves().why;
     run.prepare(0);
     PointBatch none;
