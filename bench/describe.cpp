@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <sys/sysinfo.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <thread>
@@ -26,11 +25,15 @@ std::string value_of(const char* file, std::string_view key, char separator) {
     return {};
 }
 
-/// "at the eye" as "at_the_eye": values that scripts compare have no spaces.
-std::string as_word(std::string_view text) {
-    std::string word(text);
-    std::replace(word.begin(), word.end(), ' ', '_');
-    return word;
+/// One word a place, for scripts.
+std::string_view place_word(LightPlace place) {
+    switch (place) {
+        case LightPlace::at_infinity: return "at_infinity";
+        case LightPlace::outside_view: return "outside_view";
+        case LightPlace::inside_view: return "inside_view";
+        case LightPlace::at_eye: return "at_eye";
+    }
+    return "";
 }
 
 Json vector_json(dvec3 v) { return {number(v.x), number(v.y), number(v.z)}; }
@@ -107,7 +110,7 @@ Json facts_json(const SceneFacts& facts) {
 Json lights_json(const SceneFacts& facts) {
     Json lights = Json::array();
     for (const LightFacts& l : facts.lights)
-        lights.push_back({{"name", l.name}, {"kind", to_string(l.kind)}, {"place", as_word(to_string(l.place))}});
+        lights.push_back({{"name", l.name}, {"kind", to_string(l.kind)}, {"place", place_word(l.place)}});
     return lights;
 }
 

@@ -13,6 +13,12 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// A mesh that a scene names is not there: the scene itself may be fine. The report leaves such scenes out.
+class MissingMesh : public InputError {
+public:
+    using InputError::InputError;
+};
+
 /// A wrong command line or parameter. Commands print it and exit with 2.
 class UsageError : public std::runtime_error {
 public:
