@@ -358,6 +358,8 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
         try {
             last = compare_scene(file, options);
             done.names.push_back(last["scene"]["name"]);
+        } catch (const MissingMesh& e) {
+            done.missing.emplace_back(e.what());
         } catch (const InputError& e) {
             done.failed.emplace_back(e.what());
         }

@@ -55,8 +55,9 @@ Json compare_scene(const std::filesystem::path& file, const CompareOptions& opti
 /// All scenes one after the other; where there is one only, OUT/results.json is a copy with paths that hold there.
 /// Scenes that cannot be read are told to `failed` and left out; their older results stay.
 struct ScenesDone {
-    std::vector<std::string> names;   ///< folders below OUT, in order
-    std::vector<std::string> failed;  ///< messages
+    std::vector<std::string> names;    ///< folders below OUT, in order
+    std::vector<std::string> failed;   ///< messages
+    std::vector<std::string> missing;  ///< messages: scenes whose meshes are not there
 };
 ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
 

@@ -286,7 +286,12 @@ std::vector<Part> NativeReader::read_mesh_file(const JsonValue& v, const std::st
         try {
             read = read_by_ending(folder_ / written, {kMeshEndings.begin(), kMeshEndings.end()});
         } catch (const InputError& e) {
-            text_.fail(v, fmt::format("the mesh cannot be read: {}", e.what()));
+            try {
+                text_.fail(v, fmt::format("the mesh cannot be read: {}", e.what()));
+            } catch (const InputError& with_place) {
+                if (!std::filesystem::exists(folder_ / written)) throw MissingMesh(with_place.what());
+                throw;
+            }
         }
         if (read.scene.triangles.empty()) text_.fail(v, fmt::format("the mesh \"{}\" has no triangles", written));
         for (const std::string& w : read.scene.warnings)
