@@ -143,6 +143,8 @@ std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbr
             const JsonArray& list = json.array(size, "size", "[width, height]");
             if (list.size() != 2) json.wrong_type(size, "size", "[width, height]");
             const double w = json.number(list[0], "width", kPositive), h = json.number(list[1], "height", kPositive);
+            if (std::abs(glm::dot(x, y)) > 1e-5 * lx * ly)
+                json.fail(type, "the node's transform makes this rectangle a parallelogram");
             // cross(edge_u, edge_v) points along -z of the node, also where the node mirrors.
             light.edge_u = vec3(x * w);
             light.edge_v = vec3(y * (glm::dot(glm::cross(x, y), z) > 0 ? -h : h));

@@ -638,6 +638,10 @@ INSTANTIATE_TEST_SUITE_P(
         {"extras_ellipse",
          with_nodes(R"({"scale": [1, 2, 1], "extras": {"umbra": {"light": {"type": "disk", "radius": 1}}}})"),
          "an ellipse"},
+        {"extras_sheared",
+         with_nodes(
+             R"({"matrix": [1,0,0,0, 0.5,1,0,0, 0,0,1,0, 0,0,0,1], "extras": {"umbra": {"light": {"type": "rectangle", "size": [1, 1]}}}})"),
+         "a parallelogram"},
         {"extras_material", document(R"("materials": [{"extras": {"umbra": {"shininess": -3}}}])"), "shininess is -3"},
     }),
     [](const auto& test) { return test.param.name; });
