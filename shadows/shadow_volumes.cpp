@@ -233,6 +233,9 @@ public:
     Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only)
             return {How::approximately, "area lights are taken as points at their centres: umbra only, no penumbra"};
+        if (edges_choice_ == "silhouette" && facts.closed_objects > 0)
+            return {How::approximately,
+                    "silhouettes of closed meshes are right unless one turns inside out where it crosses itself"};
         return {How::exactly,
                 "counts volumes at the points themselves, with weighted edges for meshes that are open, "
                 "non-manifold or badly oriented"};
@@ -253,7 +256,7 @@ public:
                 const Object& object = scene_->objects[o];
                 if (!meshes_->solid(o)) continue;
                 if (l.kind != LightKind::directional &&
-                    std::abs(winding_number(*meshes_, object, dvec3(l.position))) > 0.5)
+                    std::abs(winding_number(*meshes_, object, dvec3(l.position))) > 1e-6)  // inside, or on it
                     continue;
                 for (std::uint32_t t = 0; t < object.triangle_count; ++t)
                     turn_[object.first_triangle + t] = std::max<std::int8_t>(turn_[object.first_triangle + t], 0);
