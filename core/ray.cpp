@@ -189,37 +189,51 @@ struct Hits8 {
     float u[8], v[8];
 };
 
-/// Eye rays as the camera defines them, split into what varies with the column and with the row.
-struct EyeRays {
-    Projection projection;
-    dvec3 forward;
-    vec3 origin{0};                  ///< perspective: the eye, in ray space
-    dvec3 window_origin;             ///< orthographic: the eye, in ray space
-    std::vector<dvec3> column, row;  ///< offsets along right and along -up; ray space lengths where orthographic
-
+/// Eye rays as the camera defines them, split into what varies with the column and with the row of the raster.
+class EyeRays {
+public:
     EyeRays(const CameraFrame& f, const RaySpace& space)
-        : projection(f.projection), forward(f.forward), origin(space.point(f.eye)) {
-        const bool window  = projection == Projection::orthographic;
-        const double scale = window ? static_cast<double>(space.scale) : 1.0;
-        window_origin      = (f.eye - dvec3(space.centre)) * static_cast<double>(space.scale);
+        : window_(f.projection == Projection::orthographic), eye_(space.point(f.eye)), forward_(f.forward) {
+        const double scale = static_cast<double>(space.scale);
+        middle_            = window_ ? (f.eye - dvec3(space.centre)) * scale : f.forward;
         // Beyond the right and bottom edge up to whole packets; those lanes are not traced.
-        for (int x = 0; x < f.width + kTileWidth; ++x)
-            column.push_back(f.half_width * (2 * (x + 0.5) / f.width - 1) * f.right * scale);
+        for (int x = 0; x < f.width + kTileWidth; ++x) {
+            const dvec3 offset = f.half_width * (2 * (x + 0.5) / f.width - 1) * f.right * (window_ ? scale : 1);
+            for (int d = 0; d < 3; ++d) column_[d].push_back(offset[d]);
+        }
         for (int y = 0; y < f.height + kTileHeight; ++y)
-            row.push_back(f.half_height * (2 * (y + 0.5) / f.height - 1) * f.up * scale);
+            row_.push_back(f.half_height * (2 * (y + 0.5) / f.height - 1) * f.up * (window_ ? scale : 1));
     }
 
-    void fill(RTCRay8& ray, int x0, int y0) const {
-        for (int k = 0; k < 8; ++k) {
-            const dvec3 across = column[x0 + (k & 3)] - row[y0 + (k >> 2)];
-            const bool window  = projection == Projection::orthographic;
-            const vec3 o       = window ? vec3(window_origin + across) : origin;
-            const vec3 d       = vec3(window ? forward : forward + across);
-            ray.org_x[k] = o.x, ray.org_y[k] = o.y, ray.org_z[k] = o.z;
-            ray.dir_x[k] = d.x, ray.dir_y[k] = d.y, ray.dir_z[k] = d.z;
-            ray.tfar[k] = kInfinity;
-        }
+    /// What all packets have alike: the eye, or the direction of an orthographic view.
+    void start(RTCRay8& ray) const {
+        fill(window_ ? forward_ : eye_, window_ ? ray.dir_x : ray.org_x, window_ ? ray.dir_y : ray.org_y,
+             window_ ? ray.dir_z : ray.org_z);
+        std::fill_n(ray.mask, 8, ~0u);
     }
+
+    void aim(RTCRay8& ray, int x, int y) const {
+        lanes(0, x, y, window_ ? ray.org_x : ray.dir_x);
+        lanes(1, x, y, window_ ? ray.org_y : ray.dir_y);
+        lanes(2, x, y, window_ ? ray.org_z : ray.dir_z);
+        std::fill_n(ray.tfar, 8, kInfinity);
+    }
+
+private:
+    static void fill(vec3 v, float* x, float* y, float* z) {
+        std::fill_n(x, 8, v.x), std::fill_n(y, 8, v.y), std::fill_n(z, 8, v.z);
+    }
+    void lanes(int d, int x, int y, float* to) const {
+        const double* column = column_[d].data() + x;
+        for (int r = 0; r < 2; ++r)
+            for (int k = 0; k < 4; ++k) to[4 * r + k] = static_cast<float>(middle_[d] + (column[k] - row_[y + r][d]));
+    }
+
+    bool window_;
+    vec3 eye_, forward_;
+    dvec3 middle_{0};  ///< perspective: forward; orthographic: the eye, in ray space
+    std::vector<double> column_[3];
+    std::vector<dvec3> row_;
 };
 
 using TileHits = Hits8[kTileHeight / 2][kTileWidth / 4];
@@ -227,12 +241,12 @@ using TileHits = Hits8[kTileHeight / 2][kTileWidth / 4];
 void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, int height, TileHits& hits) {
     const FlushDenormals flush;
     RTCRayHit8 rays{};
-    std::fill_n(rays.ray.mask, 8, ~0u);
+    eye.start(rays.ray);
     for (int y = y0; y < std::min(y0 + kTileHeight, height); y += 2) {
         for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4) {
             alignas(32) int valid[8];
             for (int k = 0; k < 8; ++k) valid[k] = x + (k & 3) < width && y + (k >> 2) < height ? -1 : 0;
-            eye.fill(rays.ray, x, y);
+            eye.aim(rays.ray, x, y);
             std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
             intersect_coherent(scene, valid, rays);
             Hits8& hit = hits[(y - y0) / 2][(x - x0) / 4];
@@ -288,15 +302,21 @@ private:
                 two_sided[k] = 1;
                 continue;
             }
-            const uvec3 corner = scene_.triangles[t];
-            const vec3 p = scene_.positions[corner.x], q = scene_.positions[corner.y], r = scene_.positions[corner.z];
-            for (int d = 0; d < 3; ++d) a[d][k] = p[d], b[d][k] = q[d], c[d][k] = r[d];
+            const uvec3& corner = scene_.triangles[t];
+            const vec3 &p = scene_.positions[corner.x], &q = scene_.positions[corner.y],
+                       &r = scene_.positions[corner.z];  // references: copies would pass through the stack
+            a[0][k] = p.x, a[1][k] = p.y, a[2][k] = p.z;
+            b[0][k] = q.x, b[1][k] = q.y, b[2][k] = q.z;
+            c[0][k] = r.x, c[1][k] = r.y, c[2][k] = r.z;
             const auto both = [&] {
                 return scene_.materials[scene_.objects[scene_.triangle_object[t]].material].two_sided;
             };
             two_sided[k] = all_two_sided_ || both() ? 1 : 0;
         }
-        const dvec3 eye(batch_.eye), view = batch_.raster->forward;
+        // To the eye: eye - p, or against an orthographic view.
+        const double pull = window_ ? 0 : 1;
+        const dvec3 eye   = window_ ? -batch_.raster->forward : dvec3(batch_.eye);
+        double towards[8], length[8];
         for (int k = 0; k < 8; ++k) {
             const double u = static_cast<double>(hits.u[k]), v = static_cast<double>(hits.v[k]);
             const double ax = static_cast<double>(a[0][k]), ay = static_cast<double>(a[1][k]),
@@ -306,18 +326,20 @@ private:
             const double cx = static_cast<double>(c[0][k]) - ax, cy = static_cast<double>(c[1][k]) - ay,
                          cz = static_cast<double>(c[2][k]) - az;
             const double nx = by * cz - cy * bz, ny = bz * cx - cz * bx, nz = bx * cy - cx * by;
-            const double length = std::sqrt(nx * nx + ny * ny + nz * nz);
             const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
-            const double ex = window_ ? -view.x : eye.x - px, ey = window_ ? -view.y : eye.y - py,
-                         ez     = window_ ? -view.z : eye.z - pz;
-            const bool against  = (nx * ex + ny * ey + nz * ez) * two_sided[k] < 0;
-            const double factor = (against ? -1.0 : 1.0) / length;
+            const double ex = eye.x - pull * px, ey = eye.y - pull * py, ez = eye.z - pull * pz;
+            length[k]           = std::sqrt(nx * nx + ny * ny + nz * nz);
+            towards[k]          = (nx * ex + ny * ey + nz * ez) * two_sided[k];
+            const double factor = (towards[k] < 0 ? -1.0 : 1.0) / length[k];
             out.px[k] = static_cast<float>(px), out.py[k] = static_cast<float>(py), out.pz[k] = static_cast<float>(pz);
-            out.nx[k]      = static_cast<float>(nx * factor);
-            out.ny[k]      = static_cast<float>(ny * factor);
-            out.nz[k]      = static_cast<float>(nz * factor);
-            out.flipped[k] = against;
-            out.done[k]    = (u >= 0) & (v >= 0) & (u + v < 1) & (length > 0);
+            out.nx[k] = static_cast<float>(nx * factor);
+            out.ny[k] = static_cast<float>(ny * factor);
+            out.nz[k] = static_cast<float>(nz * factor);
+        }
+        for (int k = 0; k < 8; ++k) {
+            const double sum = static_cast<double>(hits.u[k]) + static_cast<double>(hits.v[k]);
+            out.flipped[k]   = towards[k] < 0;
+            out.done[k]      = (hits.u[k] >= 0) & (hits.v[k] >= 0) & (sum < 1) & (length[k] > 0);
         }
         std::copy_n(hits.triangle, 8, out.triangle);
         std::copy_n(hits.u, 8, out.u);
