@@ -69,11 +69,13 @@ json error_time_chart(const std::vector<ChartPoint>& points) {
         const double height = p.error > 0 ? y(p.error) : kZero;
         const double camera = x(std::max(p.camera_ms, least_ms)), object = x(std::max(p.object_ms, least_ms));
         for (const double at : {camera, object}) taken.push_back({at - 7, height - 7, at + 7, height + 7});
+        taken.push_back({camera, height - 2, object, height + 2});
         marks.push_back({{"y", coordinate(height)},
                          {"x", coordinate(object)},
                          {"camera_x", coordinate(camera)},
                          {"shape", mark(p.style, object, height)},
                          {"camera_shape", mark(p.style, camera, height)},
+                         {"key", mark(p.style, 14, 9)},
                          {"style", std::to_string(p.style % 6)},
                          {"label", p.label}});
     }

@@ -29,12 +29,13 @@ json cell_view(const ScenePage& scene, const std::string& id, const std::string&
     const Totals t      = totals(*method);
     const auto coverage = (*method)["coverage"].number();
     view["served"]      = json{{"coverage", percent(coverage)},
+                          {"itself", is_reference(scene.root, *method)},
                           {"partial", coverage && *coverage < 1},
                           {"interior", count(t.interior)},
                           {"wrong", t.interior > 0},
                           {"edge", count(t.edge)},
                           {"mae", score(t.mae)},
-                          {"ms", score(t.object_ms)},
+                          {"ms", milliseconds(t.object_ms)},
                           {"raw_mae", t.mae ? fmt::format("{}", *t.mae) : ""},
                           {"raw_ms", t.object_ms ? fmt::format("{}", *t.object_ms) : ""},
                           {"raw_coverage", coverage ? fmt::format("{}", *coverage) : ""}};
@@ -65,6 +66,15 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
     const auto add_once = [](json& list, json view) {
         if (std::find(list.begin(), list.end(), view) == list.end()) list.push_back(std::move(view));
     };
+    // Notes that speak of one scene stand on its page alone.
+    const auto add_reference = [](json& list, json view) {
+        for (json& known : list)
+            if (known["title"] == view["title"] && known["text"] == view["text"] && known["exact"] == view["exact"]) {
+                if (known["note"] != view["note"]) known["note"] = "Why, each scene's page says.";
+                return;
+            }
+        list.push_back(std::move(view));
+    };
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const ScenePage& scene = scenes[i];
         const std::string href = url((scene.page / "index.html").lexically_relative(out));
@@ -87,7 +97,7 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
         rows.push_back({{"title", scene.title}, {"href", href}, {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
         add_once(runs, run_view(scene.root));
-        add_once(references, reference_view(scene.root));
+        add_reference(references, reference_view(scene.root));
     }
     return {{"title", title},
             {"scene_count", std::to_string(scenes.size())},

@@ -109,6 +109,11 @@ Totals totals(const Field& method) {
     return t;
 }
 
+bool is_reference(const Field& root, const Field& method) {
+    const std::string text = method["text"].text();
+    return !text.empty() && text == root["reference"]["text"].text();
+}
+
 json run_view(const Field& root) {
     const Field machine = root["machine"];
     std::vector<std::string> parts;

@@ -62,6 +62,9 @@ struct Totals {
 };
 [[nodiscard]] Totals totals(const Field& method);
 
+/// The reference of a comparison may be among its methods, too; it is not held against itself.
+[[nodiscard]] bool is_reference(const Field& root, const Field& method);
+
 /// Command, machine and version; title, text, exact and note of the reference.
 [[nodiscard]] nlohmann::json run_view(const Field& root);
 [[nodiscard]] nlohmann::json reference_view(const Field& root);

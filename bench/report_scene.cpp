@@ -22,8 +22,9 @@ json parameters(const Field& method) {
 
 json timing(const Field& time) {
     const auto median = time["median"].number(), min = time["min"].number(), max = time["max"].number();
-    json view = {{"median", score(median)}, {"range", false}};
-    if (median && min && max && *min != *max) view["range"] = fmt::format("{}–{}", score(min), score(max));
+    json view = {{"median", milliseconds(median)}, {"range", false}};
+    if (median && min && max && *min != *max)
+        view["range"] = fmt::format("{}–{}", milliseconds(min), milliseconds(max));
     return view;
 }
 
@@ -43,7 +44,7 @@ json light_views(const SceneFiles& scene, const std::vector<Field>& methods) {
             scene.figure(root["reference"]["files"]["lights"][name]["visibility"], "Reference", "S of " + name,
                          fmt::format("S_j of {} by the reference: lit points white, umbra black, penumbra grey", name));
         for (const Field& method : methods) {
-            if (!serves(method)) continue;
+            if (!serves(method) || is_reference(root, method)) continue;
             const std::string label = method_label(method, methods);
             const Field files       = method["files"]["lights"][name];
             json column             = {{"label", label}, {"coverage", percent_words(method)}};
@@ -80,7 +81,8 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
     for (const Field& light : root["lights"].items()) {
         const std::string name = light["name"].required_text();
         json rows              = json::array();
-        for (const Field& method : methods)
+        for (const Field& method : methods) {
+            if (is_reference(root, method)) continue;
             for (const Field& e : method["errors"].items()) {
                 if (e["light"].required_text() != name) continue;
                 const Field shadow = e["false_shadow"], lit = e["false_light"],
@@ -97,6 +99,7 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
                                 {"points", count(e["points"].number())},
                                 {"undefined", count(e["undefined"].number())},
                                 {"on_boundary", count(e["on_boundary"].number())},
+                                {"away", count(e["away"].number())},
                                 {"lit", count(e["lit"].number())},
                                 {"umbra", count(e["umbra"].number())},
                                 {"penumbra", count(e["penumbra"].number())},
@@ -114,6 +117,7 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
                                 {"max", score(e["max"].number())},
                                 {"bias", score(e["bias"].number())}});
             }
+        }
         if (!rows.empty()) groups.push_back({{"light", name}, {"rows", std::move(rows)}});
     }
     return {{"groups", std::move(groups)},
@@ -136,9 +140,9 @@ json time_view(const Field& root, const std::vector<Field>& methods) {
                         {"build", timing(times["build_ms"])},
                         {"aim", timing(times["aim_ms"])},
                         {"visibility", timing(times["visibility_ms"])},
-                        {"object", score(t.object_ms)},
-                        {"light", score(t.light_ms)},
-                        {"camera", score(t.camera_ms)},
+                        {"object", milliseconds(t.object_ms)},
+                        {"light", milliseconds(t.light_ms)},
+                        {"camera", milliseconds(t.camera_ms)},
                         {"memory", mebibytes(method["memory_bytes"].number())}});
         for (const Field& light : method["light_times"].items())
             by_light.push_back({{"label", method_label(method, methods)},
@@ -184,10 +188,7 @@ json fact_view(const Field& root) {
                            {"volume", closed ? score(o["volume"].number()) : kNone},
                            {"faults", std::move(faults)}});
     }
-    const auto planes = facts["planes"].items().size();
     return {{"triangles", count(facts["triangles"].number())},
-            {"planes", std::to_string(planes)},
-            {"planar_share", percent(facts["planar_area_share"].number())},
             {"requires", std::move(requirements)},
             {"not_required", std::move(not_required)},
             {"has_objects", !objects.empty()},
@@ -212,7 +213,8 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
     if (json f = scene.figure(reference["files"]["png"], "Reference", "picture",
                               fmt::format("{}: the picture with the reference's shadows", scene.scene().title));
         f.is_object()) {
-        f["note"] = reference["exact"].flag() ? "exact" : "sampled, not exact";
+        f["note"] = fmt::format("{}: {}", reference_view(root)["title"].get<std::string>(),
+                                reference["exact"].flag() ? "exact" : "sampled, not exact");
         pictures.push_back(std::move(f));
     }
     if (const json exr = scene.exr(reference["files"]); exr.is_string())
@@ -229,12 +231,21 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
             unserved.push_back({{"label", label}, {"why", method["serves"]["why"].text()}});
             continue;
         }
-        const Totals t = totals(method);
+        const Totals t    = totals(method);
+        const bool itself = is_reference(root, method);
+        if (t.mae && t.camera_ms && t.object_ms) {
+            const auto style = std::find(styles.begin(), styles.end(), id) - styles.begin();
+            chart.push_back(
+                {itself ? label + " (the reference)" : label, *t.camera_ms, *t.object_ms, *t.mae, std::size_t(style)});
+        }
+        if (const json exr = scene.exr(method["files"]); exr.is_string())
+            files.push_back({{"label", label}, {"href", exr}});
+        if (itself) continue;
         if (json f = scene.figure(method["files"]["png"], label, "picture",
                                   fmt::format("{}: the picture with the shadows of {}", scene.scene().title, label));
             f.is_object()) {
             const std::string coverage = percent_words(method);
-            f["note"] = fmt::format("{} wrong in the interior, {} ms{}{}", count(t.interior), score(t.object_ms),
+            f["note"] = fmt::format("{} wrong in the interior, {} ms{}{}", count(t.interior), milliseconds(t.object_ms),
                                     coverage.empty() ? "" : "; ", coverage);
             pictures.push_back(std::move(f));
         }
@@ -250,12 +261,6 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
              {"map",
               scene.figure(method["files"]["flip"], label, "FLIP map",
                            fmt::format("FLIP map of {}: bright where a viewer would see a difference", label))}});
-        if (t.mae && t.camera_ms && t.object_ms) {
-            const auto style = std::find(styles.begin(), styles.end(), id) - styles.begin();
-            chart.push_back({label, *t.camera_ms, *t.object_ms, *t.mae, std::size_t(style)});
-        }
-        if (const json exr = scene.exr(method["files"]); exr.is_string())
-            files.push_back({{"label", label}, {"href", exr}});
     }
 
     json warnings = json::array();

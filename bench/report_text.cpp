@@ -15,13 +15,17 @@ std::string score(std::optional<double> value) {
     if (size == 0) return "0";
     const int exponent = int(std::floor(std::log10(size)));
     if (exponent >= -4 && exponent < 6) return fmt::format("{}{:.{}f}", sign, size, std::max(0, 2 - exponent));
+    const std::string rounded = fmt::format("{:.1e}", size);  // 1.2e-05
+    const auto e              = rounded.find('e');
     std::string raised;
-    for (const char c : std::to_string(exponent)) {
+    for (const char c : std::to_string(std::stoi(rounded.substr(e + 1)))) {
         static constexpr std::array<const char*, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
         raised += c == '-' ? "⁻" : digits[std::size_t(c - '0')];
     }
-    return fmt::format("{}{:.1f}·10{}", sign, size / std::pow(10, exponent), raised);
+    return fmt::format("{}{}·10{}", sign, rounded.substr(0, e), raised);
 }
+
+std::string milliseconds(std::optional<double> ms) { return ms && *ms > 0 && *ms < 0.001 ? "< 0.001" : score(ms); }
 
 std::string count(std::optional<double> value) {
     if (!value) return kNone;

@@ -435,6 +435,18 @@ TEST_F(Report, CountsAFolderOfOneSceneOnce) {
     EXPECT_EQ(files_below(out, ".html").size(), 2u);
 }
 
+TEST_F(Report, DoesNotHoldTheReferenceAgainstItself) {
+    json results                 = sample("court");
+    results["reference"]["text"] = results["methods"][2]["text"];  // ray_traced:resolution=512
+    put(out / "court", results);
+    write_report({out}, out);
+    EXPECT_TRUE(contains(read(out / "index.html"), "colspan=\"3\">the reference</td><td class=\"ms\""));
+    const std::string page = read(out / "court/index.html");
+    EXPECT_FALSE(contains(page, "ray_traced.diff.lamp.png") || contains(page, "ray_traced.flip.png"));
+    EXPECT_TRUE(contains(page, "shadow_zbuffer.diff.lamp.png"));
+    EXPECT_TRUE(contains(page, "The ray_traced (the reference)"));
+}
+
 TEST_F(Report, RunsOfOneMethodAreToldApartByTheirSettings) {
     json results   = sample("court");
     json second    = results["methods"][1];
