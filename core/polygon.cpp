@@ -22,6 +22,25 @@ dvec3 newell_normal(const std::vector<vec3>& positions, std::span<const std::uin
     return n;
 }
 
+// Whether all corners lie in one plane, but for what modelling programs and printed digits leave: a hundredth of its
+// size. A polygon that bends more has no inside of its own, so no way to cut it is more right than another.
+bool is_flat(const std::vector<vec3>& positions, std::span<const std::uint32_t> polygon) {
+    const dvec3 origin(positions[polygon[0]]);
+    dvec3 n             = newell_normal(positions, polygon);
+    const double length = glm::length(n);
+    if (!(length > 0)) return true;
+    n /= length;
+    double size = 0, low = 0, high = 0;
+    for (const std::uint32_t i : polygon) {
+        const dvec3 d  = dvec3(positions[i]) - origin;
+        size           = std::max(size, glm::length(d));
+        const double h = glm::dot(n, d);
+        low            = std::min(low, h);
+        high           = std::max(high, h);
+    }
+    return high - low <= 1e-3 * size;
+}
+
 // The polygon seen along the axis nearest to its normal, anticlockwise.
 std::vector<dvec2> flattened(const std::vector<vec3>& positions, std::span<const std::uint32_t> polygon) {
     const dvec3 n    = newell_normal(positions, polygon);
@@ -37,10 +56,10 @@ std::vector<dvec2> flattened(const std::vector<vec3>& positions, std::span<const
 
 double turn(dvec2 a, dvec2 b, dvec2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-bool is_convex(const std::vector<dvec2>& flat) {
-    const std::size_t n = flat.size();
-    for (std::size_t i = 0; i < n; ++i)
-        if (turn(flat[i], flat[(i + 1) % n], flat[(i + 2) % n]) < 0) return false;
+// Whether the polygon is seen whole from its first corner: then a fan from there is right, whether or not it is convex.
+bool is_fan(const std::vector<dvec2>& flat) {
+    for (std::size_t i = 2; i < flat.size(); ++i)
+        if (turn(flat[0], flat[i - 1], flat[i]) < 0) return false;
     return true;
 }
 
@@ -90,9 +109,9 @@ bool clip_ears(const std::vector<dvec2>& flat, std::vector<std::array<std::size_
 bool triangulate(const std::vector<vec3>& positions, std::span<const std::uint32_t> polygon,
                  std::vector<uvec3>& triangles) {
     bool found = true;
-    if (polygon.size() > 3) {
+    if (polygon.size() > 3 && is_flat(positions, polygon)) {
         const std::vector<dvec2> flat = flattened(positions, polygon);
-        if (!is_convex(flat)) {
+        if (!is_fan(flat)) {
             std::vector<std::array<std::size_t, 3>> ears;
             found = clip_ears(flat, ears);
             if (found) {
