@@ -234,7 +234,8 @@ int run(int argc, char** argv) {
     CLI::App* report_command = app.add_subcommand(
         "report", "The main job: all canonical scenes under all methods; with folders: their pages anew");
     report_command->add_option("DIR", scenes, "Folders that compare wrote");
-    report_command->add_option("-o,--output", report_out, "Folder to write to")->capture_default_str();
+    report_command->add_option("-o,--output", report_out,
+                               "Folder to write to (default: results; for one DIR, that folder)");
 
     try {
         app.parse(argc, argv);
@@ -262,6 +263,7 @@ int run(int argc, char** argv) {
         const ScenesDone done = compare({scenes.begin(), scenes.end()}, compare_options, common);
         return done.failed.empty() && done.missing.empty() ? kDone : kUnreadable;
     }
+    if (report_out.empty()) report_out = scenes.size() == 1 ? scenes[0] : "results";
     if (*report_command) return report({scenes.begin(), scenes.end()}, report_out, common);
     return kInternal;
 }

@@ -99,7 +99,9 @@ TEST_P(Matrix, IsRight) {
         } else if (is_area(kind)) {
             EXPECT_LE(e.mae, known.approximate_mae);
         } else {
-            EXPECT_LE(static_cast<double>(interior), kApproximateShare * static_cast<double>(e.points))
+            // A ray's rounding may be wrong at creases of a mesh, but in none of these scenes.
+            const double share = info->name == "ray_traced" ? 0 : kApproximateShare;
+            EXPECT_LE(static_cast<double>(interior), share * static_cast<double>(e.points))
                 << first_wrong(known.scene, points, j, got, right, tolerance);
         }
     }

@@ -453,15 +453,18 @@ TEST(RayTraced, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(RayTraced, SaysHowItServes) {
+    // Never exactly: rays are floats.
     SceneFacts facts;
-    const auto how = [&](const char* text) {
+    const auto service = [&](const char* text) {
         const MethodChoice choice = parse_method(text);
-        return choice.info->make(choice.settings)->serves(facts).how;
+        return choice.info->make(choice.settings)->serves(facts);
     };
-    EXPECT_EQ(how("ray_traced"), How::exactly);
-    EXPECT_EQ(how("ray_traced:offset=epsilon"), How::approximately);
+    const Service hard = service("ray_traced"), lifted = service("ray_traced:offset=epsilon");
     facts.hard_lights_only = false;
-    EXPECT_EQ(how("ray_traced"), How::approximately);
+    const Service soft     = service("ray_traced:samples=9");
+    for (const Service& s : {hard, lifted, soft}) EXPECT_EQ(s.how, How::approximately);
+    EXPECT_NE(hard.why, lifted.why);
+    EXPECT_NE(soft.why.find("9 rays"), std::string::npos) << soft.why;
 }
 
 }  // namespace
