@@ -80,7 +80,8 @@ Scene tori_scene() {
     add(scene, "floor", make_plane(12, 12), mat4(1));
     const Mesh ring = make_torus(0.22f, 0.07f, 125, 64);
     for (int i = 0; i < 64; ++i) {
-        const auto a = static_cast<float>(i / 8), b = static_cast<float>(i % 8);
+        const int row = i / 8, column = i % 8;
+        const auto a = static_cast<float>(row), b = static_cast<float>(column);
         add(scene, fmt::format("ring{}", i), ring,
             placed({(a - 3.5f) * 0.62f, 0.42f + 0.25f * std::sin(1.7f * a + b), (b - 3.5f) * 0.62f},
                    {std::sin(2.1f * a), std::cos(a + 3 * b), std::sin(1.3f * b)}));

@@ -132,6 +132,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
 
     StagedFiles staged;
     std::vector<SceneFiles> files;
+    files.reserve(scenes.size());
     for (const ScenePage& scene : scenes) files.emplace_back(scene, staged);
 
     for (std::size_t i = 0; i < scenes.size(); ++i) {

@@ -95,7 +95,7 @@ Field read_results(const std::filesystem::path& file) {
         throw InputError(fmt::format("{}: a number is out of range (finite numbers would be right)", file.string()));
     }
 
-    const Field root{document, &document->root, ""};
+    Field root{document, &document->root, ""};
     if (root["schema"].number() != kResultsSchema)
         root["schema"].refuse(fmt::format("{}, results as this version writes them,", kResultsSchema));
     return root;

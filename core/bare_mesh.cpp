@@ -180,8 +180,8 @@ PlyType ply_type(const Words& words, Word word) {
                                                                                   {"float64", PlyType::float64}}};
     for (const auto& [name, type] : kTypes)
         if (word.text == name) return type;
-    words.fail(
-        word, fmt::format("unknown type {} (known: char uchar short ushort int uint float double)", in_quotes(word.text)));
+    words.fail(word, fmt::format("unknown type {} (known: char uchar short ushort int uint float double)",
+                                 in_quotes(word.text)));
 }
 
 std::size_t size_of(PlyType type) {

@@ -63,8 +63,10 @@ VisibilityError visibility_error(const PointBatch& points, LightId light, const 
         if (points.facing[light][i] == Facing::away) ++e.away;
         if (!is_open(points, light, i)) continue;
         if (s.defined[i] == kUndefined || reference.defined[i] != kDefined) {
-            if (reference.defined[i] == kOnBoundary) ++e.on_boundary;
-            else ++e.undefined;
+            if (reference.defined[i] == kOnBoundary)
+                ++e.on_boundary;
+            else
+                ++e.undefined;
             continue;
         }
         ++e.points;

@@ -16,8 +16,8 @@ struct VisibilityPlane {
 /// What `defined` says of a point.
 inline constexpr std::uint8_t kUndefined  = 0;  ///< the method cannot tell
 inline constexpr std::uint8_t kDefined    = 1;
-inline constexpr std::uint8_t kOnBoundary = 2;  ///< the way to the light touches an edge or a vertex and nothing more: no
-                                                ///< method is wrong there. Only exact methods say so
+inline constexpr std::uint8_t kOnBoundary = 2;  ///< the way to the light touches an edge or a vertex and nothing more:
+                                                ///< no method is wrong there. Only exact methods say so
 
 /// What counts as a wrong S_j: for lights whose S_j is 0 or 1, the other one; for area lights, a difference that shows
 /// in a penumbra and that the noise of a sampled reference does not reach.
@@ -28,9 +28,10 @@ inline constexpr float kAreaTolerance = 0.1f;
 }
 
 /// Counts are points; `points` are those with a surface whose light is not `away` and that both planes define, and all
-/// counts and means below are over them. Of the others with a surface and a light not `away`, `on_boundary` are those that
-/// the reference says are, `undefined` those that either plane leaves open. A point is wrong where |s - reference| > `tolerance`: a false shadow where s is below the reference, a
-/// false light where it is above. lit, umbra and penumbra: the reference is above 1 - 1/1024, below 1/1024, between.
+/// counts and means below are over them. Of the others with a surface and a light not `away`, `on_boundary` are those
+/// that the reference says are, `undefined` those that either plane leaves open. A point is wrong where |s - reference|
+/// > `tolerance`: a false shadow where s is below the reference, a false light where it is above. lit, umbra and
+/// penumbra: the reference is above 1 - 1/1024, below 1/1024, between.
 struct VisibilityError {
     std::uint64_t points = 0, undefined = 0, away = 0;
     std::uint64_t on_boundary = 0;
