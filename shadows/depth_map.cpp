@@ -167,8 +167,8 @@ void snap(const dvec4& a, const dvec4& b, const dvec4& c, int width, int height,
     Snapped t;
     const auto place = [&](int k, const dvec4& v) {
         const double inverse_w = 1 / v.w;
-        t.x[k] = static_cast<std::int32_t>(std::lrint(((v.x * inverse_w + 1) * width - 1) * (DepthMap::kSnap / 2)));
-        t.y[k] = static_cast<std::int32_t>(std::lrint(((v.y * inverse_w + 1) * height - 1) * (DepthMap::kSnap / 2)));
+        t.x[k] = static_cast<std::int32_t>(std::lrint(((v.x * inverse_w + 1) * width - 1) * (DepthMap::kSnap / 2.0)));
+        t.y[k] = static_cast<std::int32_t>(std::lrint(((v.y * inverse_w + 1) * height - 1) * (DepthMap::kSnap / 2.0)));
         t.r[k] = v.z * inverse_w;
     };
     place(0, a);

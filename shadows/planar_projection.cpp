@@ -564,7 +564,7 @@ public:
             groups[2 * plane + below].push_back(static_cast<std::uint32_t>(i));
         }
         for (std::uint32_t g = 0; g < groups.size(); ++g)
-            if (!groups[g].empty()) shade_group(points, g, std::move(groups[g]), s, defined);
+            if (!groups[g].empty()) shade_group(points, g, groups[g], s, defined);
     }
 
     std::size_t memory_bytes() const override {
@@ -584,7 +584,7 @@ private:
     }
 
     /// The points of one side of one receiver: as many passes as the light has sources.
-    void shade_group(const PointBatch& points, std::uint32_t group, std::vector<std::uint32_t> members,
+    void shade_group(const PointBatch& points, std::uint32_t group, const std::vector<std::uint32_t>& members,
                      std::span<float> s, std::span<std::uint8_t> defined) const {
         const std::uint32_t plane = group / 2;
         const int side            = group % 2 == 0 ? 1 : -1;
