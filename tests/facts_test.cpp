@@ -153,10 +153,10 @@ TEST(Planes, JoinsObjectsAndBothSides) {
 
 TEST(Planes, SlowlyCurvingSurfaceIsNotChained) {
     // A strip of a cylinder of radius 1000: neighbouring faces differ by 0.0006 degrees, the ends by 0.6 degrees.
-    const int n = 1000;
+    const int n = 1000, half = n / 2;
     Mesh strip;
     for (int i = 0; i <= n; ++i) {
-        const double angle = 1e-5 * (i - n / 2);
+        const double angle = 1e-5 * (i - half);
         for (const float z : {0.0f, 10.0f})
             strip.positions.push_back(
                 {static_cast<float>(1000 * std::sin(angle)), static_cast<float>(1000 * (std::cos(angle) - 1)), z});

@@ -297,7 +297,8 @@ TEST(RayTraced, ALampsOwnTrianglesDoNotBlockIt) {
     scene.lights.push_back(area_light(LightKind::rectangle));
     scene.lights[0].position = vec3(0, 3, 0);
     std::vector<dvec2> places;
-    for (int i = 0; i < 32 * 32; ++i) places.emplace_back((i % 32 + 0.3) / 32, (i / 32 + 0.6) / 32);
+    for (int row = 0; row < 32; ++row)
+        for (int column = 0; column < 32; ++column) places.emplace_back((column + 0.3) / 32, (row + 0.6) / 32);
     for (float s : trace(scene, points_on_quad(scene, places), "samples=64").s) EXPECT_EQ(s, 1.0f);
 }
 

@@ -137,7 +137,7 @@ inline std::string mutant(const std::string& original, std::mt19937& random) {
 /// that changes get past checksums and lengths.
 inline void expect_survives_mutants(
     const std::string& ending, const std::vector<std::string>& originals,
-    const std::function<std::string(std::string)>& assemble = [](std::string s) { return s; }) {
+    const std::function<std::string(std::string)>& assemble = [](const std::string& s) { return s; }) {
     const char* said  = std::getenv("UMBRA_MUTANTS");
     const int mutants = said ? std::atoi(said) : 100;
     const TemporaryFolder folder;
