@@ -295,10 +295,11 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const Staging stage(options.out / fmt::format(".{}.{}", scene.name, ::getpid()));
     const fs::path& staging = stage.folder();
 
-    Reference reference = options.reference
-                              ? Reference{parse_method(*options.reference), options.reference->starts_with("exact"),
-                                          "Chosen on the command line."}
-                              : default_reference(prepared.facts);
+    Reference reference = default_reference(prepared.facts);
+    if (options.reference) {
+        reference       = {parse_method(*options.reference), false, "Chosen on the command line."};
+        reference.exact = reference.choice.info == &find_method("exact");
+    }
     tell("reference " + reference.choice.text());
     const MethodRun reference_run = run_method(reference.choice, scene, prepared.facts, prepared.points, {1, 0});
     if (!reference_run.service)
