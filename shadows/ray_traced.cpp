@@ -222,7 +222,7 @@ void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t c
     //   normal. v - p lies in the plane, so |v_k - p_k| <= E sqrt(1 - n_k^2), E <= 2 the scene's extent; the
     //   difference, N's coordinates, the products and their sums are rounded, each by a few u of that.
     // Both vanish for planes that the axes span: a floor at y = 0 needs no tolerance. It gets a billionth of the scene,
-    // since a ray that starts after 0 need not visit the floor's flat box (area lights: a third of the time).
+    // since a ray that starts after 0 need not visit the floor's flat box.
     constexpr float u = 0x1p-24f, least = 0x1p-30f;
     for (int k = 0; k < 8; ++k) {
         const float nx = starts.nx[k], ny = starts.ny[k], nz = starts.nz[k];
