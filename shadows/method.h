@@ -3,6 +3,7 @@
 // A method is one file (shadows/NAME.cpp, which defines `extern const MethodInfo NAME`) and one line in methods.def.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string>
@@ -52,6 +53,17 @@ public:
     /// or `away`: skip those. `light` is the one aimed at. Batches without a raster are served, unless documented.
     virtual void visibility(const PointBatch& points, LightId light, std::span<float> s,
                             std::span<std::uint8_t> defined) = 0;
+
+    /// For the last call of `visibility`: how far each s[i] may be from the truth at most, where the method answers
+    /// with the middle of a proven bracket. Empty where it states no such bound, or where nothing is left open.
+    [[nodiscard]] virtual std::span<const float> half_widths() const { return {}; }
+
+    /// Which triangle the method holds responsible where it says shadow: writes one of the blocking triangles a point,
+    /// for points (a batch without a raster) that `visibility` has answered with less than 1 for this light;
+    /// kNoTriangle where it can name none. Asked after the timed phases, to explain errors; need not be fast.
+    virtual void blame(const PointBatch& /*points*/, LightId /*light*/, std::span<TriangleId> who) {
+        std::fill(who.begin(), who.end(), kNoTriangle);
+    }
 
     /// Memory held after build and aim, bytes, counted from the containers' sizes.
     [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
