@@ -1,0 +1,37 @@
+// The shadow z-buffer as a class, for those who want many biases from one map; all others ask methods.h's list for it.
+#pragma once
+
+#include <optional>
+
+#include "shadows/depth_lookup.h"
+#include "shadows/method.h"
+
+namespace umbra {
+
+class ShadowZBuffer final : public Method {
+public:
+    explicit ShadowZBuffer(const Settings& settings);
+
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override;
+    void build(const Scene& scene, const SceneFacts& facts) override;
+    void aim(LightId light) override;
+    void visibility(const PointBatch& points, LightId light, std::span<float> s,
+                    std::span<std::uint8_t> defined) override;
+    [[nodiscard]] std::size_t memory_bytes() const override;
+
+    /// Another bias for the maps that there are. Its normal offset must not be larger than the one it was made with,
+    /// which the maps' borders were drawn for.
+    void set_bias(const Bias& bias) { bias_ = bias; }
+
+private:
+    [[nodiscard]] Facet make_facet(TriangleId t, bool flipped) const;
+    /// Writes S_j of one point; false where no view covers it.
+    [[nodiscard]] bool look_up(const Facet& facet, dvec3 p, Facing facing, const Light& light, float& s) const;
+
+    Bias bias_;
+    Filter filter_;
+    LightViews::Options map_options_;
+    std::optional<LightViews> views_;
+};
+
+}  // namespace umbra
