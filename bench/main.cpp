@@ -12,6 +12,8 @@
 #include "bench/compare.h"
 #include "bench/diff.h"
 #include "bench/inspect.h"
+#include "bench/ladder_command.h"
+#include "bench/ladder_record.h"
 #include "bench/report.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -78,6 +80,7 @@ int list(bool as_json) {
                    {"ladders", Json::array()}};
     for (const MethodInfo* info : methods()) record["methods"].push_back(method_json(*info));
     for (const fs::path& scene : canonical_scenes()) record["scenes"].push_back(scene.stem().string());
+    for (const Ladder* ladder : ladders()) record["ladders"].push_back(ladder_info_json(*ladder));
     if (as_json) {
         fmt::print("{}\n", record.dump(1));
         return kDone;
@@ -98,6 +101,8 @@ int list(bool as_json) {
     for (const Json& s : record["scenes"]) fmt::print(" {}", s.get<std::string>());
     fmt::print("\nMetrics:");
     for (const Json& s : record["metrics"]) fmt::print(" {}", s.get<std::string>());
+    fmt::print("\nLadders:");
+    for (const Ladder* ladder : ladders()) fmt::print(" {}", ladder->name);
     fmt::print("\n");
     return kDone;
 }
@@ -145,6 +150,22 @@ ScenesDone compare(const std::vector<fs::path>& files, CompareOptions options, c
     return done;
 }
 
+int ladder(LadderOptions options, bool as_json, const Common& common) {
+    options.command = common.command;
+    options.threads = thread_count();
+    Json record;
+    {
+        const Progress progress(common.quiet);
+        options.progress = [&](const std::string& what) { progress(what); };
+        record           = climb_ladders(options);
+    }
+    if (as_json)
+        fmt::print("{}\n", record.dump(1));
+    else if (!common.quiet)
+        fmt::print("{}", ladder_table(record["ladders"]));
+    return kDone;
+}
+
 /// With folders: pages anew. Without: the main job.
 int report(const std::vector<fs::path>& folders, const fs::path& out, const Common& common) {
     if (folders.empty()) {
@@ -176,7 +197,7 @@ int run(int argc, char** argv) {
     app.add_flag("--quiet", common.quiet, "Print errors only");
 
     bool as_json           = false;
-    CLI::App* list_command = app.add_subcommand("list", "Methods with parameters, scenes, metrics");
+    CLI::App* list_command = app.add_subcommand("list", "Methods with parameters, scenes, metrics, ladders");
     list_command->add_flag("--json", as_json, "Print JSON");
 
     std::string scene;
@@ -230,6 +251,14 @@ int run(int argc, char** argv) {
     diff_command->add_option("-o,--output", map, "Write the FLIP map to FILE.png or FILE.exr");
     diff_command->add_flag("--json", as_json, "Print JSON");
 
+    LadderOptions ladder_options;
+    CLI::App* ladder_command =
+        app.add_subcommand("ladder", "Stability: the rung of each ladder at which each method breaks");
+    ladder_command->add_option("NAME", ladder_options.names, "Ladders (default: all; umbra list names them)");
+    ladder_command->add_option("--methods", ladder_options.methods, "METHOD[:k=v,...] ... (default: all but exact)");
+    ladder_command->add_option("-o,--output", out, "Folder to write to")->required();
+    ladder_command->add_flag("--json", as_json, "Print results.json instead of the table");
+
     std::string report_out   = "results";
     CLI::App* report_command = app.add_subcommand(
         "report", "The main job: all canonical scenes under all methods; with folders: their pages anew");
@@ -262,6 +291,10 @@ int run(int argc, char** argv) {
         compare_options.out   = out;
         const ScenesDone done = compare({scenes.begin(), scenes.end()}, compare_options, common);
         return done.failed.empty() && done.missing.empty() ? kDone : kUnreadable;
+    }
+    if (*ladder_command) {
+        ladder_options.out = out;
+        return ladder(ladder_options, as_json, common);
     }
     if (report_out.empty()) report_out = scenes.size() == 1 ? scenes[0] : "results";
     if (*report_command) return report({scenes.begin(), scenes.end()}, report_out, common);

@@ -1,0 +1,142 @@
+#include "bench/ladder_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/compare.h"
+#include "core/ray.h"
+#include "core/shade.h"
+
+namespace umbra {
+namespace {
+
+constexpr Repeats kOnce{1, 0};
+
+std::string kind_of(const RungOutcome& o) {
+    if (o.interior() == 0) return "";
+    return o.false_shadow.interior >= o.false_light.interior ? "false shadow" : "false light";
+}
+
+/// The sum with the true S_j, where the ladder is over that.
+std::string wrong_sum(const Ladder& ladder, double value, const RungStage& stage) {
+    return ladder.wrong_sum(value, stage.scene, shade(stage.scene, stage.points, stage.truth));
+}
+
+std::uint64_t count_surface(const PointBatch& points) {
+    return static_cast<std::uint64_t>(
+        std::count_if(points.triangle.begin(), points.triangle.end(), [](TriangleId t) { return t != kNoTriangle; }));
+}
+
+void describe_truth(const RungStage& stage, Rung& rung) {
+    rung.truth          = stage.truth_by;
+    rung.surface_points = count_surface(stage.points);
+    for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
+        const VisibilityPlane& truth = stage.truth[j];
+        const VisibilityError e =
+            visibility_error(stage.points, j, truth, truth, visibility_tolerance(stage.scene.lights[j].kind));
+        rung.lit += e.lit, rung.umbra += e.umbra, rung.penumbra += e.penumbra, rung.on_boundary += e.on_boundary;
+    }
+}
+
+}  // namespace
+
+bool RungOutcome::broken() const {
+    if (!ran()) return false;
+    return service.how == How::exactly ? interior() > 0 : interior_share() > kBreakingShare;
+}
+
+Climb climb(const LadderRun& run, std::size_t method) {
+    Climb c;
+    for (std::size_t r = 0; r < run.rungs.size(); ++r) {
+        if (!run.rungs[r].unjudged.empty()) break;
+        const RungOutcome& o = run.rungs[r].outcomes[method];
+        if (!c.breaks_at && (o.broken() || !o.stopped.empty())) {
+            c.breaks_at = r;
+            if (!o.stopped.empty()) c.why = o.stopped;
+        }
+        // Only what lasts to the last rung is said to be so "from here on".
+        if (!o.silent())
+            c.silent_from.reset();
+        else if (!c.silent_from)
+            c.silent_from = r;
+        if (o.service)
+            c.not_served_from.reset();
+        else if (!c.not_served_from)
+            c.not_served_from = r;
+        if (!o.service && !c.breaks_at) c.why = o.service.why;
+    }
+    return c;
+}
+
+RungStage set_stage(Scene scene) {
+    RungStage stage{std::move(scene), {}, {}, {}, {}};
+    stage.facts = find_facts(stage.scene);
+    stage.points =
+        primary_points(RayScene(stage.scene), stage.scene, stage.scene.camera, stage.scene.width, stage.scene.height);
+    const Reference reference = default_reference(stage.facts);
+    stage.truth_by            = reference.choice.text();
+    stage.truth               = run_method(reference.choice, stage.scene, stage.facts, stage.points, kOnce).planes;
+    return stage;
+}
+
+RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vector<VisibilityPlane>* planes) {
+    RungOutcome o;
+    try {
+        MethodRun run = run_method(method, stage.scene, stage.facts, stage.points, kOnce);
+        o.service     = run.service;
+        if (!run.service) return o;
+        double absolute = 0;
+        for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
+            const VisibilityError e = visibility_error(stage.points, j, run.planes[j], stage.truth[j],
+                                                       visibility_tolerance(stage.scene.lights[j].kind));
+            o.points += e.points, o.undefined += e.undefined;
+            o.false_shadow.interior += e.false_shadow.interior, o.false_shadow.edge += e.false_shadow.edge;
+            o.false_light.interior += e.false_light.interior, o.false_light.edge += e.false_light.edge;
+            absolute += e.mae * double(e.points);
+        }
+        if (o.points > 0) o.mae = absolute / double(o.points);
+        o.kind = kind_of(o);
+        if (planes != nullptr) *planes = std::move(run.planes);
+    } catch (const std::exception& e) {
+        o         = {};
+        o.service = {How::approximately, "it stopped"};
+        o.stopped = e.what();
+    }
+    return o;
+}
+
+LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
+                       const std::function<void(const std::string&)>& progress) {
+    LadderRun run{&ladder, ladder.wrong_sum ? std::vector<MethodChoice>{} : methods, {}};
+    for (const double value : ladder.rungs) {
+        if (progress) progress(fmt::format("{}: {:g}", ladder.name, value));
+        Rung& rung = run.rungs.emplace_back();
+        rung.value = value;
+        std::optional<RungStage> set;
+        try {
+            set = set_stage(ladder.scene(value));
+        } catch (const std::exception& e) {
+            rung.unjudged = fmt::format("no truth: {}", e.what());
+            break;
+        }
+        const RungStage& stage = *set;
+        describe_truth(stage, rung);
+        if (double(rung.surface_points) < kLeastPoints * double(run.rungs[0].surface_points)) {
+            rung.unjudged = fmt::format("the eye sees {} points of the scene, and {} on the first rung",
+                                        rung.surface_points, run.rungs[0].surface_points);
+            break;
+        }
+        if (ladder.wrong_sum) {
+            RungOutcome o;
+            o.service = {How::exactly, "the sum itself, with the true visibility"};
+            o.stopped = wrong_sum(ladder, value, stage);
+            o.points  = rung.surface_points;
+            rung.outcomes.push_back(std::move(o));
+        }
+        for (const MethodChoice& method : run.methods) rung.outcomes.push_back(outcome(stage, method));
+    }
+    return run;
+}
+
+}  // namespace umbra
