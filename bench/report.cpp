@@ -1,18 +1,16 @@
 // The report: results.json files -> numbers and sentences in the shape of the page templates -> pages.
 //
 // The templates (bench/report/*.html) hold the words and the markup; the views (report_index, report_scene) fill them.
-// The template engine is Mustache (kainjow's header, packaged by Debian): it escapes by default, and every name,
-// sentence and warning here comes out of a file. No template uses its unescaped form.
 #include "bench/report.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cctype>
-#include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "bench/page_template.h"
 #include "bench/report_assets.h"
 #include "bench/report_index.h"
 #include "bench/report_page.h"
@@ -91,37 +89,6 @@ std::vector<ScenePage> find_scenes(const std::vector<fs::path>& dirs, const fs::
     return all;
 }
 
-/// Empty strings and lists are false to a template, so that {{#x}} asks whether there is anything to show.
-kainjow::mustache::data template_data(const json& view) {
-    if (view.is_boolean()) return view.get<bool>();
-    if (view.is_string()) {
-        if (view.get_ref<const std::string&>().empty()) return false;
-        return view.get<std::string>();
-    }
-    if (view.is_array()) {
-        kainjow::mustache::data list(kainjow::mustache::data::type::list);
-        for (const json& item : view) list << template_data(item);
-        return list;
-    }
-    kainjow::mustache::data object;
-    for (const auto& entry : view.items()) object.set(entry.key(), template_data(entry.value()));
-    return object;
-}
-
-/// A page from its template; the parts that pages share are partials, named as their files.
-std::string render(std::string_view page, const json& view) {
-    kainjow::mustache::data data = template_data(view);
-    for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
-                                        {"picture", assets::picture_html},
-                                        {"scales", assets::scales_html},
-                                        {"scale_colours", assets::scale_colours_html}})
-        data.set(name, std::string(partial));
-    kainjow::mustache::mustache text{std::string(page)};
-    std::string html = text.render(data);
-    if (!text.is_valid()) throw std::logic_error("report template: " + text.error_message());
-    return html;
-}
-
 }  // namespace
 
 void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const ReportOptions& options) {
@@ -147,11 +114,11 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
         view["previous"] = i > 0 ? neighbour(i - 1) : json(false);
         view["next"]     = i + 1 < scenes.size() ? neighbour(i + 1) : json(false);
         if (page != scenes[i].data) staged.copy(scenes[i].data / "results.json", page / "results.json");
-        staged.write(page / "index.html", render(assets::scene_html, view));
+        staged.write(page / "index.html", render_page(assets::scene_html, view));
     }
     json index    = index_view(scenes, files, root, options.title);
     index["root"] = "";
-    staged.write(root / "index.html", render(assets::index_html, index));
+    staged.write(root / "index.html", render_page(assets::index_html, index));
     staged.write(root / "report.css", assets::report_css);
     staged.write(root / "report.js", assets::report_js);
     staged.commit();
