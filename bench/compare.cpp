@@ -9,6 +9,7 @@
 #include <fstream>
 #include <set>
 
+#include "bench/explain.h"
 #include "bench/pictures.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -61,15 +62,16 @@ Json parameters_json(const Settings& settings) {
     return values;
 }
 
-/// Writes one method's files into `folder` and returns their names. `reference` may be the run itself: no differences
-/// then.
+/// Writes one method's files into `folder` and returns their names. `explained` is one a light, or empty where there is
+/// nothing to differ from.
 Json write_files(const fs::path& folder, const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                 const Rendered& rendered, const MethodRun* reference, const std::string& command) {
+                 const Rendered& rendered, const MethodRun& reference, std::span<const Explained> explained,
+                 const std::string& command) {
     const Scene& scene       = prepared.scene;
     const PointBatch& points = prepared.points;
     Json files               = {{"exr", id + ".exr"}, {"png", id + ".png"}, {"lights", Json::object()}};
 
-    Image full    = with_planes(rendered.linear, scene, points, run.planes, reference == nullptr);
+    Image full    = with_planes(rendered.linear, scene, points, run.planes, explained.empty());
     full.metadata = metadata(scene, run.choice, command);
     write_image(folder / (id + ".exr"), full);
     write_image(folder / (id + ".png"), rendered.shown);
@@ -77,19 +79,19 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
         const std::string& light = scene.lights[j].name;
         Json entry               = {{"visibility", fmt::format("{}.S.{}.png", id, light)}};
         write_image(folder / entry["visibility"], visibility_picture(points, run.planes[j]));
-        if (reference != nullptr) {
+        if (!explained.empty()) {
             entry["difference"] = fmt::format("{}.diff.{}.png", id, light);
             write_image(folder / entry["difference"],
-                        difference_picture(points, j, run.planes[j], reference->planes[j]));
+                        difference_picture(points, explained[j].classes, reference.planes[j]));
         }
         files["lights"][light] = std::move(entry);
     }
     return files;
 }
 
-Json error_json(const std::string& light, const VisibilityError& e) {
-    // Telling acne, detachment and leaks apart, and edge displacement, need a reference that names the occluder: null
-    // until then.
+Json error_json(const std::string& light, const VisibilityError& e, bool bracketed) {
+    // Detachment and leak are told apart by the occluder: null where the reference names none.
+    const bool named = e.unnamed == 0;
     return {{"light", light},
             {"points", e.points},
             {"undefined", e.undefined},
@@ -98,12 +100,18 @@ Json error_json(const std::string& light, const VisibilityError& e) {
             {"lit", e.lit},
             {"umbra", e.umbra},
             {"penumbra", e.penumbra},
-            {"false_shadow", {{"interior", e.false_shadow.interior}, {"edge", e.false_shadow.edge}, {"acne", nullptr}}},
+            {"false_shadow", {{"interior", e.false_shadow.interior}, {"edge", e.false_shadow.edge}, {"acne", e.acne}}},
             {"false_light",
              {{"interior", e.false_light.interior},
               {"edge", e.false_light.edge},
-              {"detachment", nullptr},
-              {"leak", nullptr}}},
+              {"detachment", named ? Json(e.detachment) : Json()},
+              {"leak", named ? Json(e.leak) : Json()}}},
+            {"interior", {{"lit", e.interior.lit}, {"umbra", e.interior.umbra}, {"penumbra", e.interior.penumbra}}},
+            {"terminator",
+             {{"facet_away", e.terminator.facet_away},
+              {"normal_away", e.terminator.normal_away},
+              {"wrong", e.terminator.wrong}}},
+            {"bracket", bracketed ? Json{{"max_half_width", number(e.max_half_width)}} : Json()},
             {"mae", number(e.mae)},
             {"rmse", number(e.rmse)},
             {"max", number(e.max)},
@@ -155,13 +163,14 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
 
     const Scene& scene = prepared.scene;
     Json light_times = Json::array(), errors = Json::array();
+    std::vector<Explained> explained;
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const Light& light = scene.lights[j];
         light_times.push_back({{"light", light.name},
                                {"aim_ms", timing_json(run.aim[j])},
                                {"visibility_ms", timing_json(run.visibility[j])}});
-        errors.push_back(error_json(light.name, visibility_error(prepared.points, j, run.planes[j], reference.planes[j],
-                                                                 visibility_tolerance(light.kind))));
+        explained.push_back(explain(scene, prepared.points, j, run, reference));
+        errors.push_back(error_json(light.name, explained.back().error, !reference.half_widths[j].empty()));
     }
     entry["times"]        = {{"build_ms", timing_json(run.build)},
                              {"aim_ms", timing_json(total(run.aim))},
@@ -173,7 +182,7 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
 
     Rendered rendered;
     shade_ms       = timed_ms([&] { rendered = render(scene, prepared.points, run.planes); });
-    Json files     = write_files(folder, id, prepared, run, rendered, &reference, command);
+    Json files     = write_files(folder, id, prepared, run, rendered, reference, explained, command);
     entry["image"] = image_json(folder, id, run, std::move(rendered), reference_rendered, files);
     entry["files"] = std::move(files);
     return entry;
@@ -323,8 +332,8 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                      {"parameters", parameters_json(reference.choice.settings)},
                      {"exact", reference.exact},
                      {"note", reference.note},
-                     {"files", write_files(staging, "reference", prepared, reference_run, reference_rendered, nullptr,
-                                           options.command)}}},
+                     {"files", write_files(staging, "reference", prepared, reference_run, reference_rendered,
+                                           reference_run, {}, options.command)}}},
                    {"methods", Json::array()}};
 
     std::set<std::string> used = {"reference"};

@@ -66,26 +66,28 @@ double MethodRun::coverage(const PointBatch& points) const {
 
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
                      const Repeats& repeats) {
-    MethodRun run{choice, {}, {}, {}, {}, 0, {}};
-    const std::unique_ptr<Method> method = choice.info->make(choice.settings);
-    run.service                          = method->serves(facts);
+    MethodRun run{choice, {}, {}, {}, {}, 0, {}, {}, {}};
+    run.method  = choice.info->make(choice.settings);
+    run.service = run.method->serves(facts);
     if (!run.service) return run;
 
-    run.build = time_runs(repeats, [&] { method->build(scene, facts); });
+    run.build = time_runs(repeats, [&] { run.method->build(scene, facts); });
     for (LightId light = 0; light < scene.lights.size(); ++light) {
-        run.aim.push_back(time_runs(repeats, [&] { method->aim(light); }));
+        run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
         VisibilityPlane plane;
         plane.s.resize(points.size());
         plane.defined.resize(points.size());
         run.visibility.push_back(time_runs(repeats, [&] {
             std::fill(plane.s.begin(), plane.s.end(), 0.0f);
             std::fill(plane.defined.begin(), plane.defined.end(), kDefined);
-            method->visibility(points, light, plane.s, plane.defined);
+            run.method->visibility(points, light, plane.s, plane.defined);
         }));
         check_contract(choice.info->name, plane, points.facing[light]);
         run.planes.push_back(std::move(plane));
+        const std::span<const float> doubt = run.method->half_widths();
+        run.half_widths.emplace_back(doubt.begin(), doubt.end());
     }
-    run.memory_bytes = method->memory_bytes();
+    run.memory_bytes = run.method->memory_bytes();
     return run;
 }
 

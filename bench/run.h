@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "core/facts.h"
@@ -32,9 +33,11 @@ struct MethodRun {
     MethodChoice choice;
     Service service;
     Timing build;
-    std::vector<Timing> aim, visibility;  ///< [light]
-    std::size_t memory_bytes = 0;         ///< after the last light was aimed at
-    std::vector<VisibilityPlane> planes;  ///< [light]
+    std::vector<Timing> aim, visibility;          ///< [light]
+    std::size_t memory_bytes = 0;                 ///< after the last light was aimed at
+    std::vector<VisibilityPlane> planes;          ///< [light]
+    std::vector<std::vector<float>> half_widths;  ///< [light][point]: the method's own doubt; empty where it has none
+    std::shared_ptr<Method> method;               ///< built, and aimed at the last light: to be asked further
 
     /// Share of the points that S_j is asked for (any light in front) that it is given for, [0, 1]; 1 where none is.
     [[nodiscard]] double coverage(const PointBatch& points) const;

@@ -63,7 +63,13 @@ void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {  // Embree 4 has
         for (std::size_t k = 0; k < count; ++k) rays[first + k].tfar = packet.tfar[k];
     }
 }
+void intersect_one(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
 #else
+void intersect_one(RTCScene scene, RTCRayHit& ray) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, &ray);
+}
 void intersect_coherent(RTCScene scene, const int* valid, RTCRayHit8& rays) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -175,6 +181,20 @@ void RayScene::occluded(ShadowPacket& rays) const {
 
 void RayScene::occluded(std::span<ShadowRay> rays) const {
     if (!rays.empty()) occluded_list(impl_->scene, rays);
+}
+
+TriangleId RayScene::first_hit(ShadowRay ray) const {
+    for (;;) {  // once, and once more for each time that it meets its own triangle
+        RTCRayHit hit{};
+        hit.ray.org_x = ray.org_x, hit.ray.org_y = ray.org_y, hit.ray.org_z = ray.org_z;
+        hit.ray.dir_x = ray.dir_x, hit.ray.dir_y = ray.dir_y, hit.ray.dir_z = ray.dir_z;
+        hit.ray.tnear = ray.tnear, hit.ray.tfar = ray.tfar, hit.ray.mask = ray.mask;
+        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        intersect_one(impl_->scene, hit);
+        if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return kNoTriangle;
+        if (hit.hit.primID != ray.id) return hit.hit.primID;
+        ray.tnear = std::nextafter(hit.ray.tfar, kInfinity);
+    }
 }
 
 // ---- the G-buffer ---------------------------------------------------------------------------------------------------

@@ -87,6 +87,9 @@ public:
     /// (by a third on a million triangles); for eight rays from one point a packet is.
     void occluded(std::span<ShadowRay> rays) const;
 
+    /// The triangle that the ray meets first, kNoTriangle where it meets none but its own. Call under FlushDenormals.
+    [[nodiscard]] TriangleId first_hit(ShadowRay ray) const;
+
     [[nodiscard]] std::size_t memory_bytes() const;
 
     struct Impl;

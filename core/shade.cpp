@@ -36,27 +36,6 @@ std::vector<Prepared> prepare(const Scene& scene) {
     return prepared;
 }
 
-/// N: the vertex normals interpolated, on the side of the geometric normal (which faces the eye where the material is
-/// two-sided). A vertex whose normal is zero lends the geometric one.
-dvec3 shading_normal(const Scene& scene, const PointBatch& points, std::size_t i) {
-    const dvec3 face = points.normal(i);
-    if (scene.normals.empty()) return face;
-    const uvec3 corners  = scene.triangles[points.triangle[i]];
-    const double u       = points.u[i];
-    const double v       = points.v[i];
-    const double share[] = {1 - u - v, u, v};
-    // The side is chosen for the triangle as a whole: one corner of a sharp tip may well point away from a face.
-    double agreement = 0;
-    for (int k = 0; k < 3; ++k) agreement += glm::dot(dvec3(scene.normals[corners[k]]), face);
-    dvec3 sum(0);
-    for (int k = 0; k < 3; ++k) {
-        const dvec3 n = scene.normals[corners[k]];
-        sum += share[k] * (n == dvec3(0) ? face : agreement < 0 ? -n : n);
-    }
-    const double length = glm::length(sum);
-    return length > 0 ? sum / length : face;
-}
-
 /// (R.V)^n or (N.H)^n with unit N, L, V. In double, since in float a cosine near 1 is off by 6e-8, which a shininess
 /// of 1e6 turns into 6 % of the highlight.
 double specular_lobe(const Material& material, dvec3 n, dvec3 l, dvec3 v) {
@@ -100,6 +79,25 @@ float compressed(float x) {
 }
 
 }  // namespace
+
+dvec3 shading_normal(const Scene& scene, const PointBatch& points, std::size_t i) {
+    const dvec3 face = points.normal(i);
+    if (scene.normals.empty()) return face;
+    const uvec3 corners  = scene.triangles[points.triangle[i]];
+    const double u       = points.u[i];
+    const double v       = points.v[i];
+    const double share[] = {1 - u - v, u, v};
+    // The side is chosen for the triangle as a whole: one corner of a sharp tip may well point away from a face.
+    double agreement = 0;
+    for (int k = 0; k < 3; ++k) agreement += glm::dot(dvec3(scene.normals[corners[k]]), face);
+    dvec3 sum(0);
+    for (int k = 0; k < 3; ++k) {
+        const dvec3 n = scene.normals[corners[k]];
+        sum += share[k] * (n == dvec3(0) ? face : agreement < 0 ? -n : n);
+    }
+    const double length = glm::length(sum);
+    return length > 0 ? sum / length : face;
+}
 
 Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility) {
     if (!points.raster) throw std::logic_error("shade: the batch has no raster");

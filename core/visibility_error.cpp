@@ -7,81 +7,61 @@
 namespace umbra {
 namespace {
 
-constexpr double kBand      = 1.5;  // pixels
 constexpr float kFullOrNone = 1.0f / 1024;
 
-/// Points whose S_j methods may differ in.
-bool is_open(const PointBatch& points, LightId light, std::size_t i) {
-    const Facing facing = points.facing[light][i];
-    return facing == Facing::partly || facing == Facing::front;
-}
-
-void require_raster(const PointBatch& points, const VisibilityPlane& plane) {
-    if (!points.raster) throw std::logic_error("visibility error: the batch has no raster");
-    if (plane.s.size() != points.size() || plane.defined.size() != points.size())
-        throw std::logic_error("visibility error: a plane is not of the batch's size");
-}
-
-/// The pixels within the band of the midpoint between pixel (x, y) and its right (or lower) neighbour.
-void mark(std::vector<std::uint8_t>& band, int width, int height, int x, int y, bool below) {
-    const double mid_x = x + (below ? 0 : 0.5), mid_y = y + (below ? 0.5 : 0);
-    for (int py = std::max(0, y - 2); py <= std::min(height - 1, y + 2); ++py)
-        for (int px = std::max(0, x - 2); px <= std::min(width - 1, x + 2); ++px)
-            if (std::hypot(px - mid_x, py - mid_y) <= kBand)
-                band[static_cast<std::size_t>(py) * static_cast<std::size_t>(width) + static_cast<std::size_t>(px)] = 1;
+/// Adds one point that both planes define to the count that its class means.
+void count_wrong(ErrorClass c, std::uint64_t& level, VisibilityError& e) {
+    const auto interior = [&](VisibilityError::Kind& kind, std::uint64_t& cause) {
+        ++kind.interior;
+        ++cause;
+        ++level;
+    };
+    std::uint64_t other = 0;
+    switch (c) {
+        case ErrorClass::terminator: ++e.terminator.normal_away; break;
+        case ErrorClass::terminator_wrong: ++e.terminator.normal_away, ++e.terminator.wrong; break;
+        case ErrorClass::false_shadow_edge: ++e.false_shadow.edge; break;
+        case ErrorClass::false_shadow: interior(e.false_shadow, other); break;
+        case ErrorClass::acne: interior(e.false_shadow, e.acne); break;
+        case ErrorClass::false_light_edge: ++e.false_light.edge; break;
+        case ErrorClass::false_light: interior(e.false_light, e.unnamed); break;
+        case ErrorClass::detachment: interior(e.false_light, e.detachment); break;
+        case ErrorClass::leak: interior(e.false_light, e.leak); break;
+        default: break;
+    }
 }
 
 }  // namespace
 
-std::vector<std::uint8_t> edge_band(const PointBatch& points, LightId light, const VisibilityPlane& reference,
-                                    float tolerance) {
-    require_raster(points, reference);
-    const int width = points.raster->width, height = points.raster->height;
-    std::vector<std::uint8_t> band(points.size(), 0);
-    const auto judged = [&](std::size_t i) { return is_open(points, light, i) && reference.defined[i] != 0; };
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (!judged(i)) continue;
-            const auto boundary_before = [&](std::size_t j) {
-                return judged(j) && std::abs(reference.s[i] - reference.s[j]) > tolerance / kBand;
-            };
-            if (x + 1 < width && boundary_before(i + 1)) mark(band, width, height, x, y, false);
-            if (y + 1 < height && boundary_before(i + static_cast<std::size_t>(width)))
-                mark(band, width, height, x, y, true);
-        }
-    return band;
-}
-
-VisibilityError visibility_error(const PointBatch& points, LightId light, const VisibilityPlane& s,
-                                 const VisibilityPlane& reference, float tolerance) {
-    require_raster(points, s);
-    const auto band = edge_band(points, light, reference, tolerance);
+VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes, const VisibilityPlane& s,
+                             const VisibilityPlane& reference, std::span<const float> half_widths) {
+    if (classes.size() != points.size() || s.s.size() != points.size() || reference.s.size() != points.size())
+        throw std::logic_error("visibility error: a plane is not of the batch's size");
     VisibilityError e;
     double absolute = 0, squared = 0, difference = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (points.facing[light][i] == Facing::away) ++e.away;
-        if (!is_open(points, light, i)) continue;
-        if (s.defined[i] == kUndefined || reference.defined[i] != kDefined) {
-            if (reference.defined[i] == kOnBoundary)
-                ++e.on_boundary;
-            else
-                ++e.undefined;
-            continue;
+        switch (classes[i]) {
+            case ErrorClass::no_surface: continue;
+            case ErrorClass::away: ++e.away; continue;
+            case ErrorClass::terminator_away: ++e.away, ++e.terminator.facet_away; continue;
+            case ErrorClass::undefined: ++e.undefined; continue;
+            case ErrorClass::on_boundary: ++e.on_boundary; continue;
+            default: break;
         }
         ++e.points;
         const float r = reference.s[i];
-        ++(r > 1 - kFullOrNone ? e.lit : r < kFullOrNone ? e.umbra : e.penumbra);
+        const auto at = [&](auto& levels) -> std::uint64_t& {
+            return r > 1 - kFullOrNone ? levels.lit : r < kFullOrNone ? levels.umbra : levels.penumbra;
+        };
+        ++at(e);
+        count_wrong(classes[i], at(e.interior), e);
 
         const double d = static_cast<double>(s.s[i]) - static_cast<double>(r);
         absolute += std::abs(d);
         squared += d * d;
         difference += d;
         e.max = std::max(e.max, std::abs(d));
-        if (std::abs(d) > static_cast<double>(tolerance)) {
-            VisibilityError::Kind& kind = d < 0 ? e.false_shadow : e.false_light;
-            ++(band[i] ? kind.edge : kind.interior);
-        }
+        if (!half_widths.empty()) e.max_half_width = std::max(e.max_half_width, static_cast<double>(half_widths[i]));
     }
     if (e.points > 0) {
         const auto n = static_cast<double>(e.points);
@@ -90,6 +70,13 @@ VisibilityError visibility_error(const PointBatch& points, LightId light, const 
         e.bias       = difference / n;
     }
     return e;
+}
+
+VisibilityError visibility_error(const PointBatch& points, LightId light, const VisibilityPlane& s,
+                                 const VisibilityPlane& reference, float tolerance,
+                                 std::span<const float> half_widths) {
+    return count_errors(points, error_classes(points, light, s, reference, tolerance, half_widths), s, reference,
+                        half_widths);
 }
 
 }  // namespace umbra

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace umbra {
 namespace {
@@ -87,6 +88,21 @@ float lit_share(const DepthMap& map, const Receiver& p, BiasMode mode, const Fil
             lit += wx * wy;
         }
     return static_cast<float>(std::clamp(lit / ((2 * radius + 1) * (2 * radius + 1)), 0.0, 1.0));
+}
+
+std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& p, BiasMode mode, const Filter& filter) {
+    const double shift = filter.bilinear ? 0.5 : 0.0;  // as in lit_share
+    const int x        = static_cast<int>(std::floor(p.x - shift));
+    const int y        = static_cast<int>(std::floor(p.y - shift));
+    const int last     = filter.radius + (filter.bilinear ? 1 : 0);
+    std::optional<ivec2> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (int j = y - filter.radius; j <= y + last; ++j)
+        for (int i = x - filter.radius; i <= x + last; ++i) {
+            const double distance = std::hypot(i + 0.5 - p.x, j + 0.5 - p.y);
+            if (distance < least && is_blocked(map, p, i, j, mode)) least = distance, nearest = ivec2(i, j);
+        }
+    return nearest;
 }
 
 }  // namespace umbra

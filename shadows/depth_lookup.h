@@ -49,4 +49,8 @@ struct Receiver {
 /// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth.
 [[nodiscard]] float lit_share(const DepthMap& map, const Receiver& receiver, BiasMode mode, const Filter& filter);
 
+/// Of those samples that lit_share finds blocked, the one nearest to the point; none where it finds none.
+[[nodiscard]] std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& receiver, BiasMode mode,
+                                                  const Filter& filter);
+
 }  // namespace umbra

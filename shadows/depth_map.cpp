@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "core/parallel.h"
 
@@ -30,6 +31,7 @@ struct Snapped {
 /// What one task snapped, and which of it reaches into which band.
 struct Chunk {
     std::vector<Snapped> triangles;
+    std::vector<const uvec3*> from;  ///< one a snapped triangle: what it was
     std::vector<std::vector<std::uint32_t>> bands;
 };
 
@@ -118,9 +120,9 @@ std::uint32_t encode(double r, std::uint32_t far_word) {
     return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>((1 - r) * far_word + 0x1p52));
 }
 
-/// Rows [row_begin, row_end) of one triangle.
-template <DepthFormat format>
-void fill(const Snapped& t, int row_begin, int row_end, int width, std::uint32_t far_word, std::uint32_t* words) {
+/// Rows [row_begin, row_end) of one triangle: keep(sample, depth as kept) for what it covers.
+template <DepthFormat format, class Keep>
+void fill(const Snapped& t, int row_begin, int row_end, int width, std::uint32_t far_word, const Keep& keep) {
     const auto [x_low, x_high] = std::ranges::minmax(t.x);
     const auto [y_low, y_high] = std::ranges::minmax(t.y);
     const auto below           = [](std::int32_t v) { return v >> std::countr_zero(unsigned{DepthMap::kSnap}); };
@@ -152,18 +154,19 @@ void fill(const Snapped& t, int row_begin, int row_end, int width, std::uint32_t
         for (int k = 0; k < 3; ++k) r_first += (edges[k].ax * first + value[k]) * t.r[k];
         r_first *= inverse_area;
 
-        std::uint32_t* row = words + static_cast<std::size_t>(y) * width + static_cast<int>(first);
-        const int count    = static_cast<int>(last - first) + 1;
+        const std::size_t sample = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(first);
+        const int count          = static_cast<int>(last - first) + 1;
         for (int i = 0; i < count; ++i) {
             const double r = std::min(std::max(r_first + r_x * i, r_low), r_high);
-            row[i]         = std::min(row[i], encode<format>(r, far_word));
+            keep(sample + i, encode<format>(r, far_word));
         }
     }
 }
 
 // ---- snapping and binning ------------------------------------------------------------------------------------------
 
-void snap(const dvec4& a, const dvec4& b, const dvec4& c, int width, int height, Faces faces, Chunk& chunk) {
+void snap(const dvec4& a, const dvec4& b, const dvec4& c, const uvec3* from, int width, int height, Faces faces,
+          Chunk& chunk) {
     Snapped t;
     const auto place = [&](int k, const dvec4& v) {
         const double inverse_w = 1 / v.w;
@@ -195,6 +198,7 @@ void snap(const dvec4& a, const dvec4& b, const dvec4& c, int width, int height,
     }
     const auto index = static_cast<std::uint32_t>(chunk.triangles.size());
     chunk.triangles.push_back(t);
+    chunk.from.push_back(from);
     for (int band = y_first / kBandRows; band <= y_last / kBandRows; ++band) chunk.bands[band].push_back(index);
 }
 
@@ -207,13 +211,73 @@ void snap_run(const dmat4& clip_from_world, std::span<const vec3> positions, std
                            clip_from_world * dvec4(dvec3(positions[t.z]), 1)};
         if (misses_map(c)) continue;
         if (inside(c[0]) && inside(c[1]) && inside(c[2])) {
-            snap(c[0], c[1], c[2], width, height, faces, chunk);
+            snap(c[0], c[1], c[2], &t, width, height, faces, chunk);
             continue;
         }
         polygon.assign(c.begin(), c.end());
         clip(polygon);
         for (std::size_t i = 2; i < polygon.size(); ++i)
-            snap(polygon[0], polygon[i - 1], polygon[i], width, height, faces, chunk);
+            snap(polygon[0], polygon[i - 1], polygon[i], &t, width, height, faces, chunk);
+    }
+}
+
+/// Calls body(snapped, what it was, row_begin, row_end) for every band of rows that a triangle may reach into. Bands
+/// are disjoint; each is one thread's, and sees its triangles in their order.
+template <class Body>
+void rasterise(int width, int height, const dmat4& clip_from_world, std::span<const vec3> positions,
+               std::span<const std::span<const uvec3>> runs, Faces faces, const Body& body) {
+    // Tasks of kChunk triangles each, however the runs are cut: task i is pieces [starts[i], starts[i + 1]).
+    std::vector<std::span<const uvec3>> pieces;
+    std::vector<std::size_t> starts;
+    std::size_t room = 0;
+    for (std::span<const uvec3> run : runs)
+        for (std::size_t done = 0; done < run.size();) {
+            if (room == 0) {
+                starts.push_back(pieces.size());
+                room = kChunk;
+            }
+            pieces.push_back(run.subspan(done, std::min(room, run.size() - done)));
+            done += pieces.back().size();
+            room -= pieces.back().size();
+        }
+    const std::size_t tasks = starts.size();
+    starts.push_back(pieces.size());
+
+    const std::size_t bands = static_cast<std::size_t>((height + kBandRows - 1) / kBandRows);
+    std::vector<Chunk> chunks(std::min(kBatch, tasks));
+    for (Chunk& chunk : chunks) chunk.bands.resize(bands);
+
+    for (std::size_t batch = 0; batch < tasks; batch += kBatch) {
+        const std::size_t count = std::min(kBatch, tasks - batch);
+        parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                chunks[i].triangles.clear();
+                chunks[i].from.clear();
+                for (auto& band : chunks[i].bands) band.clear();
+                for (std::size_t piece = starts[batch + i]; piece < starts[batch + i + 1]; ++piece)
+                    snap_run(clip_from_world, positions, pieces[piece], width, height, faces, chunks[i]);
+            }
+        });
+        parallel_ranges(bands, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t band = begin; band < end; ++band) {
+                const int row_begin = static_cast<int>(band) * kBandRows;
+                const int row_end   = std::min(row_begin + kBandRows, height);
+                for (std::size_t i = 0; i < count; ++i)
+                    for (std::uint32_t t : chunks[i].bands[band])
+                        body(chunks[i].triangles[t], chunks[i].from[t], row_begin, row_end);
+            }
+        });
+    }
+}
+
+/// Calls body with the format as a constant.
+template <class Body>
+void with_format(DepthFormat format, const Body& body) {
+    switch (format) {
+        case DepthFormat::unorm16: return body(std::integral_constant<DepthFormat, DepthFormat::unorm16>());
+        case DepthFormat::unorm24: return body(std::integral_constant<DepthFormat, DepthFormat::unorm24>());
+        case DepthFormat::unorm32: return body(std::integral_constant<DepthFormat, DepthFormat::unorm32>());
+        case DepthFormat::float32: return body(std::integral_constant<DepthFormat, DepthFormat::float32>());
     }
 }
 
@@ -244,56 +308,34 @@ double DepthMap::quantum(double r) const {
 
 void DepthMap::draw(const dmat4& clip_from_world, std::span<const vec3> positions,
                     std::span<const std::span<const uvec3>> runs, Faces faces) {
-    // Tasks of kChunk triangles each, however the runs are cut: task i is pieces [starts[i], starts[i + 1]).
-    std::vector<std::span<const uvec3>> pieces;
-    std::vector<std::size_t> starts;
-    std::size_t room = 0;
-    for (std::span<const uvec3> run : runs)
-        for (std::size_t done = 0; done < run.size();) {
-            if (room == 0) {
-                starts.push_back(pieces.size());
-                room = kChunk;
-            }
-            pieces.push_back(run.subspan(done, std::min(room, run.size() - done)));
-            done += pieces.back().size();
-            room -= pieces.back().size();
-        }
-    const std::size_t tasks = starts.size();
-    starts.push_back(pieces.size());
+    // The nearest of many does not depend on their order.
+    with_format(format_, [&](auto format) {
+        rasterise(width_, height_, clip_from_world, positions, runs, faces,
+                  [&](const Snapped& t, const uvec3*, int row_begin, int row_end) {
+                      std::uint32_t* const words = words_.data();
+                      fill<format.value>(t, row_begin, row_end, width_, far_word_,
+                                         [words](std::size_t sample, std::uint32_t word) {
+                                             words[sample] = std::min(words[sample], word);
+                                         });
+                  });
+    });
+}
 
-    const std::size_t bands = static_cast<std::size_t>((height_ + kBandRows - 1) / kBandRows);
-    std::vector<Chunk> chunks(std::min(kBatch, tasks));
-    for (Chunk& chunk : chunks) chunk.bands.resize(bands);
-
-    for (std::size_t batch = 0; batch < tasks; batch += kBatch) {
-        const std::size_t count = std::min(kBatch, tasks - batch);
-        parallel_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                chunks[i].triangles.clear();
-                for (auto& band : chunks[i].bands) band.clear();
-                for (std::size_t piece = starts[batch + i]; piece < starts[batch + i + 1]; ++piece)
-                    snap_run(clip_from_world, positions, pieces[piece], width_, height_, faces, chunks[i]);
-            }
-        });
-        // Bands are disjoint, and the nearest of many does not depend on their order.
-        parallel_ranges(bands, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t band = begin; band < end; ++band) {
-                const int row_begin = static_cast<int>(band) * kBandRows;
-                const int row_end   = std::min(row_begin + kBandRows, height_);
-                const auto fill_all = [&](auto fill_one) {
-                    for (std::size_t i = 0; i < count; ++i)
-                        for (std::uint32_t t : chunks[i].bands[band])
-                            fill_one(chunks[i].triangles[t], row_begin, row_end, width_, far_word_, words_.data());
-                };
-                switch (format_) {
-                    case DepthFormat::unorm16: fill_all(fill<DepthFormat::unorm16>); break;
-                    case DepthFormat::unorm24: fill_all(fill<DepthFormat::unorm24>); break;
-                    case DepthFormat::unorm32: fill_all(fill<DepthFormat::unorm32>); break;
-                    case DepthFormat::float32: fill_all(fill<DepthFormat::float32>); break;
-                }
-            }
-        });
-    }
+std::vector<std::uint32_t> DepthMap::owners(const dmat4& clip_from_world, std::span<const vec3> positions,
+                                            std::span<const uvec3> all, std::span<const std::span<const uvec3>> runs,
+                                            Faces faces) const {
+    std::vector<std::uint32_t> owners(words_.size(), kNoOwner);
+    with_format(format_, [&](auto format) {
+        rasterise(width_, height_, clip_from_world, positions, runs, faces,
+                  [&](const Snapped& t, const uvec3* from, int row_begin, int row_end) {
+                      const auto id = static_cast<std::uint32_t>(from - all.data());
+                      fill<format.value>(t, row_begin, row_end, width_, far_word_,
+                                         [&](std::size_t sample, std::uint32_t word) {
+                                             if (word == words_[sample]) owners[sample] = std::min(owners[sample], id);
+                                         });
+                  });
+    });
+    return owners;
 }
 
 }  // namespace umbra

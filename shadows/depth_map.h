@@ -55,6 +55,14 @@ public:
     void draw(const dmat4& clip_from_world, std::span<const vec3> positions,
               std::span<const std::span<const uvec3>> runs, Faces faces);
 
+    /// Which triangle each sample shows: draws the same once more and names the one whose depth the map kept, the first
+    /// of several, by its place in `all`, of which the runs are parts; kNoOwner where there is none. As costly as
+    /// drawing: for explaining a map.
+    [[nodiscard]] std::vector<std::uint32_t> owners(const dmat4& clip_from_world, std::span<const vec3> positions,
+                                                    std::span<const uvec3> all,
+                                                    std::span<const std::span<const uvec3>> runs, Faces faces) const;
+    static constexpr std::uint32_t kNoOwner = 0xffffffffu;
+
     static constexpr int kSnap = 1024;  ///< corners are snapped to 1 / kSnap of a sample's spacing
 
 private:

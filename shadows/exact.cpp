@@ -237,6 +237,18 @@ public:
         });
     }
 
+    /// The nearest of the triangles that the way to the light crosses.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override {
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                who[i] = kNoTriangle;
+                if (points.facing[light][i] != Facing::front) continue;
+                const Segment segment(*scene_, scene_->lights[light], points.triangle[i], points.u[i], points.v[i]);
+                who[i] = nearest_crossed(segment, points.triangle[i]);
+            }
+        });
+    }
+
     std::size_t memory_bytes() const override { return (tree_ ? tree_->memory_bytes() : 0) + no_area_.size(); }
 
 private:
@@ -256,6 +268,22 @@ private:
             return m != Meeting::crosses;
         });
         return met;
+    }
+
+    /// What is crossed is decided exactly, and which of that is nearest in double.
+    TriangleId nearest_crossed(const Segment& segment, TriangleId own) const {
+        const TriangleTree::Piece piece = segment.piece();
+        TriangleId nearest              = kNoTriangle;
+        double least                    = std::numeric_limits<double>::infinity();
+        tree_->visit(piece, [&](TriangleId t) {
+            const vec3 x = scene_->vertex(t, 0), y = scene_->vertex(t, 1), z = scene_->vertex(t, 2);
+            if (t == own || no_area_[t] || meeting(segment, x, y, z) != Meeting::crosses) return true;
+            const dvec3 n    = glm::cross(dvec3(y) - dvec3(x), dvec3(z) - dvec3(x));
+            const double way = std::abs(glm::dot(n, dvec3(x) - piece.from) / glm::dot(n, piece.direction));
+            if (way < least || (way == least && t < nearest)) least = way, nearest = t;
+            return true;
+        });
+        return nearest;
     }
 
     const Scene* scene_ = nullptr;

@@ -28,6 +28,13 @@ std::size_t LightViews::memory_bytes() const {
     return bytes;
 }
 
+std::vector<TriangleId> LightViews::owners(const View& view) const {
+    static_assert(DepthMap::kNoOwner == kNoTriangle);
+    const dmat4 clip_from_world = view.frame.clip_from_world();
+    return view.map.owners(clip_from_world, scene().positions, scene().triangles, casters_.seen_by(clip_from_world),
+                           options_.faces);
+}
+
 void LightViews::add_view(LightFrame frame, int resolution) {
     const double inner = 1 - 2 * options_.border / resolution;
     frame.half /= inner;

@@ -42,6 +42,8 @@ public:
     void aim(LightId light);
 
     [[nodiscard]] const std::vector<View>& views() const { return views_; }
+    /// Which triangle each sample of a view's map shows, kNoTriangle where none. Draws the map again.
+    [[nodiscard]] std::vector<TriangleId> owners(const View& view) const;
     /// False where what lies outside a spot's cone was left out; else nothing that casts lies where no view looks.
     [[nodiscard]] bool cover_all() const { return cover_all_; }
     [[nodiscard]] const Scene& scene() const { return casters_.scene(); }

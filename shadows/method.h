@@ -13,7 +13,7 @@
 #include "core/facts.h"
 #include "core/points.h"
 #include "core/scene.h"
-#include "core/visibility_error.h"
+#include "core/visibility_plane.h"
 #include "shadows/settings.h"
 
 namespace umbra {

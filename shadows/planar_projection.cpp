@@ -137,6 +137,9 @@ struct Shadow {
 struct Chunk {
     std::vector<Shadow> shadows;
     std::vector<Triangle> pieces;
+    std::vector<TriangleId> piece_of;  ///< one a piece: the triangle that it was cut from
+
+    [[nodiscard]] TriangleId caster(const Shadow& s) const { return s.piece ? piece_of[s.triangle] : s.triangle; }
 };
 constexpr std::size_t kChunk = 4096;
 
@@ -172,6 +175,7 @@ void add_shadow(Chunk& chunk, dvec2 low_reach, dvec2 high_reach, const LocalSour
     shadow.low  = {float_below(low.x), float_below(low.y)};
     shadow.high = {float_above(high.x), float_above(high.y)};
     if (shadow.piece) {
+        chunk.piece_of.push_back(shadow.triangle);
         shadow.triangle = static_cast<std::uint32_t>(chunk.pieces.size());
         chunk.pieces.push_back(triangle);
     }
@@ -441,26 +445,47 @@ private:
     std::vector<std::vector<Node>> levels_;  ///< lowest first
 };
 
+/// The three sides of a shadow, positive inside.
+std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, int side, const LocalSource& source,
+                             const Chunk& chunk, const Shadow& shadow) {
+    Triangle x;
+    if (shadow.piece)
+        x = chunk.pieces[shadow.triangle];
+    else
+        for (int k = 0; k < 3; ++k)
+            x[static_cast<std::size_t>(k)] = turned(receiver.local(dvec3(scene.vertex(shadow.triangle, k))), side);
+    // Inside, det(a - source, b - a, p - a) has the sign of the triangle seen from behind.
+    const double sign = shadow.turned ? 1 : -1;
+    return {side_of_edge(source, x[0], x[1], sign), side_of_edge(source, x[1], x[2], sign),
+            side_of_edge(source, x[2], x[0], sign)};
+}
+
 /// Holds all shadows against the points.
 void darken(PointTree& tree, const Scene& scene, const Receiver& receiver, int side, const Source& from,
             const std::vector<Chunk>& chunks) {
     const LocalSource source = local_source(receiver, side, from);
     parallel_ranges(chunks.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t c = first; c < last; ++c)
-            for (const Shadow& shadow : chunks[c].shadows) {
-                Triangle x;
-                if (shadow.piece)
-                    x = chunks[c].pieces[shadow.triangle];
-                else
-                    for (int k = 0; k < 3; ++k)
-                        x[static_cast<std::size_t>(k)] =
-                            turned(receiver.local(dvec3(scene.vertex(shadow.triangle, k))), side);
-                // Inside, det(a - source, b - a, p - a) has the sign of the triangle seen from behind.
-                const double sign = shadow.turned ? 1 : -1;
-                tree.darken(shadow, {side_of_edge(source, x[0], x[1], sign), side_of_edge(source, x[1], x[2], sign),
-                                     side_of_edge(source, x[2], x[0], sign)});
-            }
+            for (const Shadow& shadow : chunks[c].shadows)
+                tree.darken(shadow, sides_of(scene, receiver, side, source, chunks[c], shadow));
     });
+}
+
+/// The first triangle whose shadow holds the place, kNoTriangle where none does.
+TriangleId first_over(const Scene& scene, const Receiver& receiver, int side, const LocalSource& source,
+                      const std::vector<Chunk>& chunks, dvec2 at) {
+    const vec2 place(at);
+    const auto in_box = [&](const Shadow& s) {
+        return place.x >= s.low.x && place.x <= s.high.x && place.y >= s.low.y && place.y <= s.high.y;
+    };
+    for (const Chunk& chunk : chunks)
+        for (const Shadow& shadow : chunk.shadows) {
+            if (!in_box(shadow)) continue;
+            const std::array<Side, 3> sides = sides_of(scene, receiver, side, source, chunk, shadow);
+            if (std::ranges::all_of(sides, [&](const Side& e) { return e.at(at.x, at.y) >= 0; }))
+                return chunk.caster(shadow);
+        }
+    return kNoTriangle;
 }
 
 /// Points of the light, of equal weight. A sphere is seen as a disk from everywhere: points of the ball with density
@@ -553,18 +578,18 @@ public:
 
     void visibility(const PointBatch& points, LightId light, std::span<float> s,
                     std::span<std::uint8_t> defined) override {
-        std::vector<std::vector<std::uint32_t>> groups(2 * receivers_.size());  // by receiver and side
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const Facing facing = points.facing[light][i];
-            if (facing == Facing::none || facing == Facing::away) continue;
-            const std::uint32_t plane = plane_of_[points.triangle[i]];
-            defined[i]                = 0;
-            if (plane == kNoPlane) continue;
-            const bool below = glm::dot(dvec3(points.normal(i)), receivers_[plane].normal) < 0;
-            groups[2 * plane + below].push_back(static_cast<std::uint32_t>(i));
-        }
-        for (std::uint32_t g = 0; g < groups.size(); ++g)
-            if (!groups[g].empty()) shade_group(points, g, groups[g], s, defined);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (points.facing[light][i] >= Facing::partly) defined[i] = 0;
+        for_each_group(points, light, [&](std::uint32_t group, const std::vector<std::uint32_t>& members) {
+            shade_group(points, group, members, s, defined);
+        });
+    }
+
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override {
+        std::fill(who.begin(), who.end(), kNoTriangle);
+        for_each_group(points, light, [&](std::uint32_t group, const std::vector<std::uint32_t>& members) {
+            blame_group(points, group, members, who);
+        });
     }
 
     std::size_t memory_bytes() const override {
@@ -572,7 +597,8 @@ public:
                             occluders_.size() * sizeof(TriangleId) + sources_.size() * sizeof(Source);
         for (const std::vector<Chunk>& group : chunks_)
             for (const Chunk& chunk : group)
-                bytes += sizeof(Chunk) + chunk.shadows.size() * sizeof(Shadow) + chunk.pieces.size() * sizeof(Triangle);
+                bytes += sizeof(Chunk) + chunk.shadows.size() * sizeof(Shadow) +
+                         chunk.pieces.size() * (sizeof(Triangle) + sizeof(TriangleId));
         return bytes;
     }
 
@@ -581,6 +607,40 @@ private:
 
     bool is_receiver(const PlanarReceiver& plane, double scene_area) const {
         return plane.area >= plane_share_ * scene_area;
+    }
+
+    /// Calls body(group, points) for the points that face the light, by receiver and side.
+    template <class Body>
+    void for_each_group(const PointBatch& points, LightId light, const Body& body) const {
+        std::vector<std::vector<std::uint32_t>> groups(2 * receivers_.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (points.facing[light][i] < Facing::partly) continue;
+            const std::uint32_t plane = plane_of_[points.triangle[i]];
+            if (plane == kNoPlane) continue;
+            const bool below = glm::dot(dvec3(points.normal(i)), receivers_[plane].normal) < 0;
+            groups[2 * plane + below].push_back(static_cast<std::uint32_t>(i));
+        }
+        for (std::uint32_t g = 0; g < groups.size(); ++g)
+            if (!groups[g].empty()) body(g, groups[g]);
+    }
+
+    /// Holds every shadow against every point, since few are asked for: the first that covers one is named.
+    void blame_group(const PointBatch& points, std::uint32_t group, const std::vector<std::uint32_t>& members,
+                     std::span<TriangleId> who) const {
+        const std::uint32_t plane   = group / 2;
+        const int side              = group % 2 == 0 ? 1 : -1;
+        const Receiver& receiver    = receivers_[plane];
+        const std::vector<dvec2> at = places(points, members, receiver, side);
+        for (const Source& from : sources_) {
+            const LocalSource source = local_source(receiver, side, from);
+            if (!(source.at.z > 0)) continue;
+            const std::vector<Chunk> chunks = project(*scene_, occluders_, plane_of_, plane, receiver, side, from);
+            parallel_ranges(members.size(), 16, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i)
+                    if (who[members[i]] == kNoTriangle)
+                        who[members[i]] = first_over(*scene_, receiver, side, source, chunks, at[i]);
+            });
+        }
     }
 
     /// The points of one side of one receiver: as many passes as the light has sources.

@@ -151,6 +151,10 @@ public:
 
     void visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) override;
 
+    /// What the ray to the light meets first; of an area light, the first ray that meets anything. Samples go by the
+    /// place of a point in its batch, so that these rays are not those that gave its S_j, and only as good as they.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override;
+
     [[nodiscard]] std::size_t memory_bytes() const override {
         return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0);
     }
@@ -159,7 +163,10 @@ private:
     [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
     void start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
     void hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
+    template <class Body>
+    bool each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const;
     [[nodiscard]] float seen_share(const Starts& starts, int lane, PointKey key) const;
+    [[nodiscard]] TriangleId first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const;
 
     OffsetPolicy policy_;
     float epsilon_;
@@ -251,13 +258,15 @@ void RayTraced::hard(const Starts& starts, const Facing* facing, std::size_t cou
     }
 }
 
-/// Of all samples of the light, the share that the point sees. What lies behind the point's plane is not seen.
-float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const {
+/// Calls body(packet) for each eight samples of the light, with their rays ready, until it returns false. Lanes are
+/// valid where there is a sample and it lies in front of the point's plane. False where the point lies in the lamp.
+template <class Body>
+bool RayTraced::each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const {
     const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]), n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
     vec3 to_centre = target_.centre - o * (1 / target_.unit), axis_u = target_.axis_u, axis_v = target_.axis_v;
     if (target_.kind == LightKind::sphere) {
         TangentDisk disk;
-        if (!tangent_disk(dvec3(o), target_.sphere, target_.radius, disk)) return 1;  // in the lamp
+        if (!tangent_disk(dvec3(o), target_.sphere, target_.radius, disk)) return false;
         const double per_unit = 1 / static_cast<double>(target_.unit);
         to_centre             = vec3((disk.centre - dvec3(o)) * per_unit);
         axis_u                = vec3(disk.axis_u * per_unit);
@@ -268,7 +277,6 @@ float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const 
         packet.org_x[k] = o.x, packet.org_y[k] = o.y, packet.org_z[k] = o.z;
         packet.id[k] = starts.id[lane];
     }
-    int seen = 0;
     for (int first = 0; first < samples_; first += 8) {
         Samples8 samples;
         set_->eight(key, first, samples);
@@ -286,10 +294,20 @@ float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const 
             packet.tfar[k]  = kAlmostThere * target_.unit;
             packet.valid[k] = rise > 0 && first + k < samples_ ? -1 : 0;
         }
+        if (!body(packet)) return true;
+    }
+    return true;
+}
+
+/// Of all samples of the light, the share that the point sees. What lies behind the point's plane is not seen.
+float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const {
+    int seen            = 0;
+    const bool from_out = each_packet(starts, lane, key, [&](ShadowPacket& packet) {
         rays_->occluded(packet);
         for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
-    }
-    return static_cast<float>(seen) / static_cast<float>(samples_);
+        return true;
+    });
+    return from_out ? static_cast<float>(seen) / static_cast<float>(samples_) : 1;
 }
 
 void RayTraced::visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) {
@@ -337,6 +355,46 @@ void RayTraced::visibility(const PointBatch& points, LightId light, std::span<fl
                 for (std::size_t i = first; i < first + count; ++i)
                     if (sees(i)) s[i] = rays[next++].tfar < 0 ? 0.0f : 1.0f;
             });
+        }
+    });
+}
+
+TriangleId RayTraced::first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const {
+    if (!is_area(target_.kind)) {
+        Starts one = starts;
+        std::swap(one.x[0], one.x[lane]), std::swap(one.y[0], one.y[lane]), std::swap(one.z[0], one.z[lane]);
+        std::swap(one.nx[0], one.nx[lane]), std::swap(one.ny[0], one.ny[lane]), std::swap(one.nz[0], one.nz[lane]);
+        std::swap(one.height[0], one.height[lane]), std::swap(one.id[0], one.id[lane]);
+        ShadowRay ray;
+        hard(one, &facing, 1, &ray);
+        return rays_->first_hit(ray);
+    }
+    // Where little of the light is hidden one set of samples may miss it: sixteen are tried.
+    TriangleId who = kNoTriangle;
+    for (std::uint64_t attempt = 0; attempt < 16 && who == kNoTriangle; ++attempt)
+        each_packet(starts, lane, set_->key(16 * point + attempt), [&](const ShadowPacket& packet) {
+            for (int k = 0; k < 8 && who == kNoTriangle; ++k)
+                if (packet.valid[k] != 0)
+                    who = rays_->first_hit({packet.org_x[k], packet.org_y[k], packet.org_z[k], packet.tnear[k],
+                                            packet.dir_x[k], packet.dir_y[k], packet.dir_z[k], 0, packet.tfar[k], ~0u,
+                                            packet.id[k], 0});
+            return who == kNoTriangle;
+        });
+    return who;
+}
+
+void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) {
+    const std::vector<Facing>& facing = points.facing[light];
+    parallel_ranges((points.size() + 7) / 8, 8, [&](std::size_t begin, std::size_t end) {
+        const FlushDenormals flush;
+        Starts starts;
+        for (std::size_t first = 8 * begin; first < std::min(8 * end, points.size()); first += 8) {
+            const std::size_t count = std::min<std::size_t>(8, points.size() - first);
+            start(points, first, count, starts);
+            for (std::size_t k = 0; k < count; ++k)
+                who[first + k] = facing[first + k] >= Facing::partly
+                                     ? first_blocker(starts, static_cast<int>(k), facing[first + k], first + k)
+                                     : kNoTriangle;
         }
     });
 }

@@ -11,6 +11,7 @@
 // Daniel Holbert. Saying Goodbye to Shadow Acne. 2011 (normal offset)
 #include "shadows/shadow_zbuffer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -142,8 +143,8 @@ void ShadowZBuffer::build(const Scene& scene, const SceneFacts& facts) { views_.
 
 void ShadowZBuffer::aim(LightId light) { views_->aim(light); }
 
-void ShadowZBuffer::visibility(const PointBatch& points, LightId light, std::span<float> s,
-                               std::span<std::uint8_t> defined) {
+template <class Body>
+void ShadowZBuffer::for_each_facet(const PointBatch& points, LightId light, const Body& body) const {
     const std::vector<Facing>& facing = points.facing[light];
     parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         Facet facet{};
@@ -156,11 +157,41 @@ void ShadowZBuffer::visibility(const PointBatch& points, LightId light, std::spa
                 facet_flipped = points.flipped[i] != 0;
                 facet         = make_facet(facet_of, facet_flipped);
             }
-            const dvec3 p =
-                facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac;
-            defined[i] = look_up(facet, p, facing[i], views_->scene().lights[light], s[i]);
+            body(i, facet,
+                 facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac);
         }
     });
+}
+
+void ShadowZBuffer::visibility(const PointBatch& points, LightId light, std::span<float> s,
+                               std::span<std::uint8_t> defined) {
+    for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+        defined[i] = look_up(facet, p, points.facing[light][i], views_->scene().lights[light], s[i]);
+    });
+}
+
+void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) {
+    struct Sample {
+        std::size_t view = ~std::size_t{0};
+        ivec2 at{0};
+    };
+    const std::vector<View>& views = views_->views();
+    std::vector<Sample> samples(points.size());
+    for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+        for (std::size_t v = 0; v < views.size(); ++v)
+            if (const std::optional<Receiver> receiver = receive(views[v], facet, p, bias_, filter_)) {
+                if (const auto at = blocked_sample(views[v].map, *receiver, bias_.mode, filter_)) samples[i] = {v, *at};
+                return;
+            }
+    });
+    std::fill(who.begin(), who.end(), kNoTriangle);
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        if (std::ranges::find(samples, v, &Sample::view) == samples.end()) continue;
+        const std::vector<TriangleId> owners = views_->owners(views[v]);
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            if (samples[i].view == v)
+                who[i] = owners[static_cast<std::size_t>(samples[i].at.y) * views[v].map.width() + samples[i].at.x];
+    }
 }
 
 std::size_t ShadowZBuffer::memory_bytes() const { return views_ ? views_->memory_bytes() : 0; }

@@ -1,0 +1,21 @@
+// Errors with their causes: asks a method and its reference which triangles they hold responsible.
+#pragma once
+
+#include "bench/run.h"
+#include "core/error_classes.h"
+#include "core/visibility_error.h"
+
+namespace umbra {
+
+/// One light of one method held against the reference.
+struct Explained {
+    ClassPlane classes;
+    VisibilityError error;
+};
+
+/// Sorts every point into its class and counts them. Both runs are of this scene and batch, and serve it; their methods
+/// are asked again where interior errors need a name, and are left aimed at `light` then.
+[[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
+                                const MethodRun& reference);
+
+}  // namespace umbra
