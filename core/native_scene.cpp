@@ -335,7 +335,7 @@ Mesh NativeReader::read_triangles(const JsonFields& f) const {
         mesh.positions.emplace_back(text_.vector(v, "a position", kAny));
     if (const JsonValue* normals = f.find("normals")) {
         for (const JsonValue& v : text_.array(*normals, "normals", "a list of [x, y, z]"))
-            mesh.normals.push_back(direction(v, "a normal"));
+            mesh.normals.emplace_back(text_.vector(v, "a normal", kAny));  // zero: the face's own
         if (mesh.normals.size() != mesh.positions.size())
             text_.fail(*normals, fmt::format("{} normals for {} positions (one each would be right)",
                                              mesh.normals.size(), mesh.positions.size()));
@@ -528,7 +528,7 @@ void NativeReader::read_object(const JsonValue& v) {
     for (Part& part : parts) {
         if (how == 1) part.mesh.normals.clear();
         if (how == 2) part.mesh = with_averaged_normals(part.mesh, crease);
-        part.mesh = transformed(std::move(part.mesh), m);
+        if (transform) part.mesh = transformed(std::move(part.mesh), m);
         for (const vec3 p : part.mesh.positions)
             if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) <= float(kMaxCoordinate)))
                 text_.fail(transform ? *transform : v,

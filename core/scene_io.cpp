@@ -33,6 +33,14 @@ bool in_range(dvec3 v) {
 }
 std::string text(dvec3 v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
 
+// Of length 1; zero stays zero. What has that length but for rounding is left alone, so that a scene that is written
+// and read again keeps its bits.
+vec3 unit(vec3 v) {
+    const double square = glm::dot(dvec3(v), dvec3(v));
+    if (std::abs(square - 1) <= 0x1p-22 || square == 0) return v;
+    return vec3(dvec3(v) / std::sqrt(square));
+}
+
 void check_geometry(Scene& scene, const path& file) {
     if (scene.triangles.size() > kMaxTriangles)
         refuse(file, fmt::format("{} triangles (at most {} are read)", scene.triangles.size(), kMaxTriangles));
@@ -44,8 +52,7 @@ void check_geometry(Scene& scene, const path& file) {
         throw std::logic_error("finish_scene: one normal a position is expected");
     for (vec3& n : scene.normals) {
         if (!is_finite(n)) refuse(file, fmt::format("a vertex normal {} (finite numbers would be right)", text(n)));
-        const double length = glm::length(dvec3(n));
-        n                   = length > 0 ? vec3(dvec3(n) / length) : vec3(0);  // zero stands for the face normal
+        n = unit(n);  // zero stands for the face normal
     }
     for (const uvec3& t : scene.triangles)
         if (std::max({t.x, t.y, t.z}) >= scene.positions.size())
@@ -151,8 +158,7 @@ void check_light(Light& light, const path& file) {
     if (light.kind != LightKind::point && light.kind != LightKind::sphere) {
         if (!is_finite(light.direction) || light.direction == vec3(0))
             fail(fmt::format("direction is {} (finite and not zero would be right)", text(light.direction)));
-        light.direction = light.kind == LightKind::directional ? scaled_to_one(light.direction)
-                                                               : vec3(glm::normalize(dvec3(light.direction)));
+        light.direction = light.kind == LightKind::directional ? scaled_to_one(light.direction) : unit(light.direction);
     }
     if ((light.kind == LightKind::disk || light.kind == LightKind::sphere) &&
         !(light.radius > 0 && light.radius <= kMaxCoordinate))
