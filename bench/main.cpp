@@ -9,8 +9,10 @@
 #include <fstream>
 #include <iostream>
 
+#include "bench/canonical.h"
 #include "bench/compare.h"
 #include "bench/diff.h"
+#include "bench/golden.h"
 #include "bench/inspect.h"
 #include "bench/ladder_command.h"
 #include "bench/ladder_record.h"
@@ -56,19 +58,10 @@ fs::path scenes_folder() {
     return set != nullptr ? set : UMBRA_SCENES_FOLDER;
 }
 
-/// The canonical scenes in the report's order, as scenes/canonical.txt lists them: one file name a line, # begins a
-/// comment.
-std::vector<fs::path> canonical_scenes() {
-    const fs::path list = scenes_folder() / "canonical.txt";
-    std::ifstream in(list);
-    if (!in)
-        throw InputError(
-            fmt::format("{}: cannot read the list of canonical scenes (set UMBRA_SCENES to the folder that holds it)",
-                        list.string()));
-    std::vector<fs::path> scenes;
-    for (std::string line; std::getline(in, line);)
-        if (!line.empty() && line[0] != '#') scenes.push_back(scenes_folder() / line);
-    return scenes;
+/// Where the goldens lie: $UMBRA_GOLDEN, else beside the tests this was built with.
+fs::path golden_folder() {
+    const char* set = std::getenv("UMBRA_GOLDEN");
+    return set != nullptr ? set : UMBRA_GOLDEN_FOLDER;
 }
 
 int list(bool as_json) {
@@ -79,7 +72,7 @@ int list(bool as_json) {
                    {"metrics", {"mae", "rmse", "max", "bias", "psnr", "ssim", "flip"}},
                    {"ladders", Json::array()}};
     for (const MethodInfo* info : methods()) record["methods"].push_back(method_json(*info));
-    for (const fs::path& scene : canonical_scenes()) record["scenes"].push_back(scene.stem().string());
+    for (const fs::path& scene : canonical_scenes(scenes_folder())) record["scenes"].push_back(scene.stem().string());
     for (const Ladder* ladder : ladders()) record["ladders"].push_back(ladder_info_json(*ladder));
     if (as_json) {
         fmt::print("{}\n", record.dump(1));
@@ -172,12 +165,47 @@ int report(const std::vector<fs::path>& folders, const fs::path& out, const Comm
         CompareOptions options;
         options.out = out;
         // A canonical scene whose mesh could not be obtained at set-up is left out: that is told, but it is no failure.
-        const ScenesDone done = compare(canonical_scenes(), options, common);
+        const ScenesDone done = compare(canonical_scenes(scenes_folder()), options, common);
         return done.failed.empty() && !done.names.empty() ? kDone : kUnreadable;
     }
     write_report(folders, out, {});
     if (!common.quiet) fmt::print("{}\n", (out / "index.html").string());
     return kDone;
+}
+
+/// Renews the goldens and prints what changed; with `only_check` prints alone, and answers no where anything would.
+int accept(GoldenOptions options, bool only_check, const Common& common) {
+    const std::vector<fs::path> scenes = teaching_scenes(scenes_folder());
+    check_golden_names(scenes, options);
+    options.folder = golden_folder();
+    options.renew  = !only_check;
+
+    std::vector<GoldenChange> all;
+    const auto print = [&](const std::vector<GoldenChange>& changes) {
+        for (const GoldenChange& change : changes) {
+            if (!common.quiet) fmt::print("{}: {}\n", change.name, to_string(change.kind));
+            if (!common.quiet)
+                for (const std::string& line : change.lines) fmt::print("    {}\n", line);
+            all.push_back(change);
+        }
+    };
+    for (const fs::path& scene : scenes) {
+        const Progress progress(common.quiet);
+        progress(scene.stem().string());
+        print(golden_changes(scene, options));
+    }
+    print(golden_leftovers(scenes, options));
+    if (common.quiet) return only_check && !all.empty() ? kNo : kDone;
+    const auto count = [&](GoldenChange::Kind kind) {
+        return std::count_if(all.begin(), all.end(), [&](const GoldenChange& c) { return c.kind == kind; });
+    };
+    if (all.empty())
+        fmt::print("nothing changed\n");
+    else
+        fmt::print("{} changed, {} new, {} removed{}\n", count(GoldenChange::Kind::changed),
+                   count(GoldenChange::Kind::added), count(GoldenChange::Kind::removed),
+                   only_check ? "; nothing was written" : fmt::format(", in {}", options.folder.string()));
+    return only_check && !all.empty() ? kNo : kDone;
 }
 
 int run(int argc, char** argv) {
@@ -259,6 +287,15 @@ int run(int argc, char** argv) {
     ladder_command->add_option("-o,--output", out, "Folder to write to")->required();
     ladder_command->add_flag("--json", as_json, "Print results.json instead of the table");
 
+    GoldenOptions golden_options;
+    bool only_check          = false;
+    CLI::App* accept_command = app.add_subcommand(
+        "accept", "Renew the goldens that the tests hold every method against, and print what changed");
+    accept_command->add_option("NAME", golden_options.names, "SCENE, METHOD or SCENE/METHOD (default: all)");
+    accept_command->add_flag("--check", only_check, "Write nothing; exit with 1 where anything would change");
+    accept_command->add_option("--pictures", golden_options.pictures,
+                               "Folder for reference, result and difference of what changed");
+
     std::string report_out   = "results";
     CLI::App* report_command = app.add_subcommand(
         "report", "The main job: all canonical scenes under all methods; with folders: their pages anew");
@@ -285,6 +322,7 @@ int run(int argc, char** argv) {
         diff_options.map = map;
         return compare_images(a, b, diff_options, as_json);
     }
+    if (*accept_command) return accept(golden_options, only_check, common);
     if (*compare_command) {
         if (!size.empty()) compare_options.size = parse_size(size);
         if (!reference.empty()) compare_options.reference = reference;

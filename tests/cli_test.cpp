@@ -18,9 +18,8 @@ struct Answer {
     std::string output;  ///< standard output and error together
 };
 
-Answer umbra(const std::string& arguments) {
-    const std::string command = std::string(UMBRA_PROGRAM) + " " + arguments + " 2>&1 </dev/null";
-    FILE* pipe                = popen(command.c_str(), "r");
+Answer run(const std::string& command) {
+    FILE* pipe = popen((command + " 2>&1 </dev/null").c_str(), "r");
     Answer answer;
     std::array<char, 4096> buffer{};
     for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
@@ -29,6 +28,8 @@ Answer umbra(const std::string& arguments) {
     answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     return answer;
 }
+
+Answer umbra(const std::string& arguments) { return run(std::string(UMBRA_PROGRAM) + " " + arguments); }
 
 const std::string kScene = std::string(UMBRA_SCENES) + "/sun_on_plane.json";
 
@@ -70,7 +71,7 @@ TEST_F(Cli, UnreadableInputEndsWithFourAndLeavesNothing) {
 }
 
 TEST_F(Cli, HelpAndVersionAreThereEverywhere) {
-    for (const char* command : {"", "list", "inspect", "render", "compare", "diff", "report"}) {
+    for (const char* command : {"", "list", "inspect", "render", "compare", "diff", "accept", "report"}) {
         const Answer answer = umbra(std::string(command) + " --help");
         EXPECT_EQ(answer.exit_code, 0) << command;
         EXPECT_GT(answer.output.size(), 80u) << command;
@@ -124,6 +125,32 @@ TEST_F(Cli, DiffExitCodes) {
         nlohmann::json::parse(umbra("diff " + file("a.png") + " " + file("b.png") + " --json").output);
     for (const char* key : {"mae", "rmse", "max", "psnr", "ssim", "flip", "worst"})
         EXPECT_TRUE(record.contains(key)) << key;
+}
+
+TEST_F(Cli, AcceptRenewsOnceAndCheckNeverWrites) {
+    fs::copy(kScene, file("sun.json"));
+    std::ofstream(file("canonical.txt")) << "# one scene\nsun.json\n";
+    const std::string with_folders =
+        "UMBRA_SCENES=" + folder_.string() + " UMBRA_GOLDEN=" + file("golden") + " " + UMBRA_PROGRAM + " accept ";
+    EXPECT_EQ(run(with_folders + "moon").exit_code, 2);
+    Answer answer = run(with_folders + "--check");
+    EXPECT_EQ(answer.exit_code, 1);
+    EXPECT_NE(answer.output.find("sun/shadow_zbuffer: new"), std::string::npos) << answer.output;
+    EXPECT_FALSE(fs::exists(file("golden")));
+
+    EXPECT_EQ(run(with_folders + "sun/exact sun/shadow_zbuffer").exit_code, 0);
+    EXPECT_TRUE(fs::exists(file("golden/sun/exact.exr")));
+    EXPECT_FALSE(fs::exists(file("golden/sun/ray_traced.exr")));
+    EXPECT_EQ(run(with_folders).exit_code, 0);
+    answer = run(with_folders);
+    EXPECT_EQ(answer.exit_code, 0);
+    EXPECT_EQ(answer.output, "nothing changed\n");
+    EXPECT_EQ(run(with_folders + "--check").exit_code, 0);
+
+    std::ofstream(file("golden/sun/figures.json")) << "no figures";
+    EXPECT_EQ(run(with_folders + "--check").exit_code, 4);
+    fs::remove(file("golden/sun/figures.json"));
+    EXPECT_EQ(run(with_folders + "--check").exit_code, 1);
 }
 
 TEST_F(Cli, CompareThenReportAnewFromFilesAlone) {
