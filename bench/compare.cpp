@@ -10,6 +10,7 @@
 #include <set>
 
 #include "bench/explain.h"
+#include "bench/noise_runs.h"
 #include "bench/pictures.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -89,7 +90,27 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
     return files;
 }
 
-Json error_json(const std::string& light, const VisibilityError& e, bool bracketed) {
+Json displacement_json(const std::optional<EdgeDisplacement>& d) {
+    if (!d) return {};
+    return {{"mean", number(d->mean)},
+            {"p95", number(d->p95)},
+            {"max", number(d->max)},
+            {"pieces", d->pieces},
+            {"unmatched", d->unmatched}};
+}
+
+Json penumbra_json(const std::optional<PenumbraWidth>& w) {
+    if (!w) return {};
+    return {{"method", number(w->method)}, {"reference", number(w->reference)}};
+}
+
+Json noise_json(const std::optional<Noise>& n) {
+    if (!n) return {};
+    return {{"runs", n->runs}, {"noise_rmse", number(n->rms)}, {"bias_rmse", number(n->bias)}};
+}
+
+Json error_json(const std::string& light, const Explained& explained, bool bracketed) {
+    const VisibilityError& e = explained.error;
     // Detachment and leak are told apart by the occluder: null where the reference names none.
     const bool named = e.unnamed == 0;
     return {{"light", light},
@@ -116,7 +137,9 @@ Json error_json(const std::string& light, const VisibilityError& e, bool bracket
             {"rmse", number(e.rmse)},
             {"max", number(e.max)},
             {"bias", number(e.bias)},
-            {"edge_displacement_px", nullptr}};
+            {"noise", noise_json(explained.noise)},
+            {"edge_displacement_px", displacement_json(explained.displacement)},
+            {"penumbra_width_px", penumbra_json(explained.penumbra_width)}};
 }
 
 /// Differences of the pictures over covered pixels: where a method leaves any light undefined, the reference's pixel
@@ -164,13 +187,15 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     const Scene& scene = prepared.scene;
     Json light_times = Json::array(), errors = Json::array();
     std::vector<Explained> explained;
+    const auto noise = noise_runs(run.choice, scene, prepared.facts, prepared.points);
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const Light& light = scene.lights[j];
         light_times.push_back({{"light", light.name},
                                {"aim_ms", timing_json(run.aim[j])},
                                {"visibility_ms", timing_json(run.visibility[j])}});
         explained.push_back(explain(scene, prepared.points, j, run, reference));
-        errors.push_back(error_json(light.name, explained.back().error, !reference.half_widths[j].empty()));
+        if (noise[j]) explained.back().noise = noise[j]->result(explained.back().classes, reference.planes[j]);
+        errors.push_back(error_json(light.name, explained.back(), !reference.half_widths[j].empty()));
     }
     entry["times"]        = {{"build_ms", timing_json(run.build)},
                              {"aim_ms", timing_json(total(run.aim))},

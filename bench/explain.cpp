@@ -47,7 +47,9 @@ Explained explain(const Scene& scene, const PointBatch& points, LightId light, c
     mark_acne(e.classes, scene, points, dark, blamed(run, points, light, dark));
     const auto bright = points_of_class(e.classes, ErrorClass::false_light);
     mark_detachment(e.classes, scene, points, light, bright, blamed(reference, points, light, bright));
-    e.error = count_errors(points, e.classes, s, truth, half_widths);
+    e.error        = count_errors(points, e.classes, s, truth, half_widths);
+    e.displacement = edge_displacement(points, e.classes, s, truth);
+    if (is_area(scene.lights[light].kind)) e.penumbra_width = penumbra_width(points, e.classes, s, truth);
     return e;
 }
 

@@ -1,8 +1,12 @@
 // Errors with their causes: asks a method and its reference which triangles they hold responsible.
 #pragma once
 
+#include <optional>
+
 #include "bench/run.h"
 #include "core/error_classes.h"
+#include "core/noise.h"
+#include "core/shadow_edges.h"
 #include "core/visibility_error.h"
 
 namespace umbra {
@@ -11,10 +15,14 @@ namespace umbra {
 struct Explained {
     ClassPlane classes;
     VisibilityError error;
+    std::optional<EdgeDisplacement> displacement;
+    std::optional<PenumbraWidth> penumbra_width;  ///< area lights only
+    std::optional<Noise> noise;                   ///< of methods that have some, in area lights
 };
 
-/// Sorts every point into its class and counts them. Both runs are of this scene and batch, and serve it; their methods
-/// are asked again where interior errors need a name, and are left aimed at `light` then.
+/// Sorts every point into its class and counts them; measures edges and penumbrae. All but `noise`. Both runs are of
+/// this scene and batch, and serve it; their methods are asked again where interior errors need a name, and are left
+/// aimed at `light` then.
 [[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
                                 const MethodRun& reference);
 

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "core/shade.h"
+#include "core/shadow_edges.h"
 
 namespace umbra {
 namespace {
@@ -37,9 +38,6 @@ bool share_a_corner(const Scene& scene, TriangleId s, TriangleId t) {
             if (scene.vertex(s, j) == scene.vertex(t, k)) return true;
     return false;
 }
-
-/// What a pixel spans at depth 1, or at any depth of an orthographic view.
-double pixel_span(const CameraFrame& f) { return 2 * std::max(f.half_width / f.width, f.half_height / f.height); }
 
 double distance_to_segment(dvec3 p, dvec3 a, dvec3 b) {
     const dvec3 d       = b - a;
@@ -103,15 +101,13 @@ void mark_acne(ClassPlane& classes, const Scene& scene, const PointBatch& points
 
 void mark_detachment(ClassPlane& classes, const Scene& scene, const PointBatch& points, LightId light,
                      std::span<const std::uint32_t> which, std::span<const TriangleId> who) {
-    const CameraFrame& frame = *points.raster;
-    const bool perspective   = frame.projection == Projection::perspective;
     for (std::size_t k = 0; k < which.size(); ++k) {
         if (who[k] == kNoTriangle) continue;
         const dvec3 p(points.position(which[k]));
-        const double pixel    = pixel_span(frame) * (perspective ? frame.project(p).z : 1.0);
         const double distance = distance_to_occluder(scene.lights[light], p, dvec3(scene.vertex(who[k], 0)),
                                                      dvec3(scene.vertex(who[k], 1)), dvec3(scene.vertex(who[k], 2)));
-        classes[which[k]]     = distance <= kContact * pixel ? ErrorClass::detachment : ErrorClass::leak;
+        classes[which[k]] =
+            distance <= kContact * pixel_span(points, which[k]) ? ErrorClass::detachment : ErrorClass::leak;
     }
 }
 

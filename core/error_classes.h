@@ -29,7 +29,9 @@ enum class ErrorClass : std::uint8_t {
     detachment,   ///< interior, at a contact ("peter-panning")
     leak          ///< interior, elsewhere
 };
-inline constexpr int kErrorClasses = 15;
+
+/// Do both planes define the point, so that it is right or wrong?
+[[nodiscard]] constexpr bool is_compared(ErrorClass c) { return c >= ErrorClass::right; }
 
 using ClassPlane = std::vector<ErrorClass>;  ///< one a point of a raster batch
 
