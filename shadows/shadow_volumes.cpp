@@ -20,6 +20,7 @@
 // Graham Aldridge, Eric Woods. Robust, Geometry-Independent Shadow Volumes. 2004
 // Byungmoon Kim, Kihwan Kim, Greg Turk. A Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters. 2008
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 
@@ -27,6 +28,7 @@
 #include "shadows/method.h"
 #include "shadows/point_tree.h"
 #include "shadows/silhouettes.h"
+#include "shadows/triangle_tree.h"
 
 namespace umbra {
 namespace {
@@ -286,11 +288,44 @@ public:
         tree.for_each([&](std::uint32_t i, std::int32_t count) { s[i] = origin + count > 0 ? 0.0f : 1.0f; });
     }
 
+    /// A sum of crossings names no volume. So the volumes that hold the point are looked for anew, each by its own
+    /// planes, in double: the triangle farthest off is named, which rounding at the point's own surface cannot be.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override {
+        const TriangleTree tree(*scene_);
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                who[i] =
+                    points.facing[light][i] < Facing::partly ? kNoTriangle : farthest_volume(tree, points, i, light);
+        });
+    }
+
     std::size_t memory_bytes() const override {
         return meshes_->memory_bytes() + turn_.capacity() + edges_.capacity() * sizeof(SilhouetteEdge);
     }
 
 private:
+    TriangleId farthest_volume(const TriangleTree& tree, const PointBatch& points, std::size_t i, LightId light) const {
+        const Light& l         = scene_->lights[light];
+        const bool at_infinity = l.kind == LightKind::directional;
+        const dvec3 p          = named_point(*scene_, points, i, dvec3(0));
+        const dvec3 way        = at_infinity ? -dvec3(l.direction) : dvec3(l.position) - p;
+        TriangleId farthest    = kNoTriangle;
+        double most            = 0;
+        tree.visit({p, way, at_infinity ? std::numeric_limits<double>::infinity() : 1.0, 0}, [&](TriangleId t) {
+            if (turn_[t] == 0) return true;
+            std::array<dvec3, 3> v;
+            for (int k = 0; k < 3; ++k) v[static_cast<std::size_t>(k)] = dvec3(scene_->vertex(t, k)) - p;
+            const dvec3 n      = glm::cross(v[1] - v[0], v[2] - v[0]);
+            const double share = glm::dot(n, v[0]) / glm::dot(n, way);  // of the way to the light
+            int inside         = 0;
+            for (std::size_t k = 0; k < 3; ++k)
+                inside += glm::dot(glm::cross(v[k], v[(k + 1) % 3]), way) >= 0 ? +1 : -1;
+            if (std::abs(inside) == 3 && share > most && (at_infinity || share < 1)) most = share, farthest = t;
+            return true;
+        });
+        return farthest;
+    }
+
     std::vector<SilhouetteEdge> all_edges() const {
         std::vector<SilhouetteEdge> edges;
         for (std::size_t t = 0; t < turn_.size(); ++t) {

@@ -248,6 +248,79 @@ TEST_P(Contract, AnEmptyBatchIsServed) {
     EXPECT_TRUE(run.visibility(none, 0).s.empty());
 }
 
+/// Points of the batch that the plane calls dark, as a batch without a raster.
+PointBatch dark_points(const Scene& scene, const PointBatch& from, LightId light, const VisibilityPlane& plane) {
+    std::vector<std::size_t> dark;
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (is_open(from, light, i) && plane.defined[i] == kDefined && plane.s[i] < 1) dark.push_back(i);
+    PointBatch points;
+    points.eye = from.eye;
+    points.resize(dark.size());
+    for (std::size_t k = 0; k < dark.size(); ++k)
+        set_point(points, k, scene, from.triangle[dark[k]], from.u[dark[k]], from.v[dark[k]]);
+    face_lights(points, scene);
+    return points;
+}
+
+/// How far the way to the light passes outside the triangle, as a share of the scene: 0 where it crosses it.
+double miss(const Scene& scene, const PointBatch& points, std::size_t i, const Light& light, TriangleId t) {
+    const dvec3 p   = place(scene, points, i);
+    const dvec3 way = light.kind == LightKind::directional ? -dvec3(light.direction) : dvec3(light.position) - p;
+    const dvec3 a(scene.vertex(t, 0)), b(scene.vertex(t, 1)), c(scene.vertex(t, 2));
+    const dvec3 n      = glm::cross(b - a, c - a);
+    const double share = glm::dot(n, a - p) / glm::dot(n, way);
+    const dvec3 q      = p + share * way;
+    double outside = std::max({0.0, -share, light.kind == LightKind::directional ? 0.0 : share - 1}) * glm::length(way);
+    for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}})
+        outside = std::max(outside,
+                           -glm::dot(glm::cross(to - from, q - from), n) / (glm::length(n) * glm::length(to - from)));
+    return outside / static_cast<double>(bounds(scene).diagonal());
+}
+
+TEST_P(Contract, BlamesATriangleThatBlocks) {
+    std::size_t named = 0;
+    for (const char* name : {"two_lights", "open_meshes", "room"}) {
+        const KnownScene known = known_scene(name);
+        MethodCase run(info(), known.scene);
+        if (!run.serves()) continue;
+        const PointBatch raster = primary(known.scene);
+        // Samples of a map lie off the way to the light by as much as they are apart.
+        const double allowed = info().name == "shadow_zbuffer" ? 5e-3 : 1e-9;
+        for (LightId j = 0; j < known.scene.lights.size(); ++j) {
+            run.prepare(j);
+            const PointBatch dark = dark_points(known.scene, raster, j, run.visibility(raster, j));
+            std::vector<TriangleId> who(dark.size(), 12345);
+            run.method->blame(dark, j, who);
+            for (std::size_t i = 0; i < who.size(); ++i) {
+                ASSERT_TRUE(who[i] == kNoTriangle || who[i] < known.scene.triangles.size());
+                if (who[i] == kNoTriangle) continue;
+                ++named;
+                ASSERT_LE(miss(known.scene, dark, i, known.scene.lights[j], who[i]), allowed) << name << ' ' << i;
+            }
+            EXPECT_LE(std::ranges::count(who, kNoTriangle), std::ptrdiff_t(who.size() / 100)) << name;
+        }
+    }
+    EXPECT_GT(named, 500u);
+}
+
+TEST_P(Contract, BlamesSomeOccluderOfAnAreaLight) {
+    const KnownScene known = known_scene("penumbra_of_half_plane");
+    MethodCase run(info(), known.scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    run.prepare(0);
+    const PointBatch raster = primary(known.scene);
+    const PointBatch dark   = dark_points(known.scene, raster, 0, run.visibility(raster, 0));
+    std::vector<TriangleId> who(dark.size(), 12345);
+    run.method->blame(dark, 0, who);
+    std::size_t right = 0;
+    for (std::size_t i = 0; i < who.size(); ++i) {
+        ASSERT_TRUE(who[i] == kNoTriangle || who[i] < known.scene.triangles.size());
+        right += who[i] != kNoTriangle && who[i] != dark.triangle[i];
+    }
+    EXPECT_GT(dark.size(), 300u);
+    EXPECT_GE(right, dark.size() * 99 / 100);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Contract, testing::ValuesIn(methods().begin(), methods().end()),
                          [](const auto& param) { return name_of(param.param); });
 
