@@ -25,6 +25,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/predicates.h"
 #include "shadows/method.h"
 #include "shadows/point_tree.h"
 #include "shadows/silhouettes.h"
@@ -285,7 +286,9 @@ public:
         parallel_ranges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t e = begin; e < end; ++e) volumes.add_side(tree, edges_[e], depth_fail_);
         });
-        tree.for_each([&](std::uint32_t i, std::int32_t count) { s[i] = origin + count > 0 ? 0.0f : 1.0f; });
+        tree.for_each([&](std::uint32_t i, std::int32_t count) {
+            s[i] = origin + count > 0 || centre_is_behind(points, light, i) ? 0.0f : 1.0f;
+        });
     }
 
     /// A sum of crossings names no volume. So the volumes that hold the point are looked for anew, each by its own
@@ -336,6 +339,15 @@ private:
             }
         }
         return edges;
+    }
+
+    /// An area light that the point's plane cuts may have its centre, as which it is taken, behind.
+    bool centre_is_behind(const PointBatch& points, LightId light, std::size_t i) const {
+        if (points.facing[light][i] != Facing::partly) return false;
+        const TriangleId t = points.triangle[i];
+        const int side     = side_of_plane(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2),
+                                           scene_->lights[light].position);
+        return points.flipped[i] ? side >= 0 : side <= 0;
     }
 
     bool depth_fail_;
