@@ -83,7 +83,9 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
         if (!explained.empty()) {
             entry["difference"] = fmt::format("{}.diff.{}.png", id, light);
             write_image(folder / entry["difference"],
-                        difference_picture(points, explained[j].classes, reference.planes[j]));
+                        difference_picture(points, j, run.planes[j], reference.planes[j]));
+            entry["classes"] = fmt::format("{}.classes.{}.png", id, light);
+            write_image(folder / entry["classes"], class_picture(points, explained[j].classes, reference.planes[j]));
         }
         files["lights"][light] = std::move(entry);
     }

@@ -1,4 +1,4 @@
-// The colours of the difference pictures, one a class of errors: for the pictures and for their legends.
+// The colours of the class pictures, one a class of errors: for the pictures and for their legends.
 //
 // Three hues that colour-blind eyes keep apart, on grounds both dark and light: shadows that should not be are blue,
 // light that should not be is orange to red, the terminator is green; within a hue the rarer and graver class is the

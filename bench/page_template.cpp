@@ -34,6 +34,7 @@ std::string render_page(std::string_view page, const json& view) {
     kainjow::mustache::data data = template_data(view);
     for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
                                         {"picture", assets::picture_html},
+                                        {"classes", assets::classes_html},
                                         {"scales", assets::scales_html},
                                         {"scale_colours", assets::scale_colours_html}})
         data.set(name, std::string(partial));

@@ -24,8 +24,11 @@ vec3 ramp(const std::array<vec3, N>& colours, float t) {
     return glm::mix(colours[k], colours[k + 1], x - static_cast<float>(k));
 }
 
-constexpr std::array<vec3, 5> kError = {vec3(0, 0, 0.02f), vec3(0.32f, 0.07f, 0.49f), vec3(0.72f, 0.21f, 0.47f),
-                                        vec3(0.99f, 0.54f, 0.38f), vec3(0.99f, 0.99f, 0.75f)};
+constexpr std::array<vec3, 5> kDifference = {vec3(0x05, 0x30, 0x61) / 255.0f, vec3(0x43, 0x93, 0xc3) / 255.0f,
+                                             vec3(0xf7, 0xf7, 0xf7) / 255.0f, vec3(0xd6, 0x60, 0x4d) / 255.0f,
+                                             vec3(0x67, 0x00, 0x1f) / 255.0f};
+constexpr std::array<vec3, 5> kError      = {vec3(0, 0, 0.02f), vec3(0.32f, 0.07f, 0.49f), vec3(0.72f, 0.21f, 0.47f),
+                                             vec3(0.99f, 0.54f, 0.38f), vec3(0.99f, 0.99f, 0.75f)};
 
 // The ground on which wrong points show: greys that no class has.
 constexpr vec3 kAway       = vec3(0x30, 0x30, 0x34) / 255.0f;
@@ -65,7 +68,16 @@ Image visibility_picture(const PointBatch& points, const VisibilityPlane& plane)
     });
 }
 
-Image difference_picture(const PointBatch& points, const ClassPlane& classes, const VisibilityPlane& reference) {
+Image difference_picture(const PointBatch& points, LightId light, const VisibilityPlane& plane,
+                         const VisibilityPlane& reference) {
+    return picture(points.raster->width, points.raster->height, [&](std::size_t i, std::size_t x, std::size_t y) {
+        if (points.facing[light][i] == Facing::none) return kNoSurface;
+        if (!plane.defined[i] || !reference.defined[i]) return hatched(x, y);
+        return ramp(kDifference, 0.5f + 0.5f * (plane.s[i] - reference.s[i]));
+    });
+}
+
+Image class_picture(const PointBatch& points, const ClassPlane& classes, const VisibilityPlane& reference) {
     return picture(points.raster->width, points.raster->height, [&](std::size_t i, std::size_t x, std::size_t y) {
         switch (classes[i]) {
             case ErrorClass::no_surface: return kNoSurface;

@@ -100,6 +100,7 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
         add_reference(references, reference_view(scene.root));
     }
     return {{"title", title},
+            {"legend", class_legend()},
             {"scene_count", std::to_string(scenes.size())},
             {"method_count", std::to_string(ids.size())},
             {"scenes", std::move(cards)},

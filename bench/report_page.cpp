@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "bench/error_palette.h"
 #include "bench/report_text.h"
 
 namespace umbra {
@@ -112,6 +113,13 @@ Totals totals(const Field& method) {
 bool is_reference(const Field& root, const Field& method) {
     const std::string text = method["text"].text();
     return !text.empty() && text == root["reference"]["text"].text();
+}
+
+json class_legend() {
+    json all = json::array();
+    for (const ErrorColour& entry : kErrorPalette)
+        all.push_back({{"name", std::string(entry.name)}, {"colour", std::string(entry.srgb)}});
+    return all;
 }
 
 json run_view(const Field& root) {

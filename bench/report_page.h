@@ -65,6 +65,9 @@ struct Totals {
 /// The reference of a comparison may be among its methods, too; it is not held against itself.
 [[nodiscard]] bool is_reference(const Field& root, const Field& method);
 
+/// Name and colour of every class of errors, as the class pictures have them.
+[[nodiscard]] nlohmann::json class_legend();
+
 /// Command, machine and version; title, text, exact and note of the reference.
 [[nodiscard]] nlohmann::json run_view(const Field& root);
 [[nodiscard]] nlohmann::json reference_view(const Field& root);

@@ -33,7 +33,28 @@ std::string percent_words(const Field& method) {
     return coverage && *coverage < 1 ? fmt::format("covers {} %", percent(coverage)) : std::string();
 }
 
-/// The pictures of S_j and of its difference, one row a light, one column a method.
+/// What is wrong in one light's plane, in words, and whether there is anything to see on its class picture.
+struct WrongInWords {
+    std::string text;
+    bool any = false;
+};
+WrongInWords wrong_in_words(const Field& error) {
+    const auto n       = [&](const Field& field) { return field.number().value_or(0); };
+    const Field shadow = error["false_shadow"], lit = error["false_light"];
+    const double interior_shadow = n(shadow["interior"]), interior_light = n(lit["interior"]);
+    const double edge = n(shadow["edge"]) + n(lit["edge"]), terminator = n(error["terminator"]["wrong"]);
+    WrongInWords words{
+        fmt::format("interior: {} false shadow, {} false light", count(interior_shadow), count(interior_light)),
+        interior_shadow + interior_light + edge + terminator + n(error["on_boundary"]) > 0};
+    std::string causes;
+    for (const auto& [key, field] :
+         {std::pair{"acne", shadow["acne"]}, {"detachment", lit["detachment"]}, {"leak", lit["leak"]}})
+        if (n(field) > 0) causes += fmt::format("{}{} {}", causes.empty() ? "" : ", ", count(field.number()), key);
+    if (!causes.empty()) words.text += fmt::format(" ({})", causes);
+    return words;
+}
+
+/// The pictures of S_j, of its difference and of the classes of errors, one row a light, one column a method.
 json light_views(const SceneFiles& scene, const std::vector<Field>& methods) {
     const Field root = scene.scene().root;
     json all         = json::array();
@@ -51,17 +72,20 @@ json light_views(const SceneFiles& scene, const std::vector<Field>& methods) {
             column["visibility"] =
                 scene.figure(files["visibility"], label, "S of " + name,
                              fmt::format("S_j of {} by {}: lit points white, umbra black, penumbra grey", name, label));
-            std::string wrong;
+            WrongInWords wrong;
             for (const Field& error : method["errors"].items())
-                if (error["light"].text() == name)
-                    wrong = fmt::format("interior: {} false shadow, {} false light",
-                                        count(error["false_shadow"]["interior"].number()),
-                                        count(error["false_light"]["interior"].number()));
-            column["wrong"] = wrong;
+                if (error["light"].text() == name) wrong = wrong_in_words(error);
+            column["wrong"] = wrong.text;
             column["difference"] =
                 scene.figure(files["difference"], label, "difference of " + name,
                              fmt::format("S_j of {}, {} less the reference: false shadow blue, false light red; {}",
-                                         name, label, wrong));
+                                         name, label, wrong.text));
+            column["classes"] =
+                wrong.any
+                    ? scene.figure(files["classes"], label, "errors of " + name,
+                                   fmt::format("What the wrong points of {} by {} are, by colour as in the legend; {}",
+                                               name, label, wrong.text))
+                    : json(false);
             columns.push_back(std::move(column));
         }
         all.push_back({{"id", fmt::format("light-{}", all.size() + 1)},
@@ -77,7 +101,7 @@ json light_views(const SceneFiles& scene, const std::vector<Field>& methods) {
 /// The table of errors: a group of rows a light. Columns that no method fills are left out.
 json error_view(const Field& root, const std::vector<Field>& methods) {
     json groups   = json::array();
-    bool has_acne = false, has_detachment = false, has_leak = false, has_displacement = false;
+    bool has_acne = false, has_detachment = false, has_leak = false;
     for (const Field& light : root["lights"].items()) {
         const std::string name = light["name"].required_text();
         json rows              = json::array();
@@ -85,12 +109,10 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
             if (is_reference(root, method)) continue;
             for (const Field& e : method["errors"].items()) {
                 if (e["light"].required_text() != name) continue;
-                const Field shadow = e["false_shadow"], lit = e["false_light"],
-                            displacement = e["edge_displacement_px"];
+                const Field shadow = e["false_shadow"], lit = e["false_light"];
                 has_acne |= shadow["acne"].present();
                 has_detachment |= lit["detachment"].present();
                 has_leak |= lit["leak"].present();
-                has_displacement |= displacement.present();
                 const auto wrong = [](std::optional<double> n) {
                     return json{{"n", count(n)}, {"wrong", n && *n > 0}};
                 };
@@ -110,8 +132,6 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
                                 {"light_edge", count(lit["edge"].number())},
                                 {"detachment", count(lit["detachment"].number())},
                                 {"leak", count(lit["leak"].number())},
-                                {"displacement_mean", score(displacement["mean"].number())},
-                                {"displacement_max", score(displacement["max"].number())},
                                 {"mae", score(e["mae"].number())},
                                 {"rmse", score(e["rmse"].number())},
                                 {"max", score(e["max"].number())},
@@ -124,10 +144,43 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
             {"has_acne", has_acne},
             {"has_detachment", has_detachment},
             {"has_leak", has_leak},
-            {"has_displacement", has_displacement},
             {"shadow_columns", std::to_string(2 + has_acne)},
             {"light_columns", std::to_string(2 + has_detachment + has_leak)},
-            {"all_columns", std::to_string(11 + has_acne + has_detachment + has_leak + 2 * has_displacement)}};
+            {"all_columns", std::to_string(11 + has_acne + has_detachment + has_leak)}};
+}
+
+/// Where errors come from: a row a method and light that has something to tell.
+json cause_view(const Field& root, const std::vector<Field>& methods) {
+    json groups = json::array();
+    for (const Field& light : root["lights"].items()) {
+        const std::string name = light["name"].required_text();
+        json rows              = json::array();
+        for (const Field& method : methods) {
+            if (is_reference(root, method)) continue;
+            for (const Field& e : method["errors"].items()) {
+                if (e["light"].required_text() != name) continue;
+                const Field off = e["edge_displacement_px"], width = e["penumbra_width_px"], noise = e["noise"],
+                            interior = e["interior"], terminator = e["terminator"];
+                rows.push_back({{"label", method_label(method, methods)},
+                                {"wrong_lit", count(interior["lit"].number())},
+                                {"wrong_penumbra", count(interior["penumbra"].number())},
+                                {"wrong_umbra", count(interior["umbra"].number())},
+                                {"terminator_facet", count(terminator["facet_away"].number())},
+                                {"terminator_normal", count(terminator["normal_away"].number())},
+                                {"terminator_wrong", count(terminator["wrong"].number())},
+                                {"off_mean", score(off["mean"].number())},
+                                {"off_p95", score(off["p95"].number())},
+                                {"off_max", score(off["max"].number())},
+                                {"width", score(width["method"].number())},
+                                {"width_reference", score(width["reference"].number())},
+                                {"noise", score(noise["noise_rmse"].number())},
+                                {"noise_bias", score(noise["bias_rmse"].number())},
+                                {"bracket", score(e["bracket"]["max_half_width"].number())}});
+            }
+        }
+        if (!rows.empty()) groups.push_back({{"light", name}, {"rows", std::move(rows)}});
+    }
+    return {{"groups", std::move(groups)}};
 }
 
 json time_view(const Field& root, const std::vector<Field>& methods) {
@@ -272,7 +325,9 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
                             {"warnings", std::move(warnings)},
                             {"pictures", std::move(pictures)},
                             {"lights", light_views(scene, methods)},
+                            {"legend", class_legend()},
                             {"errors", error_view(root, methods)},
+                            {"causes", cause_view(root, methods)},
                             {"times", time_view(root, methods)},
                             {"has_image", !image.empty()},
                             {"image", std::move(image)},

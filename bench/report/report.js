@@ -8,7 +8,7 @@ function startCompare(root) {
   if (figures.length < 2) return;
   const whos = [...new Set(figures.map((f) => f.dataset.who))];
   const whats = [...new Set(figures.map((f) => f.dataset.what))].sort((a, b) => rank(a) - rank(b));
-  function rank(what) { return what === "picture" ? 0 : what.startsWith("S of") ? 1 : what.startsWith("difference") ? 2 : 3; }
+  function rank(what) { return what === "picture" ? 0 : what.startsWith("S of") ? 1 : what.startsWith("difference") ? 2 : what.startsWith("errors") ? 3 : 4; }
   const find = (who, what) => figures.find((f) => f.dataset.who === who && f.dataset.what === what);
 
   const stage = $("stage"), slide = $("divide"), divider = $("divider");
