@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "bench/bias_command.h"
 #include "bench/canonical.h"
 #include "bench/compare.h"
 #include "bench/diff.h"
@@ -159,6 +160,22 @@ int ladder(LadderOptions options, bool as_json, const Common& common) {
     return kDone;
 }
 
+int bias(const std::vector<fs::path>& files, BiasOptions options, const Common& common) {
+    options.command = common.command;
+    options.threads = thread_count();
+    std::vector<std::string> failed;
+    Json record;
+    {
+        const Progress progress(common.quiet);
+        options.progress = [&](const std::string& what) { progress(what); };
+        record           = study_biases(files, options, failed);
+    }
+    if (!common.quiet && !record["bias"].empty())
+        fmt::print("{}{}\n", bias_table(record), (options.out / "index.html").string());
+    for (const std::string& message : failed) fmt::print(stderr, "{}\n", message);
+    return failed.empty() ? kDone : kUnreadable;
+}
+
 /// With folders: pages anew. Without: the main job.
 int report(const std::vector<fs::path>& folders, const fs::path& out, const Common& common) {
     if (folders.empty()) {
@@ -296,6 +313,14 @@ int run(int argc, char** argv) {
     accept_command->add_option("--pictures", golden_options.pictures,
                                "Folder for reference, result and difference of what changed");
 
+    BiasOptions bias_options;
+    CLI::App* bias_command = app.add_subcommand(
+        "bias", "The shadow z-buffer's bias: acne against detachment over constant, slope and normal offset");
+    bias_command->add_option("SCENE", scenes, "Scene files (default: the canonical ones)");
+    bias_command->add_option("--map", bias_options.map, "Settings of shadow_zbuffer other than bias: k=v,k=v");
+    bias_command->add_option("--size", size, "WIDTHxHEIGHT (default: 320x180)");
+    bias_command->add_option("-o,--output", out, "Folder to write to")->required();
+
     std::string report_out   = "results";
     CLI::App* report_command = app.add_subcommand(
         "report", "The main job: all canonical scenes under all methods; with folders: their pages anew");
@@ -333,6 +358,13 @@ int run(int argc, char** argv) {
     if (*ladder_command) {
         ladder_options.out = out;
         return ladder(ladder_options, as_json, common);
+    }
+    if (*bias_command) {
+        if (!size.empty()) bias_options.size = parse_size(size);
+        bias_options.out = out;
+        return bias(
+            scenes.empty() ? canonical_scenes(scenes_folder()) : std::vector<fs::path>(scenes.begin(), scenes.end()),
+            bias_options, common);
     }
     if (report_out.empty()) report_out = scenes.size() == 1 ? scenes[0] : "results";
     if (*report_command) return report({scenes.begin(), scenes.end()}, report_out, common);

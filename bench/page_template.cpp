@@ -33,6 +33,7 @@ kainjow::mustache::data template_data(const json& view) {
 std::string render_page(std::string_view page, const json& view) {
     kainjow::mustache::data data = template_data(view);
     for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
+                                        {"bias_map", assets::bias_map_html},
                                         {"picture", assets::picture_html},
                                         {"classes", assets::classes_html},
                                         {"scales", assets::scales_html},
