@@ -36,29 +36,40 @@ float attenuation_factor(const Attenuation& a, float distance) {
     return static_cast<float>(std::min(factor, a.clamp ? 1.0 : 1e30));
 }
 
-float spot_factor(const Spot& spot, float cos_angle) {
-    const float cos_cutoff = std::cos(spot.cutoff);
+namespace {
+
+/// In double: a cosine near 1 that is off by one float step is off by 6 % once it is raised to 1e6.
+float spot_factor_of(const Spot& spot, double cos_angle) {
+    const double cos_cutoff = std::cos(spot.cutoff);
     if (cos_angle < cos_cutoff || cos_angle <= 0) return 0;
+    const auto power = [&] { return std::pow(std::min(cos_angle, 1.0), static_cast<double>(spot.exponent)); };
     switch (spot.falloff) {
-        case SpotFalloff::cosine: return std::pow(std::min(cos_angle, 1.0f), spot.exponent);
+        case SpotFalloff::cosine: return static_cast<float>(power());
         case SpotFalloff::zachmann:
             // As the lecture prints it, it goes negative near the rim for n > 1: clamped at 0.
-            return std::max(0.0f, (std::pow(std::min(cos_angle, 1.0f), spot.exponent) - cos_cutoff) / (1 - cos_cutoff));
+            return static_cast<float>(std::max(0.0, (power() - cos_cutoff) / (1 - cos_cutoff)));
         case SpotFalloff::smooth: {
-            const float cos_inner = std::cos(spot.inner);
-            const float t = std::clamp((cos_angle - cos_cutoff) / std::max(1e-3f, cos_inner - cos_cutoff), 0.0f, 1.0f);
-            return t * t;
+            const double cos_inner = std::cos(spot.inner);
+            const double t = std::clamp((cos_angle - cos_cutoff) / std::max(1e-3, cos_inner - cos_cutoff), 0.0, 1.0);
+            return static_cast<float>(t * t);
         }
     }
     return 0;
 }
 
+}  // namespace
+
+float spot_factor(const Spot& spot, float cos_angle) { return spot_factor_of(spot, static_cast<double>(cos_angle)); }
+
 float falloff(const Light& light, vec3 p) {
     const ToLight to = to_light(light, p);
     if (light.range > 0 && to.distance > light.range) return 0;
     float factor = attenuation_factor(light.attenuation, to.distance);
-    if (light.kind == LightKind::spot)
-        factor *= spot_factor(light.spot, -glm::dot(glm::normalize(light.direction), to.direction));
+    if (light.kind == LightKind::spot) {
+        if (to.distance == 0) return 0;  // in no direction from it
+        const dvec3 from_light = glm::normalize(dvec3(p) - dvec3(light.position));
+        factor *= spot_factor_of(light.spot, glm::dot(glm::normalize(dvec3(light.direction)), from_light));
+    }
     return factor;
 }
 

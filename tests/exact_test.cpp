@@ -108,7 +108,7 @@ Counts compare_with_brute_force(unsigned seed) {
     }
     face_lights(batch, scene);
 
-    const std::unique_ptr<Method> method = exact.make(Settings({}));
+    const std::unique_ptr<Method> method = exact.make(Settings(exact.parameters));
     const SceneFacts facts               = find_facts(scene);
     EXPECT_EQ(method->serves(facts).how, How::exactly);
     method->build(scene, facts);
@@ -187,7 +187,7 @@ TEST(Exact, MovesWithTheSceneByPowersOfTwo) {
             set_point(batch, i, scene, t, u(random), u(random));
         }
         face_lights(batch, scene);
-        const std::unique_ptr<Method> method = exact.make(Settings({}));
+        const std::unique_ptr<Method> method = exact.make(Settings(exact.parameters));
         method->build(scene, find_facts(scene));
         std::vector<float> s(batch.size(), 0.0f);
         std::vector<std::uint8_t> defined(batch.size(), 1);

@@ -1,4 +1,4 @@
-#include "shadows/triangle_tree.h"
+#include "shadows/box_tree.h"
 
 #include <tbb/parallel_invoke.h>
 
@@ -20,8 +20,8 @@ float half_area(const Box& b) {
 
 }  // namespace
 
-struct TriangleTree::Builder {
-    TriangleTree& tree;
+struct BoxTree::Builder {
+    BoxTree& tree;
     std::vector<Box> boxes;
     std::vector<vec3> centres;
     std::atomic<std::uint32_t> used{1};
@@ -67,7 +67,7 @@ struct TriangleTree::Builder {
         const int axis  = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
         if (!(size[axis] > 0)) return begin + (end - begin) / 2;  // all centres in one point: any halves do
         const float scale = kBins / size[axis];
-        const auto bin_of = [&](TriangleId t) {
+        const auto bin_of = [&](Item t) {
             return std::clamp(static_cast<int>((centres[t][axis] - centre_box.min[axis]) * scale), 0, kBins - 1);
         };
         std::array<Bin, kBins> bins;
@@ -97,22 +97,20 @@ struct TriangleTree::Builder {
                 best      = k;
             }
         }
-        const auto first = tree.order_.begin() + begin;
-        const auto middle =
-            std::partition(first, tree.order_.begin() + end, [&](TriangleId t) { return bin_of(t) < best; });
-        const auto count = static_cast<std::uint32_t>(middle - first);
+        const auto first  = tree.order_.begin() + begin;
+        const auto middle = std::partition(first, tree.order_.begin() + end, [&](Item t) { return bin_of(t) < best; });
+        const auto count  = static_cast<std::uint32_t>(middle - first);
         return count == 0 || count == end - begin ? begin + (end - begin) / 2 : begin + count;
     }
 };
 
-TriangleTree::TriangleTree(const Scene& scene) {
-    const auto n = static_cast<std::uint32_t>(scene.triangles.size());
+BoxTree::BoxTree(std::vector<Box> boxes) {
+    const auto n = static_cast<std::uint32_t>(boxes.size());
     if (n == 0) return;
-    Builder builder{*this, std::vector<Box>(n), std::vector<vec3>(n)};
+    Builder builder{*this, std::move(boxes), std::vector<vec3>(n)};
     order_.resize(n);
-    for (TriangleId t = 0; t < n; ++t) {
-        order_[t] = t;
-        for (int k = 0; k < 3; ++k) builder.boxes[t] = extend(builder.boxes[t], scene.vertex(t, k));
+    for (Item t = 0; t < n; ++t) {
+        order_[t]          = t;
         builder.centres[t] = builder.boxes[t].centre();
     }
     nodes_.resize(2 * static_cast<std::size_t>(n));
