@@ -1,17 +1,16 @@
 #include "bench/compare.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <fstream>
 #include <set>
 
 #include "bench/explain.h"
 #include "bench/noise_runs.h"
 #include "bench/pictures.h"
+#include "bench/staged_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/metrics.h"
@@ -215,47 +214,6 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     return entry;
 }
 
-void write_text(const fs::path& file, const std::string& text) {
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out) throw InputError(fmt::format("{}: cannot write", file.string()));
-}
-
-/// Moves the finished folder `from` to `to`. What stands there is replaced only if it is an older result.
-void move_into_place(const fs::path& from, const fs::path& to) {
-    const fs::path old = from.string() + ".old";
-    if (fs::exists(to)) fs::rename(to, old);
-    fs::rename(from, to);
-    fs::remove_all(old);
-}
-
-/// A folder beside the one to be; gone again unless it was moved into place.
-class Staging {
-public:
-    explicit Staging(fs::path folder) : folder_(std::move(folder)) {
-        fs::remove_all(folder_);
-        fs::create_directory(folder_);
-    }
-    ~Staging() {
-        std::error_code ignored;  // after move_into_place there is nothing to remove
-        fs::remove_all(folder_, ignored);
-    }
-    Staging(const Staging&)            = delete;
-    Staging& operator=(const Staging&) = delete;
-    [[nodiscard]] const fs::path& folder() const { return folder_; }
-
-private:
-    fs::path folder_;
-};
-
-void check_replaceable(const fs::path& folder) {
-    if (fs::exists(folder) && !fs::exists(folder / "results.json"))
-        throw InputError(
-            fmt::format("{}: exists and holds no results.json, so it is not replaced (name another folder with -o)",
-                        folder.string()));
-}
-
 /// The record with every file name set behind `prefix`.
 Json with_prefix(Json record, const std::string& prefix) {
     const auto visit = [&](auto&& self, Json& node) -> void {
@@ -326,9 +284,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const Scene& scene           = prepared.scene;
 
     const fs::path folder = options.out / scene.name;
-    check_replaceable(folder);
-    fs::create_directories(options.out);
-    const Staging stage(options.out / fmt::format(".{}.{}", scene.name, ::getpid()));
+    StagedFolder stage(folder);
     const fs::path& staging = stage.folder();
 
     Reference reference = default_reference(prepared.facts);
@@ -377,7 +333,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                        {"gbuffer_ms", prepared.gbuffer_ms},
                        {"shade_ms", shade_ms}};
     write_text(staging / "results.json", record.dump(1) + "\n");
-    move_into_place(staging, folder);
+    stage.commit();
     return record;
 }
 

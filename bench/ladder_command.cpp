@@ -1,13 +1,26 @@
 #include "bench/ladder_command.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bench/ladder_break.h"
+#include "bench/ladder_page.h"
 #include "bench/ladder_record.h"
 #include "bench/ladder_run.h"
 #include "bench/results_file.h"
-#include "bench/staged_files.h"
+#include "bench/staged_folder.h"
+#include "core/error.h"
 
 namespace umbra {
 
 Json climb_ladders(const LadderOptions& options) {
+    if (std::filesystem::exists(options.out / "results.json") &&
+        !read_results(options.out / "results.json")["ladders"].present())
+        throw InputError(
+            fmt::format("{}: holds the results of something else, so it is not replaced (name another folder "
+                        "with -o)",
+                        options.out.string()));
     std::vector<const Ladder*> chosen;
     for (const std::string& name : options.names) chosen.push_back(&find_ladder(name));
     if (chosen.empty()) chosen.assign(ladders().begin(), ladders().end());
@@ -20,11 +33,29 @@ Json climb_ladders(const LadderOptions& options) {
     Json record = {{"schema", kResultsSchema},         {"version", version()},
                    {"command", options.command},       {"machine", machine_json(options.threads)},
                    {"breaking_share", kBreakingShare}, {"ladders", Json::array()}};
-    for (const Ladder* ladder : chosen)
-        record["ladders"].push_back(ladder_json(climb_ladder(*ladder, methods_chosen, options.progress)));
-
-    StagedFiles staged;
-    staged.write(options.out / "results.json", record.dump(1) + "\n");
+    StagedFolder staged(options.out);
+    std::filesystem::create_directory(staged.folder() / "breaks");
+    for (const Ladder* ladder : chosen) {
+        const LadderRun run = climb_ladder(*ladder, methods_chosen, options.progress);
+        Json entry          = ladder_json(run);
+        for (std::size_t m = 0; m < run.methods.size(); ++m) {
+            const Climb c = climb(run, m);
+            if (!c.breaks_at || !run.rungs[*c.breaks_at].outcomes[m].ran()) continue;
+            if (options.progress)
+                options.progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
+            Json& method = entry["methods"][m];
+            const auto same =
+                std::count_if(run.methods.begin(), run.methods.begin() + std::ptrdiff_t(m),
+                              [&](const MethodChoice& other) { return other.info == run.methods[m].info; });
+            const std::string name = fmt::format("{}.{}{}", ladder->name, run.methods[m].info->name,
+                                                 same ? fmt::format("-{}", same + 1) : "");
+            method["break"] =
+                write_break(staged.folder() / "breaks", name, *ladder, method["breaks_at"], run.methods[m]);
+        }
+        record["ladders"].push_back(std::move(entry));
+    }
+    write_text(staged.folder() / "results.json", record.dump(1) + "\n");
+    write_ladder_page(staged.folder());
     staged.commit();
     return record;
 }

@@ -19,7 +19,8 @@ struct LadderOptions {
     std::function<void(const std::string&)> progress;  ///< told what is being done; may be empty
 };
 
-/// Climbs and writes OUT/results.json. Returns that record. Throws UsageError, InputError.
+/// Climbs and writes OUT: results.json, breaks/ with a small scene and pictures of each break, index.html. The folder
+/// is written beside and moved into place. Returns the record in results.json. Throws UsageError, InputError.
 Json climb_ladders(const LadderOptions& options);
 
 }  // namespace umbra

@@ -13,14 +13,21 @@ namespace {
 
 constexpr Repeats kOnce{1, 0};
 
-std::string kind_of(const RungOutcome& o) {
-    if (o.interior() == 0) return "";
-    return o.false_shadow.interior >= o.false_light.interior ? "false shadow" : "false light";
+/// What most of the interior errors are; of equals the first.
+std::string kind_of(const VisibilityError& e) {
+    const std::pair<std::uint64_t, const char*> kinds[] = {
+        {e.acne, "acne"},           {e.false_shadow.interior - e.acne, "false shadow"},
+        {e.leak, "leak"},           {e.detachment, "detachment"},
+        {e.unnamed, "false light"},
+    };
+    const auto* most = std::max_element(std::begin(kinds), std::end(kinds),
+                                        [](const auto& a, const auto& b) { return a.first < b.first; });
+    return most->first > 0 ? most->second : "";
 }
 
 /// The sum with the true S_j, where the ladder is over that.
 std::string wrong_sum(const Ladder& ladder, double value, const RungStage& stage) {
-    return ladder.wrong_sum(value, stage.scene, shade(stage.scene, stage.points, stage.truth));
+    return ladder.wrong_sum(value, stage.scene, shade(stage.scene, stage.points, stage.truth.planes));
 }
 
 std::uint64_t count_surface(const PointBatch& points) {
@@ -29,10 +36,10 @@ std::uint64_t count_surface(const PointBatch& points) {
 }
 
 void describe_truth(const RungStage& stage, Rung& rung) {
-    rung.truth          = stage.truth_by;
+    rung.truth          = stage.truth.choice.text();
     rung.surface_points = count_surface(stage.points);
     for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
-        const VisibilityPlane& truth = stage.truth[j];
+        const VisibilityPlane& truth = stage.truth.planes[j];
         const VisibilityError e =
             visibility_error(stage.points, j, truth, truth, visibility_tolerance(stage.scene.lights[j].kind));
         rung.lit += e.lit, rung.umbra += e.umbra, rung.penumbra += e.penumbra, rung.on_boundary += e.on_boundary;
@@ -69,35 +76,41 @@ Climb climb(const LadderRun& run, std::size_t method) {
     return c;
 }
 
-RungStage set_stage(Scene scene) {
-    RungStage stage{std::move(scene), {}, {}, {}, {}};
-    stage.facts = find_facts(stage.scene);
-    stage.points =
-        primary_points(RayScene(stage.scene), stage.scene, stage.scene.camera, stage.scene.width, stage.scene.height);
-    const Reference reference = default_reference(stage.facts);
-    stage.truth_by            = reference.choice.text();
-    stage.truth               = run_method(reference.choice, stage.scene, stage.facts, stage.points, kOnce).planes;
+std::unique_ptr<RungStage> set_stage(Scene scene) {
+    SceneFacts facts    = find_facts(scene);
+    Reference reference = default_reference(facts);
+    MethodRun truth{std::move(reference.choice), {}, {}, {}, {}, 0, {}, {}, {}};
+    auto stage =
+        std::make_unique<RungStage>(RungStage{std::move(scene), std::move(facts), PointBatch{}, std::move(truth)});
+    stage->points = primary_points(RayScene(stage->scene), stage->scene, stage->scene.camera, stage->scene.width,
+                                   stage->scene.height);
+    stage->truth  = run_method(stage->truth.choice, stage->scene, stage->facts, stage->points, kOnce);
     return stage;
 }
 
-RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vector<VisibilityPlane>* planes) {
+RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vector<Explained>* explained,
+                    MethodRun* run) {
     RungOutcome o;
     try {
-        MethodRun run = run_method(method, stage.scene, stage.facts, stage.points, kOnce);
-        o.service     = run.service;
-        if (!run.service) return o;
+        MethodRun ran = run_method(method, stage.scene, stage.facts, stage.points, kOnce);
+        o.service     = ran.service;
+        if (!ran.service) return o;
+        VisibilityError sum;  // only what kinds are made of
         double absolute = 0;
         for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
-            const VisibilityError e = visibility_error(stage.points, j, run.planes[j], stage.truth[j],
-                                                       visibility_tolerance(stage.scene.lights[j].kind));
+            Explained light          = explain(stage.scene, stage.points, j, ran, stage.truth);
+            const VisibilityError& e = light.error;
             o.points += e.points, o.undefined += e.undefined;
             o.false_shadow.interior += e.false_shadow.interior, o.false_shadow.edge += e.false_shadow.edge;
             o.false_light.interior += e.false_light.interior, o.false_light.edge += e.false_light.edge;
+            sum.false_shadow.interior += e.false_shadow.interior, sum.acne += e.acne;
+            sum.leak += e.leak, sum.detachment += e.detachment, sum.unnamed += e.unnamed;
             absolute += e.mae * double(e.points);
+            if (explained != nullptr) explained->push_back(std::move(light));
         }
         if (o.points > 0) o.mae = absolute / double(o.points);
-        o.kind = kind_of(o);
-        if (planes != nullptr) *planes = std::move(run.planes);
+        o.kind = kind_of(sum);
+        if (run != nullptr) *run = std::move(ran);
     } catch (const std::exception& e) {
         o         = {};
         o.service = {How::approximately, "it stopped"};
@@ -113,7 +126,7 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
         if (progress) progress(fmt::format("{}: {:g}", ladder.name, value));
         Rung& rung = run.rungs.emplace_back();
         rung.value = value;
-        std::optional<RungStage> set;
+        std::unique_ptr<RungStage> set;
         try {
             set = set_stage(ladder.scene(value));
         } catch (const std::exception& e) {

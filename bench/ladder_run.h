@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/explain.h"
 #include "bench/ladder.h"
 #include "bench/run.h"
 
@@ -64,19 +66,19 @@ struct Climb {
 };
 [[nodiscard]] Climb climb(const LadderRun& run, std::size_t method);
 
-/// Everything about one rung that the methods share, and a method's answer on it: what runs and breaks are made of,
-/// also where a scene is reduced to show a break again.
+/// Everything about one rung that the methods share. It stays where it was made: methods point into it.
 struct RungStage {
     Scene scene;
     SceneFacts facts;
     PointBatch points;
-    std::string truth_by;                ///< the method that told the truth, as typed
-    std::vector<VisibilityPlane> truth;  ///< [light]
+    MethodRun truth;
 };
 /// Facts, points and truth of a scene. Throws what the methods throw.
-[[nodiscard]] RungStage set_stage(Scene scene);
+[[nodiscard]] std::unique_ptr<RungStage> set_stage(Scene scene);
+
+/// A method on a stage; `explained`, if given, gets each light's errors point by point where the method ran.
 [[nodiscard]] RungOutcome outcome(const RungStage& stage, const MethodChoice& method,
-                                  std::vector<VisibilityPlane>* planes = nullptr);
+                                  std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr);
 
 /// Climbs one ladder with each of the methods. `progress` is told what is being done; may be empty.
 [[nodiscard]] LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,

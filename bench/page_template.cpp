@@ -36,6 +36,7 @@ std::string render_page(std::string_view page, const json& view) {
                                         {"bias_map", assets::bias_map_html},
                                         {"picture", assets::picture_html},
                                         {"classes", assets::classes_html},
+                                        {"ladder_table", assets::ladder_table_html},
                                         {"scales", assets::scales_html},
                                         {"scale_colours", assets::scale_colours_html}})
         data.set(name, std::string(partial));

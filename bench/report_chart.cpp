@@ -108,4 +108,51 @@ json error_time_chart(const std::vector<ChartPoint>& points) {
             {"marks", std::move(marks)}};
 }
 
+json rung_chart(const std::vector<std::string>& rungs, const std::vector<RungSeries>& series, double limit) {
+    constexpr double bottom = 200, lane = 12, least = 1e-4;  // fewer than one point of such pictures
+    const LogAxis y({least, 1}, least, bottom, kTop);
+    const double lanes_end = bottom + lane * (double(series.size()) + 0.5);
+    const double step      = (kRight - kLeft - 24) / std::max(1.0, double(rungs.size()) - 1);
+    const auto x           = [&](std::size_t r) { return kLeft + 12 + step * double(r); };
+
+    json x_ticks = json::array(), lines = json::array();
+    const std::size_t stride = std::max<std::size_t>(1, (rungs.size() + 5) / 6);
+    for (std::size_t r = 0; r < rungs.size(); ++r)
+        if (r % stride == 0 || rungs.size() == 1) x_ticks.push_back({{"at", coordinate(x(r))}, {"label", rungs[r]}});
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        const RungSeries& s = series[i];
+        std::string path, dots, broken;
+        bool down = false;  // the pen: lifted where there is no answer
+        for (std::size_t r = 0; r < s.shares.size(); ++r) {
+            if (!s.shares[r]) {
+                down = false;
+                continue;
+            }
+            const double share = *s.shares[r];
+            const double at    = share > 0 ? y(std::max(share, least)) : bottom + lane * (double(i) + 1);
+            path += fmt::format("{}{:.1f} {:.1f}", down ? "L" : "M", x(r), at);
+            dots += fmt::format("M{:.1f} {:.1f}m-2 0a2 2 0 1 0 4 0a2 2 0 1 0 -4 0z", x(r), at);
+            if (s.breaks_at == r) broken = mark(s.style, x(r), at);
+            down = true;
+        }
+        lines.push_back({{"style", std::to_string(s.style % 6)},
+                         {"label", s.label},
+                         {"path", path},
+                         {"dots", dots},
+                         {"broken", broken},
+                         {"key", mark(s.style, 14, 9)}});
+    }
+    return {{"width", fmt::format("{:g}", kWidth)},
+            {"height", coordinate(lanes_end + 46)},
+            {"bottom", coordinate(lanes_end)},
+            {"zero", coordinate(bottom + lane / 2)},
+            {"zero_label", coordinate((bottom + lanes_end) / 2 + 5)},
+            {"labels", coordinate(lanes_end + 16)},
+            {"unit", coordinate(lanes_end + 38)},
+            {"limit", coordinate(y(limit))},
+            {"x_ticks", std::move(x_ticks)},
+            {"y_ticks", y.ticks()},
+            {"lines", std::move(lines)}};
+}
+
 }  // namespace umbra

@@ -8,6 +8,13 @@
 
 namespace umbra {
 
+std::string superscript(int value) {
+    static constexpr std::array<const char*, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string raised;
+    for (const char c : std::to_string(value)) raised += c == '-' ? "⁻" : digits[std::size_t(c - '0')];
+    return raised;
+}
+
 std::string score(std::optional<double> value) {
     if (!value) return kNone;
     const double size      = std::abs(*value);
@@ -17,12 +24,7 @@ std::string score(std::optional<double> value) {
     if (exponent >= -4 && exponent < 6) return fmt::format("{}{:.{}f}", sign, size, std::max(0, 2 - exponent));
     const std::string rounded = fmt::format("{:.1e}", size);  // 1.2e-05
     const auto e              = rounded.find('e');
-    std::string raised;
-    for (const char c : std::to_string(std::stoi(rounded.substr(e + 1)))) {
-        static constexpr std::array<const char*, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-        raised += c == '-' ? "⁻" : digits[std::size_t(c - '0')];
-    }
-    return fmt::format("{}{}·10{}", sign, rounded.substr(0, e), raised);
+    return fmt::format("{}{}·10{}", sign, rounded.substr(0, e), superscript(std::stoi(rounded.substr(e + 1))));
 }
 
 std::string milliseconds(std::optional<double> ms) { return ms && *ms > 0 && *ms < 0.001 ? "< 0.001" : score(ms); }

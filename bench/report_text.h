@@ -12,7 +12,10 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// Three significant digits, as 1.2·10⁻⁵ where they would stand behind too many zeros, and a minus that is one.
 [[nodiscard]] std::string score(std::optional<double> value);
 
-/// The same, but nothing below a microsecond: a clock does not tell such times apart.
+/// A whole number as an exponent: ⁻⁵.
+[[nodiscard]] std::string superscript(int value);
+
+/// The same as `score`, but nothing below a microsecond: a clock does not tell such times apart.
 [[nodiscard]] std::string milliseconds(std::optional<double> ms);
 
 /// Whole numbers in groups of three, parted by a narrow no-break space.

@@ -1,13 +1,26 @@
 // Ladders: the rule by which a method breaks, and what every ladder promises.
 #include <gtest/gtest.h>
+#include <rapidjson/document.h>
+#include <rapidjson/schema.h>
+#include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
+#include "bench/ladder_command.h"
+#include "bench/ladder_record.h"
 #include "bench/ladder_run.h"
+#include "bench/minimal_scene.h"
+#include "core/error.h"
+#include "core/scene_io.h"
+#include "tests/temporary_folder.h"
 
 namespace umbra {
 namespace {
+
+namespace fs = std::filesystem;
 
 RungOutcome outcome_of(How how, std::uint64_t points, std::uint64_t wrong_shadow, std::uint64_t wrong_light,
                        std::uint64_t undefined = 0) {
@@ -80,16 +93,149 @@ TEST(BreakRule, AnExceptionIsABreakWithItsMessage) {
 
 TEST(BreakRule, WrongPointsAreCountedByHoldingPlanesAgainstTheTruth) {
     // On the harmless rung ray_traced is right; a truth that is turned over in the interior breaks it.
-    RungStage stage          = set_stage(find_ladder("far_from_origin").scene(1));
-    const MethodChoice rays  = parse_method("ray_traced");
-    const RungOutcome before = outcome(stage, rays);
+    const std::unique_ptr<RungStage> stage = set_stage(find_ladder("far_from_origin").scene(1));
+    const MethodChoice rays                = parse_method("ray_traced");
+    const RungOutcome before               = outcome(*stage, rays);
     EXPECT_EQ(before.interior(), 0u);
     EXPECT_GT(before.points, 1000u);
-    for (float& s : stage.truth[0].s) s = 1 - s;
-    const RungOutcome after = outcome(stage, rays);
+    for (float& s : stage->truth.planes[0].s) s = 1 - s;
+    const RungOutcome after = outcome(*stage, rays);
     EXPECT_TRUE(after.broken());
     EXPECT_GT(after.false_light.interior, after.false_shadow.interior);  // most of the floor was lit
-    EXPECT_EQ(after.kind, "false light");
+    EXPECT_EQ(after.kind, "false light");  // exact can name nothing that blocks what is lit
+}
+
+TEST(MinimalScene, KeepsWhatTheDefectNeedsAndDropsTheRest) {
+    const Scene whole = find_ladder("far_from_origin").scene(1);
+    // The defect: the tetrahedron's first triangle is there, and so is any of the box.
+    const vec3 apex  = whole.vertex(whole.objects[2].first_triangle, 0);
+    const auto still = [&](const Scene& s) {
+        bool tip = false, box = false;
+        for (TriangleId t = 0; t < s.triangles.size(); ++t) {
+            const std::string& name = s.objects[s.triangle_object[t]].name;
+            tip                     = tip || (name == "tetrahedron" && s.vertex(t, 0) == apex);
+            box                     = box || name == "box";
+        }
+        return tip && box;
+    };
+    ASSERT_TRUE(still(whole));
+    const Scene part = minimal_scene(whole, still, 1000);
+    EXPECT_TRUE(still(part));
+    EXPECT_EQ(part.triangles.size(), 2u);
+    EXPECT_EQ(part.objects.size(), 2u);
+    EXPECT_EQ(part.positions.size(), 6u);
+    EXPECT_LE(minimal_scene(whole, still, 3).triangles.size(), whole.triangles.size());
+    EXPECT_TRUE(still(minimal_scene(whole, still, 3)));
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class LadderCommand : public testing::Test {
+protected:
+    LadderCommand() {
+        options_.out     = folder_.path() / "out";
+        options_.command = "umbra ladder";
+        // Bias breaks here whatever becomes of the methods: a shadow map cannot tell a gap of a millionth.
+        options_.names   = {"grazing_sun", "tiny_scene"};
+        options_.methods = {"shadow_zbuffer:resolution=64", "ray_traced"};
+    }
+    TemporaryFolder folder_;
+    LadderOptions options_;
+};
+
+TEST_F(LadderCommand, WritesWhatItsSchemaSaysAndScenesThatBreakAgain) {
+    const Json record = climb_ladders(options_);
+    rapidjson::Document schema_document, document;
+    schema_document.Parse(text_of(UMBRA_LADDER_SCHEMA).c_str());
+    ASSERT_FALSE(schema_document.HasParseError());
+    const rapidjson::SchemaDocument schema(schema_document);
+    document.Parse(text_of(options_.out / "results.json").c_str());
+    rapidjson::SchemaValidator valid(schema);
+    rapidjson::StringBuffer where;
+    const bool accepted = document.Accept(valid);
+    valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
+    EXPECT_TRUE(accepted) << where.GetString();
+
+    int breaks = 0;
+    for (const Json& ladder : record["ladders"])
+        for (const Json& method : ladder["methods"]) {
+            EXPECT_EQ(method["rungs"].size(), ladder["rungs"].size());
+            EXPECT_EQ(method.contains("break"), !method["breaks_at"].is_null());
+            if (!method.contains("break")) continue;
+            ++breaks;
+            const Json& b = method["break"];
+            for (const char* key : {"scene", "visibility", "truth", "classes"})
+                EXPECT_TRUE(fs::exists(options_.out / "breaks" / b[key])) << b[key];
+            const Scene scene = load_scene(options_.out / "breaks" / b["scene"]);
+            EXPECT_LE(scene.triangles.size(), b["triangles_before"]);
+            const RungOutcome again = outcome(*set_stage(scene), parse_method(method["text"].get<std::string>()));
+            EXPECT_TRUE(again.broken()) << b["scene"];
+            EXPECT_EQ(again.interior(), b["interior"]) << b["scene"];
+            EXPECT_EQ(again.kind, method["kind"]);
+        }
+    EXPECT_GE(breaks, 1);
+
+    const std::string page = text_of(options_.out / "index.html");
+    EXPECT_NE(page.find("Grazing light"), std::string::npos);
+    EXPECT_NE(page.find("breaks/grazing_sun.shadow_zbuffer.classes.png"), std::string::npos);
+    EXPECT_EQ(page.find("{{"), std::string::npos);
+    EXPECT_EQ(page.find("http"), std::string::npos) << "the page names a host";
+    EXPECT_NE(ladder_table(record["ladders"]).find("grazing_sun"), std::string::npos);
+}
+
+TEST_F(LadderCommand, SchemaRefusesWhatItShould) {
+    options_.names  = {"tiny_scene"};
+    const Json good = climb_ladders(options_);
+    rapidjson::Document schema_document;
+    schema_document.Parse(text_of(UMBRA_LADDER_SCHEMA).c_str());
+    const rapidjson::SchemaDocument schema(schema_document);
+    const auto accepts = [&](const Json& record) {
+        rapidjson::Document document;
+        document.Parse(record.dump().c_str());
+        rapidjson::SchemaValidator valid(schema);
+        return document.Accept(valid);
+    };
+    EXPECT_TRUE(accepts(good));
+    Json bad                             = good;
+    bad["ladders"][0]["rungs"][0]["lit"] = -1;
+    EXPECT_FALSE(accepts(bad));
+    bad                                     = good;
+    bad["ladders"][0]["methods"][0]["kind"] = "gremlins";
+    EXPECT_FALSE(accepts(bad));
+    bad = good;
+    bad["ladders"][0]["methods"][0].erase("breaks_at");
+    EXPECT_FALSE(accepts(bad));
+}
+
+TEST_F(LadderCommand, ReplacesItsOwnResultsAndNothingElse) {
+    options_.names = {"tiny_scene"};
+    (void)climb_ladders(options_);
+    std::ofstream(options_.out / "breaks/stale.json") << "{}";
+    (void)climb_ladders(options_);
+    EXPECT_FALSE(fs::exists(options_.out / "breaks/stale.json"));
+
+    for (const auto& [name, text] :
+         {std::pair{"results.json", R"({"schema": 1, "methods": []})"}, {"notes.txt", "mine"}}) {
+        fs::remove_all(options_.out);
+        fs::create_directories(options_.out);
+        std::ofstream(options_.out / name) << text;
+        EXPECT_THROW((void)climb_ladders(options_), InputError) << name;
+        EXPECT_EQ(text_of(options_.out / name), text);
+    }
+}
+
+TEST_F(LadderCommand, NamesTheLaddersThatThereAre) {
+    options_.names = {"no_such_ladder"};
+    try {
+        (void)climb_ladders(options_);
+        FAIL();
+    } catch (const UsageError& e) {
+        EXPECT_NE(std::string(e.what()).find("tiny_scene"), std::string::npos);
+    }
+    EXPECT_FALSE(fs::exists(options_.out));
 }
 
 class EveryLadder : public testing::TestWithParam<const Ladder*> {};
@@ -119,15 +265,15 @@ TEST_P(EveryLadder, MakesTheSameScenesEachTime) {
 }
 
 TEST_P(EveryLadder, ShowsLightAndShadowOnItsFirstRung) {
-    const Ladder& ladder  = *GetParam();
-    const Scene scene     = ladder.scene(ladder.rungs[0]);
-    const RungStage stage = set_stage(scene);
+    const Ladder& ladder                   = *GetParam();
+    const Scene scene                      = ladder.scene(ladder.rungs[0]);
+    const std::unique_ptr<RungStage> stage = set_stage(scene);
     std::uint64_t lit = 0, dark = 0;
     for (LightId j = 0; j < scene.lights.size(); ++j)
-        for (std::size_t i = 0; i < stage.points.size(); ++i) {
-            if (stage.points.facing[j][i] < Facing::partly) continue;
-            lit += stage.truth[j].s[i] > 0.9f;
-            dark += stage.truth[j].s[i] < 0.1f;
+        for (std::size_t i = 0; i < stage->points.size(); ++i) {
+            if (stage->points.facing[j][i] < Facing::partly) continue;
+            lit += stage->truth.planes[j].s[i] > 0.9f;
+            dark += stage->truth.planes[j].s[i] < 0.1f;
         }
     EXPECT_GE(lit, 200u);
     if (ladder.wrong_sum == nullptr) {
