@@ -11,8 +11,7 @@
 namespace umbra {
 namespace {
 
-// ---- numbers with few bits
-// -------------------------------------------------------------------------------------------
+// ---- numbers with few bits -----------------------------------------------------------------------------------------
 
 /// The power of two above v.
 double above(double v) { return v > 0 ? std::exp2(std::floor(std::log2(v)) + 1) : 1; }
@@ -39,8 +38,7 @@ void set_dyadic_point(Asked& asked, std::size_t i) {
     set_point(points, i, asked.scene, id, static_cast<float>(u) / kOne, static_cast<float>(v) / kOne);
 }
 
-// ---- points by their names
-// -------------------------------------------------------------------------------------------
+// ---- points by their names -----------------------------------------------------------------------------------------
 
 /// Names of points: triangle, u, v of each.
 struct Names {
@@ -83,8 +81,7 @@ struct Draft {
     }
 };
 
-// ---- affine maps
-// -----------------------------------------------------------------------------------------------------
+// ---- affine maps ---------------------------------------------------------------------------------------------------
 
 /// x -> scale * turn * x + move, where `turn` is orthogonal and mirrors where its determinant is negative.
 struct Map {
@@ -147,8 +144,7 @@ Changed mapped(const Asked& from, const Map& map) {
     return std::move(d).finished(from);
 }
 
-// ---- cutting triangles
-// -----------------------------------------------------------------------------------------------
+// ---- cutting triangles ---------------------------------------------------------------------------------------------
 
 /// A corner of a part of a triangle: its weights over the triangle's own corners.
 using Weights = dvec3;
@@ -212,8 +208,7 @@ Changed cut(const Asked& from, const PartsOf& parts_of) {
 
 const Weights kA{1, 0, 0}, kB{0, 1, 0}, kC{0, 0, 1};
 
-// ---- lights
-// ----------------------------------------------------------------------------------------------------------
+// ---- lights --------------------------------------------------------------------------------------------------------
 
 bool is_local(LightKind kind) { return kind == LightKind::point || kind == LightKind::spot; }
 
@@ -236,8 +231,7 @@ double distance_to_scene(const Scene& scene, vec3 p) {
 
 }  // namespace
 
-// ---- what all start from
-// ---------------------------------------------------------------------------------------------
+// ---- what all start from -------------------------------------------------------------------------------------------
 
 Asked dyadic(Scene scene, int width, int height) {
     const double size = above(largest_coordinate(scene));
@@ -278,8 +272,7 @@ Asked with_rectangles(const Asked& from) {
     return asked;
 }
 
-// ---- rigid motion, scale
-// ---------------------------------------------------------------------------------------------
+// ---- rigid motion, scale -------------------------------------------------------------------------------------------
 
 Changed axes_cycled(const Asked& from) {
     Map map;
@@ -325,8 +318,7 @@ Changed mirrored(const Asked& from) {
     return mapped(from, map);
 }
 
-// ---- order
-// -----------------------------------------------------------------------------------------------------------
+// ---- order ---------------------------------------------------------------------------------------------------------
 
 Changed triangles_shuffled(const Asked& from) {
     Draft d(from);
@@ -379,8 +371,7 @@ Changed lights_reversed(const Asked& from) {
     return std::move(d).finished(from);
 }
 
-// ---- parts
-// -----------------------------------------------------------------------------------------------------------
+// ---- parts ---------------------------------------------------------------------------------------------------------
 
 Changed triangles_split(const Asked& from) {
     return cut(from, [](TriangleId t) -> std::vector<Part> {
@@ -423,8 +414,7 @@ Changed rectangles_split(const Asked& from) {
     return std::move(d).finished(from);
 }
 
-// ---- size of lights
-// --------------------------------------------------------------------------------------------------
+// ---- size of lights ------------------------------------------------------------------------------------------------
 
 Changed lights_grown(const Asked& from, double share) {
     Draft d(from);

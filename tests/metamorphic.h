@@ -46,8 +46,7 @@ struct Changed {
 /// The same with every point or spot light made a rectangle that faces the scene, an eighth of its distance wide.
 [[nodiscard]] Asked with_rectangles(const Asked& from);
 
-// ---- rigid motion, scale
-// ---------------------------------------------------------------------------------------------
+// ---- rigid motion, scale -------------------------------------------------------------------------------------------
 [[nodiscard]] Changed axes_cycled(const Asked& from);   ///< (x, y, z) becomes (z, x, y): a turn by 120 degrees. Exact
 [[nodiscard]] Changed quarter_turn(const Asked& from);  ///< about y. Exact
 [[nodiscard]] Changed moved(const Asked& from);         ///< by about its own size. Exact unless a light is far away
@@ -56,14 +55,12 @@ struct Changed {
 [[nodiscard]] Changed mirrored(
     const Asked& from);  ///< in x; triangles keep their outside, the picture turns over. Exact
 
-// ---- order
-// -----------------------------------------------------------------------------------------------------------
+// ---- order ---------------------------------------------------------------------------------------------------------
 [[nodiscard]] Changed triangles_shuffled(const Asked& from);  ///< within their objects, positions too. Exact
 [[nodiscard]] Changed objects_reversed(const Asked& from);    ///< exact
 [[nodiscard]] Changed lights_reversed(const Asked& from);     ///< exact
 
-// ---- parts
-// -----------------------------------------------------------------------------------------------------------
+// ---- parts ---------------------------------------------------------------------------------------------------------
 /// Of three triangles one is cut in two from the middle of an edge, its neighbours not (T-junctions), one in three from
 /// a point within. Exact.
 [[nodiscard]] Changed triangles_split(const Asked& from);
@@ -73,8 +70,7 @@ struct Changed {
 /// Exact unless a light is far away.
 [[nodiscard]] Changed rectangles_split(const Asked& from);
 
-// ---- size of lights
-// --------------------------------------------------------------------------------------------------
+// ---- size of lights ------------------------------------------------------------------------------------------------
 /// Point and spot lights become rectangles, disks and spheres in turn, `share` of their distance from the scene's
 /// centre wide. Others stay.
 [[nodiscard]] Changed lights_grown(const Asked& from, double share);

@@ -27,8 +27,7 @@
 namespace umbra {
 namespace {
 
-// ---- what must be equal
-// ----------------------------------------------------------------------------------------------
+// ---- what must be equal --------------------------------------------------------------------------------------------
 
 enum class Same : std::uint8_t {
     /// s and `defined`, bit for bit, at every point.
@@ -42,7 +41,8 @@ enum class Same : std::uint8_t {
     /// So few points change, kRoundedShare of all and two more, and all in the edge band.
     rounded,
     /// The light's map of depth lies otherwise over the scene: its samples, a hundredth of the picture's pixels, move
-    /// boundaries by a pixel at most, and nothing else. Points may change in the edge bands of both answers.
+    /// boundaries by a pixel at most, and nothing else. Points may change in the edge bands of both answers, and some
+    /// outside: a shadow smaller than a pixel has no band, nor has one among pixels that face away.
     map,
     /// Other samples of the same light, hence other noise: the mean difference is 0 (z-test at kZ) and its square no
     /// larger than two independent estimates of the worst variance make it.
@@ -61,7 +61,11 @@ enum class Same : std::uint8_t {
 
 constexpr double kRoundedShare = 0x1p-12;
 constexpr double kMapShare     = 0.03;
-constexpr double kZ            = 5;  ///< two-sided false alarms of a normal variable: 6e-7 a plane
+constexpr double kMapOutside   = 0.002;
+/// Triangles that lie in one plane but for the rounding of their file make one plane or several, as the largest among
+/// them tell: planar_projection may cover other points when they are cut or turned. What it covers must be the same.
+constexpr double kCoverageShare = 0.05;
+constexpr double kZ             = 5;  ///< two-sided false alarms of a normal variable: 6e-7 a plane
 
 struct Relation {
     std::string_view name;
@@ -122,8 +126,7 @@ Same must_be(const Relation& relation, std::string_view method, LightKind kind, 
     return same;
 }
 
-// ---- asking
-// ----------------------------------------------------------------------------------------------------------
+// ---- asking --------------------------------------------------------------------------------------------------------
 
 struct Answer {
     VisibilityPlane plane;
@@ -132,18 +135,21 @@ struct Answer {
     [[nodiscard]] float width(std::size_t i) const { return half_width.empty() ? 0 : half_width[i]; }
 };
 
-/// A method on a scene: nothing where it does not serve it.
+/// A method, built for a scene, where it serves it.
 class AskedMethod {
 public:
-    AskedMethod(const std::string& choice, const Asked& asked) : asked_(&asked), case_(choice, asked.scene) {
-        serves_ = bool(case_.serves());
-        if (serves_) case_.method->build(asked.scene, case_.facts);
+    AskedMethod(const std::string& choice, const Asked& asked, const SceneFacts& facts) : asked_(&asked) {
+        const MethodChoice parsed = parse_method(choice);
+        method_                   = parsed.info->make(parsed.settings);
+        serves_                   = bool(method_->serves(facts));
+        if (serves_) method_->build(asked.scene, facts);
     }
     [[nodiscard]] bool serves() const { return serves_; }
-    void aim(LightId j) { case_.method->aim(j); }
+    void aim(LightId j) { method_->aim(j); }
     [[nodiscard]] Answer ask(const PointBatch& points, LightId j) const {
-        Answer answer{case_.visibility(points, j), {}};
-        const auto widths = case_.method->half_widths();
+        Answer answer{{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)}, {}};
+        method_->visibility(points, j, answer.plane.s, answer.plane.defined);
+        const auto widths = method_->half_widths();
         answer.half_width.assign(widths.begin(), widths.end());
         return answer;
     }
@@ -158,42 +164,45 @@ public:
 
 private:
     const Asked* asked_;
-    MethodCase case_;
+    std::unique_ptr<Method> method_;
     bool serves_ = false;
 };
 
 /// A scene with the answers of all methods, each found when first asked for.
 class Answered {
 public:
-    explicit Answered(Asked asked) : asked_(std::move(asked)) {}
+    explicit Answered(Asked asked) : asked_(std::move(asked)), facts_(find_facts(asked_.scene)) {}
 
     [[nodiscard]] const Asked& asked() const { return asked_; }
+    [[nodiscard]] const SceneFacts& facts() const { return facts_; }
     /// Empty where the method does not serve the scene.
     [[nodiscard]] const std::vector<Answer>& by(const std::string& choice) {
         const auto [found, fresh] = answers_.try_emplace(choice);
-        if (fresh) found->second = AskedMethod(choice, asked_).all();
+        if (fresh) found->second = AskedMethod(choice, asked_, facts_).all();
         return found->second;
     }
-    /// 1 where the way to the light (to an area light's centre) touches an edge or a vertex and nothing more.
+    /// Does the way to the light (to an area light's centre) touch an edge or a vertex, and nothing more?
     [[nodiscard]] bool touches(LightId j, std::size_t i) {
         if (touching_.empty()) {
             const Asked hard = with_point_lights(asked_);
-            touching_        = AskedMethod("exact", hard).all();
+            touching_        = AskedMethod("exact", hard, find_facts(hard.scene)).all();
         }
         return touching_[j].plane.defined[i] == kOnBoundary;
     }
 
 private:
     Asked asked_;
+    SceneFacts facts_;
     std::map<std::string, std::vector<Answer>> answers_;
     std::vector<Answer> touching_;
 };
 
-// ---- holding one against the other
-// -----------------------------------------------------------------------------------
+// ---- holding one against the other ---------------------------------------------------------------------------------
 
 struct Difference {
-    std::size_t points = 0, touching = 0, other_side = 0;
+    std::size_t points = 0, other_side = 0;
+    std::size_t touching  = 0;             ///< changed, and on a boundary
+    std::size_t uncovered = 0;             ///< defined before or after, not both
     std::size_t changed = 0, outside = 0;  ///< in any bit; of these outside the edge bands, or the brackets
     std::size_t partial = 0;               ///< penumbra, before or after
     double largest = 0, sum = 0, squares = 0;
@@ -228,15 +237,18 @@ Difference difference(Answered& before, Answered& after, const Changed& changed,
     const auto band          = bands(before, after, changed, j, choice, same);
     const bool size_of_light = is_area(after.asked().scene.lights[changed.lights[j][0].light].kind) !=
                                is_area(before.asked().scene.lights[j].kind);
+    const bool may_touch = same == sides || same == rounded || same == map || same == Same::away_from_edges;
     Difference d;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::size_t k = changed.point[i];
-        bool open = is_open(points, j, i), touches = false, same_side = true, same_defined = true;
+        bool open = is_open(points, j, i), same_side = true, same_defined = true, undefined = false;
         double s = 0, width = static_cast<double>(old.width(i));
         for (const Changed::Part& part : changed.lights[j]) {
             open |= is_open(later, part.light, k);
             same_side &= later.facing[part.light][k] == points.facing[j][i];
-            same_defined &= now[part.light].plane.defined[k] == old.plane.defined[i];
+            const std::uint8_t defined = now[part.light].plane.defined[k];
+            same_defined &= defined == old.plane.defined[i];
+            undefined |= defined == kUndefined;
             s += static_cast<double>(part.weight) * static_cast<double>(now[part.light].plane.s[k]);
             width += static_cast<double>(part.weight) * static_cast<double>(now[part.light].width(k));
         }
@@ -246,17 +258,21 @@ Difference difference(Answered& before, Answered& after, const Changed& changed,
         d.other_side += whole && !same_side;
         if (whole && !same_side && !changed.exact) continue;
         if (same == Same::away_from_edges && !same_side) continue;  // almost in the plane
-        if (same != bits) {
-            touches = before.touches(j, i);
+        ++d.points;
+        if (old.plane.defined[i] == kUndefined && undefined) continue;
+        if (!same_defined && (old.plane.defined[i] == kUndefined || undefined) && same != bits) {
+            ++d.uncovered;
+            continue;
+        }
+        const double by = s - static_cast<double>(old.plane.s[i]);
+        if ((by != 0 || !same_defined) && may_touch) {
+            bool touches = before.touches(j, i);
             for (const Changed::Part& part : changed.lights[j]) touches |= after.touches(part.light, k);
-            if (touches && (same == sides || same == rounded || same == map || same == Same::away_from_edges)) {
+            if (touches) {
                 ++d.touching;
                 continue;
             }
         }
-        ++d.points;
-        if (old.plane.defined[i] == kUndefined && same_defined) continue;
-        const double by = s - static_cast<double>(old.plane.s[i]);
         d.partial += (s > 0 && s < 1) || (old.plane.s[i] > 0 && old.plane.s[i] < 1);
         d.sum += by;
         d.squares += by * by;
@@ -281,6 +297,8 @@ Difference difference(Answered& before, Answered& after, const Changed& changed,
 std::string fault(const Difference& d, Same same, bool exact) {
     const auto n = static_cast<double>(d.points);
     if (exact && d.other_side > 0) return fmt::format("{} points face the light otherwise", d.other_side);
+    if (double(d.uncovered) > kCoverageShare * n + 2)
+        return fmt::format("{} of {} points are covered before or after only", d.uncovered, d.points);
     switch (same) {
         case Same::bits:
         case Same::sides:
@@ -296,7 +314,7 @@ std::string fault(const Difference& d, Same same, bool exact) {
                 return fmt::format("{} of {} points changed outside the bounds: {}", d.outside, d.points, d.first);
             break;
         case Same::map:
-            if (d.outside > 0 || double(d.changed) > kMapShare * n)
+            if (double(d.outside) > kMapOutside * n + 2 || double(d.changed) > kMapShare * n + 2)
                 return fmt::format("{} of {} points changed, {} of them outside the edge band: {}", d.changed, d.points,
                                    d.outside, d.first);
             break;
@@ -315,8 +333,7 @@ std::string fault(const Difference& d, Same same, bool exact) {
     return {};
 }
 
-// ---- the scenes
-// ------------------------------------------------------------------------------------------------------
+// ---- the scenes ----------------------------------------------------------------------------------------------------
 
 struct Source {
     std::string name;
@@ -359,7 +376,7 @@ const std::vector<std::string> kChoices{"exact", "planar_projection:light_sample
                                         "shadow_zbuffer:resolution=512", "ray_traced"};
 
 struct Finding {
-    std::size_t planes = 0, points = 0, touching = 0, changed = 0, outside = 0, faults = 0;
+    std::size_t planes = 0, points = 0, touching = 0, uncovered = 0, changed = 0, outside = 0, faults = 0;
     double share = 0, largest = 0, z = 0;
     std::string worst;
 };
@@ -371,7 +388,8 @@ public:
              bool is_fault) {
         Finding& f = found_[{std::string(relation), choice}];
         ++f.planes;
-        f.points += d.points, f.touching += d.touching, f.changed += d.changed, f.outside += d.outside;
+        f.points += d.points, f.touching += d.touching, f.uncovered += d.uncovered, f.changed += d.changed,
+            f.outside += d.outside;
         f.faults += is_fault;
         f.largest = std::max(f.largest, d.largest);
         f.z       = std::max(f.z, d.z());
@@ -379,11 +397,11 @@ public:
     }
     void TearDown() override {
         if (!named_files()) return;
-        fmt::print("{:20} {:30} {:>6} {:>9} {:>8} {:>8} {:>8} {:>7}  {}\n", "relation", "method", "planes", "points",
-                   "touching", "changed", "outside", "faults", "largest share, in");
+        fmt::print("{:18} {:36} {:>6} {:>9} {:>8} {:>9} {:>7} {:>7} {:>6}  {}\n", "relation", "method", "planes",
+                   "points", "touching", "uncovered", "changed", "outside", "faults", "largest share, in");
         for (const auto& [key, f] : found_)
-            fmt::print("{:20} {:30} {:6} {:9} {:8} {:8} {:8} {:7}  {:.2g} {}\n", key.first, key.second, f.planes,
-                       f.points, f.touching, f.changed, f.outside, f.faults, f.share, f.worst);
+            fmt::print("{:18} {:36} {:6} {:9} {:8} {:9} {:7} {:7} {:6}  {:.2g} {}\n", key.first, key.second, f.planes,
+                       f.points, f.touching, f.uncovered, f.changed, f.outside, f.faults, f.share, f.worst);
     }
 
 private:
@@ -427,12 +445,12 @@ TEST_P(Metamorphic, RelationsHold) {
 
 // What a thread works on does not depend on the others.
 TEST_P(Metamorphic, SameBitsForAnyNumberOfThreads) {
-    const Asked scene = asked();
+    const Answered scene(asked());
     for (const std::string& choice : kChoices) {
         std::vector<std::vector<Answer>> answers;
         for (const int threads : {1, 3}) {
             const ThreadLimit limit(threads);
-            answers.push_back(AskedMethod(choice, scene).all());
+            answers.push_back(AskedMethod(choice, scene.asked(), scene.facts()).all());
         }
         for (std::size_t j = 0; j < answers[0].size(); ++j) {
             EXPECT_EQ(answers[0][j].plane.s, answers[1][j].plane.s) << choice;
@@ -455,7 +473,7 @@ TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
         chosen.back()[i] = 1;
     }
     for (const std::string& choice : kChoices) {
-        AskedMethod run(choice, scene.asked());
+        AskedMethod run(choice, scene.asked(), scene.facts());
         if (!run.serves()) continue;
         for (LightId j = 0; j < scene.asked().scene.lights.size(); ++j) {
             run.aim(j);
