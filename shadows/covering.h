@@ -118,7 +118,7 @@ private:
         T bottom, top, middle;  ///< x in this row
     };
 
-    void find_crossings(const T& lo, const T& hi);
+    bool find_crossings(const T& lo, const T& hi);
     template <class X>
     T open_width(int layers, const X& x, std::span<std::uint8_t> cap_lit) const;
 
@@ -138,20 +138,25 @@ void insertion_sort(Range& range, const Less& less, const Swapped& swapped) {
         }
 }
 
-/// Where edges that are in order at the bottom of the row are not at its top.
+/// Where edges that are in order at the bottom of the row are not at its top. True if there are any such edges, also
+/// where they cross so close to the bottom or the top that doubles put the crossing there: then all of the row has the
+/// order of its middle.
 template <class T>
-void Covering<T>::find_crossings(const T& lo, const T& hi) {
+bool Covering<T>::find_crossings(const T& lo, const T& hi) {
     crossings_.clear();
-    by_top_ = active_;
+    by_top_   = active_;
+    bool some = false;
     insertion_sort(
         by_top_, [](const Active& a, const Active& b) { return a.top < b.top; },
         [&](const Active& a, const Active& b) {
+            some          = true;
             const T below = b.bottom - a.bottom, above = a.top - b.top;
             const T y = lo + (hi - lo) * (below / (below + above));
             if (lo < y && y < hi) crossings_.push_back(y);
         });
     std::sort(crossings_.begin(), crossings_.end());
     crossings_.erase(std::unique(crossings_.begin(), crossings_.end()), crossings_.end());
+    return some;
 }
 
 /// Of a row, the width of the light where D is 0. `x` gives the place of an edge; edges are in order.
@@ -216,9 +221,9 @@ std::pair<double, std::size_t> Covering<T>::uncovered(const std::vector<LightCor
             [](const Active&, const Active&) {});
         if (lo < lowest->y) continue;
 
-        find_crossings(lo, hi);
+        const bool cross = find_crossings(lo, hi);
         terms += active_.size() * (crossings_.size() + 1);
-        if (crossings_.empty()) {
+        if (!cross) {
             const T twice = open_width(
                 layers, [](const Active& a) { return T(a.bottom + a.top); }, cap_lit);
             area.add(T((hi - lo) * twice / T(2)));
