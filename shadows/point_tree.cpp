@@ -133,16 +133,29 @@ Cover cover(const HalfSpace& f, dvec3 min, dvec3 max) {
 }  // namespace
 
 dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin) {
-    constexpr double kGap = 0x1p-26;
-    const TriangleId t    = points.triangle[i];
-    double b = points.u[i], c = points.v[i], a = 1 - b - c;
-    if (std::min({a, b, c}) < kGap) {
-        a = std::max(a, kGap), b = std::max(b, kGap), c = std::max(c, kGap);
-        const double sum = a + b + c;
-        b /= sum, c /= sum;
+    const TriangleId t     = points.triangle[i];
+    const dvec3 corners[3] = {dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)), dvec3(scene.vertex(t, 2))};
+    double weight[3]       = {0, points.u[i], points.v[i]};
+    weight[0]              = 1 - weight[1] - weight[2];
+    // Most points are far inside: a weight times a height is a distance.
+    constexpr double kClear = 0x1p-44, kMostShare = 0x1p-26;
+    if (std::min({weight[0], weight[1], weight[2]}) < kMostShare) {
+        const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+        double far        = 0;
+        for (const dvec3 c : corners) far = std::max(far, glm::length(c - origin));
+        for (int k = 0; k < 3; ++k) {
+            const int l = (k + 1) % 3, m = (k + 2) % 3;
+            const double opposite = glm::length(corners[l] - corners[m]);
+            const double share    = std::min(kMostShare, kClear * far * opposite / area);
+            if (weight[k] >= share) continue;
+            // Towards the corner, from the nearer of the others that has the weight to give.
+            const bool l_is_nearer = glm::length(corners[l] - corners[k]) < glm::length(corners[m] - corners[k]);
+            const int near = l_is_nearer ? l : m, other = l_is_nearer ? m : l;
+            weight[weight[near] > 0.25 ? near : other] -= share - weight[k];
+            weight[k] = share;
+        }
     }
-    const dvec3 pa(scene.vertex(t, 0)), pb(scene.vertex(t, 1)), pc(scene.vertex(t, 2));
-    return (pa - origin) + b * (pb - pa) + c * (pc - pa);
+    return (corners[0] - origin) + weight[1] * (corners[1] - corners[0]) + weight[2] * (corners[2] - corners[0]);
 }
 
 // ---- the tree -------------------------------------------------------------------------------------------------------
