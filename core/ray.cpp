@@ -124,6 +124,8 @@ struct RayScene::Impl {
     std::atomic<std::ptrdiff_t> bytes{0};
     RTCDevice device = nullptr;
     RTCScene scene   = nullptr;
+    std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
+    std::span<const uvec3> triangles;
 
     Impl() : device(rtcNewDevice(nullptr)) {
         if (!device) throw std::runtime_error("Embree gives no device");
@@ -151,6 +153,8 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()), space_
             std::transform(scene.positions.begin(), scene.positions.end(), vertices,
                            [&](vec3 p) { return space_.point(p); });
             std::copy(scene.triangles.begin(), scene.triangles.end(), indices);
+            impl_->vertices  = {vertices, scene.positions.size()};
+            impl_->triangles = {indices, triangles};
             rtcSetGeometryOccludedFilterFunction(geometry, skip_own_triangle);
             rtcCommitGeometry(geometry);
             rtcAttachGeometryByID(impl_->scene, geometry, 0);
@@ -195,6 +199,51 @@ TriangleId RayScene::first_hit(ShadowRay ray) const {
         if (hit.hit.primID != ray.id) return hit.hit.primID;
         ray.tnear = std::nextafter(hit.ray.tfar, kInfinity);
     }
+}
+
+// ---- distance -------------------------------------------------------------------------------------------------------
+
+namespace {
+
+double distance_to_segment(dvec3 p, dvec3 a, dvec3 b) {
+    const dvec3 along  = b - a;
+    const double whole = glm::dot(along, along);
+    const double share = whole > 0 ? std::clamp(glm::dot(p - a, along) / whole, 0.0, 1.0) : 0.0;
+    return glm::length(a + share * along - p);
+}
+
+double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
+    const dvec3 n       = glm::cross(b - a, c - a);
+    const auto inside   = [&](dvec3 from, dvec3 to) { return glm::dot(glm::cross(to - from, p - from), n) >= 0; };
+    const double length = glm::length(n);
+    if (length > 0 && inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(glm::dot(n, p - a)) / length;
+    return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
+}
+
+}  // namespace
+
+double RayScene::clearance(dvec3 point, double reach) const {
+    struct Nearest {
+        const Impl& impl;
+        dvec3 point;
+        double distance;
+    } nearest{*impl_, point, reach};
+    RTCPointQuery query{};
+    query.x = static_cast<float>(point.x), query.y = static_cast<float>(point.y), query.z = static_cast<float>(point.z);
+    query.radius = static_cast<float>(reach) * (1 + 0x1p-20f) + 0x1p-20f;  // the point is rounded
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    rtcPointQuery(
+        impl_->scene, &query, &context,
+        [](RTCPointQueryFunctionArguments* found) {
+            auto& n       = *static_cast<Nearest*>(found->userPtr);
+            const uvec3 t = n.impl.triangles[found->primID];
+            const auto v  = [&](unsigned k) { return dvec3(n.impl.vertices[k]); };
+            n.distance    = std::min(n.distance, distance_to_triangle(n.point, v(t.x), v(t.y), v(t.z)));
+            return false;  // the query's radius stays
+        },
+        &nearest);
+    return nearest.distance;
 }
 
 // ---- the G-buffer ---------------------------------------------------------------------------------------------------

@@ -87,6 +87,9 @@ public:
     /// (by a third on a million triangles); for eight rays from one point a packet is.
     void occluded(std::span<ShadowRay> rays) const;
 
+    /// Distance from a point in ray space to the nearest triangle, or `reach` where none is that near.
+    [[nodiscard]] double clearance(dvec3 point, double reach) const;
+
     /// The triangle that the ray meets first, kNoTriangle where it meets none but its own. Call under FlushDenormals.
     [[nodiscard]] TriangleId first_hit(ShadowRay ray) const;
 

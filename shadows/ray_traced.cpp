@@ -59,7 +59,8 @@ OffsetPolicy policy_named(const std::string& name) {
 }
 
 /// Rays end this share of their way before the light, so that a lamp's own triangles, on which the light lies, do not
-/// block it. 256 float steps: enough for incidence down to about a degree.
+/// block it. 256 float steps: enough for incidence down to about a degree. Where a triangle comes that near to a light
+/// without touching it, rays end in the middle of what is between.
 constexpr float kAlmostThere = 1 - 0x1p-16f;
 
 /// The light in ray space. Rays to a light at distance D run in units of `unit`, a power of two near D where D is far
@@ -71,6 +72,7 @@ struct Target {
     vec3 axis_u{0}, axis_v{0};  ///< in units: rectangle: half edges; disk: perpendicular radii
     dvec3 sphere{0};            ///< sphere: centre and radius, not in units
     double radius = 0;
+    float spared  = kInfinity;  ///< hard lights: no triangle is nearer to the light than twice this, in units
 };
 
 Target make_target(const Light& light, const RaySpace& space) {
@@ -146,6 +148,7 @@ public:
 
     void aim(LightId light) override {
         target_ = make_target(scene_->lights[light], rays_->space());
+        spare_neighbours();
         set_.emplace(sampler_, is_area(target_.kind) ? samples_ : 1, seed_ + 0x9e3779b9u * light);
     }
 
@@ -160,6 +163,7 @@ public:
     }
 
 private:
+    void spare_neighbours();
     [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
     void start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
     void hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
@@ -180,6 +184,16 @@ private:
     Target target_;
     std::optional<SampleSet> set_;
 };
+
+/// Sets target_.spared. What is nearer than a few float steps counts as touching: floats can't tell on which side it
+/// is.
+void RayTraced::spare_neighbours() {
+    constexpr double scene_radius = 4, touching = 0x1p-22;  // ray space holds the scene within 2 each way
+    const double distance = glm::length(target_.sphere);
+    if (is_area(target_.kind) || target_.kind == LightKind::directional || distance > 2 * scene_radius) return;
+    const double clearance = rays_->clearance(target_.sphere, (1 - double{kAlmostThere}) * (distance + scene_radius));
+    if (clearance > touching) target_.spared = static_cast<float>(0.5 * clearance);
+}
 
 /// The point from its name, rounded in ray space only: where that is moved, its floats are finer than the world's.
 vec3 RayTraced::exact_start(const PointBatch& points, std::size_t i) const {
@@ -243,18 +257,20 @@ void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t c
 void RayTraced::hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const {
     const bool parallel  = target_.kind == LightKind::directional;
     const float per_unit = parallel ? 0 : 1 / target_.unit;
-    float dx[8], dy[8], dz[8], tnear[8];
+    float dx[8], dy[8], dz[8], tnear[8], tfar[8];
     for (int k = 0; k < 8; ++k) {
         dx[k]            = target_.centre.x - per_unit * starts.x[k];
         dy[k]            = target_.centre.y - per_unit * starts.y[k];
         dz[k]            = target_.centre.z - per_unit * starts.z[k];
         const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
         tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
+        const float way  = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
+        tfar[k]          = parallel ? kInfinity : std::max(kAlmostThere, 1 - target_.spared / way) * target_.unit;
     }
-    const float tfar = parallel ? kInfinity : kAlmostThere * target_.unit;
     for (std::size_t k = 0; k < count; ++k) {
         if (facing[k] < Facing::partly) continue;
-        *rays++ = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k], dy[k], dz[k], 0, tfar, ~0u, starts.id[k], 0};
+        *rays++ = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k],        dy[k],
+                   dz[k],       0,           tfar[k],     ~0u,      starts.id[k], 0};
     }
 }
 

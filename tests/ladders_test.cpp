@@ -280,6 +280,21 @@ TEST(LadderTruth, IsWhatEveryTriangleTriedInDoublesSays) {
         }
 }
 
+TEST(LadderTruth, WhoServesExactlyHoldsOnEveryRung) {
+    // Every error counts here, also those in the edge band.
+    for (const char* name : {"crack", "t_junction", "beside_edges", "sliver_occluder", "sliver_receiver",
+                             "touching_solids", "shared_edge", "large_floor", "needles", "depth_complexity"})
+        for (const double rung : ladder(name).rungs) {
+            const RungStage stage = set_stage(ladder(name).scene(rung));
+            for (const char* method : {"planar_projection", "shadow_volumes"}) {
+                const RungOutcome o = outcome(stage, parse_method(method));
+                if (o.service.how != How::exactly) continue;
+                EXPECT_EQ(o.interior() + o.false_shadow.edge + o.false_light.edge, 0u)
+                    << method << " on " << name << " " << rung;
+            }
+        }
+}
+
 // ---- the sum --------------------------------------------------------------------------------------------------------
 
 Image sum_of(const RungStage& stage) { return shade(stage.scene, stage.points, stage.truth); }

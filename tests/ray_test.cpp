@@ -244,6 +244,32 @@ TEST(RayScene, CountsItsMemory) {
     EXPECT_LT(large.memory_bytes(), 89400 * 400u);
 }
 
+TEST(RayScene, ClearanceIsTheLeastDistanceOverAllTriangles) {
+    const Scene scene = random_triangles(200, 5);
+    const RayScene rays(scene);
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
+    for (int i = 0; i < 200; ++i) {
+        const dvec3 p(coordinate(random), coordinate(random), coordinate(random));
+        // By many points of every triangle: never nearer, and close where they lie densely.
+        double least = 8;
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+            const dvec3 a(rays.space().point(scene.vertex(t, 0))), b(rays.space().point(scene.vertex(t, 1))),
+                c(rays.space().point(scene.vertex(t, 2)));
+            for (int u = 0; u <= 40; ++u)
+                for (int v = 0; u + v <= 40; ++v)
+                    least = std::min(least, glm::length(a + (b - a) * (u / 40.0) + (c - a) * (v / 40.0) - p));
+        }
+        const double got = rays.clearance(p, 8);
+        EXPECT_LE(got, least * (1 + 1e-12));
+        EXPECT_GT(got, least - 0.05);
+        EXPECT_DOUBLE_EQ(rays.clearance(p, got / 2), got / 2) << "nothing is that near";
+    }
+    const dvec3 on(rays.space().point(scene.vertex(7, 1)));
+    EXPECT_LT(rays.clearance(on, 1), 1e-15);
+    EXPECT_EQ(rays.clearance(dvec3(100), 0.5), 0.5);
+}
+
 TEST(RayScene, OccludedSkipsTheNamedTriangleOnly) {
     const RayScene rays(
         scene_of({{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}, {-1, 1, -1}, {1, 1, -1}, {0, 1, 1}}, {{0, 1, 2}, {3, 4, 5}}));

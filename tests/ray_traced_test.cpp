@@ -302,6 +302,22 @@ TEST(RayTraced, ALampsOwnTrianglesDoNotBlockIt) {
     for (float s : trace(scene, points_on_quad(scene, places), "samples=64").s) EXPECT_EQ(s, 1.0f);
 }
 
+TEST(RayTraced, WhatIsCloseToALampButDoesNotTouchItCasts) {
+    // A plate of 1 x 1 so close beneath a lamp at height 4, or above it.
+    for (const float gap : {1e-2f, 1e-4f, 1e-5f, 4e-6f})
+        for (const bool beneath : {true, false}) {
+            Scene scene;
+            add_quad(scene, {-4, 0, -4}, {-4, 0, 4}, {4, 0, 4}, {4, 0, -4});
+            const float y = beneath ? 4 - gap : 4 + gap;
+            add_quad(scene, {-0.5f, y, -0.5f}, {-0.5f, y, 0.5f}, {0.5f, y, 0.5f}, {0.5f, y, -0.5f});
+            scene.lights.push_back(light_of(LightKind::point, {0.25f, 4, 0.125f}));
+            std::vector<dvec2> places;
+            for (int i = 0; i < 400; ++i) places.emplace_back((i % 20 + 0.3) / 20, (i / 20 + 0.6) / 20);  // NOLINT
+            const Answer answer = trace(scene, points_on_quad(scene, places));
+            for (const float s : answer.s) ASSERT_EQ(s, beneath ? 0.0f : 1.0f) << gap;
+        }
+}
+
 TEST(RayTraced, APointLightVeryFarIsADirection) {
     Scene scene         = random_triangles(300, 2);
     scene.camera.eye    = vec3(0, 0.5f, 3);

@@ -49,12 +49,13 @@ Scene lattice_scene(double beside) {
     Scene scene               = empty_stage();
     scene.width = scene.height = 64;
     add_body(scene, "floor", make_plane(2, 2));
+    // Lines through pixels, but the first and the last between them: the shadow's border is at none.
+    const auto line = [](int k) { return kSpacing * (k - 0.5 * kCells + (k == 0 ? 0.0 : k == kCells ? 1.0 : 0.5)); };
     Mesh sheet;
     for (int j = 0; j <= kCells; ++j)
         for (int i = 0; i <= kCells; ++i) {
             const double height = 1 + ((5 * i + 3 * j + i * j) % 16) / 64.0;
-            const dvec3 shadow(kSpacing * (i - 0.5 * kCells + 0.5 + beside), 0,
-                               kSpacing * (j - 0.5 * kCells + 0.5 + 0.5 * beside));
+            const dvec3 shadow(line(i) + kSpacing * beside, 0, line(j) + 0.5 * kSpacing * beside);
             sheet.positions.emplace_back(shadow + height * dvec3(0.5, 1, 0.25));
         }
     for (unsigned j = 0; j < kCells; ++j)
