@@ -50,15 +50,16 @@ dvec3 passes(dvec3 p, dvec3 light, double height) { return p + (light - p) * ((h
 /// Holds exact against the formula on every rung.
 void expect_formula(const Ladder& l, const std::function<Says(const Scene&, dvec3)>& formula) {
     for (const double rung : l.rungs) {
-        const RungStage stage = set_stage(l.scene(rung));
-        ASSERT_EQ(stage.truth_by, "exact");
+        const auto stage_set   = set_stage(l.scene(rung));
+        const RungStage& stage = *stage_set;
+        ASSERT_EQ(stage.truth.choice.text(), "exact");
         std::size_t compared = 0, wrong = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
-            if (!is_open(stage.points, 0, i) || stage.truth[0].defined[i] != kDefined) continue;
+            if (!is_open(stage.points, 0, i) || stage.truth.planes[0].defined[i] != kDefined) continue;
             const Says says = formula(stage.scene, place(stage.scene, stage.points, i));
             if (says == Says::nothing) continue;
             ++compared;
-            wrong += (stage.truth[0].s[i] == 1) != (says == Says::lit);
+            wrong += (stage.truth.planes[0].s[i] == 1) != (says == Says::lit);
         }
         EXPECT_EQ(wrong, 0u) << l.name << " " << rung;
         EXPECT_GT(compared, stage.points.size() * 9 / 10) << l.name << " " << rung;
@@ -76,13 +77,14 @@ TEST(LadderTruth, CrackLetsAStripeThroughWhereItsEdgesSay) {
 
 TEST(LadderTruth, CrackIsAsWideAsItsShadowIsTwice) {
     for (const double width : {1e-2, 1e-4, 1e-6}) {
-        const RungStage stage = set_stage(ladder("crack").scene(width));
+        const auto stage_set   = set_stage(ladder("crack").scene(width));
+        const RungStage& stage = *stage_set;
         // Along the stripe's own direction the picture is constant: the share of light in a column that it crosses.
         std::size_t lit = 0;
         double extent   = 0;
         const auto& f   = *stage.points.raster;
         const auto at   = [&](int y) { return static_cast<std::size_t>(y) * f.width + f.width / 2; };
-        for (int y = 0; y < f.height; ++y) lit += stage.truth[0].s[at(y)] == 1;
+        for (int y = 0; y < f.height; ++y) lit += stage.truth.planes[0].s[at(y)] == 1;
         extent = std::abs(
             glm::dot(place(stage.scene, stage.points, at(f.height - 1)) - place(stage.scene, stage.points, at(0)),
                      dvec3(-5, 0, 12) / 13.0));
@@ -157,7 +159,8 @@ TEST(LadderTruth, NeedlesShadowIsTheHullOfTheirCornersShadows) {
 TEST(LadderTruth, SheetsHideWhatAnyOfThemHides) {
     const Ladder& l = ladder("depth_complexity");
     for (const double rung : {1.0, 100.0, 256.0}) {
-        const RungStage stage = set_stage(l.scene(rung));
+        const auto stage_set   = set_stage(l.scene(rung));
+        const RungStage& stage = *stage_set;
         std::size_t wrong = 0, compared = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
             const dvec3 p = is_open(stage.points, 0, i) ? place(stage.scene, stage.points, i) : dvec3(1);
@@ -171,9 +174,9 @@ TEST(LadderTruth, SheetsHideWhatAnyOfThemHides) {
                 for (std::size_t k = 0; k < 4; ++k) out = std::max(out, beside(v[k], v[(k + 1) % 4], q));
                 says = both(says, lit_where(out));
             }
-            if (says == Says::nothing || stage.truth[0].defined[i] != kDefined) continue;
+            if (says == Says::nothing || stage.truth.planes[0].defined[i] != kDefined) continue;
             ++compared;
-            wrong += (stage.truth[0].s[i] == 1) != (says == Says::lit);
+            wrong += (stage.truth.planes[0].s[i] == 1) != (says == Says::lit);
         }
         EXPECT_EQ(wrong, 0u) << rung;
         EXPECT_GT(compared, 5000u) << rung;
@@ -182,12 +185,13 @@ TEST(LadderTruth, SheetsHideWhatAnyOfThemHides) {
 
 TEST(LadderTruth, NoSunComesThroughWallsOfAnyThickness) {
     for (const double rung : ladder("thin_walls").rungs) {
-        const RungStage stage = set_stage(ladder("thin_walls").scene(rung));
+        const auto stage_set   = set_stage(ladder("thin_walls").scene(rung));
+        const RungStage& stage = *stage_set;
         std::size_t asked = 0, lit = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
             if (!is_open(stage.points, 0, i)) continue;
             ++asked;
-            lit += stage.truth[0].s[i] != 0 && stage.truth[0].defined[i] == kDefined;
+            lit += stage.truth.planes[0].s[i] != 0 && stage.truth.planes[0].defined[i] == kDefined;
         }
         EXPECT_EQ(lit, 0u) << rung;
         EXPECT_GT(asked, 5000u) << rung;
@@ -196,14 +200,15 @@ TEST(LadderTruth, NoSunComesThroughWallsOfAnyThickness) {
 
 TEST(LadderTruth, NoLightComesThroughTheLatticeBesideItsVertices) {
     for (const double rung : ladder("beside_edges").rungs) {
-        const RungStage stage = set_stage(ladder("beside_edges").scene(rung));
+        const auto stage_set   = set_stage(ladder("beside_edges").scene(rung));
+        const RungStage& stage = *stage_set;
         std::size_t within = 0, lit = 0, on_boundary = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
             const dvec3 p = place(stage.scene, stage.points, i);
             if (std::max(std::abs(p.x), std::abs(p.z)) > 0.7) continue;  // the lattice's shadow reaches to 0.73
             ++within;
-            on_boundary += stage.truth[0].defined[i] == kOnBoundary;
-            lit += stage.truth[0].defined[i] == kDefined && stage.truth[0].s[i] != 0;
+            on_boundary += stage.truth.planes[0].defined[i] == kOnBoundary;
+            lit += stage.truth.planes[0].defined[i] == kDefined && stage.truth.planes[0].s[i] != 0;
         }
         EXPECT_EQ(lit, 0u) << rung;
         EXPECT_GT(within, 1500u) << rung;
@@ -223,32 +228,35 @@ void expect_same(const RungStage& a, const RungStage& b, double rung) {
     for (std::size_t i = 0; i < a.points.size(); ++i) {
         if (!is_open(a.points, 0, i) || !is_open(b.points, 0, i)) continue;
         if (a.points.position(i) != b.points.position(i)) continue;
-        if (a.truth[0].defined[i] != kDefined || b.truth[0].defined[i] != kDefined) continue;
+        if (a.truth.planes[0].defined[i] != kDefined || b.truth.planes[0].defined[i] != kDefined) continue;
         ++same_place;
-        differ += a.truth[0].s[i] != b.truth[0].s[i];
+        differ += a.truth.planes[0].s[i] != b.truth.planes[0].s[i];
     }
     EXPECT_EQ(differ, 0u) << rung;
     EXPECT_GT(same_place, 3000u) << rung;
 }
 
 TEST(LadderTruth, TrianglesWithoutAreaChangeNothing) {
-    const RungStage without = set_stage(ladder("zero_area").scene(0));
-    for (const double rung : {10.0, 1e4}) expect_same(set_stage(ladder("zero_area").scene(rung)), without, rung);
+    const auto without_set   = set_stage(ladder("zero_area").scene(0));
+    const RungStage& without = *without_set;
+    for (const double rung : {10.0, 1e4}) expect_same(*set_stage(ladder("zero_area").scene(rung)), without, rung);
 }
 
 TEST(LadderTruth, DuplicatesChangeNothing) {
-    const RungStage once = set_stage(ladder("duplicate_faces").scene(1));
-    for (const double rung : {2.0, 20.0}) expect_same(set_stage(ladder("duplicate_faces").scene(rung)), once, rung);
+    const auto once_set   = set_stage(ladder("duplicate_faces").scene(1));
+    const RungStage& once = *once_set;
+    for (const double rung : {2.0, 20.0}) expect_same(*set_stage(ladder("duplicate_faces").scene(rung)), once, rung);
 }
 
 TEST(LadderTruth, AConvexBallDoesNotShadowItself) {
     for (const double rung : {8.0, 64.0}) {
-        const RungStage stage = set_stage(ladder("sphere_tessellation").scene(rung));
+        const auto stage_set   = set_stage(ladder("sphere_tessellation").scene(rung));
+        const RungStage& stage = *stage_set;
         std::size_t asked = 0, dark = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
             if (!is_open(stage.points, 0, i) || stage.scene.triangle_object[stage.points.triangle[i]] != 1) continue;
             ++asked;
-            dark += stage.truth[0].s[i] != 1;
+            dark += stage.truth.planes[0].s[i] != 1;
         }
         EXPECT_GT(asked, 100u);
         EXPECT_EQ(dark, 0u) << rung;
@@ -266,14 +274,15 @@ TEST(LadderTruth, IsWhatEveryTriangleTriedInDoublesSays) {
                                                                  {"zero_area", {100}}};
     for (const auto& [name, rungs] : cases)
         for (const double rung : rungs) {
-            const RungStage stage       = set_stage(ladder(name).scene(rung));
+            const auto stage_set        = set_stage(ladder(name).scene(rung));
+            const RungStage& stage      = *stage_set;
             const VisibilityPlane force = brute_force(stage.scene, stage.points, 0);
             std::size_t compared = 0, wrong = 0;
             for (std::size_t i = 0; i < stage.points.size(); ++i) {
-                if (!is_open(stage.points, 0, i) || !force.defined[i] || stage.truth[0].defined[i] != kDefined)
+                if (!is_open(stage.points, 0, i) || !force.defined[i] || stage.truth.planes[0].defined[i] != kDefined)
                     continue;
                 ++compared;
-                wrong += stage.truth[0].s[i] != force.s[i];
+                wrong += stage.truth.planes[0].s[i] != force.s[i];
             }
             EXPECT_EQ(wrong, 0u) << name << " " << rung;
             EXPECT_GT(compared, 3000u) << name << " " << rung;
@@ -285,7 +294,8 @@ TEST(LadderTruth, WhoServesExactlyHoldsOnEveryRung) {
     for (const char* name : {"crack", "t_junction", "beside_edges", "sliver_occluder", "sliver_receiver",
                              "touching_solids", "shared_edge", "large_floor", "needles", "depth_complexity"})
         for (const double rung : ladder(name).rungs) {
-            const RungStage stage = set_stage(ladder(name).scene(rung));
+            const auto stage_set   = set_stage(ladder(name).scene(rung));
+            const RungStage& stage = *stage_set;
             for (const char* method : {"planar_projection", "shadow_volumes"}) {
                 const RungOutcome o = outcome(stage, parse_method(method));
                 if (o.service.how != How::exactly) continue;
@@ -297,12 +307,13 @@ TEST(LadderTruth, WhoServesExactlyHoldsOnEveryRung) {
 
 // ---- the sum --------------------------------------------------------------------------------------------------------
 
-Image sum_of(const RungStage& stage) { return shade(stage.scene, stage.points, stage.truth); }
+Image sum_of(const RungStage& stage) { return shade(stage.scene, stage.points, stage.truth.planes); }
 
 /// Largest difference from a formula, as a share of the largest value.
 double off_formula(const char* name, double rung, const std::function<double(const Scene&, dvec3 p)>& formula) {
-    const RungStage stage = set_stage(ladder(name).scene(rung));
-    const Image picture   = sum_of(stage);
+    const auto stage_set   = set_stage(ladder(name).scene(rung));
+    const RungStage& stage = *stage_set;
+    const Image picture    = sum_of(stage);
     double largest = 0, off = 0;
     for (std::size_t i = 0; i < stage.points.size(); ++i) {
         const double right = formula(stage.scene, dvec3(stage.points.position(i)));
@@ -361,9 +372,10 @@ TEST(LadderSum, AttenuationFollowsItsFormulaUntilItIsLimited) {
 }
 
 TEST(LadderSum, APictureThatRisesFromItsMiddleIsFound) {
-    const Ladder& l       = ladder("shininess");
-    const RungStage stage = set_stage(l.scene(100));
-    Image picture         = sum_of(stage);
+    const Ladder& l        = ladder("shininess");
+    const auto stage_set   = set_stage(l.scene(100));
+    const RungStage& stage = *stage_set;
+    Image picture          = sum_of(stage);
     EXPECT_EQ(l.wrong_sum(100, stage.scene, picture), "");
     const std::size_t middle  = picture.pixels() / 2;
     picture.at(middle + 8, 0) = 1.001f * picture.at(middle + 7, 0);
