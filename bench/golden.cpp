@@ -10,6 +10,7 @@
 #include <optional>
 #include <set>
 
+#include "bench/explain.h"
 #include "bench/pictures.h"
 #include "bench/staged_files.h"
 #include "core/error.h"
@@ -180,23 +181,34 @@ void leave_pictures(const fs::path& folder, const PreparedScene& prepared, const
 
 // ---- figures --------------------------------------------------------------------------------------------------------
 
-Json figures_of(const PreparedScene& prepared, const MethodRun& run, const std::vector<VisibilityPlane>& exact) {
+Json figures_of(const PreparedScene& prepared, const MethodRun& run, const MethodRun& exact) {
     Json figures = Json::object();
     for (LightId j = 0; j < run.planes.size(); ++j) {
-        const Light& light = prepared.scene.lights[j];
-        const VisibilityError e =
-            visibility_error(prepared.points, j, run.planes[j], exact[j], visibility_tolerance(light.kind));
-        figures[light.name] = {{"points", e.points},
-                               {"undefined", e.undefined},
-                               {"on_boundary", e.on_boundary},
-                               {"lit", e.lit},
-                               {"umbra", e.umbra},
-                               {"penumbra", e.penumbra},
-                               {"false_shadow_interior", e.false_shadow.interior},
-                               {"false_shadow_edge", e.false_shadow.edge},
-                               {"false_light_interior", e.false_light.interior},
-                               {"false_light_edge", e.false_light.edge},
-                               {"mae", e.mae}};
+        const Explained explained     = explain(prepared.scene, prepared.points, j, run, exact);
+        const VisibilityError& e      = explained.error;
+        const EdgeDisplacement edges  = explained.displacement.value_or(EdgeDisplacement{});
+        const PenumbraWidth penumbrae = explained.penumbra_width.value_or(PenumbraWidth{});
+
+        figures[prepared.scene.lights[j].name] = {{"points", e.points},
+                                                  {"undefined", e.undefined},
+                                                  {"on_boundary", e.on_boundary},
+                                                  {"lit", e.lit},
+                                                  {"umbra", e.umbra},
+                                                  {"penumbra", e.penumbra},
+                                                  {"false_shadow_interior", e.false_shadow.interior},
+                                                  {"acne", e.acne},
+                                                  {"false_shadow_edge", e.false_shadow.edge},
+                                                  {"false_light_interior", e.false_light.interior},
+                                                  {"detachment", e.detachment},
+                                                  {"leak", e.leak},
+                                                  {"false_light_edge", e.false_light.edge},
+                                                  {"terminator_wrong", e.terminator.wrong},
+                                                  {"mae", e.mae},
+                                                  {"edge_pieces", edges.pieces},
+                                                  {"edge_unmatched", edges.unmatched},
+                                                  {"edge_displacement_mean", edges.mean},
+                                                  {"edge_displacement_max", edges.max},
+                                                  {"penumbra_width", penumbrae.method}};
     }
     return figures;
 }
@@ -218,12 +230,14 @@ void add_figure_changes(const Json& accepted, const Json& now, Changes& changes)
         for (const auto& item : old.items())
             if (!light.value().contains(item.key()))
                 changes.add(fmt::format("{}: {} is no longer there", light.key(), item.key()), false);
+        std::vector<std::string> fresh;
         for (const auto& item : light.value().items()) {
             const std::string name = fmt::format("{}: {}", light.key(), item.key());
             const Json& value      = item.value();
-            const bool at_edges    = item.key().ends_with("_edge") || item.key() == "mae";
+            const bool at_edges =
+                item.key().find("edge") != std::string::npos || item.key() == "mae" || item.key() == "penumbra_width";
             if (!old.contains(item.key())) {
-                changes.add(fmt::format("{} {} is new", name, value.dump()), false);
+                fresh.push_back(item.key());
             } else if (const Json& before = old[item.key()]; is_range(before)) {
                 const bool below = value<before[0], above = value> before[1];
                 if (below || above)
@@ -234,12 +248,12 @@ void add_figure_changes(const Json& accepted, const Json& now, Changes& changes)
                 changes.add(fmt::format("{} {} -> {}", name, before.dump(), value.dump()), at_edges);
             }
         }
+        if (!fresh.empty()) changes.add(fmt::format("{}: new figures {}", light.key(), fmt::join(fresh, ", ")), false);
     }
 }
 
 /// The figures as ranges, for the lights whose answers are sampled.
-Json with_ranges(Json figures, const PreparedScene& prepared, const MethodChoice& choice,
-                 const std::vector<VisibilityPlane>& exact) {
+Json with_ranges(Json figures, const PreparedScene& prepared, const MethodChoice& choice, const MethodRun& exact) {
     const std::vector<Light>& lights = prepared.scene.lights;
     if (std::none_of(lights.begin(), lights.end(), [&](const Light& l) { return is_sampled(choice, l); }))
         return figures;
@@ -322,13 +336,12 @@ std::string figures_text(const Figures& figures) {
 /// A scene with what its goldens need, made once for all methods.
 struct GoldenScene {
     PreparedScene planes, figures;
-    std::vector<VisibilityPlane> exact;  ///< of `figures`; empty where `exact` does not serve
+    std::optional<MethodRun> exact;  ///< of `figures`; nothing where it does not serve
 
     explicit GoldenScene(const fs::path& file)
         : planes(prepare_scene(file, kPlaneSize)), figures(prepare_scene(file, kFigureSize)) {
         const Reference reference = default_reference(figures.facts);
-        if (reference.exact)
-            exact = run_method(reference.choice, figures.scene, figures.facts, figures.points, {1, 0}).planes;
+        if (reference.exact) exact = run_method(reference.choice, figures.scene, figures.facts, figures.points, {1, 0});
     }
 };
 
@@ -360,10 +373,10 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
     const std::size_t plane_lines = changes.lines.size();
 
     Json figures = Json::object();
-    if (!scene.exact.empty())
+    if (scene.exact)
         figures = figures_of(scene.figures,
                              run_method(choice, scene.figures.scene, scene.figures.facts, scene.figures.points, {1, 0}),
-                             scene.exact);
+                             *scene.exact);
     add_figure_changes(accepted.methods.value(method, Json::object()), figures, changes);
     if (changes.lines.empty()) return std::nullopt;
 
@@ -381,10 +394,10 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
             write_image(file, now);
     }
     if (options.renew && changes.lines.size() > plane_lines) {
-        if (scene.exact.empty())
-            accepted.methods.erase(method);
+        if (scene.exact)
+            accepted.methods[method] = with_ranges(std::move(figures), scene.figures, choice, *scene.exact);
         else
-            accepted.methods[method] = with_ranges(std::move(figures), scene.figures, choice, scene.exact);
+            accepted.methods.erase(method);
     }
     change.lines = std::move(changes.lines);
     return change;
