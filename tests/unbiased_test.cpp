@@ -157,7 +157,7 @@ TEST(BiasTest, SeesASampleThatIsForgotten) {
 TEST(BiasTest, SeesASeedThatIsIgnored) {
     const HalfPlane scene;
     const VisibilityPlane always = scene.planes()(1);
-    EXPECT_EQ(scene.test([&](int) { return always; }).p, 0);
+    EXPECT_EQ(scene.test([&](int) { return VisibilityPlane(always); }).p, 0);
 }
 
 TEST(BiasTest, AllowsForTheReferencesDoubt) {
