@@ -205,19 +205,14 @@ TEST(LadderTruth, NoLightComesThroughTheLatticeBesideItsVertices) {
         std::size_t within = 0, lit = 0, on_boundary = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
             const dvec3 p = place(stage.scene, stage.points, i);
-            if (std::max(std::abs(p.x), std::abs(p.z)) > 0.7) continue;  // the lattice's shadow reaches to 0.73
+            if (std::max(std::abs(p.x), std::abs(p.z)) > 0.9) continue;  // the lattice reaches to 0.94
             ++within;
             on_boundary += stage.truth.planes[0].defined[i] == kOnBoundary;
             lit += stage.truth.planes[0].defined[i] == kDefined && stage.truth.planes[0].s[i] != 0;
         }
         EXPECT_EQ(lit, 0u) << rung;
-        EXPECT_GT(within, 1500u) << rung;
-        if (rung > 3e-6) {
-            EXPECT_EQ(on_boundary, 0u) << rung;
-        }
-        if (rung == 0) {
-            EXPECT_EQ(on_boundary, within) << "every way meets a vertex exactly";
-        }
+        EXPECT_GT(within, 3000u) << rung;
+        EXPECT_LT(on_boundary, within / 20) << rung << ": floats hardly ever meet a vertex";
     }
 }
 

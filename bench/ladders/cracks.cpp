@@ -39,14 +39,15 @@ Scene t_junction_scene(double gap) {
     return scene;
 }
 
-constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 0.0};
+constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0};
 
-/// A hilly sheet of right-angled triangles, whose vertices the sun casts onto a square grid in the floor; the eye,
+/// A hilly sheet of right-angled triangles, whose vertices the lamp casts onto a square grid in the floor; the eye,
 /// below it and looking straight down, has its pixels there, but for a share of the grid's spacing.
 Scene lattice_scene(double beside) {
-    constexpr int kCells      = 48;
+    constexpr int kCells      = 60;
     constexpr double kSpacing = 1.0 / 32;
-    Scene scene               = empty_stage();
+    const dvec3 lamp(vec3(1.7f, 2.9f, 1.3f));
+    Scene scene = empty_stage();
     scene.width = scene.height = 64;
     add_body(scene, "floor", make_plane(2, 2));
     // Lines through pixels, but the first and the last between them: the shadow's border is at none.
@@ -56,7 +57,7 @@ Scene lattice_scene(double beside) {
         for (int i = 0; i <= kCells; ++i) {
             const double height = 1 + ((5 * i + 3 * j + i * j) % 16) / 64.0;
             const dvec3 shadow(line(i) + kSpacing * beside, 0, line(j) + 0.5 * kSpacing * beside);
-            sheet.positions.emplace_back(shadow + height * dvec3(0.5, 1, 0.25));
+            sheet.positions.emplace_back(shadow + (height / lamp.y) * (lamp - shadow));
         }
     for (unsigned j = 0; j < kCells; ++j)
         for (unsigned i = 0; i < kCells; ++i) {
@@ -65,7 +66,7 @@ Scene lattice_scene(double beside) {
             sheet.triangles.push_back({first, below + 1, first + 1});
         }
     add_body(scene, "sheet", sheet);
-    add_sun(scene, {-0.5f, -1, -0.25f});
+    add_point_light(scene, vec3(lamp));
     scene.camera.projection = Projection::orthographic;
     scene.camera.height     = 2;
     scene.camera.eye        = {0, 0.5f, 0};
@@ -100,9 +101,8 @@ const Ladder beside_edges_ladder{
     .name  = "beside_edges",
     .title = "Light that passes beside edges and vertices",
     .about =
-        "Of a closed sheet of small triangles the way to the light meets each a vertex but for this share of an "
-        "edge, in the end the vertex itself, which is on the boundary. Users of ray tracers report rays that slip "
-        "through there.",
+        "Of a closed sheet of small triangles the way to the lamp meets each a vertex but for this share of an "
+        "edge, in the end but for rounding. Users of ray tracers report rays that slip through there.",
     .unit  = "edges",
     .rungs = kBesides,
     .scene = lattice_scene};
