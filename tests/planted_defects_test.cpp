@@ -225,6 +225,17 @@ Scene ball(bool smooth) {
     return scene;
 }
 
+TEST(PlantedDefects, AShadowFromTheNextFacetIsAcneToo) {
+    // Facets of a few pixels: a sample of the map mostly shows the neighbour of the point's own.
+    Scene scene = wall_and_board();
+    add(scene, "ball", moved(make_sphere(0.9f, 64, 48), {-1.5f, 1, 3}));
+    const Stage stage(scene);
+    const Interior bad = interior(stage.explained("shadow_zbuffer:resolution=512,bias=manual,constant=0").error);
+    EXPECT_GT(bad.acne, 500u);
+    EXPECT_LT(bad.other_shadow, bad.acne / 10);
+    EXPECT_EQ(bad.detachment + bad.leak + bad.at_terminator, 0u);
+}
+
 TEST(PlantedDefects, TheTerminatorIsCountedApart) {
     const Stage flat(ball(false)), smooth(ball(true));
     EXPECT_EQ(flat.explained("ray_traced").error.terminator.facet_away, 0u);
