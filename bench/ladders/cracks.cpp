@@ -83,7 +83,7 @@ const Ladder crack_ladder{
     .about =
         "Two halves of a sheet leave a crack between them, which lets a stripe of light through; in the end they "
         "share an edge and the sheet is closed. The picture shows the stripe alone.",
-    .unit  = "sheets",
+    .unit  = "of the sheet",
     .rungs = kGaps,
     .scene = crack_scene};
 
@@ -93,7 +93,7 @@ const Ladder t_junction_ladder{
     .about =
         "A vertex in the middle of a longer edge lies off it by so much, in the end by its own rounding alone, and "
         "leaves a slit. Beside the slit all is dark.",
-    .unit  = "sheets",
+    .unit  = "of the sheet",
     .rungs = kGaps,
     .scene = t_junction_scene};
 
@@ -103,7 +103,7 @@ const Ladder beside_edges_ladder{
     .about =
         "Of a closed sheet of small triangles the way to the lamp meets each a vertex but for this share of an "
         "edge, in the end but for rounding. Users of ray tracers report rays that slip through there.",
-    .unit  = "edges",
+    .unit  = "of an edge",
     .rungs = kBesides,
     .scene = lattice_scene};
 

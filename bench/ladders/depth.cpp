@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::array kThicknesses = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
 
-/// A closed room with walls of this thickness, the sun outside, a lamp and the eye within.
+/// A closed room, 4 wide, with walls of this share of it, the sun outside, a lamp and the eye within.
 Scene thin_walls_scene(double thickness) {
     Scene scene = empty_stage();
     Mesh walls  = make_box({4, 3, 4});
-    Mesh within = make_box(vec3(dvec3(4, 3, 4) - 2 * thickness));
+    Mesh within = make_box(vec3(dvec3(4, 3, 4) - 8 * thickness));
     for (uvec3& t : within.triangles) t = uvec3(t.x, t.z, t.y);
     for (const uvec3& t : within.triangles) walls.triangles.push_back(t + 8u);
     walls.positions.insert(walls.positions.end(), within.positions.begin(), within.positions.end());
@@ -91,7 +91,7 @@ const Ladder thin_walls_ladder{
     .about =
         "A closed room has walls of this thickness, with the sun outside, a lamp and the eye within: no sunlight comes "
         "in. What keeps surfaces from shadowing themselves lets light through walls.",
-    .unit  = "of a quarter of the room",
+    .unit  = "of the room",
     .rungs = kThicknesses,
     .scene = thin_walls_scene};
 
