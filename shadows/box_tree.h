@@ -63,16 +63,18 @@ public:
         double slack = 0, tilt = 0;
     };
 
-    /// The same for every item whose box may meet the region: all of those, and some that only come close.
-    template <class Visit>
-    void visit(const Region& region, const Visit& visit) const {
+    /// The same for every item whose box may meet the region: all of those, and some that only come close. Asks
+    /// enter(node, box) first, and leaves out all that is in nodes for which it says no.
+    template <class Enter, class Visit>
+    void visit(const Region& region, const Enter& enter, const Visit& visit) const {
         if (nodes_.empty()) return;
         std::uint32_t stack[64];
         int depth      = 0;
         stack[depth++] = 0;
         while (depth > 0) {
-            const Node& node = nodes_[stack[--depth]];
-            if (!meets(node, region)) continue;
+            const std::uint32_t index = stack[--depth];
+            const Node& node          = nodes_[index];
+            if (!meets(node, region) || !enter(index, Box{node.min, node.max})) continue;
             if (node.count > 0) {
                 for (std::uint32_t k = 0; k < node.count; ++k)
                     if (!visit(order_[node.first + k])) return;
@@ -81,6 +83,18 @@ public:
                 stack[depth++] = node.first + 1;
             }
         }
+    }
+
+    /// What `enter` may want to know: of(item) of all items in a node, joined; one a node.
+    template <class Of, class Join>
+    [[nodiscard]] auto summaries(const Of& of, const Join& join) const {
+        std::vector<decltype(of(Item{}))> all(nodes_.size());
+        for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parent
+            const Node& node = nodes_[n];
+            all[n]           = node.count > 0 ? of(order_[node.first]) : join(all[node.first], all[node.first + 1]);
+            for (std::uint32_t k = 1; k < node.count; ++k) all[n] = join(all[n], of(order_[node.first + k]));
+        }
+        return all;
     }
 
     [[nodiscard]] std::size_t memory_bytes() const {

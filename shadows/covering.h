@@ -49,6 +49,9 @@ private:
     CGAL::Gmpz whole_             = 0;
 };
 
+inline double as_double(double x) { return x; }
+inline double as_double(const CGAL::Gmpq& x) { return CGAL::to_double(x); }
+
 template <class T>
 class Covering {
 public:
@@ -93,9 +96,11 @@ public:
 
     /// The area of the light where D is 0, given D at the far left of the lowest row. `cap_lit[k]` becomes 1 or 0 where
     /// the light just within chord k is uncovered or covered, and stays where the chord is not there. The second value
-    /// counts edges over rows: how often something was rounded.
-    [[nodiscard]] std::pair<double, std::size_t> uncovered(const std::vector<LightCorner<T>>& light, int layers,
-                                                           std::span<std::uint8_t> cap_lit);
+    /// is the sum of the rows' heights times the edges and crossings in each: doubles are off by less than 16 roundings
+    /// of it. (An edge's x in a row is off by a few roundings. A crossing whose height is off by e leaves two edges in
+    /// the wrong order where they are that close, an area of e times their roundings.)
+    [[nodiscard]] std::pair<double, double> uncovered(const std::vector<LightCorner<T>>& light, int layers,
+                                                      std::span<std::uint8_t> cap_lit);
 
 private:
     struct Edge {
@@ -118,7 +123,7 @@ private:
         T bottom, top, middle;  ///< x in this row
     };
 
-    bool find_crossings(const T& lo, const T& hi);
+    [[nodiscard]] bool find_crossings(const T& lo, const T& hi);
     template <class X>
     T open_width(int layers, const X& x, std::span<std::uint8_t> cap_lit) const;
 
@@ -138,25 +143,24 @@ void insertion_sort(Range& range, const Less& less, const Swapped& swapped) {
         }
 }
 
-/// Where edges that are in order at the bottom of the row are not at its top. True if there are any such edges, also
-/// where they cross so close to the bottom or the top that doubles put the crossing there: then all of the row has the
-/// order of its middle.
+/// Where edges that are in order at the bottom of the row are not at its top. False where all are. A crossing may be
+/// too close to the bottom or the top to have a height of its own; the order then still changes there.
 template <class T>
 bool Covering<T>::find_crossings(const T& lo, const T& hi) {
     crossings_.clear();
-    by_top_   = active_;
-    bool some = false;
+    bool any = false;
+    by_top_  = active_;
     insertion_sort(
         by_top_, [](const Active& a, const Active& b) { return a.top < b.top; },
         [&](const Active& a, const Active& b) {
-            some          = true;
             const T below = b.bottom - a.bottom, above = a.top - b.top;
             const T y = lo + (hi - lo) * (below / (below + above));
             if (lo < y && y < hi) crossings_.push_back(y);
+            any = true;
         });
     std::sort(crossings_.begin(), crossings_.end());
     crossings_.erase(std::unique(crossings_.begin(), crossings_.end()), crossings_.end());
-    return some;
+    return any;
 }
 
 /// Of a row, the width of the light where D is 0. `x` gives the place of an edge; edges are in order.
@@ -179,8 +183,8 @@ T Covering<T>::open_width(int layers, const X& x, std::span<std::uint8_t> cap_li
 }
 
 template <class T>
-std::pair<double, std::size_t> Covering<T>::uncovered(const std::vector<LightCorner<T>>& light, int layers,
-                                                      std::span<std::uint8_t> cap_lit) {
+std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T>>& light, int layers,
+                                                 std::span<std::uint8_t> cap_lit) {
     all_ = edges_;
     for (std::size_t k = 0; k < light.size(); ++k) {
         const LightCorner<T>&a = light[k], &b = light[(k + 1) % light.size()];
@@ -202,7 +206,8 @@ std::pair<double, std::size_t> Covering<T>::uncovered(const std::vector<LightCor
     heights_.erase(std::unique(heights_.begin(), heights_.end()), heights_.end());
 
     AreaSum area;
-    std::size_t terms = 0, next = 0, entry = 0;
+    std::size_t next = 0, entry = 0;
+    double rounded = 0;
     active_.clear();
     for (std::size_t row = 0; row + 1 < heights_.size(); ++row) {
         const T &lo = heights_[row], &hi = heights_[row + 1];
@@ -221,9 +226,9 @@ std::pair<double, std::size_t> Covering<T>::uncovered(const std::vector<LightCor
             [](const Active&, const Active&) {});
         if (lo < lowest->y) continue;
 
-        const bool cross = find_crossings(lo, hi);
-        terms += active_.size() * (crossings_.size() + 1);
-        if (!cross) {
+        const bool crossed = find_crossings(lo, hi);
+        rounded += as_double(T(hi - lo)) * static_cast<double>(active_.size() + crossings_.size());
+        if (!crossed) {
             const T twice = open_width(
                 layers, [](const Active& a) { return T(a.bottom + a.top); }, cap_lit);
             area.add(T((hi - lo) * twice / T(2)));
@@ -242,7 +247,7 @@ std::pair<double, std::size_t> Covering<T>::uncovered(const std::vector<LightCor
             from = to;
         }
     }
-    return {area.value(), terms};
+    return {area.value(), rounded};
 }
 
 }  // namespace umbra

@@ -8,8 +8,9 @@
 //
 // How wrong the area is where corners are projected in double. Move the corners from where they belong to where they
 // came to lie: the number of layers over a place changes only while an edge passes over it. An edge whose ends move by
-// at most delta passes over less than 4 delta (length + 1). The sweep rounds each edge in each row by a few units.
-// Where the sum is not below kTrusted of the light's area, or a sign remains open, the point is done in rationals.
+// at most delta in x and in y passes over less than 3 delta length + 8 delta^2. (Ends that are cut off around the light
+// move along their edge, too, but out there.) The sweep rounds a width a few times for each edge in each row. Where the
+// sum is not below kTrusted of the light's area, or a sign remains open, the point is done in rationals.
 //
 // This work is based on:
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
@@ -25,7 +26,7 @@
 namespace umbra {
 namespace {
 
-constexpr double kTrusted = 0x1p-30;  ///< of the light: far below the half ulp of the float that the answer is put in
+constexpr double kTrusted = 0x1p-28;  ///< of the light: far below the half ulp of the float that the answer is put in
 
 constexpr double kCut    = 1.0625;  ///< edges are cut off where |x| or |y| exceeds this, ...
 constexpr double kGather = 1.125;   ///< ... and looked for up to here
@@ -83,9 +84,6 @@ void mark_caps(double x0, double y0, double x1, double y1, std::vector<std::uint
         mark(foot - out, foot + out);
     }
 }
-
-double to_double(double x) { return x; }
-double to_double(const Rational& x) { return CGAL::to_double(x); }
 
 int sign_of(const Numerators<double>& a, const Numerators<double>& b, const Numerators<double>& c) {
     return sign_of_determinant(Entries{dvec3(a.x, a.y, a.w), a.error}, Entries{dvec3(b.x, b.y, b.w), b.error},
@@ -180,6 +178,41 @@ int ExactArea::change_at(const Query& query, const CastEdge& edge) const {
     return change;
 }
 
+ExactArea::Cone ExactArea::cone_of(vec3 axis, float half_angle) {
+    return {axis, half_angle, std::sin(half_angle), std::cos(half_angle)};
+}
+
+ExactArea::Cone ExactArea::joined(const Cone& a, const Cone& b) {
+    const vec3 sum     = a.axis + b.axis;
+    const float length = glm::length(sum);
+    if (a.half_angle > 1.5f || b.half_angle > 1.5f || length < 0.1f) return {};
+    const vec3 axis  = sum / length;
+    const auto reach = [&](const Cone& c) { return std::acos(std::min(1.0f, glm::dot(axis, c.axis))) + c.half_angle; };
+    return cone_of(axis, std::max(reach(a), reach(b)) + 0x1p-20f);
+}
+
+ExactArea::Cone ExactArea::cone_of(const CastEdge& edge) const {
+    const vec3 &n = edge.normal[0], &m = edge.normal[1];
+    if (edge.count != 2 || n == vec3(0) || m == vec3(0)) return {};
+    const bool alike = uses_[edge.first].forward != uses_[edge.first + 1].forward;
+    return joined(cone_of(n, 0), cone_of(alike ? m : -m, 0));
+}
+
+/// Whether p surely is on one side of all triangles in the box: seen from there, none of their edges is a silhouette.
+/// [Pedro Sander et al., Silhouette Clipping, 2000]
+bool ExactArea::all_alike(const Cone& cone, const Box& box, dvec3 p) {
+    if (cone.half_angle > 1.5f) return false;
+    const dvec3 lo(box.min), hi(box.max);
+    const dvec3 way       = 0.5 * (lo + hi) - p;
+    const double distance = glm::length(way), radius = 0.5 * glm::length(hi - lo);
+    if (!(distance > radius)) return false;
+    // The ways to all places of the box, against the axis: within angle -+ (half_angle + asin(radius / distance)).
+    const double sine = radius / distance, cosine = std::sqrt(1 - sine * sine);
+    if (!(cosine > cone.sine)) return false;  // together a right angle or more
+    const double beside = cone.sine * cosine + cone.cosine * sine;
+    return std::abs(glm::dot(dvec3(cone.axis), way)) > (beside + 1e-5) * distance;
+}
+
 /// All edges that may lie over the light and before it, and where the covering changes.
 void ExactArea::gather(const Query& query, const FloatSpace& space) const {
     query.work.changes.clear();
@@ -196,10 +229,11 @@ void ExactArea::gather(const Query& query, const FloatSpace& space) const {
     const dvec3 gx = space.gx(), gy = space.gy(), gw = space.gw() * kGather;
     region.planes = {
         {{gw + gx, 0}, {gw - gx, 0}, {gw + gy, 0}, {gw - gy, 0}, {-space.gw(), space.height() + space.height_error()}}};
-    region.from  = query.point.rounded();
-    region.slack = 2 * query.point.slack();
-    region.tilt  = 3 * space.g_error();
-    edge_tree_.front().visit(region, take);
+    region.from      = query.point.rounded();
+    region.slack     = 2 * query.point.slack();
+    region.tilt      = 3 * space.g_error();
+    const auto enter = [&](std::uint32_t node, const Box& box) { return !all_alike(cones_[node], box, region.from); };
+    edge_tree_.front().visit(region, enter, take);
 }
 
 /// The share of the light that one point sees, in one arithmetic.
@@ -357,9 +391,9 @@ void ExactArea::Share<Space>::cut_light(std::vector<LightCorner<T>>& corners) {
     }
     corners = std::move(kept);
 
-    const double x = to_double(lx), y = to_double(ly), slope = std::hypot(x, y);
+    const double x = as_double(lx), y = as_double(ly), slope = std::hypot(x, y);
     if (slope > 0) {
-        const double distance = -to_double(l) / slope, nx = x / slope, ny = y / slope;
+        const double distance = -as_double(l) / slope, nx = x / slope, ny = y / slope;
         if (round_)
             mark_caps(distance * nx - 2 * ny, distance * ny + 2 * nx, distance * nx + 2 * ny, distance * ny - 2 * nx,
                       query_.work.cap_open);
@@ -369,7 +403,7 @@ void ExactArea::Share<Space>::cut_light(std::vector<LightCorner<T>>& corners) {
 
 template <class Space>
 void ExactArea::Share<Space>::count_error(double delta, double length) {
-    swept_ += 4 * delta * (length + 1);
+    swept_ += 3 * delta * length + 8 * delta * delta;
     widest_ = std::max(widest_, delta);
 }
 
@@ -447,7 +481,7 @@ void ExactArea::Share<Space>::clip(const Numerators<T>& a, const Numerators<T>& 
         if (low.w == 0 || high.w == 0) return;  // through the point itself: seen as one place
     }
     const typename Covering<T>::Point p{low.x / low.w, low.y / low.w}, q{high.x / high.w, high.y / high.w};
-    const double px = to_double(p.x), py = to_double(p.y), qx = to_double(q.x), qy = to_double(q.y);
+    const double px = as_double(p.x), py = as_double(p.y), qx = as_double(q.x), qy = as_double(q.y);
     count_error(delta, std::hypot(qx - px, qy - py));
     if (round_) mark_caps(px, py, qx, qy, query_.work.cap_open);
     covering_.add(p, q, change, cut_from == 0, cut_to == 0);
@@ -459,8 +493,8 @@ bool ExactArea::Share<Space>::is_clear(double x, double y) const {
     const double near = 4 * widest_ + 0x1p-40;
     bool clear        = true;
     covering_.each_edge([&](const auto& low, const auto& high) {
-        const double x0 = to_double(low.x), y0 = to_double(low.y), dx = to_double(high.x) - x0,
-                     dy = to_double(high.y) - y0, length = std::hypot(dx, dy);
+        const double x0 = as_double(low.x), y0 = as_double(low.y), dx = as_double(high.x) - x0,
+                     dy = as_double(high.y) - y0, length = std::hypot(dx, dy);
         const double t = length > 0 ? std::clamp(((x - x0) * dx + (y - y0) * dy) / (length * length), 0.0, 1.0) : 0;
         if (std::hypot(x0 + t * dx - x, y0 + t * dy - y) < near) clear = false;
     });
@@ -514,9 +548,9 @@ std::optional<ExactArea::Answer> ExactArea::Share<Space>::find() {
 
     std::vector<LightCorner<T>> light = whole_light<T>(round_);
     if (query_.partly) cut_light(light);
-    const auto [area, terms] =
-        light.size() < 3 ? std::pair(0.0, std::size_t{0}) : covering_.uncovered(light, *base, work.cap_lit);
-    const double error = swept_ + 16 * kUnit * static_cast<double>(terms + 64);
+    const auto [area, rounded] =
+        light.size() < 3 ? std::pair(0.0, 0.0) : covering_.uncovered(light, *base, work.cap_lit);
+    const double error = swept_ + 16 * kUnit * (rounded + 4);
     if (std::is_same_v<T, double> && !(error <= kTrusted)) return std::nullopt;
 
     double open = area, left_open = 0;
@@ -628,6 +662,7 @@ void ExactArea::build(const Scene& scene, const BoxTree& triangles) {
     for (std::size_t e = 0; e < edges_.size(); ++e) boxes[e] = extend(extend(Box{}, at(edges_[e].a)), at(edges_[e].b));
     edge_tree_.clear();
     edge_tree_.emplace_back(std::move(boxes));
+    cones_ = edge_tree_.front().summaries([&](std::uint32_t e) { return cone_of(edges_[e]); }, joined);
 }
 
 void ExactArea::aim(const Light& light) {
@@ -677,8 +712,8 @@ void ExactArea::aim(const Light& light) {
 std::size_t ExactArea::memory_bytes() const {
     const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
     return bytes(topology_.triangles) + bytes(topology_.position) + bytes(topology_.edges) + bytes(topology_.uses) +
-           bytes(topology_.degenerate) + bytes(uses_) + bytes(edges_) + bytes(plane_side_) + bytes(across_light_) +
-           (edge_tree_.empty() ? 0 : edge_tree_.front().memory_bytes());
+           bytes(topology_.degenerate) + bytes(uses_) + bytes(edges_) + bytes(cones_) + bytes(plane_side_) +
+           bytes(across_light_) + (edge_tree_.empty() ? 0 : edge_tree_.front().memory_bytes());
 }
 
 }  // namespace umbra

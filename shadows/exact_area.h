@@ -62,6 +62,16 @@ private:
         std::uint32_t first = 0, count = 0;  ///< its triangles: a run of uses_
         vec3 normal[2]{vec3(0), vec3(0)};    ///< where it has two: their unit normals, rounded; 0 where they are thin
     };
+    /// Holds the normals of edges' triangles, so turned that an edge whose two see p from one side casts no shadow.
+    struct Cone {
+        vec3 axis{0};
+        float half_angle = 4, sine = 0, cosine = 1;  ///< beyond a right angle it holds everything, and the rest is idle
+    };
+    [[nodiscard]] static Cone cone_of(vec3 axis, float half_angle);
+    [[nodiscard]] static Cone joined(const Cone& a, const Cone& b);
+    [[nodiscard]] Cone cone_of(const CastEdge& edge) const;
+    [[nodiscard]] static bool all_alike(const Cone& cone, const Box& box, dvec3 p);
+
     struct Query;
     template <class Space>
     class Share;
@@ -79,6 +89,7 @@ private:
     std::vector<EdgeUse> uses_;
     std::vector<CastEdge> edges_;
     std::vector<BoxTree> edge_tree_;  ///< one, or none before build
+    std::vector<Cone> cones_;         ///< one a node of it
 
     Light light_;
     dvec3 half_u_{0}, half_v_{0};           ///< rectangle: half edges; disk: perpendicular radii
