@@ -7,13 +7,21 @@
 namespace umbra {
 namespace {
 
+// The automatic bias of a nearest sample; a kernel of n by n samples, whose outermost lie n times as far off, has n
+// times as much.
+constexpr double kAutoWidth    = 1;     // widths of a sample: what a hollow that turns by 45 degrees rises at its rim
+constexpr double kAutoGradient = 0.25;  // depth gradients a sample: enough for nearly all points of scanned meshes
+
+/// Positions and their distances from the light are rounded to this share of the coordinates and the distance.
+constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
+
 /// Does the map show anything nearer than the receiver at sample (i, j)?
 bool is_blocked(const DepthMap& map, const Receiver& p, int i, int j, BiasMode mode) {
     if (i < 0 || j < 0 || i >= map.width() || j >= map.height()) return false;
     double r = p.r;
     if (mode != BiasMode::manual) {
         const double plane = p.r + p.r_x * (i + 0.5 - p.x) + p.r_y * (j + 0.5 - p.y);
-        r                  = mode == BiasMode::automatic ? std::max(r, plane) : plane;
+        r = mode == BiasMode::automatic ? plane + std::min(std::max(0.0, p.r - plane) + p.slack, p.most) : plane;
     }
     return map.nearness(i, j) > std::max(r + p.bias, 0.0);  // behind all that casts, r is negative
 }
@@ -50,16 +58,17 @@ std::optional<Receiver> receive(const View& view, const Facet& facet, dvec3 p, c
     receiver.r_x = std::isfinite(scale) ? scale * n.x * sample.x : 0;
     receiver.r_y = std::isfinite(scale) ? scale * n.y * sample.y : 0;
 
-    // Between the point and a sample, a hollow surface rises above the point's plane: by as much as the sample lies off
-    // where it turns by 45 degrees, and the more the flatter the light falls: half a gradient more was enough for
-    // nearly all points of scanned meshes.
-    const double off      = bias.mode == BiasMode::automatic ? filter.radius + 0.5 : 0.0;
-    const double gradient = std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
-    receiver.bias = (bias.constant + off) * width * f.nearness_per_depth(v.z) + (bias.slope + 0.5 * off) * gradient;
-    // The map's values are rounded and its corners snapped.
-    if (bias.mode != BiasMode::manual)
-        receiver.bias +=
-            view.map.quantum(receiver.r) + (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / DepthMap::kSnap;
+    const double per_width = width * f.nearness_per_depth(v.z);
+    const double gradient  = std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
+    const double snapping  = (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / DepthMap::kSnap;
+    const double samples   = 2 * filter.radius + 1;
+    receiver.bias          = bias.constant * per_width + bias.slope * gradient;
+    if (bias.mode == BiasMode::manual) return receiver;
+    const double largest = glm::length(p) + glm::length(f.origin) + std::abs(v.z);
+    receiver.bias += view.map.quantum(receiver.r) + kRounding * largest * f.nearness_per_depth(v.z);
+    receiver.slack = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
+    receiver.most  = samples * kMostAutomatic * per_width;
+    if (bias.mode == BiasMode::receiver_plane) receiver.bias += snapping;
     return receiver;
 }
 

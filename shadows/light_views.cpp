@@ -15,6 +15,7 @@ namespace {
 constexpr double kWide      = 1.19175359;  // tan 50 degrees: beyond this one map wastes more than six
 constexpr double kWideCone  = 1.7320509;   // tan 60 degrees, for a spot's own cone
 constexpr double kFloatNear = 1e-6;        // near / far; reversed floats resolve any such ratio evenly
+constexpr double kEpsilon   = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -39,14 +40,17 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     const double inner = 1 - 2 * options_.border / resolution;
     frame.half /= inner;
     if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
+    // What casts without being fitted to may lie before the near plane, where it is drawn as nearness 1: what it shades
+    // must stay behind that when a bias has moved it.
+    const double room = options_.headroom * 2 * std::max(frame.half.x, frame.half.y) / resolution;
     if (frame.perspective) {
         // Of unorm depth, a step at `far` must not exceed a sample's width there: near bounds that step.
         const double floor = options_.format == DepthFormat::float32
                                  ? kFloatNear
                                  : resolution * DepthMap(1, 1, options_.format).quantum(1) / 2;
-        frame.near         = std::min(std::max(frame.near, floor * frame.far), 0.5 * frame.far);
+        frame.near = std::min(std::max(frame.near * (1 - room), floor * frame.far), (1 - 64 * kEpsilon) * frame.far);
     } else {
-        frame.near = std::min(frame.near, frame.far - 1e-6 * std::max(frame.half.x, frame.half.y));
+        frame.near = std::min(frame.near, frame.far) - room;
     }
     // The scene's last depth is not nearness 0, where the steps of floats no longer tell how far they are rounded.
     frame.far += 0.01 * (frame.far - frame.near);

@@ -32,6 +32,7 @@ public:
         bool fit_to_casters = true;
         double surround     = 0.5;
         double border       = 2;                 ///< samples by which a map reaches over its view
+        double headroom     = 64;                ///< samples' widths by which a bias may move points towards the light
         double memory_limit = half_of_memory();  ///< bytes, for all maps of a light
     };
 

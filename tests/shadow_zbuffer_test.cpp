@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/primitives.h"
+#include "shadows/light_views.h"
 #include "shadows/method.h"
 
 namespace umbra {
@@ -201,6 +202,137 @@ TEST(ShadowZBuffer, HugeBiasDetachesTheShadow) {
     const Wrong biased = against_closed_form(light, "shadow_zbuffer:resolution=1024,fit=scene,constant=500");
     EXPECT_LT(plain.false_light, plain.points / 200);
     EXPECT_GT(biased.false_light, biased.points / 20);
+}
+
+/// Light that falls on the floor at this cosine of the angle from its normal, from one side or another.
+Light slanted_light(double cosine, double azimuth) {
+    const double sine = std::sqrt(1 - cosine * cosine);
+    return directional_light(vec3(dvec3(sine * std::cos(azimuth), -cosine, sine * std::sin(azimuth))));
+}
+
+TEST(ShadowZBuffer, AutomaticBiasLeavesNoAcneOnAPlaneAtAnySlope) {
+    Scene scene;
+    add_mesh(scene, "floor", make_plane(kFloor, kFloor));
+    scene.camera.eye       = {0, 10, 0};
+    const PointBatch floor = [&] {
+        scene.lights = {slanted_light(1, 0)};
+        return points_on(scene, 0, 60);
+    }();
+    for (double cosine : {1.0, 0.5, 0.1, 1e-2, 1e-3, 1e-4})
+        for (double azimuth : {0.0, 0.4, 2.5})
+            for (const char* map : {"resolution=2048", "resolution=200", "depth=32", "depth=24", "depth=16",
+                                    "resolution=512,filter=pcf,radius=2"}) {
+                scene.lights      = {slanted_light(cosine, azimuth)};
+                const Plane plane = look_up(scene, floor, fmt::format("shadow_zbuffer:fit=scene,{}", map));
+                EXPECT_EQ(std::ranges::count(plane.s, 1.0f), std::ssize(plane.s)) << map << ' ' << cosine;
+            }
+}
+
+TEST(ShadowZBuffer, AutomaticBiasDetachesByNoMoreThanItStates) {
+    // A square just above the floor, in distances along the light: beyond 16 widths of a sample it must cast.
+    for (double cosine : {1.0, 0.5, 0.1, 0.02}) {
+        const Light light     = slanted_light(cosine, 0.4);
+        const auto scene_with = [&](double height) {
+            Scene scene;
+            add_mesh(scene, "floor", make_plane(kFloor, kFloor));
+            add_mesh(scene, "square", moved(make_plane(kSquare, kSquare), {0, static_cast<float>(height), 0}));
+            scene.lights     = {light};
+            scene.camera.eye = {0, 10, 0};
+            return scene;
+        };
+        const Scene flat       = scene_with(1e-4);
+        const SceneFacts facts = find_facts(flat);
+        LightViews views(flat, facts, {.fit_to_casters = false});
+        views.aim(0);
+        const View& view   = views.views().at(0);
+        const double width = 2 * std::max(view.frame.half.x, view.frame.half.y) / view.map.width();
+
+        const double height    = 16.5 * width * cosine;
+        const Scene scene      = scene_with(height);
+        const PointBatch floor = points_on(scene, 0, 200);
+        const auto lit         = [&](const char* choice) {
+            const Plane plane = look_up(scene, floor, choice);
+            int n             = 0;
+            for (std::size_t i = 0; i < floor.size(); ++i) {
+                const dvec3 d(light.direction);
+                const dvec3 q = dvec3(floor.position(i)) - d * (height / -d.y);
+                n += std::max(std::abs(q.x), std::abs(q.z)) < kSquare / 4 && plane.s[i] != 0;
+            }
+            return n;
+        };
+        EXPECT_EQ(lit("shadow_zbuffer:fit=scene"), 0) << cosine;
+        EXPECT_GT(lit("shadow_zbuffer:fit=scene,constant=17"), 500) << cosine;
+    }
+}
+
+TEST(ShadowZBuffer, GrazingLightKeepsTheShadowOfWhatStandsOnTheFloor) {
+    Scene scene;
+    add_mesh(scene, "floor", make_plane(kFloor, kFloor));
+    add_mesh(scene, "box", moved(make_box({0.5f, 1, 0.5f}), {1, 0.5f, 0}));
+    scene.camera.eye = {0, 10, 0};
+    for (double cosine : {1e-2, 1e-3, 1e-4, 1e-5}) {
+        scene.lights           = {slanted_light(cosine, kPi)};
+        const PointBatch floor = points_on(scene, 0, 100);
+        const Plane plane      = look_up(scene, floor, "shadow_zbuffer");
+        int wrong = 0, judged = 0;
+        for (std::size_t i = 0; i < floor.size(); ++i) {
+            const bool behind = floor.px[i] < 0.7f && std::abs(floor.pz[i]) < 0.23f;
+            const bool beside = std::abs(floor.pz[i]) > 0.27f;
+            if (!behind && !beside) continue;
+            ++judged;
+            wrong += plane.s[i] != (behind ? 0.0f : 1.0f);
+        }
+        EXPECT_EQ(wrong, 0) << cosine;
+        EXPECT_GT(judged, 5000);
+    }
+}
+
+TEST(ShadowZBuffer, LampsFarAwayShadeAsSunsDo) {
+    for (const float distance : {1e3f, 1e6f, 1e9f, 1e11f})
+        for (const char* depth : {"float", "32", "24"}) {
+            const Light light = point_light({0.3f * distance, distance, 0.2f * distance});
+            const Wrong wrong =
+                against_closed_form(light, fmt::format("shadow_zbuffer:resolution=1024,depth={}", depth), 200);
+            EXPECT_LT(wrong.farthest, 6 * kFloor * std::sqrt(2.0) / 1024) << distance << ' ' << depth;
+        }
+}
+
+TEST(ShadowZBuffer, ARoofThatIsNotFittedToShadesWhatIs) {
+    // The largest plane, before all that the map's depth is fitted to; the box's top is the first of that.
+    Scene scene;
+    add_mesh(scene, "roof", moved(make_plane(40, 40), {0, 3, 0}));
+    add_mesh(scene, "floor", make_plane(kFloor, kFloor));
+    add_mesh(scene, "box", moved(make_box({1, 1, 1}), {0, 0.5f, 0}));
+    scene.camera.eye = {1, 2.5f, 1};
+    for (const Light& light : {directional_light({0, -1, 0}), directional_light({0.2f, -1, 0.1f}),
+                               point_light({0, 30, 0}), point_light({0.2f, 3.5f, 0})})
+        for (const char* map : {"depth=float", "depth=24", "depth=16", "resolution=64", "constant=200"}) {
+            scene.lights = {light};
+            for (std::uint32_t object : {1u, 2u}) {
+                const PointBatch points = points_on(scene, object, 12);
+                const Plane plane       = look_up(scene, points, fmt::format("shadow_zbuffer:{}", map));
+                EXPECT_EQ(std::ranges::count(plane.s, 0.0f), std::ssize(plane.s)) << map << ' ' << light.position.y;
+            }
+        }
+}
+
+TEST(ShadowZBuffer, MapsThatDoNotFitIntoMemoryAreRefused) {
+    const Scene scene      = square_over_floor(point_light({0.1f, 1.5f, 0.1f}));
+    const SceneFacts facts = find_facts(scene);
+    LightViews::Options options{.resolution = 512, .fit_to_casters = false};
+    LightViews all(scene, facts, options);
+    all.aim(0);
+    ASSERT_EQ(all.views().size(), 5u);  // above the light there is nothing
+    options.memory_limit = static_cast<double>(all.memory_bytes());
+    EXPECT_NO_THROW(LightViews(scene, facts, options).aim(0));
+    options.memory_limit -= 1;
+    try {
+        LightViews(scene, facts, options).aim(0);
+        FAIL() << "five maps in the memory of less";
+    } catch (const UsageError& e) {
+        EXPECT_NE(std::string(e.what()).find("resolution=512"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find("4 of them"), std::string::npos) << e.what();
+    }
 }
 
 TEST(ShadowZBuffer, NothingLeaksThroughACubesSeams) {
