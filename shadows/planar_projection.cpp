@@ -530,11 +530,13 @@ public:
     Service serves(const SceneFacts& facts) const override {
         double area = 0, served = 0;
         std::size_t planes = 0;
+        bool flat          = true;
         for (const ObjectFacts& object : facts.objects) area += object.area;
         for (const PlanarReceiver& plane : facts.planes)
             if (is_receiver(plane, area)) {
                 ++planes;
                 served += plane.area;
+                flat = flat && is_flat(plane, facts.box);
             }
         if (planes == 0)
             return {How::not_at_all,
@@ -543,6 +545,11 @@ public:
         const std::string where =
             fmt::format("on {} plane{}, which hold{} {:.3g} % of the scene's area; points elsewhere stay undefined",
                         planes, planes == 1 ? "" : "s", planes == 1 ? "s" : "", 100 * served / area);
+        // Triangles that are a plane up to rounding may shade one another where the light grazes them, and are merged
+        // with others that only look like it where rounding is coarse.
+        if (facts.hard_lights_only && !flat)
+            return {How::approximately,
+                    fmt::format("some planes are flat up to the rounding of floats only; {}", where)};
         if (facts.hard_lights_only) return {How::exactly, where};
         return {How::approximately,
                 fmt::format("lights with an area are taken at {} points; {}", light_samples_, where)};
@@ -607,6 +614,12 @@ private:
 
     bool is_receiver(const PlanarReceiver& plane, double scene_area) const {
         return plane.area >= plane_share_ * scene_area;
+    }
+
+    /// All its corners lie in it but for the arithmetic that found it, in double.
+    static bool is_flat(const PlanarReceiver& plane, const Box& box) {
+        const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+        return plane.tolerance <= 64 * 0x1p-53 * double(reach.x + reach.y + reach.z);
     }
 
     /// Calls body(group, points) for the points that face the light, by receiver and side.
@@ -716,7 +729,9 @@ constinit const MethodInfo planar_projection{
     .paper = "James Blinn, Me and My (Fake) Shadow, 1988",
     .summary =
         "Projects all occluders from the light onto each plane of the scene and tests the plane's points against "
-        "their outlines. Exact on planes for lights without an area; says nothing about curved receivers.",
+        "their outlines. Exact on planes for lights without an area; says nothing about curved receivers. Limit: more "
+        "than a million "
+        "scene sizes from the origin float coordinates merge faces into planes that are none.",
     .parameters = kParameters,
     .make       = make_method<PlanarProjection>,
 };

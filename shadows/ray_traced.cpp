@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "core/parallel.h"
+#include "core/predicates.h"
 #include "core/ray.h"
 #include "core/sampling.h"
 #include "shadows/method.h"
@@ -59,9 +60,51 @@ OffsetPolicy policy_named(const std::string& name) {
 }
 
 /// Rays end this share of their way before the light, so that a lamp's own triangles, on which the light lies, do not
-/// block it. 256 float steps: enough for incidence down to about a degree. Where a triangle comes that near to a light
-/// without touching it, rays end in the middle of what is between.
-constexpr float kAlmostThere = 1 - 0x1p-16f;
+/// block it. 256 float steps: enough for incidence down to about a degree. What stands in that last stretch before a
+/// hard light and does not touch it is asked apart.
+constexpr double kLastStretch = 0x1p-16;
+constexpr float kAlmostThere  = 1 - 0x1p-16f;
+
+/// A triangle in the last stretch before a hard light: its corners less the light's position, which is exact in double
+/// for any two floats within 2^29 of each other, and the side of its plane that the light is on.
+struct NearLight {
+    TriangleId triangle = kNoTriangle;
+    dvec3 a{0}, b{0}, c{0};
+    int light_side = 0;
+};
+
+/// The squared distance from the origin to a triangle, from below: to its box.
+double squared_distance(const NearLight& t) {
+    const dvec3 low = glm::min(glm::min(t.a, t.b), t.c), high = glm::max(glm::max(t.a, t.b), t.c);
+    const dvec3 gap = glm::max(glm::max(low, -high), dvec3(0));
+    return glm::dot(gap, gap);
+}
+
+/// The triangles that stand in the last stretch of some ray to the light. Those whose plane holds the light, as a
+/// lamp's own, are not among them: a ray that ends in a plane does not pass through it.
+std::vector<NearLight> near_light(const Scene& scene, vec3 light) {
+    const Box box         = bounds(scene);
+    const dvec3 farthest  = glm::max(glm::abs(dvec3(box.min) - dvec3(light)), glm::abs(dvec3(box.max) - dvec3(light)));
+    const double stretch2 = kLastStretch * kLastStretch * glm::dot(farthest, farthest);
+    std::vector<NearLight> near;
+    for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+        const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
+        NearLight n{t, dvec3(a) - dvec3(light), dvec3(b) - dvec3(light), dvec3(c) - dvec3(light), 0};
+        if (squared_distance(n) > stretch2) continue;
+        n.light_side = side_of_plane(a, b, c, light);
+        if (n.light_side != 0) near.push_back(n);
+    }
+    return near;
+}
+
+/// Whether the segment from the light to `p` (less the light's position) passes through the triangle.
+bool passes_through(const NearLight& t, dvec3 p) {
+    const dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
+    if (glm::dot(normal, p - t.a) * t.light_side >= 0) return false;  // both ends on one side
+    const double ab = glm::dot(glm::cross(t.a, t.b), p), bc = glm::dot(glm::cross(t.b, t.c), p),
+                 ca = glm::dot(glm::cross(t.c, t.a), p);
+    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
+}
 
 /// The light in ray space. Rays to a light at distance D run in units of `unit`, a power of two near D where D is far
 /// beyond the scene and 1 else, so that nothing over- or underflows.
@@ -72,7 +115,6 @@ struct Target {
     vec3 axis_u{0}, axis_v{0};  ///< in units: rectangle: half edges; disk: perpendicular radii
     dvec3 sphere{0};            ///< sphere: centre and radius, not in units
     double radius = 0;
-    float spared  = kInfinity;  ///< hard lights: no triangle is nearer to the light than twice this, in units
 };
 
 Target make_target(const Light& light, const RaySpace& space) {
@@ -147,8 +189,8 @@ public:
     }
 
     void aim(LightId light) override {
-        target_ = make_target(scene_->lights[light], rays_->space());
-        spare_neighbours();
+        target_     = make_target(scene_->lights[light], rays_->space());
+        near_light_ = find_near_light(light);
         set_.emplace(sampler_, is_area(target_.kind) ? samples_ : 1, seed_ + 0x9e3779b9u * light);
     }
 
@@ -159,12 +201,14 @@ public:
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override;
 
     [[nodiscard]] std::size_t memory_bytes() const override {
-        return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0);
+        return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0) +
+               near_light_.capacity() * sizeof(NearLight);
     }
 
 private:
-    void spare_neighbours();
+    [[nodiscard]] std::vector<NearLight> find_near_light(LightId light) const;
     [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
+    [[nodiscard]] TriangleId blocker_near_light(const PointBatch& points, LightId light, std::size_t i) const;
     void start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
     void hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
     template <class Body>
@@ -183,16 +227,20 @@ private:
     std::optional<RayScene> rays_;
     Target target_;
     std::optional<SampleSet> set_;
+    std::vector<NearLight> near_light_;
 };
 
-/// Sets target_.spared. What is nearer than a few float steps counts as touching: floats can't tell on which side it
-/// is.
-void RayTraced::spare_neighbours() {
-    constexpr double scene_radius = 4, touching = 0x1p-22;  // ray space holds the scene within 2 each way
+/// The triangles that stand in the last stretch of some ray to a hard light. Mostly there are none, and the tree says
+/// so at once.
+std::vector<NearLight> RayTraced::find_near_light(LightId light) const {
     const double distance = glm::length(target_.sphere);
-    if (is_area(target_.kind) || target_.kind == LightKind::directional || distance > 2 * scene_radius) return;
-    const double clearance = rays_->clearance(target_.sphere, (1 - double{kAlmostThere}) * (distance + scene_radius));
-    if (clearance > touching) target_.spared = static_cast<float>(0.5 * clearance);
+    if (target_.kind != LightKind::point && target_.kind != LightKind::spot) return {};
+    // Ray space holds the scene within 2 each way. What is farther than that from it is far from every triangle, too.
+    constexpr double scene_radius = 4;
+    if (distance > 2 * scene_radius) return {};
+    const double stretch = kLastStretch * (distance + scene_radius);
+    if (rays_->clearance(target_.sphere, stretch) >= stretch) return {};
+    return near_light(*scene_, scene_->lights[light].position);
 }
 
 /// The point from its name, rounded in ray space only: where that is moved, its floats are finer than the world's.
@@ -202,6 +250,18 @@ vec3 RayTraced::exact_start(const PointBatch& points, std::size_t i) const {
     const dvec3 a(space.point(scene_->vertex(t, 0))), b(space.point(scene_->vertex(t, 1))),
         c(space.point(scene_->vertex(t, 2)));
     return vec3(a + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a));
+}
+
+/// Which triangle close before a hard light hides it from the point; kNoTriangle where none does.
+TriangleId RayTraced::blocker_near_light(const PointBatch& points, LightId light, std::size_t i) const {
+    if (near_light_.empty()) return kNoTriangle;
+    const TriangleId t = points.triangle[i];
+    const dvec3 a(scene_->vertex(t, 0)), b(scene_->vertex(t, 1)), c(scene_->vertex(t, 2));
+    const dvec3 p =
+        (a - dvec3(scene_->lights[light].position)) + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a);
+    for (const NearLight& n : near_light_)
+        if (n.triangle != t && passes_through(n, p)) return n.triangle;
+    return kNoTriangle;
 }
 
 /// Of the points first .. first + count - 1, at most eight. Lanes from `count` on stay as they were.
@@ -257,20 +317,18 @@ void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t c
 void RayTraced::hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const {
     const bool parallel  = target_.kind == LightKind::directional;
     const float per_unit = parallel ? 0 : 1 / target_.unit;
-    float dx[8], dy[8], dz[8], tnear[8], tfar[8];
+    float dx[8], dy[8], dz[8], tnear[8];
     for (int k = 0; k < 8; ++k) {
         dx[k]            = target_.centre.x - per_unit * starts.x[k];
         dy[k]            = target_.centre.y - per_unit * starts.y[k];
         dz[k]            = target_.centre.z - per_unit * starts.z[k];
         const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
         tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
-        const float way  = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
-        tfar[k]          = parallel ? kInfinity : std::max(kAlmostThere, 1 - target_.spared / way) * target_.unit;
     }
+    const float tfar = parallel ? kInfinity : kAlmostThere * target_.unit;
     for (std::size_t k = 0; k < count; ++k) {
         if (facing[k] < Facing::partly) continue;
-        *rays++ = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k],        dy[k],
-                   dz[k],       0,           tfar[k],     ~0u,      starts.id[k], 0};
+        *rays++ = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k], dy[k], dz[k], 0, tfar, ~0u, starts.id[k], 0};
     }
 }
 
@@ -369,7 +427,9 @@ void RayTraced::visibility(const PointBatch& points, LightId light, std::span<fl
             std::size_t next = 0;
             each_span([&](std::size_t first, std::size_t count) {
                 for (std::size_t i = first; i < first + count; ++i)
-                    if (sees(i)) s[i] = rays[next++].tfar < 0 ? 0.0f : 1.0f;
+                    if (sees(i))
+                        s[i] =
+                            rays[next++].tfar < 0 || blocker_near_light(points, light, i) != kNoTriangle ? 0.0f : 1.0f;
             });
         }
     });
@@ -407,10 +467,13 @@ void RayTraced::blame(const PointBatch& points, LightId light, std::span<Triangl
         for (std::size_t first = 8 * begin; first < std::min(8 * end, points.size()); first += 8) {
             const std::size_t count = std::min<std::size_t>(8, points.size() - first);
             start(points, first, count, starts);
-            for (std::size_t k = 0; k < count; ++k)
-                who[first + k] = facing[first + k] >= Facing::partly
-                                     ? first_blocker(starts, static_cast<int>(k), facing[first + k], first + k)
-                                     : kNoTriangle;
+            for (std::size_t k = 0; k < count; ++k) {
+                TriangleId& blocker = who[first + k];
+                blocker             = kNoTriangle;
+                if (facing[first + k] < Facing::partly) continue;
+                blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], first + k);
+                if (blocker == kNoTriangle) blocker = blocker_near_light(points, light, first + k);
+            }
         }
     });
 }
@@ -427,7 +490,8 @@ constinit const MethodInfo ray_traced{
         "Tracing, 1984",
     .summary =
         "A ray from each surface point to the light, or to many points of an area light, asks whether anything "
-        "lies between. Errs by noise in penumbrae, and by the offset that keeps rays off their own surface.",
+        "lies between. Errs by noise in penumbrae, and by the offset that keeps rays off their own surface. "
+        "Limit: what is finer than a millionth of the scene, as gaps, slivers or relief under grazing light.",
     .parameters = kParameters,
     .make       = make_method<RayTraced>};
 

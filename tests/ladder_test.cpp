@@ -1,4 +1,5 @@
 // Ladders: the rule by which a method breaks, and what every ladder promises.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <rapidjson/document.h>
 #include <rapidjson/schema.h>
@@ -6,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 
@@ -279,6 +281,60 @@ TEST_P(EveryLadder, ShowsLightAndShadowOnItsFirstRung) {
     if (ladder.wrong_sum == nullptr) {
         EXPECT_GE(dark, 100u);
     }
+}
+
+/// The ladder up to the rung that would take long: what is beyond is left to `umbra ladder`.
+Ladder shortened(const Ladder& whole) {
+    constexpr std::size_t kMostWork = 2000;  // triangles times lights
+    Ladder ladder                   = whole;
+    std::size_t rungs               = 0;
+    for (; rungs < whole.rungs.size(); ++rungs) {
+        const Scene scene = whole.scene(whole.rungs[rungs]);
+        if (scene.triangles.size() * scene.lights.size() > kMostWork) break;
+    }
+    ladder.rungs = whole.rungs.first(std::max<std::size_t>(1, rungs));
+    return ladder;
+}
+
+std::vector<MethodChoice> judged_methods() {
+    std::vector<MethodChoice> choices;
+    for (const MethodInfo* info : methods())
+        if (info->name != "exact") choices.push_back({info, Settings(info->parameters)});
+    return choices;
+}
+
+/// tests/data/ladders.txt holds where every method breaks: a change for the better is to be seen as well as one for the
+/// worse. Written anew, from the project's folder, by
+///     rm tests/data/ladders.txt
+///     UMBRA_RECORD_LADDERS=tests/data/ladders.txt .build/dev/tests/ladder_test --gtest_filter='*BreaksWhere*'
+TEST_P(EveryLadder, BreaksWhereItIsRecordedAndNeverWhoServesExactly) {
+    const Ladder whole  = shortened(*GetParam());
+    const LadderRun run = climb_ladder(whole, judged_methods());
+    for (const Rung& rung : run.rungs)
+        for (std::size_t m = 0; m < rung.outcomes.size(); ++m) {
+            const RungOutcome& o  = rung.outcomes[m];
+            const std::string who = run.methods.empty() ? "the sum" : run.methods[m].text();
+            EXPECT_EQ(o.stopped, "") << who << " at " << rung.value;
+            if (o.service.how == How::exactly) {
+                EXPECT_EQ(o.interior(), 0u) << who << " at " << rung.value << " says exactly: " << o.service.why;
+            }
+        }
+
+    const Json ladder = ladder_json(run);
+    std::string found;
+    for (const Json& method : ladder["methods"])
+        found += fmt::format("{} {}: {}\n", GetParam()->name, method["name"].get<std::string>(),
+                             climb_in_words(method, ladder));
+    if (const char* file = std::getenv("UMBRA_RECORD_LADDERS")) {
+        std::ofstream(file, std::ios::app) << found;
+        return;
+    }
+    std::string recorded;
+    std::ifstream in(UMBRA_TEST_DATA "/ladders.txt");
+    ASSERT_TRUE(in);
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with(std::string(GetParam()->name) + " ")) recorded += line + "\n";
+    EXPECT_EQ(found, recorded);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EveryLadder, testing::ValuesIn(ladders().begin(), ladders().end()),
