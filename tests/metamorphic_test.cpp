@@ -38,7 +38,8 @@ enum class Same : std::uint8_t {
     sides,
     /// Vertices and lights were rounded by 2^-25 of their size. A shadow's boundary moves by that, times at most
     /// (1 + way to the receiver / way to the light) / sine of incidence: a fraction 2^-10 of a pixel at the factor 2^8.
-    /// So few points change, kRoundedShare of all and two more, and all in the edge band.
+    /// So few points change, kRoundedShare of all and two more, and all in the edge band if the method says that it is
+    /// exact. (A ray that starts at a crease may start on the other side.)
     rounded,
     /// The light's map of depth lies otherwise over the scene: its samples, a hundredth of the picture's pixels, move
     /// boundaries by a pixel at most, and nothing else. Points may change in the edge bands of both answers, and some
@@ -47,9 +48,10 @@ enum class Same : std::uint8_t {
     /// Other samples of the same light, hence other noise: the mean difference is 0 (z-test at kZ) and its square no
     /// larger than two independent estimates of the worst variance make it.
     samples,
-    /// Other, fixed points of the same light, 64 of them: a straight shadow edge leaves at most some 64^-3/4 = 0.04
-    /// more
-    /// or fewer on one side than its area says, before and after, and many edges more; on average over points nothing.
+    /// Other, fixed points of the same light, 16 of them: a straight shadow edge leaves some 16^-3/4 = 0.13 more or
+    /// fewer
+    /// on one side than its area says, and two edges twice that, before and after. Over the places of an edge that sums
+    /// up to how far the points' centroid is off the light's, less than 1/32 of its size.
     pattern,
     /// Within the sum of the brackets' half-widths, and the rounding of float.
     brackets,
@@ -77,7 +79,7 @@ struct Relation {
 // Scale by a power of two: all arithmetic is the same but for exponents, so that only thresholds that are no lengths of
 //     the scene, and samples that depend on anything but the point's number, could tell.
 // Other motions and scales, exact in themselves: `exact` decides exact signs, which stay. Rays and planes are rounded
-//     elsewhere. A map's window is laid anew.
+//     elsewhere. A map moves and grows with the scene; where the scene turns, its window is laid anew.
 // Order: what blocks does not depend on who is asked first. planar_projection fits planes with sums, and shadow_volumes
 //     runs edges from the lower vertex, so that both round otherwise; a map keeps the nearest of many.
 //     With lights in another order, samples are others.
@@ -88,16 +90,15 @@ struct Relation {
 constexpr Same bits = Same::bits, sides = Same::sides, rounded = Same::rounded, map = Same::map,
                nothing      = Same::nothing;
 const Relation kRelations[] = {
-    // name                change                                                base     exact  planar volume zbuffer
-    // ray
+    // Name, change, base; exact, planar_projection, shadow_volumes, shadow_zbuffer, ray_traced.
     {"scaled by 2^-30", [](const Asked& a) { return scaled(a, 0x1p-30); }, nullptr, bits, bits, bits, bits, bits},
     {"scaled by 2^11", [](const Asked& a) { return scaled(a, 0x1p11); }, nullptr, bits, bits, bits, bits, bits},
     {"scaled by 2^40", [](const Asked& a) { return scaled(a, 0x1p40); }, nullptr, bits, bits, bits, bits, bits},
-    {"scaled by 3", [](const Asked& a) { return scaled(a, 3); }, nullptr, bits, sides, sides, map, sides},
+    {"scaled by 3", [](const Asked& a) { return scaled(a, 3); }, nullptr, bits, sides, sides, sides, sides},
     {"scaled by 0.7", [](const Asked& a) { return scaled(a, 0.7); }, nullptr, rounded, rounded, rounded, map, rounded},
     {"axes cycled", axes_cycled, nullptr, bits, sides, sides, map, sides},
     {"quarter turn", quarter_turn, nullptr, bits, sides, sides, map, sides},
-    {"moved", moved, nullptr, bits, sides, sides, map, sides},
+    {"moved", moved, nullptr, bits, sides, sides, sides, sides},
     {"turned and moved", turned_and_moved, nullptr, rounded, rounded, rounded, map, rounded},
     {"mirrored", mirrored, nullptr, bits, sides, sides, map, sides},
     {"triangles shuffled", triangles_shuffled, nullptr, bits, sides, sides, bits, bits},
@@ -112,14 +113,15 @@ const Relation kRelations[] = {
      map, nothing},
 };
 
-/// What the table says, for this kind of light and for what rounding the change took.
+/// What the table says, for this kind of light and for what rounding the change took. Methods that it does not name are
+/// asked what rays are.
 Same must_be(const Relation& relation, std::string_view method, LightKind kind, bool exact) {
     Same same = method == "exact"               ? relation.exact
                 : method == "planar_projection" ? relation.planar_projection
                 : method == "shadow_volumes"    ? relation.shadow_volumes
                 : method == "shadow_zbuffer"    ? relation.shadow_zbuffer
                                                 : relation.ray_traced;
-    if (!exact && (same == bits || same == sides)) same = rounded;
+    if (!exact && (same == bits || same == sides)) same = method == "shadow_zbuffer" ? map : rounded;
     const bool soft = method == "exact" || method == "planar_projection" || method == "ray_traced";
     // `exact` brackets visible areas: signs are the same, the last bits of areas and where round lights' polygons have
     // their corners are not.
@@ -184,6 +186,10 @@ public:
         const auto [found, fresh] = answers_.try_emplace(choice);
         if (fresh) found->second = AskedMethod(choice, asked_, facts_).all();
         return found->second;
+    }
+    [[nodiscard]] bool serves_exactly(const std::string& choice) const {
+        const MethodChoice parsed = parse_method(choice);
+        return parsed.info->make(parsed.settings)->serves(facts_).how == How::exactly;
     }
     /// Does the way to the light (to an area light's centre) touch an edge or a vertex, and nothing more?
     [[nodiscard]] bool touches(LightId j, std::size_t i) {
@@ -297,8 +303,8 @@ Difference difference(Answered& before, Answered& after, const Changed& changed,
     return d;
 }
 
-/// What is wrong with a difference; empty where nothing is.
-std::string fault(const Difference& d, Same same, bool exact) {
+/// What is wrong with a difference; empty where nothing is. `proven`: the method says that it serves the scene exactly.
+std::string fault(const Difference& d, Same same, bool exact, bool proven) {
     const auto n = static_cast<double>(d.points);
     if (exact && d.other_side > 0) return fmt::format("{} points face the light otherwise", d.other_side);
     if (double(d.uncovered) > kCoverageShare * n + 2)
@@ -309,9 +315,10 @@ std::string fault(const Difference& d, Same same, bool exact) {
             if (d.changed > 0) return fmt::format("{} of {} points changed: {}", d.changed, d.points, d.first);
             break;
         case Same::rounded:
-            if (double(d.changed) > kRoundedShare * n + 2)
-                return fmt::format("{} of {} points changed: {}", d.changed, d.points, d.first);
-            [[fallthrough]];
+            if (double(d.changed) > kRoundedShare * n + 2 || (proven && d.outside > 0))
+                return fmt::format("{} of {} points changed, {} of them outside the edge band: {}", d.changed, d.points,
+                                   d.outside, d.first);
+            break;
         case Same::brackets:
         case Same::away_from_edges:
             if (d.outside > 0)
@@ -329,8 +336,10 @@ std::string fault(const Difference& d, Same same, bool exact) {
                 return fmt::format("the noise is {:.3g} in {} points: {}", d.rms(), d.partial, d.first);
             break;
         case Same::pattern:
-            if (d.largest > 0.5 || std::abs(d.sum) > 0.02 * n)
-                return fmt::format("changed by up to {:.3g}, on average {:.3g}: {}", d.largest, d.sum / n, d.first);
+            if (d.largest > 0.5 || d.rms() > 0.15 || std::abs(d.sum) > double(d.partial) / 20 + 2)
+                return fmt::format(
+                    "changed by up to {:.3g}, rms {:.3g}, on average {:.3g} in {} points of penumbra: {}", d.largest,
+                    d.rms(), d.sum / double(std::max<std::size_t>(d.partial, 1)), d.partial, d.first);
             break;
         case Same::nothing: break;
     }
@@ -418,8 +427,10 @@ Findings& findings() {
 
 class Metamorphic : public testing::TestWithParam<Source> {
 protected:
+    /// Small pictures where CI waits for them: what a wrong sign or weight does shows in most of a shadow's points.
     static Asked asked() {
-        return named_files() ? dyadic(GetParam().scene(), 96, 54) : dyadic(GetParam().scene(), 64, 36);
+        const int width = named_files() ? 96 : GetParam().is_file ? 48 : 64;
+        return dyadic(GetParam().scene(), width, width * 9 / 16);
     }
 };
 
@@ -440,7 +451,7 @@ TEST_P(Metamorphic, RelationsHold) {
                 const Same same      = must_be(relation, method, kind, changed.exact);
                 if (same == nothing) continue;
                 const Difference d      = difference(before, after, changed, j, choice, same);
-                const std::string wrong = fault(d, same, changed.exact);
+                const std::string wrong = fault(d, same, changed.exact, before.serves_exactly(choice));
                 findings().add(relation.name, choice, GetParam().name, d, !wrong.empty());
                 EXPECT_EQ(wrong, "") << choice << ", " << relation.name << ", light "
                                      << before.asked().scene.lights[j].name;
