@@ -85,6 +85,7 @@ protected:
     void SetUp() override {
         scene_          = folder_.write("ball.json", kLampOverBox);
         options_.folder = folder_.path() / "golden";
+        options_.names  = {"planar_projection", "shadow_volumes", "shadow_zbuffer"};  // ranges of many seeds take long
         accept();
     }
     std::vector<GoldenChange> changes() const { return golden_changes(scene_, options_); }
@@ -121,6 +122,8 @@ protected:
 };
 
 TEST_F(Accepted, IsTheSameAgain) {
+    options_.names = {};
+    EXPECT_EQ(accept().size(), 2u) << "ray_traced and exact are new";
     EXPECT_TRUE(changes().empty());
     EXPECT_TRUE(fs::exists(golden("shadow_volumes.exr")));
     EXPECT_TRUE(fs::exists(golden("figures.json")));
@@ -177,13 +180,13 @@ TEST_F(Accepted, LostCoverageIsSeen) {
 TEST_F(Accepted, RenewingMendsAndSaysWhatChanged) {
     plant("shadow_volumes", "S.lamp", 40, 45, [](float s) { return 1 - s; });
     plant("shadow_zbuffer", "S.lamp", 41, 45, [](float s) { return 1 - s; });
-    const auto traced  = fs::last_write_time(golden("ray_traced.exr"));
+    const auto planar  = fs::last_write_time(golden("planar_projection.exr"));
     const auto renewed = accept();
     ASSERT_EQ(renewed.size(), 2u);
     EXPECT_EQ(renewed[0].name, "ball/shadow_volumes");
     EXPECT_EQ(renewed[1].name, "ball/shadow_zbuffer");
     EXPECT_TRUE(changes().empty());
-    EXPECT_EQ(fs::last_write_time(golden("ray_traced.exr")), traced) << "unchanged, so not written";
+    EXPECT_EQ(fs::last_write_time(golden("planar_projection.exr")), planar) << "unchanged, so not written";
 }
 
 TEST_F(Accepted, NamesLimitWhatIsAskedAndRenewed) {
@@ -196,7 +199,7 @@ TEST_F(Accepted, NamesLimitWhatIsAskedAndRenewed) {
     options_.names = {"shadow_volumes"};
     EXPECT_EQ(changes().size(), 1u);
     options_.names = {"ball"};
-    EXPECT_EQ(changes().size(), 1u);
+    EXPECT_EQ(changes().size(), 3u) << "and ray_traced and exact are new";
 
     EXPECT_NO_THROW(check_golden_names({scene_}, options_));
     options_.names = {"ball", "bell"};
@@ -204,6 +207,8 @@ TEST_F(Accepted, NamesLimitWhatIsAskedAndRenewed) {
 }
 
 TEST_F(Accepted, WhatIsNewOrLeftOverFails) {
+    options_.names = {};
+    accept();
     fs::remove(golden("shadow_volumes.exr"));
     fs::copy(golden("shadow_zbuffer.exr"), golden("crayon.exr"));
     auto found = changes();
@@ -227,7 +232,7 @@ TEST_F(Accepted, WhatIsNewOrLeftOverFails) {
 
 TEST_F(Accepted, AChangedSceneChangesAll) {
     folder_.write("ball.json", std::string(kLampOverBox).replace(kLampOverBox.find("[2, 4, 1]"), 9, "[2, 4, 2]"));
-    EXPECT_GE(changes().size(), 4u);
+    EXPECT_EQ(changes().size(), 3u);
 }
 
 TEST_F(Accepted, WhatIsNoFiguresIsRefused) {
@@ -249,6 +254,7 @@ protected:
         hard.erase(hard.rfind(',', begin), 1);
         scene_          = folder_.write("ball.json", hard);
         options_.folder = folder_.path() / "golden";
+        options_.names  = {"shadow_volumes", "shadow_zbuffer"};
         accept();
         mae_ = Json::parse(text_of(golden("figures.json")))["methods"]["shadow_zbuffer"]["lamp"]["mae"];
         ASSERT_GT(mae_, 0);
