@@ -226,8 +226,8 @@ const MethodInfo shadow_zbuffer{
     "Lance Williams, Casting Curved Shadows on Curved Surfaces, 1978",
     "Draws the depth of what the light sees into a map, then compares each surface point with it. Serves any geometry; "
     "errs by the map's samples along shadow edges, loses gaps and occluders narrower than a sample, and moves contacts "
-    "by up to 16 samples' widths where light grazes. The automatic bias holds for light down to 1e-5 radians above a "
-    "floor and lamps up to 1e12 scene sizes away.",
+    "by up to 16 samples' widths where light grazes. The automatic bias holds for light down to 1e-5 radians above an "
+    "even floor, 1e-3 above one that rounding has left uneven, and for lamps up to 1e12 scene sizes away.",
     kParameters,
     make_method<ShadowZBuffer>,
 };
