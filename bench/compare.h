@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/describe.h"
+#include "bench/reference.h"
 #include "bench/run.h"
 
 namespace umbra {
@@ -31,6 +32,7 @@ struct Size {
 struct CompareOptions {
     std::vector<std::string> methods;      ///< as typed; empty: all with their defaults
     std::optional<std::string> reference;  ///< as typed; none: `default_reference`
+    std::optional<std::uint64_t> points;   ///< to judge area lights on; none: as many as are not too dear
     Size size;
     std::filesystem::path out;
     std::string command;  ///< for the records
@@ -38,15 +40,6 @@ struct CompareOptions {
     Repeats repeats;
     std::function<void(const std::string&)> progress;  ///< told what is being done; may be empty
 };
-
-/// What the others are held against, and why that is a reference and what it is not.
-struct Reference {
-    MethodChoice choice;
-    bool exact = false;
-    std::string note;
-};
-/// `exact` where it serves the scene, else ray-traced shadows with many samples.
-[[nodiscard]] Reference default_reference(const SceneFacts& facts);
 
 /// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
 /// into place; an older result stays whole until then. Returns the record that it wrote. Throws InputError, UsageError.

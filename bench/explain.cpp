@@ -5,30 +5,13 @@
 namespace umbra {
 namespace {
 
-/// Some points of a batch as a batch without a raster, as they are.
-PointBatch picked(const PointBatch& from, std::span<const std::uint32_t> which) {
-    PointBatch to;
-    to.eye = from.eye;
-    to.facing.resize(from.facing.size());
-    to.resize(which.size());
-    const auto copy = [&](const auto& source, auto& target) {
-        for (std::size_t k = 0; k < which.size(); ++k) target[k] = source[which[k]];
-    };
-    copy(from.triangle, to.triangle), copy(from.flipped, to.flipped);
-    copy(from.u, to.u), copy(from.v, to.v);
-    copy(from.px, to.px), copy(from.py, to.py), copy(from.pz, to.pz);
-    copy(from.nx, to.nx), copy(from.ny, to.ny), copy(from.nz, to.nz);
-    for (std::size_t j = 0; j < from.facing.size(); ++j) copy(from.facing[j], to.facing[j]);
-    return to;
-}
-
 /// Whom the method of a run blames for the shadow at these points.
 std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, LightId light,
                                std::span<const std::uint32_t> which) {
     std::vector<TriangleId> who(which.size(), kNoTriangle);
     if (which.empty()) return who;
     run.method->aim(light);
-    run.method->blame(picked(points, which), light, who);
+    run.method->blame(pick(points, which), light, who);
     return who;
 }
 

@@ -275,6 +275,11 @@ int run(int argc, char** argv) {
     compare_command->add_option("SCENE", scenes, "Scene files")->required();
     compare_command->add_option("--methods", compare_options.methods, "METHOD[:k=v,...] ... (default: all that serve)");
     compare_command->add_option("--reference", reference, "METHOD[:k=v,...] to hold the others against");
+    compare_command
+        ->add_option("--reference-points", compare_options.points,
+                     "Judge area lights on about N points, well spread (default: on all where that is not "
+                     "too dear)")
+        ->check(CLI::PositiveNumber);
     compare_command->add_option("--size", size, "WIDTHxHEIGHT (default: the scene's own)");
     compare_command->add_option("-o,--output", out, "Folder to write to")->required();
 

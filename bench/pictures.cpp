@@ -84,6 +84,7 @@ Image class_picture(const PointBatch& points, const ClassPlane& classes, const V
             case ErrorClass::undefined: return hatched(x, y);
             case ErrorClass::away:
             case ErrorClass::terminator_away: return kAway;
+            case ErrorClass::not_judged: return 0.6f * glm::mix(kRightUmbra, kRightLit, reference.s[i]);
             case ErrorClass::right:
             case ErrorClass::terminator: return glm::mix(kRightUmbra, kRightLit, reference.s[i]);
             default: return colour_of(classes[i]);

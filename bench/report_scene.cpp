@@ -248,6 +248,17 @@ json fact_view(const Field& root) {
             {"objects", std::move(objects)}};
 }
 
+/// On how many points area lights are judged, where the reference is too dear for all.
+std::string judged_in_words(const Field& root) {
+    const Field judged = root["reference"]["judged"];
+    if (!judged.present()) return {};
+    return fmt::format(
+        "Too dear for every point: area lights are judged on {} of {} points, one at random out of each square tile of "
+        "the picture. Between them the reference’s picture is by {}, which also says where edges are and judges "
+        "nothing.",
+        count(judged["points"].number()), count(judged["of"].number()), judged["guess"].text());
+}
+
 std::string size_in_words(const Field& root) {
     const auto w = root["size"]["width"].number(), h = root["size"]["height"].number();
     return w && h ? fmt::format("{:.0f} × {:.0f}", *w, *h) : std::string();
@@ -336,6 +347,7 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
                             {"unserved", std::move(unserved)},
                             {"facts", fact_view(root)},
                             {"reference", reference_view(root)},
+                            {"judged", judged_in_words(root)},
                             {"run", run_view(root)},
                             {"files", std::move(files)}};
     view["has_warnings"] = !view["warnings"].empty();

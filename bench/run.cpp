@@ -64,6 +64,22 @@ double MethodRun::coverage(const PointBatch& points) const {
     return asked == 0 ? 1.0 : static_cast<double>(given) / static_cast<double>(asked);
 }
 
+void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
+    run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
+    VisibilityPlane plane;
+    plane.s.resize(points.size());
+    plane.defined.resize(points.size());
+    run.visibility.push_back(time_runs(repeats, [&] {
+        std::fill(plane.s.begin(), plane.s.end(), 0.0f);
+        std::fill(plane.defined.begin(), plane.defined.end(), kDefined);
+        run.method->visibility(points, light, plane.s, plane.defined);
+    }));
+    check_contract(run.choice.info->name, plane, points.facing[light]);
+    run.planes.push_back(std::move(plane));
+    const std::span<const float> doubt = run.method->half_widths();
+    run.half_widths.emplace_back(doubt.begin(), doubt.end());
+}
+
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
                      const Repeats& repeats) {
     MethodRun run{choice, {}, {}, {}, {}, 0, {}, {}, {}};
@@ -72,21 +88,7 @@ MethodRun run_method(const MethodChoice& choice, const Scene& scene, const Scene
     if (!run.service) return run;
 
     run.build = time_runs(repeats, [&] { run.method->build(scene, facts); });
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
-        run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
-        VisibilityPlane plane;
-        plane.s.resize(points.size());
-        plane.defined.resize(points.size());
-        run.visibility.push_back(time_runs(repeats, [&] {
-            std::fill(plane.s.begin(), plane.s.end(), 0.0f);
-            std::fill(plane.defined.begin(), plane.defined.end(), kDefined);
-            run.method->visibility(points, light, plane.s, plane.defined);
-        }));
-        check_contract(choice.info->name, plane, points.facing[light]);
-        run.planes.push_back(std::move(plane));
-        const std::span<const float> doubt = run.method->half_widths();
-        run.half_widths.emplace_back(doubt.begin(), doubt.end());
-    }
+    for (LightId light = 0; light < scene.lights.size(); ++light) run_light(run, points, light, repeats);
     run.memory_bytes = run.method->memory_bytes();
     return run;
 }

@@ -48,6 +48,10 @@ struct MethodRun {
 [[nodiscard]] MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
                                    const PointBatch& points, const Repeats& repeats);
 
+/// The last two phases for one light, on points that may be others than those of the other lights: adds to `run`, whose
+/// method has been built.
+void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats);
+
 /// Sum of the medians (and of minima and maxima) of several timings: what all lights together cost.
 [[nodiscard]] Timing total(const std::vector<Timing>& timings);
 

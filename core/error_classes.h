@@ -16,6 +16,7 @@ enum class ErrorClass : std::uint8_t {
     no_surface,        ///< the eye ray met nothing
     away,              ///< the whole light is behind the point's triangle: S_j = 0 for every method
     terminator_away,   ///< the same, where the shading normal faces the light: dark for the facet, bright for the sum
+    not_judged,        ///< the reference was asked for a sample of the points, and this one is not in it
     undefined,         ///< either plane leaves the point open
     on_boundary,       ///< the reference says so: no method is wrong there
     right,             ///< within the tolerance

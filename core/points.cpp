@@ -54,6 +54,22 @@ void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId 
     batch.flipped[i]  = flip;
 }
 
+PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which) {
+    PointBatch to;
+    to.eye = from.eye;
+    to.facing.resize(from.facing.size());
+    to.resize(which.size());
+    const auto copy = [&](const auto& source, auto& target) {
+        for (std::size_t k = 0; k < which.size(); ++k) target[k] = source[which[k]];
+    };
+    copy(from.triangle, to.triangle), copy(from.flipped, to.flipped);
+    copy(from.u, to.u), copy(from.v, to.v);
+    copy(from.px, to.px), copy(from.py, to.py), copy(from.pz, to.pz);
+    copy(from.nx, to.nx), copy(from.ny, to.ny), copy(from.nz, to.nz);
+    for (std::size_t j = 0; j < from.facing.size(); ++j) copy(from.facing[j], to.facing[j]);
+    return to;
+}
+
 namespace {
 
 /// Where an area light stands to the plane of triangle (a, b, c), seen from the side `turn` (+1 the winding's, -1 the

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/camera.h"
@@ -40,6 +41,9 @@ struct PointBatch {
 /// Writes point i from its name: position, normal (if two-sided towards `batch.eye`, or against the view direction of
 /// an orthographic raster). Clamps u, v into the triangle first. A degenerate triangle gives kNoTriangle.
 void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, float u, float v);
+
+/// Some points of a batch, as they are, as a batch without a raster.
+[[nodiscard]] PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which);
 
 /// Fills batch.facing for all lights of the scene (or for one, where a light moved). Signs are exact: decided in
 /// floating point with a proven bound, else in rationals. A light in the plane of the triangle is `away`.

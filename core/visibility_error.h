@@ -16,6 +16,7 @@ namespace umbra {
 struct VisibilityError {
     std::uint64_t points = 0, undefined = 0, away = 0;
     std::uint64_t on_boundary = 0;
+    std::uint64_t not_judged  = 0;  ///< the reference was not asked for them
     struct Level {
         std::uint64_t lit = 0, umbra = 0, penumbra = 0;
     };

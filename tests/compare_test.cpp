@@ -91,6 +91,35 @@ TEST_F(Compare, RecordFollowsItsSchemaAndNamesFilesThatExist) {
     }
 }
 
+TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
+    options_.methods = {"ray_traced", "exact"};
+    const Json whole = compare_scene(scene_, options_);
+    EXPECT_TRUE(whole["reference"]["judged"].is_null());
+    options_.points   = 300;
+    const Json sample = compare_scene(scene_, options_), again = compare_scene(scene_, options_);
+
+    const Json& judged = sample["reference"]["judged"];
+    EXPECT_NEAR(judged["points"], 300.0, 100);
+    for (std::size_t m = 0; m < 2; ++m) {
+        const Json &lamp = sample["methods"][m]["errors"][0], &panel = sample["methods"][m]["errors"][1];
+        EXPECT_EQ(lamp, whole["methods"][m]["errors"][0]) << "a light without an area is judged everywhere";
+        EXPECT_EQ(panel, again["methods"][m]["errors"][1]) << "the sample is always the same";
+        const auto of = [](const Json& e) {
+            return e["points"].get<int>() + e["undefined"].get<int>() + e["on_boundary"].get<int>() +
+                   e["away"].get<int>() + e["not_judged"].get<int>();
+        };
+        EXPECT_EQ(of(panel), judged["of"]);
+        EXPECT_LE(panel["points"], judged["points"]);
+        EXPECT_GT(panel["points"], 100);
+        EXPECT_GT(panel["penumbra"], 5);
+    }
+    // Judged are exact answers and not guesses: exact agrees with itself, and rays err by about what they err overall.
+    EXPECT_EQ(sample["methods"][1]["errors"][1]["max"], 0);
+    const double mae = whole["methods"][0]["errors"][1]["mae"], sampled = sample["methods"][0]["errors"][1]["mae"];
+    EXPECT_GT(sampled, 0.2 * mae);
+    EXPECT_LT(sampled, 5 * mae);
+}
+
 TEST_F(Compare, SchemaRefusesWhatItShould) {
     rapidjson::Document schema_document;
     schema_document.Parse(text_of(UMBRA_SCHEMA).c_str());
