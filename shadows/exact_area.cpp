@@ -26,7 +26,8 @@
 namespace umbra {
 namespace {
 
-constexpr double kTrusted = 0x1p-28;  ///< of the light: far below the half ulp of the float that the answer is put in
+constexpr double kTrusted =
+    0x1p-28;  ///< in area, of a light of 4: below 1e-9 of it, and far below half an ulp of a float
 
 constexpr double kCut    = 1.0625;  ///< edges are cut off where |x| or |y| exceeds this, ...
 constexpr double kGather = 1.125;   ///< ... and looked for up to here
@@ -554,16 +555,14 @@ std::optional<ExactArea::Answer> ExactArea::Share<Space>::find() {
     if (std::is_same_v<T, double> && !(error <= kTrusted)) return std::nullopt;
 
     double open = area, left_open = 0;
-    if (round_)
-        for (std::size_t k = 0; k < kChords; ++k) {
-            const bool gone = work.cap_lit[k] == 2;  // behind the plane of the point's triangle, if not just on it
-            if (work.cap_open[k] && !gone)
-                left_open += kCapArea;
-            else if (work.cap_open[k] && query_.partly)
-                left_open += kCapArea;
-            else if (work.cap_lit[k] == 1)
-                open += kCapArea;
+    for (std::size_t k = 0; k < kChords && round_; ++k) {
+        // Where the plane of the point's triangle takes a chord away, it takes the cap or has left it open.
+        if (work.cap_open[k]) {
+            left_open += kCapArea;
+        } else if (work.cap_lit[k] == 1) {
+            open += kCapArea;
         }
+    }
     return answer(open, left_open, error);
 }
 

@@ -1,5 +1,6 @@
 // exact for area lights: closed forms, brute force in rationals, its two arithmetics against each other, and sampling.
 #include <CGAL/Gmpq.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -210,6 +211,143 @@ TEST(ExactArea, AgreesWithBruteForceInRationals) {
     }
     EXPECT_GT(points, 1000u);
     EXPECT_GT(penumbra, 300u);
+}
+
+/// A half-plane x >= 0 at height 2 under a light at height 4: the floor point x sees what of the light is left of
+/// X* = -x (4 - 2) / 2. All in eighths, so that the formula is exact.
+Scene half_plane_scene() {
+    Scene scene;
+    scene.camera.eye = vec3(1, 9, 3);
+    add(scene, make_plane(8, 8));
+    add(scene, Mesh{{{0, 2, -64}, {64, 2, -64}, {64, 2, 64}, {0, 2, 64}}, {}, {{0, 2, 1}, {0, 3, 2}}});
+    return scene;
+}
+PointBatch floor_points(const Scene& scene) {  // along z = 0.3 x about, on both triangles of the floor
+    PointBatch batch;
+    batch.eye = vec3(1, 9, 3);
+    batch.resize(513);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+        const vec3 target(-2 + static_cast<float>(i) / 128, 0, 0.25f);
+        for (TriangleId t = 0; t < 2; ++t) {
+            const vec3 a = scene.vertex(t, 0), ab = scene.vertex(t, 1) - a, ac = scene.vertex(t, 2) - a, d = target - a;
+            const float det = ab.x * ac.z - ab.z * ac.x;
+            const float u = (d.x * ac.z - d.z * ac.x) / det, v = (ab.x * d.z - ab.z * d.x) / det;
+            if (u >= 0 && v >= 0 && u + v <= 1) set_point(batch, i, scene, t, u, v);
+        }
+    }
+    face_lights(batch, scene);
+    return batch;
+}
+
+TEST(ExactArea, MeetsTheClosedFormOfAHalfPlaneOverRectangles) {
+    Scene scene = half_plane_scene();
+    // Squares, long and wide ones, and a rectangle that is tilted about x, which does not change the way across.
+    scene.lights.push_back(rectangle(vec3(0, 4, 0), vec3(1.5f, 0, 0), vec3(0, 0, -1)));
+    scene.lights.push_back(rectangle(vec3(0, 4, 0), vec3(0.25f, 0, 0), vec3(0, 0, -4)));
+    scene.lights.push_back(rectangle(vec3(0, 4, 0), vec3(3, 0, 0), vec3(0, 0, 0.125f)));
+    for (const char* choice : {"exact", "exact:arithmetic=rational"}) {
+        const PointBatch points = floor_points(scene);
+        const MethodCase run(choice, scene);
+        run.method->build(scene, run.facts);
+        for (LightId j = 0; j < scene.lights.size(); ++j) {
+            run.method->aim(j);
+            const VisibilityPlane got = run.visibility(points, j);
+            const double a            = double(scene.lights[j].edge_u.x) / 2;
+            std::size_t penumbra      = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                ASSERT_NE(points.triangle[i], kNoTriangle);
+                const TriangleId t = points.triangle[i];
+                const double x     = double(scene.vertex(t, 0).x) +
+                                 double(points.u[i]) * double(scene.vertex(t, 1).x - scene.vertex(t, 0).x) +
+                                 double(points.v[i]) * double(scene.vertex(t, 2).x - scene.vertex(t, 0).x);
+                const double right = std::clamp((-x + a) / (2 * a), 0.0, 1.0);
+                EXPECT_NEAR(got.s[i], right, 0x1p-24 * right + 1e-12) << choice << " light " << j << " x " << x;
+                penumbra += right > 0 && right < 1;
+            }
+            EXPECT_GT(penumbra, 30u);
+            EXPECT_TRUE(run.method->half_widths().empty());
+        }
+    }
+}
+
+TEST(ExactArea, BracketsTheClosedFormOfAHalfPlaneOverADisk) {
+    Scene scene             = half_plane_scene();
+    Light& light            = scene.lights.emplace_back();
+    light.kind              = LightKind::disk;
+    light.position          = vec3(0, 4, 0);
+    light.radius            = 0.75f;
+    light.direction         = vec3(0, -1, 0);
+    const PointBatch points = floor_points(scene);
+    for (const char* choice : {"exact", "exact:arithmetic=rational"}) {
+        MethodCase run(choice, scene);
+        run.prepare(0);
+        const VisibilityPlane got = run.visibility(points, 0);
+        const auto half           = run.method->half_widths();
+        ASSERT_EQ(half.size(), points.size());
+        std::size_t penumbra = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double x     = double(points.px[i]);
+            const double t     = std::clamp(-x / 0.75, -1.0, 1.0);
+            const double right = 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / kPi;
+            EXPECT_NEAR(got.s[i], right, double(half[i]) + 1e-9) << choice << " x " << x;
+            EXPECT_LE(half[i], 1e-4f);
+            penumbra += right > 0 && right < 1;
+        }
+        EXPECT_GT(penumbra, 100u);
+    }
+}
+
+/// The two arithmetics, on points in penumbrae, curved meshes whose own plane cuts the light among them.
+TEST(ExactArea, ItsTwoArithmeticsAgree) {
+    for (const LightKind kind : {LightKind::rectangle, LightKind::disk, LightKind::sphere}) {
+        Scene scene      = random_scene(11);
+        scene.camera.eye = vec3(1, 9, 3);
+        add(scene, moved(make_sphere(0.5f, 10, 5), vec3(-1.5f, 0.75f, 0.5f)));
+        Light light             = rectangle(vec3(0.25f, 2.75f, 0.5f), vec3(1.5f, 0.25f, 0), vec3(0, 0.25f, -1));
+        light.kind              = kind;
+        light.radius            = 0.5f;
+        scene.lights            = {light};
+        const PointBatch points = random_points(scene, 30000, 3);
+        MethodCase fast("exact", scene), slow("exact:arithmetic=rational", scene);
+        fast.prepare(0), slow.prepare(0);
+        const VisibilityPlane quick = fast.visibility(points, 0);
+        PointBatch chosen;
+        chosen.eye = points.eye;
+        std::vector<std::size_t> from;
+        for (std::size_t i = 0; i < points.size() && from.size() < (kind == LightKind::rectangle ? 2000 : 100); ++i)
+            if (is_open(points, 0, i) && quick.s[i] > 0 && quick.s[i] < 1) from.push_back(i);
+        EXPECT_GE(from.size(), kind == LightKind::rectangle ? 2000u : 100u);
+        chosen.resize(from.size());
+        for (std::size_t k = 0; k < from.size(); ++k)
+            set_point(chosen, k, scene, points.triangle[from[k]], points.u[from[k]], points.v[from[k]]);
+        face_lights(chosen, scene);
+        const VisibilityPlane right = slow.visibility(chosen, 0);
+        double worst                = 0;
+        for (std::size_t k = 0; k < from.size(); ++k)
+            worst = std::max(worst, std::abs(double(right.s[k]) - double(quick.s[from[k]])));
+        EXPECT_LE(worst, 0x1p-24 + 4e-9);
+        RecordProperty(std::string(to_string(kind)), fmt::format("{}", worst));
+    }
+}
+
+TEST(ExactArea, SaysWhereThePointLiesInTheLightsPlane) {
+    Scene scene = half_plane_scene();
+    add(scene, Mesh{{{-1, 3, -1}, {1, 5, -1}, {1, 3, -1.5f}}, {}, {{0, 1, 2}}});
+    scene.lights.push_back(rectangle(vec3(0, 4, 0), vec3(1, 0, 0), vec3(0, 0, -1)));
+    PointBatch one;
+    one.eye = vec3(0, 4, 9);
+    one.resize(1);
+    set_point(one, 0, scene, 4, 0.5f, 0);  // at height 4
+    face_lights(one, scene);
+    if (!is_open(one, 0, 0)) {
+        one.eye = vec3(0, 4, -9);
+        set_point(one, 0, scene, 4, 0.5f, 0);
+        face_lights(one, scene);
+    }
+    ASSERT_TRUE(is_open(one, 0, 0));
+    MethodCase run("exact", scene);
+    run.prepare(0);
+    EXPECT_EQ(run.visibility(one, 0).defined[0], kOnBoundary);
 }
 
 }  // namespace
