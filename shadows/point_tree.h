@@ -83,10 +83,10 @@ private:
     std::vector<std::vector<Node>> levels_;  // leaves first; node i has children [4 i, 4 i + 4)
 };
 
-/// The point as it is named, less `origin`, in double: but where it is closer to its triangle's border than 2^-44 of the
-/// triangle's distance from `origin`, so much within (and no further than 2^-26 of the triangle). That is far above the
-/// rounding of doubles there and far below that of floats; it keeps a point from lying on the planes through the edges
-/// of its own triangle, where every triangle around would claim it.
+/// The point as it is named, less `origin`, in double: but where it is closer to its triangle's border than 2^-44 of
+/// the triangle's distance from `origin`, so much within (and no further than 2^-26 of the triangle). That is far above
+/// the rounding of doubles there and far below that of floats; it keeps a point from lying on the planes through the
+/// edges of its own triangle, where every triangle around would claim it.
 [[nodiscard]] dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin);
 
 template <class Visit>
