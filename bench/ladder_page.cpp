@@ -114,6 +114,24 @@ json break_view(const Field& ladder, const Field& method) {
               picture("classes", "errors", "Wrong points in the colours of their classes")}}};
 }
 
+/// Breaks that show something of their method, and what. Sentences stand apart from the run: they are shown only where
+/// the run has that break.
+struct Telling {
+    const char *ladder, *method, *sees;
+};
+constexpr Telling kTelling[] = {
+    {"beside_edges", "ray_traced",
+     "Rays that pass an edge or a corner by less than the rounding of the ray-triangle test slip between the two "
+     "triangles that share it: light leaks through a closed sheet."},
+    {"needles", "shadow_zbuffer",
+     "Occluders thinner than a sample of the map: their shadow is cut into pieces as long as the samples are, and "
+     "where "
+     "it is thinner still, a sample catches it by chance."},
+    {"growing_lamp", "shadow_volumes",
+     "The light has grown, and the method takes it in its centre: where the truth is one wide penumbra it has an umbra "
+     "with a sharp edge."},
+};
+
 json ladder_view(const Field& ladder, double limit) {
     json view      = {{"name", ladder["name"].required_text()},
                       {"title", ladder["title"].required_text()},
@@ -174,6 +192,26 @@ json ladder_table_view(const Field& root, const std::string& page) {
         view["rows"].push_back(std::move(row));
     }
     return view;
+}
+
+json ladder_showcase_view(const Field& root, const std::string& page) {
+    json all = json::array();
+    for (const Telling& telling : kTelling)
+        for (const Field& ladder : root["ladders"].items())
+            for (const Field& method : ladder["methods"].items()) {
+                if (ladder["name"].text() != telling.ladder || method["text"].text() != telling.method ||
+                    !method["break"].present())
+                    continue;
+                json view         = break_view(ladder, method);
+                const auto folder = fs::path(page).parent_path();
+                for (json& picture : view["pictures"])
+                    picture["src"] = url(folder / "") + picture["src"].get<std::string>();
+                view["sees"]  = telling.sees;
+                view["title"] = ladder["title"].text();
+                view["href"]  = page + "#" + telling.ladder;
+                all.push_back(std::move(view));
+            }
+    return all;
 }
 
 void write_ladder_page(const fs::path& folder) {

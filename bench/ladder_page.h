@@ -15,4 +15,7 @@ void write_ladder_page(const std::filesystem::path& folder);
 /// of the ladders' page seen from the one that shows the table.
 [[nodiscard]] nlohmann::json ladder_table_view(const Field& root, const std::string& page);
 
+/// Three breaks worth seeing, of those that there are: each with its pictures and what one sees. Addresses as above.
+[[nodiscard]] nlohmann::json ladder_showcase_view(const Field& root, const std::string& page);
+
 }  // namespace umbra

@@ -125,8 +125,9 @@ int compare_images(const std::string& a, const std::string& b, const DiffOptions
     return static_cast<int>(result.verdict);
 }
 
-/// Compares the scenes and writes the pages over what came out.
-ScenesDone compare(const std::vector<fs::path>& files, CompareOptions options, const Common& common) {
+/// Compares the scenes and writes the pages over what came out, and over the folders `also`.
+ScenesDone compare(const std::vector<fs::path>& files, CompareOptions options, const Common& common,
+                   const std::vector<fs::path>& also = {}) {
     options.command = common.command;
     options.threads = thread_count();
     ScenesDone done;
@@ -137,22 +138,26 @@ ScenesDone compare(const std::vector<fs::path>& files, CompareOptions options, c
     }
     std::vector<fs::path> folders;
     for (const std::string& name : done.names) folders.push_back(options.out / name);
-    if (!folders.empty()) write_report(folders, options.out, {});
+    if (!folders.empty()) {
+        folders.insert(folders.end(), also.begin(), also.end());
+        write_report(folders, options.out, {});
+    }
     if (!common.quiet && !folders.empty()) fmt::print("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) fmt::print(stderr, "{}\n", message);
     for (const std::string& message : done.missing) fmt::print(stderr, "{}\n", message);
     return done;
 }
 
-int ladder(LadderOptions options, bool as_json, const Common& common) {
+Json climb(LadderOptions options, const Common& common) {
     options.command = common.command;
     options.threads = thread_count();
-    Json record;
-    {
-        const Progress progress(common.quiet);
-        options.progress = [&](const std::string& what) { progress(what); };
-        record           = climb_ladders(options);
-    }
+    const Progress progress(common.quiet);
+    options.progress = [&](const std::string& what) { progress(what); };
+    return climb_ladders(options);
+}
+
+int ladder(const LadderOptions& options, bool as_json, const Common& common) {
+    const Json record = climb(options, common);
     if (as_json)
         fmt::print("{}\n", record.dump(1));
     else if (!common.quiet)
@@ -181,8 +186,11 @@ int report(const std::vector<fs::path>& folders, const fs::path& out, const Comm
     if (folders.empty()) {
         CompareOptions options;
         options.out = out;
+        LadderOptions ladders;
+        ladders.out = out / "ladders";
+        climb(ladders, common);
         // A canonical scene whose mesh could not be obtained at set-up is left out: that is told, but it is no failure.
-        const ScenesDone done = compare(canonical_scenes(scenes_folder()), options, common);
+        const ScenesDone done = compare(canonical_scenes(scenes_folder()), options, common, {ladders.out});
         return done.failed.empty() && !done.names.empty() ? kDone : kUnreadable;
     }
     write_report(folders, out, {});

@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
+#include "bench/ladder_page.h"
 #include "bench/page_template.h"
 #include "bench/report_assets.h"
 #include "bench/report_index.h"
@@ -49,8 +51,15 @@ std::string folder_name(const std::string& scene) {
     return name;
 }
 
-std::vector<ScenePage> find_scenes(const std::vector<fs::path>& dirs, const fs::path& out) {
+/// What lies in the folders: scenes that were compared, and at most one climb of ladders.
+struct Found {
+    std::vector<ScenePage> scenes;
+    std::optional<fs::path> ladders;
+};
+
+Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     std::vector<ScenePage> all;
+    std::optional<fs::path> ladders;
     for (const fs::path& dir : dirs) {
         const auto first = std::ptrdiff_t(all.size());
         for (const fs::path& file : results_files(dir)) {
@@ -59,6 +68,11 @@ std::vector<ScenePage> find_scenes(const std::vector<fs::path>& dirs, const fs::
                             .page  = {},
                             .name  = {},
                             .title = {}};
+            if (scene.root["ladders"].present()) {
+                ladders = scene.data;
+                continue;
+            }
+            if (scene.root["bias"].present()) continue;  // a study of one method, with a page of its own
             scene.name      = scene.root["scene"]["name"].required_text();
             scene.title     = scene.root["scene"]["title"].text();
             scene.triangles = scene.root["facts"]["triangles"].number().value_or(0);
@@ -86,7 +100,26 @@ std::vector<ScenePage> find_scenes(const std::vector<fs::path>& dirs, const fs::
             if (taken.insert(folder).second) scene.page = folder;
         }
     }
-    return all;
+    return {std::move(all), std::move(ladders)};
+}
+
+/// The ladders' table for the first page, and their own page with all that belongs to it where it can be handed out
+/// with the report. Returns what the template shows; false where no ladders were climbed.
+json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, StagedFiles& staged) {
+    if (!folder) return false;
+    fs::path place          = *folder;
+    const fs::path relative = folder->lexically_relative(out);
+    if (relative == "." || *relative.begin() == "..") {
+        place = out / "ladders";
+        for (const auto& entry : fs::recursive_directory_iterator(*folder))
+            if (entry.is_regular_file()) staged.copy(entry.path(), place / entry.path().lexically_relative(*folder));
+    }
+    const Field root       = read_results(*folder / "results.json");
+    const std::string page = url((place / "index.html").lexically_relative(out));
+    return {{"page", page},
+            {"table", ladder_table_view(root, page)},
+            {"showcase", ladder_showcase_view(root, page)},
+            {"count", std::to_string(root["ladders"].items().size())}};
 }
 
 }  // namespace
@@ -94,7 +127,8 @@ std::vector<ScenePage> find_scenes(const std::vector<fs::path>& dirs, const fs::
 void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const ReportOptions& options) {
     if (dirs.empty()) throw UsageError("report: no folder given (one that umbra compare wrote would be right)");
     const fs::path root                  = fs::weakly_canonical(fs::absolute(out));
-    const std::vector<ScenePage> scenes  = find_scenes(dirs, root);
+    const Found found                    = find_results(dirs, root);
+    const std::vector<ScenePage>& scenes = found.scenes;
     const std::vector<std::string> order = method_ids(scenes);
 
     StagedFiles staged;
@@ -116,8 +150,9 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
         if (page != scenes[i].data) staged.copy(scenes[i].data / "results.json", page / "results.json");
         staged.write(page / "index.html", render_page(assets::scene_html, view));
     }
-    json index    = index_view(scenes, files, root, options.title);
-    index["root"] = "";
+    json index         = index_view(scenes, files, root, options.title);
+    index["root"]      = "";
+    index["stability"] = ladder_section(found.ladders, root, staged);
     staged.write(root / "index.html", render_page(assets::index_html, index));
     staged.write(root / "report.css", assets::report_css);
     staged.write(root / "report.js", assets::report_js);

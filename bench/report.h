@@ -11,6 +11,7 @@ struct ReportOptions {
     std::string title = "Shadow methods compared";  ///< heading of the first page
 };
 
+/// Folders that `umbra ladder` wrote may be among them: the first page then says where each method breaks.
 /// Writes out/index.html, a page a scene, and report.css and report.js. Reads DIR/<scene>/results.json of each folder,
 /// or DIR/results.json where there is none of those. A scene whose folder lies in `out` gets its page beside its
 /// pictures; of others the pictures are copied to out/<scene>, so that `out` can be handed out whole. The pages work

@@ -1,4 +1,5 @@
 #include "bench/report.h"
+#include "bench/ladder_command.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -425,6 +426,33 @@ TEST_F(Report, GathersOtherFoldersSoThatOneCanBeHandedOut) {
             if (!link.starts_with("#")) {
                 EXPECT_TRUE(fs::exists(out / scene / decoded(link))) << link;
             }
+    }
+}
+
+TEST_F(Report, SaysWhereMethodsBreakIfLaddersWereClimbed) {
+    put(out / "court", sample("court"));
+    write_report({out}, out);
+    EXPECT_FALSE(contains(read(out / "index.html"), "id=\"stability\""));
+
+    LadderOptions options;
+    options.names   = {"needles", "shininess"};
+    options.methods = {"shadow_zbuffer"};
+    options.out     = folder / "climbed";
+    climb_ladders(options);
+    for (const bool inside : {false, true}) {
+        // Elsewhere it is gathered into the report; in the report's own folder it is no scene.
+        if (inside) fs::rename(folder / "climbed", out / "climbed");
+        write_report(inside ? std::vector{out} : std::vector{out, folder / "climbed"}, out);
+        const std::string index = read(out / "index.html");
+        const std::string page  = inside ? "climbed/" : "ladders/";
+        EXPECT_TRUE(contains(index, "href=\"" + page + "index.html#needles\""));
+        EXPECT_TRUE(contains(index, "src=\"" + page + "breaks/needles.shadow_zbuffer.classes.png\""))
+            << "a telling break";
+        EXPECT_TRUE(contains(index, "The sum"));
+        for (const char* file : {"index.html", "results.json", "report.css", "breaks/needles.shadow_zbuffer.json",
+                                 "breaks/needles.shadow_zbuffer.truth.png"})
+            EXPECT_TRUE(fs::is_regular_file(out / page / file)) << page << file;
+        if (!inside) fs::remove_all(out / "ladders");
     }
 }
 
