@@ -28,10 +28,11 @@ double largest_coordinate(const Scene& scene) {
 
 /// Barycentrics as odd multiples of 2^-13, the third weight neither 0 nor one half. (It is an even multiple.)
 void set_dyadic_point(Asked& asked, std::size_t i) {
-    constexpr int kOne  = 1 << 13;
-    const auto odd      = [](float x) { return 2 * static_cast<int>(std::floor(x * (kOne / 2))) + 1; };
-    PointBatch& points  = asked.points;
-    const TriangleId id = points.triangle[i];
+    constexpr int kOne   = 1 << 13;
+    constexpr auto kHalf = static_cast<float>(kOne) / 2;
+    const auto odd       = [](float x) { return 2 * static_cast<int>(std::floor(x * kHalf)) + 1; };
+    PointBatch& points   = asked.points;
+    const TriangleId id  = points.triangle[i];
     int u = std::clamp(odd(points.u[i]), 1, kOne - 3), v = std::clamp(odd(points.v[i]), 1, kOne - 3);
     while (kOne - u - v <= 0 || kOne - u - v == kOne / 2) (v > 1 ? v : u) -= 2;
     points.triangle[i] = kNoTriangle;
