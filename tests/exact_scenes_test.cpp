@@ -137,5 +137,81 @@ TEST_P(AreaLights, FloatingPointAgreesWithRationals) {
 INSTANTIATE_TEST_SUITE_P(Canonical, AreaLights, testing::Values("umbra_penumbra", "eclipse", "light_sizes"),
                          [](const auto& param) { return std::string(param.param); });
 
+/// Some 80 triangles over a floor, most of them anywhere, and a light of each kind.
+Scene thicket(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> unit(-1, 1);
+    const auto anywhere = [&] { return vec3(unit(random), unit(random), unit(random)); };
+    Scene scene;
+    scene.camera.eye = vec3(1, 9, 3);
+    scene.materials.emplace_back();
+    const auto add = [&](const Mesh& mesh) { add_object(scene, "part", mesh.positions, {}, mesh.triangles, 0); };
+    add(make_plane(6, 6));
+    add(transformed(make_sphere(0.5f, 6, 4), glm::translate(mat4(1), vec3(unit(random), 0.75f, unit(random)))));
+    Mesh leaves;
+    for (unsigned k = 0; k < 40; ++k) {
+        const vec3 at = anywhere() * vec3(2, 1, 2) + vec3(0, 1.5f, 0);
+        for (int j = 0; j < 3; ++j) leaves.positions.push_back(at + 0.6f * anywhere());
+        leaves.triangles.emplace_back(3 * k, 3 * k + 1, 3 * k + 2);
+    }
+    add(leaves);
+    Light light;
+    light.position  = vec3(0.25f * unit(random), 4, 0.25f * unit(random));
+    light.edge_u    = vec3(1, 0.25f, 0);
+    light.edge_v    = vec3(0, 0.25f, -1);
+    light.direction = glm::normalize(glm::cross(light.edge_u, light.edge_v));
+    light.radius    = 0.5f;
+    for (const LightKind kind : {LightKind::rectangle, LightKind::disk, LightKind::sphere}) {
+        light.kind = kind;
+        light.name = to_string(kind);
+        scene.lights.push_back(light);
+    }
+    return scene;
+}
+
+/// Of N rays that are drawn at random, each is blocked or not: their share is off by sqrt(S (1 - S) / N) in the mean.
+/// Of the quotients of what each point is off and that number, the squares have the mean 1, and the mean lies within
+/// 5 / sqrt(points) of 0. Samples that are well spread are off by less: nowhere by what half a light is off otherwise.
+TEST(ExactScenes, SamplingComesToTheSameShares) {
+    constexpr int kSamples = 4096;
+    for (const unsigned seed : {1u, 2u}) {
+        const Scene scene = thicket(seed);
+        EXPECT_GE(scene.triangles.size(), 50u);
+        const PointBatch points = RandomPoints(scene, seed).next(1500);
+        MethodCase exact("exact", scene);
+        MethodCase sampled(fmt::format("ray_traced:samples={},sampler=random", kSamples), scene),
+            spread(fmt::format("ray_traced:samples={}", kSamples), scene);
+        for (LightId j = 0; j < scene.lights.size(); ++j) {
+            exact.prepare(j), sampled.prepare(j), spread.prepare(j);
+            const VisibilityPlane right = exact.visibility(points, j), noisy = sampled.visibility(points, j),
+                                  smooth = spread.visibility(points, j);
+            std::size_t counted          = 0;
+            double sum = 0, squares = 0, worst = 0, smooth_squares = 0, smooth_worst = 0, outside = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (!is_open(points, j, i) || right.defined[i] != kDefined) continue;
+                const double s = right.s[i], smooth_off = double(smooth.s[i]) - s;
+                smooth_worst = std::max(smooth_worst, std::abs(smooth_off));
+                if (s * (1 - s) * kSamples < 20) {  // too near 0 or 1 for a normal distribution
+                    outside = std::max(outside, std::abs(double(noisy.s[i]) - s));
+                    continue;
+                }
+                const double z = (double(noisy.s[i]) - s) / std::sqrt(s * (1 - s) / kSamples);
+                ++counted;
+                sum += z, squares += z * z;
+                worst = std::max(worst, std::abs(z));
+                smooth_squares += smooth_off * smooth_off;
+            }
+            const auto n = static_cast<double>(counted);
+            EXPECT_GT(counted, 300u);
+            EXPECT_LT(std::abs(sum / n), 5 / std::sqrt(n));
+            EXPECT_NEAR(squares / n, 1, 5 * std::sqrt(2 / n));
+            EXPECT_LT(worst, 5.5);
+            EXPECT_LT(outside, 5.5 * std::sqrt(20.0) / kSamples);
+            EXPECT_LT(std::sqrt(smooth_squares / n), 0.0015);
+            EXPECT_LT(smooth_worst, 0.5 / std::sqrt(kSamples));
+        }
+    }
+}
+
 }  // namespace
 }  // namespace umbra
