@@ -32,6 +32,25 @@ std::string first_wrong(const Scene& scene, const PointBatch& points, LightId li
     return "none";
 }
 
+/// The point that is most wrong, in words, of those whose S lies further from what is known than the method states;
+/// anywhere, on edges of penumbrae, too.
+std::string worst_beyond_bracket(const PointBatch& points, LightId light, const VisibilityPlane& got,
+                                 const VisibilityPlane& known, std::span<const float> half_widths) {
+    std::string said  = "none";
+    double worst      = 1e-6;
+    std::size_t asked = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!is_open(points, light, i) || got.defined[i] != kDefined || !known.defined[i]) continue;
+        ++asked;
+        const double bracket = half_widths.empty() ? 0 : double(half_widths[i]);
+        const double beyond  = std::abs(double(got.s[i]) - double(known.s[i])) - bracket;
+        if (beyond <= worst) continue;
+        worst = beyond;
+        said  = fmt::format("point {}: S {} -+ {} instead of {}", i, got.s[i], bracket, known.s[i]);
+    }
+    return asked > 0 ? said : "no point was asked";
+}
+
 TEST(KnownScenes, BruteForceAgreesWithTheFormulas) {
     for (const NamedScene& named : known_scenes()) {
         const KnownScene known = named.make();
@@ -96,6 +115,9 @@ TEST_P(Matrix, IsRight) {
         const std::uint64_t interior = e.false_shadow.interior + e.false_light.interior;
         if (service.how == How::exactly) {
             EXPECT_EQ(interior, 0u) << first_wrong(known.scene, points, j, got, right, tolerance);
+            if (is_area(kind)) {
+                EXPECT_EQ(worst_beyond_bracket(points, j, got, right, run.method->half_widths()), "none");
+            }
         } else if (is_area(kind)) {
             EXPECT_LE(e.mae, known.approximate_mae);
         } else {
