@@ -116,7 +116,10 @@ TEST_P(Matrix, IsRight) {
         if (service.how == How::exactly) {
             EXPECT_EQ(interior, 0u) << first_wrong(known.scene, points, j, got, right, tolerance);
             if (is_area(kind)) {
-                EXPECT_EQ(worst_beyond_bracket(points, j, got, right, run.method->half_widths()), "none");
+                const std::span<const float> half_widths = run.method->half_widths();
+                EXPECT_EQ(worst_beyond_bracket(points, j, got, right, half_widths), "none");
+                EXPECT_EQ(half_widths.empty(), kind == LightKind::rectangle);
+                for (const float half : half_widths) ASSERT_LE(half, 1e-4f);
             }
         } else if (is_area(kind)) {
             EXPECT_LE(e.mae, known.approximate_mae);

@@ -317,6 +317,43 @@ KnownScene penumbra_of_half_plane() {
     return known;
 }
 
+/// What is left of a circle, of its area, on one side of a chord, which lies so many radii from the centre.
+double left_of_chord(double chord) {
+    const double t = std::clamp(chord, -1.0, 1.0);
+    return 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / kPi;
+}
+
+/// The half-plane under a disk of radius 0.75 in place of the rectangle.
+KnownScene penumbra_of_a_disk() {
+    KnownScene known  = penumbra_of_half_plane();
+    Light& light      = known.scene.lights[0];
+    light.kind        = LightKind::disk;
+    light.radius      = 0.75f;
+    light.direction   = {0, -1, 0};
+    known.closed_form = [](dvec3 p, LightId) -> std::optional<double> {
+        if (p.y > 1e-9) return std::nullopt;
+        return left_of_chord(-p.x / 0.75);
+    };
+    return known;
+}
+
+/// Of a sphere p sees the circle in which the cone from p touches it. The plane through p and the half-plane's edge
+/// cuts it at a distance that is to its radius as the tangent of the angle from the cone's axis is to that of the
+/// cone's own.
+KnownScene penumbra_of_a_sphere() {
+    KnownScene known           = penumbra_of_a_disk();
+    known.scene.lights[0].kind = LightKind::sphere;
+    known.closed_form          = [](dvec3 p, LightId) -> std::optional<double> {
+        if (p.y > 1e-9) return std::nullopt;
+        const dvec3 way    = dvec3(0, 4, 0) - p;
+        const double d     = glm::length(way);
+        const dvec3 normal = glm::normalize(dvec3(2, p.x, 0));  // of that plane
+        const double sine = -glm::dot(normal, way) / d, cone = 0.75 / d;
+        return left_of_chord(sine / std::sqrt(1 - sine * sine) * std::sqrt(1 - cone * cone) / cone);
+    };
+    return known;
+}
+
 /// Whether the segment from p to the light meets triangle x: 1 it does, 0 it does not, -1 rounding decides.
 int meets(dvec3 p, dvec3 to_light, bool infinite, const std::array<dvec3, 3>& x) {
     constexpr double kRounding = 1e-9;
@@ -376,6 +413,8 @@ const std::vector<NamedScene>& known_scenes() {
         {"spot_light", spot_light},
         {"room", room},
         {"penumbra_of_half_plane", penumbra_of_half_plane},
+        {"penumbra_of_a_disk", penumbra_of_a_disk},
+        {"penumbra_of_a_sphere", penumbra_of_a_sphere},
     };
     return list;
 }
