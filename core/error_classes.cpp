@@ -63,7 +63,7 @@ ClassPlane error_classes(const PointBatch& points, LightId light, const Visibili
         const Facing facing = points.facing[light][i];
         if (facing == Facing::none) return ErrorClass::no_surface;
         if (facing == Facing::away) return ErrorClass::away;
-        if (reference.defined[i] == kGuess) return ErrorClass::not_judged;
+        if (s.defined[i] != kUndefined && reference.defined[i] == kGuess) return ErrorClass::not_judged;
         if (reference.defined[i] == kOnBoundary) return ErrorClass::on_boundary;
         if (s.defined[i] == kUndefined || reference.defined[i] == kUndefined) return ErrorClass::undefined;
         const double d     = static_cast<double>(s.s[i]) - static_cast<double>(reference.s[i]);

@@ -34,6 +34,9 @@ enum class ErrorClass : std::uint8_t {
 /// Do both planes define the point, so that it is right or wrong?
 [[nodiscard]] constexpr bool is_compared(ErrorClass c) { return c >= ErrorClass::right; }
 
+/// Does it say where boundaries are? A guess of the reference does, too.
+[[nodiscard]] constexpr bool is_drawn(ErrorClass c) { return is_compared(c) || c == ErrorClass::not_judged; }
+
 using ClassPlane = std::vector<ErrorClass>;  ///< one a point of a raster batch
 
 /// Compares two planes of one raster batch. A point is wrong where |s - reference| > `tolerance` + its half width: a

@@ -26,13 +26,13 @@ template <class Body>
 void for_each_pair(const PointBatch& points, const ClassPlane& classes, const Body& body) {
     const int width = points.raster->width, height = points.raster->height;
     const auto pair = [&](std::size_t i, std::size_t j, int x, int y, bool below) {
-        if (is_compared(classes[j])) body(i, j, x, y, below);
+        if (is_drawn(classes[j])) body(i, j, x, y, below);
     };
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const std::size_t i =
                 static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (!is_compared(classes[i])) continue;
+            if (!is_drawn(classes[i])) continue;
             if (x + 1 < width) pair(i, i + 1, x, y, false);
             if (y + 1 < height) pair(i, i + static_cast<std::size_t>(width), x, y, true);
         }
@@ -103,7 +103,7 @@ double length_of_half_level(const PointBatch& points, const ClassPlane& classes,
                 if (crosses(s[a], s[b])) at[found++] = glm::mix(kCorner[k], kCorner[(k + 1) % 4], crossing(s[a], s[b]));
             }
             if (found == 0) continue;
-            const bool whole = std::ranges::all_of(corner, [&](std::size_t c) { return is_compared(classes[c]); });
+            const bool whole = std::ranges::all_of(corner, [&](std::size_t c) { return is_drawn(classes[c]); });
             if (!whole || !one_surface(points, corner[0], corner[2]) || !one_surface(points, corner[1], corner[3]))
                 continue;
             for (std::size_t k = 0; k < found; k += 2) length += glm::length(at[k + 1] - at[k]);
@@ -155,7 +155,7 @@ std::optional<PenumbraWidth> penumbra_width(const PointBatch& points, const Clas
     const auto width = [&](const std::vector<float>& plane) {
         double area = 0;
         for (std::size_t i = 0; i < plane.size(); ++i)
-            if (is_compared(classes[i])) area += static_cast<double>(plane[i]) * (1 - static_cast<double>(plane[i]));
+            if (is_drawn(classes[i])) area += static_cast<double>(plane[i]) * (1 - static_cast<double>(plane[i]));
         return 6 * area / length;
     };
     return PenumbraWidth{width(s.s), width(reference.s)};

@@ -41,6 +41,7 @@ protected:
             "lights": [{"name": "lamp", "type": "point", "position": [2, 4, 1]},
                        {"name": "panel", "type": "rectangle", "position": [-2, 4, 1], "edge_u": [1, 0, 0], "edge_v": [0, 0, 1]}],
             "objects": [{"name": "floor", "type": "plane", "size": [8, 8]},
+                        {"name": "ball", "type": "sphere", "radius": 1.2, "transform": [{"translate": [1.8, 1.2, 0.8]}]},
                         {"name": "box", "type": "box", "size": [1, 1, 1], "transform": [{"translate": [0, 1, 0]}]}]
         })");
         options_.out     = folder_ / "out";
@@ -110,7 +111,11 @@ TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
         };
         EXPECT_EQ(of(panel), judged["of"]);
         EXPECT_LE(panel["points"], judged["points"]);
+        const int all = whole["methods"][m]["errors"][1]["terminator"]["normal_away"];
+        EXPECT_GT(all, 5);
+        EXPECT_LT(2 * panel["terminator"]["normal_away"].get<int>(), all) << "what is not judged is not counted";
         EXPECT_GT(panel["points"], 100);
+        EXPECT_FALSE(panel["penumbra_width_px"].is_null()) << "guesses say where boundaries are";
         EXPECT_GT(panel["penumbra"], 5);
     }
     // Judged are exact answers and not guesses: exact agrees with itself, and rays err by about what they err overall.
