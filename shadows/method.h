@@ -10,11 +10,11 @@
 #include <string_view>
 #include <vector>
 
-#include "core/facts.h"
-#include "core/points.h"
-#include "core/scene.h"
-#include "core/visibility_plane.h"
-#include "shadows/settings.h"
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/visibility_plane.h"
+#include "umbra/core/scene/facts.h"
+#include "umbra/core/scene/scene.h"
+#include "umbra/shadows/settings.h"
 
 namespace umbra {
 
@@ -29,8 +29,8 @@ struct Service {
 };
 
 /// The three phases are timed apart: a moving object reruns all, a light the last two, a camera the last.
-/// Calls come in this order from one thread; a method does its own parallelism (core/parallel.h) and its results do not
-/// depend on the number of threads.
+/// Calls come in this order from one thread; a method does its own parallelism (core/base/parallel.h) and its results
+/// do not depend on the number of threads.
 class Method {
 public:
     Method()                         = default;
@@ -78,11 +78,6 @@ struct MethodInfo {
     std::span<const Parameter> parameters;
     std::unique_ptr<Method> (*make)(const Settings& settings) = nullptr;
 };
-
-/// Each method's file defines its own: `const MethodInfo NAME{...};`
-#define METHOD(name) extern const MethodInfo name;
-#include "shadows/methods.def"
-#undef METHOD
 
 /// All methods, in report order.
 [[nodiscard]] std::span<const MethodInfo* const> methods();

@@ -2,16 +2,21 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/error.h"
-#include "shadows/method.h"
+#include "umbra/core/base/error.h"
+#include "umbra/shadows/method.h"
 
 namespace umbra {
+
+// Each is defined in its method's file.
+#define METHOD(name) extern const MethodInfo name;
+#include "umbra/shadows/methods.def"
+#undef METHOD
 
 namespace {
 
 const std::vector<const MethodInfo*> kMethods = {
 #define METHOD(name) &name,
-#include "shadows/methods.def"
+#include "umbra/shadows/methods.def"
 #undef METHOD
 };
 

@@ -1,5 +1,5 @@
 // Parameters: parsing, ranges, canonical text.
-#include "shadows/settings.h"
+#include "umbra/shadows/settings.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/error.h"
+#include "umbra/core/base/error.h"
 
 namespace umbra {
 namespace {

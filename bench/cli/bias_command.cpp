@@ -1,0 +1,107 @@
+#include "umbra/bench/cli/bias_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "umbra/bench/bias/bias_page.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+Json errors_json(const BiasErrors& e) {
+    return {{"false_shadow", {{"interior", e.false_shadow.interior}, {"edge", e.false_shadow.edge}}},
+            {"false_light", {{"interior", e.false_light.interior}, {"edge", e.false_light.edge}}}};
+}
+
+/// Counts of a kind over the grid, a row a slope.
+Json slices_json(const BiasStudy& study, const BiasGrid& grid) {
+    Json slices = Json::array();
+    auto cell   = study.cells.begin();
+    for (double offset : grid.normal_offsets) {
+        Json slice = {{"normal_offset", offset}, {"rows", Json::array()}};
+        for (std::size_t row = 0; row < grid.slopes.size(); ++row) {
+            slice["rows"].push_back(Json::array());
+            for (std::size_t column = 0; column < grid.constants.size(); ++column)
+                slice["rows"].back().push_back(errors_json((cell++)->errors));
+        }
+        slices.push_back(std::move(slice));
+    }
+    return slices;
+}
+
+Json study_json(const BiasStudy& study, const BiasGrid& grid) {
+    const BiasCell& best  = best_cell(study);
+    Json best_json        = errors_json(best.errors);
+    best_json["constant"] = best.constant, best_json["slope"] = best.slope;
+    best_json["normal_offset"] = best.normal_offset;
+    return {{"scene", study.name},
+            {"title", study.title},
+            {"lights", study.lights},
+            {"points", study.points},
+            {"automatic", errors_json(study.automatic)},
+            {"receiver_plane", errors_json(study.receiver_plane)},
+            {"best_manual", std::move(best_json)},
+            {"settings", study.cells.size()},
+            {"settings_better_than_automatic", better_cells(study)},
+            {"slices", slices_json(study, grid)}};
+}
+
+}  // namespace
+
+Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
+                  std::vector<std::string>& failed) {
+    const BiasGrid grid = default_bias_grid();
+    std::vector<BiasStudy> studies;
+    for (const std::filesystem::path& file : files) {
+        try {
+            studies.push_back(study_bias(prepare_scene(file, options.size), options.map, grid, options.progress));
+        } catch (const InputError& e) {
+            failed.emplace_back(e.what());
+        }
+    }
+    Json record = {{"schema", kResultsSchema},
+                   {"version", version()},
+                   {"command", options.command},
+                   {"machine", machine_json(options.threads)},
+                   {"size", {{"width", options.size.width}, {"height", options.size.height}}},
+                   {"map", options.map},
+                   {"constants", grid.constants},
+                   {"slopes", grid.slopes},
+                   {"normal_offsets", grid.normal_offsets},
+                   {"bias", Json::array()}};
+    if (studies.empty()) return record;
+    if (studies.size() > 1) studies.insert(studies.begin(), add_up(studies));
+    for (const BiasStudy& study : studies) record["bias"].push_back(study_json(study, grid));
+
+    StagedFiles staged;
+    staged.write(options.out / "results.json", record.dump(1) + "\n");
+    write_bias_page(record, options.out, staged);
+    staged.commit();
+    return record;
+}
+
+std::string bias_table(const Json& record) {
+    std::string text =
+        fmt::format("{:24} {:>9} {:>17} {:>17} {:>17}  {}\n", "interior: false shadow + light", "points", "auto",
+                    "receiver_plane", "best manual", "constant slope normal_offset; better than auto");
+    for (const Json& study : record["bias"]) {
+        const auto wrong = [&](const char* setting) {
+            const Json& e = study[setting];
+            return fmt::format("{:>8} {:>8}", e["false_shadow"]["interior"].get<std::uint64_t>(),
+                               e["false_light"]["interior"].get<std::uint64_t>());
+        };
+        const Json& best = study["best_manual"];
+        text += fmt::format(
+            "{:30} {:>9} {} {} {}  {:g} {:g} {:g}; {} of {}\n", study["scene"].get<std::string>(),
+            study["points"].get<std::uint64_t>(), wrong("automatic"), wrong("receiver_plane"), wrong("best_manual"),
+            best["constant"].get<double>(), best["slope"].get<double>(), best["normal_offset"].get<double>(),
+            study["settings_better_than_automatic"].get<std::size_t>(), study["settings"].get<std::size_t>());
+    }
+    return text;
+}
+
+}  // namespace umbra

@@ -1,0 +1,63 @@
+#include "umbra/bench/cli/ladder_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "umbra/bench/ladders/ladder_break.h"
+#include "umbra/bench/ladders/ladder_page.h"
+#include "umbra/bench/ladders/ladder_record.h"
+#include "umbra/bench/ladders/ladder_run.h"
+#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+
+Json climb_ladders(const LadderOptions& options) {
+    if (std::filesystem::exists(options.out / "results.json") &&
+        !read_results(options.out / "results.json")["ladders"].present())
+        throw InputError(
+            fmt::format("{}: holds the results of something else, so it is not replaced (name another folder "
+                        "with -o)",
+                        options.out.string()));
+    std::vector<const Ladder*> chosen;
+    for (const std::string& name : options.names) chosen.push_back(&find_ladder(name));
+    if (chosen.empty()) chosen.assign(ladders().begin(), ladders().end());
+    std::vector<MethodChoice> methods_chosen;
+    for (const std::string& text : options.methods) methods_chosen.push_back(parse_method(text));
+    if (options.methods.empty())
+        for (const MethodInfo* info : methods())
+            if (info != &find_method("exact")) methods_chosen.push_back({info, Settings(info->parameters)});
+
+    Json record = {{"schema", kResultsSchema},         {"version", version()},
+                   {"command", options.command},       {"machine", machine_json(options.threads)},
+                   {"breaking_share", kBreakingShare}, {"ladders", Json::array()}};
+    StagedFolder staged(options.out);
+    std::filesystem::create_directory(staged.folder() / "breaks");
+    for (const Ladder* ladder : chosen) {
+        const LadderRun run = climb_ladder(*ladder, methods_chosen, options.progress);
+        Json entry          = ladder_json(run);
+        for (std::size_t m = 0; m < run.methods.size(); ++m) {
+            const Climb c = climb(run, m);
+            if (!c.breaks_at || !run.rungs[*c.breaks_at].outcomes[m].ran()) continue;
+            if (options.progress)
+                options.progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
+            Json& method = entry["methods"][m];
+            const auto same =
+                std::count_if(run.methods.begin(), run.methods.begin() + std::ptrdiff_t(m),
+                              [&](const MethodChoice& other) { return other.info == run.methods[m].info; });
+            const std::string name = fmt::format("{}.{}{}", ladder->name, run.methods[m].info->name,
+                                                 same ? fmt::format("-{}", same + 1) : "");
+            method["break"] =
+                write_break(staged.folder() / "breaks", name, *ladder, method["breaks_at"], run.methods[m]);
+        }
+        record["ladders"].push_back(std::move(entry));
+    }
+    write_text(staged.folder() / "results.json", record.dump(1) + "\n");
+    write_ladder_page(staged.folder());
+    staged.commit();
+    return record;
+}
+
+}  // namespace umbra

@@ -1,0 +1,26 @@
+// `umbra ladder`: climbs ladders and writes what it found.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/run/describe.h"
+
+namespace umbra {
+
+struct LadderOptions {
+    std::vector<std::string> names;    ///< empty: all
+    std::vector<std::string> methods;  ///< as typed; empty: all with their defaults, but `exact`, which is the truth
+    std::filesystem::path out;
+    std::string command;  ///< for the record
+    int threads = 0;
+    std::function<void(const std::string&)> progress;  ///< told what is being done; may be empty
+};
+
+/// Climbs and writes OUT: results.json, breaks/ with a small scene and pictures of each break, index.html. The folder
+/// is written beside and moved into place. Returns the record in results.json. Throws UsageError, InputError.
+Json climb_ladders(const LadderOptions& options);
+
+}  // namespace umbra

@@ -1,0 +1,68 @@
+// `umbra compare` and `umbra render`: a scene under several methods, held against a reference, into files.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/reference.h"
+#include "umbra/bench/run/run.h"
+
+namespace umbra {
+
+/// Everything about a scene that all methods share, made once: facts, the G-buffer, and what each step cost.
+struct PreparedScene {
+    Scene scene;
+    SceneFacts facts;
+    PointBatch points;
+    double load_ms = 0, facts_ms = 0, rays_build_ms = 0, gbuffer_ms = 0;
+};
+
+struct Size {
+    int width = 0, height = 0;  ///< 0: the scene's own
+};
+/// "WxH". Throws UsageError.
+[[nodiscard]] Size parse_size(const std::string& text);
+
+[[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size);
+
+struct CompareOptions {
+    std::vector<std::string> methods;      ///< as typed; empty: all with their defaults
+    std::optional<std::string> reference;  ///< as typed; none: `default_reference`
+    std::optional<std::uint64_t> points;   ///< to judge area lights on; none: as many as are not too dear
+    Size size;
+    std::filesystem::path out;
+    std::string command;  ///< for the records
+    int threads = 0;
+    Repeats repeats;
+    std::function<void(const std::string&)> progress;  ///< told what is being done; may be empty
+};
+
+/// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
+/// into place; an older result stays whole until then. Returns the record that it wrote. Throws InputError, UsageError.
+Json compare_scene(const std::filesystem::path& file, const CompareOptions& options);
+
+/// All scenes one after the other; where there is one only, OUT/results.json is a copy with paths that hold there.
+/// Scenes that cannot be read are told to `failed` and left out; their older results stay.
+struct ScenesDone {
+    std::vector<std::string> names;    ///< folders below OUT, in order
+    std::vector<std::string> failed;   ///< messages
+    std::vector<std::string> missing;  ///< messages: scenes whose meshes are not there
+};
+ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
+
+/// One method's picture of one scene: .exr (R G B, S.<light>; with geometry where asked) or .png (as displayed).
+/// Returns false and the reason where the method does not serve the scene; nothing is written then.
+struct RenderOptions {
+    std::string method = "ray_traced";
+    Size size;
+    std::filesystem::path out;
+    std::string command;
+    bool with_geometry = false;
+};
+[[nodiscard]] Service render_scene(const std::filesystem::path& file, const RenderOptions& options);
+
+}  // namespace umbra

@@ -1,0 +1,40 @@
+// Ladders: families of scenes over one extreme, in geometric steps from harmless to absurd.
+//
+// A ladder is one function and one line in ladders.def. On each rung `exact` is the truth; a method breaks at the first
+// rung where its interior errors exceed a stated share (bench/ladder_run.h).
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "umbra/core/image/image.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+struct Ladder {
+    std::string_view name;   ///< as typed: "far_from_origin"
+    std::string_view title;  ///< "Distance from the origin"
+    std::string_view about;  ///< one or two sentences: what grows, and what it hurts
+    std::string_view unit;   ///< of a rung's value, as read after the number: "scene sizes"; empty for pure numbers
+    std::span<const double> rungs;          ///< harmless first; an array that outlives the program's work
+    Scene (*scene)(double rung) = nullptr;  ///< with lights, camera, picture size; the same bits each time
+
+    /// Ladders over the sum, where S_j is right: says what is wrong with the picture of that rung (scene-linear R G B,
+    /// made with the true S_j); empty where nothing is. Null: S_j is judged, method by method.
+    std::string (*wrong_sum)(double rung, const Scene& scene, const Image& linear) = nullptr;
+};
+
+/// Each theme's file in bench/ladders/ defines several: `const Ladder NAME_ladder{...};`
+#define LADDER(name) extern const Ladder name##_ladder;
+#include "umbra/bench/ladders/ladders.def"
+#undef LADDER
+
+/// All ladders, in the order of the report.
+[[nodiscard]] std::span<const Ladder* const> ladders();
+
+/// Throws UsageError, naming the ladders that there are.
+[[nodiscard]] const Ladder& find_ladder(std::string_view name);
+
+}  // namespace umbra

@@ -1,0 +1,67 @@
+#include "umbra/bench/ladders/ladder_break.h"
+
+#include <fmt/format.h>
+
+#include "umbra/bench/compare/pictures.h"
+#include "umbra/bench/ladders/minimal_scene.h"
+#include "umbra/bench/out/staged_folder.h"
+#include "umbra/core/image/image_io.h"
+#include "umbra/core/io/scene_writer.h"
+
+namespace umbra {
+namespace {
+
+constexpr int kTrials = 120;  ///< scenes asked while reducing; counted, not timed, so that the result is the same
+
+/// The break is still there: of the same kind, on at least half as many points.
+bool still_breaks(const Scene& scene, const MethodChoice& method, const RungOutcome& whole) {
+    try {
+        const RungOutcome o = outcome(*set_stage(scene), method);
+        return o.broken() && o.kind == whole.kind && 2 * o.interior() >= whole.interior();
+    } catch (const std::exception&) {
+        return false;  // no truth: nothing to break against
+    }
+}
+
+}  // namespace
+
+Json write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder, double value,
+                 const MethodChoice& method) {
+    const Scene whole        = ladder.scene(value);
+    const RungOutcome broken = outcome(*set_stage(whole), method);
+    Scene scene              = minimal_scene(
+                     whole, [&](const Scene& smaller) { return still_breaks(smaller, method, broken); }, kTrials);
+    scene.title = fmt::format("{}, {:g}{}{}", ladder.title, value, ladder.unit.empty() ? "" : " ", ladder.unit);
+    scene.shows = fmt::format("Where {} breaks: {}.", method.text(), broken.kind);
+
+    const std::unique_ptr<RungStage> stage = set_stage(scene);
+    std::vector<Explained> explained;
+    MethodRun run{method, {}, {}, {}, {}, 0, {}, {}, {}};
+    const RungOutcome o = outcome(*stage, method, &explained, &run);
+    LightId worst       = 0;
+    const auto interior = [&](LightId j) {
+        return explained[j].error.false_shadow.interior + explained[j].error.false_light.interior;
+    };
+    for (LightId j = 1; j < explained.size(); ++j)
+        if (interior(j) > interior(worst)) worst = j;
+
+    const auto file = [&](const char* ending) { return name + ending; };
+    write_text(folder / file(".json"), native_text(scene));
+    write_image(folder / file(".S.png"), visibility_picture(stage->points, run.planes[worst]));
+    write_image(folder / file(".truth.png"), visibility_picture(stage->points, stage->truth.planes[worst]));
+    write_image(folder / file(".classes.png"),
+                class_picture(stage->points, explained[worst].classes, stage->truth.planes[worst]));
+    return {{"scene", file(".json")},
+            {"visibility", file(".S.png")},
+            {"truth", file(".truth.png")},
+            {"classes", file(".classes.png")},
+            {"light", scene.lights[worst].name},
+            {"width", scene.width},
+            {"height", scene.height},
+            {"triangles", scene.triangles.size()},
+            {"triangles_before", whole.triangles.size()},
+            {"points", o.points},
+            {"interior", o.interior()}};
+}
+
+}  // namespace umbra

@@ -1,0 +1,133 @@
+#include "umbra/bench/ladders/ladder_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace umbra {
+namespace {
+
+Json outcome_json(const RungOutcome& o) {
+    Json j = {{"serves", service_json(o.service)}};
+    if (!o.stopped.empty()) j["stopped"] = o.stopped;
+    if (!o.ran()) return j;
+    j["points"]         = o.points;
+    j["undefined"]      = o.undefined;
+    j["false_shadow"]   = {{"interior", o.false_shadow.interior}, {"edge", o.false_shadow.edge}};
+    j["false_light"]    = {{"interior", o.false_light.interior}, {"edge", o.false_light.edge}};
+    j["interior_share"] = number(o.interior_share());
+    j["mae"]            = number(o.mae);
+    j["broken"]         = o.broken();
+    j["kind"]           = o.kind.empty() ? Json(nullptr) : Json(o.kind);
+    return j;
+}
+
+Json rung_json(const Rung& rung) {
+    Json j = {
+        {"value", rung.value}, {"truth", rung.truth},       {"surface_points", rung.surface_points}, {"lit", rung.lit},
+        {"umbra", rung.umbra}, {"penumbra", rung.penumbra}, {"on_boundary", rung.on_boundary}};
+    if (!rung.unjudged.empty()) j["unjudged"] = rung.unjudged;
+    return j;
+}
+
+/// The value of a rung that a climb names; null where it names none.
+Json value_of(const LadderRun& run, const std::optional<std::size_t>& rung) {
+    return rung ? Json(run.rungs[*rung].value) : Json(nullptr);
+}
+
+Json method_climb_json(const LadderRun& run, std::size_t m) {
+    const Climb c = climb(run, m);
+    Json j        = {{"name", run.methods.empty() ? "sum" : std::string(run.methods[m].info->name)},
+                     {"title", run.methods.empty() ? "The sum" : std::string(run.methods[m].info->title)},
+                     {"text", run.methods.empty() ? "sum" : run.methods[m].text()},
+                     {"breaks_at", value_of(run, c.breaks_at)},
+                     {"kind", nullptr},
+                     {"silent_from", value_of(run, c.silent_from)},
+                     {"not_served_from", value_of(run, c.not_served_from)},
+                     {"why", c.why},
+                     {"rungs", Json::array()}};
+    if (c.breaks_at) {
+        const RungOutcome& o = run.rungs[*c.breaks_at].outcomes[m];
+        j["kind"]            = o.stopped.empty() ? o.kind : run.methods.empty() ? "wrong sum" : "stopped";
+    }
+    for (const Rung& rung : run.rungs)
+        if (rung.unjudged.empty()) j["rungs"].push_back(outcome_json(rung.outcomes[m]));
+    return j;
+}
+
+}  // namespace
+
+Json ladder_info_json(const Ladder& ladder) {
+    return {{"name", ladder.name},
+            {"title", ladder.title},
+            {"about", ladder.about},
+            {"unit", ladder.unit},
+            {"rungs", std::vector<double>(ladder.rungs.begin(), ladder.rungs.end())}};
+}
+
+Json ladder_json(const LadderRun& run) {
+    Json j     = ladder_info_json(*run.ladder);
+    j["rungs"] = Json::array();
+    for (const Rung& rung : run.rungs) j["rungs"].push_back(rung_json(rung));
+    j["not_climbed"] = run.ladder->rungs.size() - run.rungs.size();
+    j["methods"]     = Json::array();
+    for (std::size_t m = 0; m < std::max<std::size_t>(run.methods.size(), run.methods.empty()); ++m)
+        j["methods"].push_back(method_climb_json(run, m));
+    return j;
+}
+
+std::string climb_in_words(const Json& method, const Json& ladder) {
+    const auto value = [&](const char* key) { return method[key].get<double>(); };
+    std::string words;
+    if (!method["breaks_at"].is_null())
+        words = fmt::format("{:g} {}", value("breaks_at"), method["kind"].get<std::string>());
+    if (!method["not_served_from"].is_null()) {
+        const bool never = value("not_served_from") == ladder["rungs"][0]["value"].get<double>();
+        if (!words.empty()) words += "; ";
+        words += never ? "not served" : fmt::format("not served from {:g}", value("not_served_from"));
+    }
+    if (!method["silent_from"].is_null()) {
+        if (!words.empty()) words += "; ";
+        words += fmt::format("silent from {:g}", value("silent_from"));
+    }
+    return words.empty() ? "holds" : words;
+}
+
+std::string ladder_table(const Json& ladders) {
+    // Columns are the methods in the order in which they first appear; ladders over the sum have a column of their own.
+    std::vector<std::string> columns;
+    for (const Json& ladder : ladders)
+        for (const Json& method : ladder["methods"])
+            if (const std::string name = method["text"];
+                std::find(columns.begin(), columns.end(), name) == columns.end())
+                columns.push_back(name);
+    std::vector<std::vector<std::string>> rows(1, {"ladder"});
+    rows[0].insert(rows[0].end(), columns.begin(), columns.end());
+    rows[0].emplace_back("judged up to");
+    for (const Json& ladder : ladders) {
+        std::vector<std::string> row = {ladder["name"]};
+        for (const std::string& column : columns) {
+            std::string cell;
+            for (const Json& method : ladder["methods"])
+                if (method["text"] == column) cell = climb_in_words(method, ladder);
+            row.push_back(cell);
+        }
+        double last = ladder["rungs"][0]["value"];
+        for (const Json& rung : ladder["rungs"])
+            if (!rung.contains("unjudged")) last = rung["value"];
+        row.push_back(fmt::format("{:g} {}", last, ladder["unit"].get<std::string>()));
+        rows.push_back(std::move(row));
+    }
+    std::vector<std::size_t> widths(rows[0].size(), 0);
+    for (const auto& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    std::string text;
+    for (const auto& row : rows) {
+        std::string line;
+        for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
+        text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+    }
+    return text;
+}
+
+}  // namespace umbra

@@ -1,0 +1,158 @@
+#include "umbra/bench/ladders/ladder_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "umbra/bench/compare/compare.h"
+#include "umbra/core/render/ray.h"
+#include "umbra/core/render/shade.h"
+
+namespace umbra {
+namespace {
+
+constexpr Repeats kOnce{1, 0};
+
+/// What most of the interior errors are; of equals the first. In a true penumbra they are noise, or a penumbra that the
+/// method does not have, whatever side they err to.
+std::string kind_of(const VisibilityError& e) {
+    if (2 * e.interior.penumbra > e.false_shadow.interior + e.false_light.interior) return "penumbra";
+    const std::pair<std::uint64_t, const char*> kinds[] = {
+        {e.acne, "acne"},           {e.false_shadow.interior - e.acne, "false shadow"},
+        {e.leak, "leak"},           {e.detachment, "detachment"},
+        {e.unnamed, "false light"},
+    };
+    const auto* most = std::max_element(std::begin(kinds), std::end(kinds),
+                                        [](const auto& a, const auto& b) { return a.first < b.first; });
+    return most->first > 0 ? most->second : "";
+}
+
+/// The sum with the true S_j, where the ladder is over that.
+std::string wrong_sum(const Ladder& ladder, double value, const RungStage& stage) {
+    return ladder.wrong_sum(value, stage.scene, shade(stage.scene, stage.points, stage.truth.planes));
+}
+
+std::uint64_t count_surface(const PointBatch& points) {
+    return static_cast<std::uint64_t>(
+        std::count_if(points.triangle.begin(), points.triangle.end(), [](TriangleId t) { return t != kNoTriangle; }));
+}
+
+void describe_truth(const RungStage& stage, Rung& rung) {
+    rung.truth          = stage.truth.choice.text();
+    rung.surface_points = count_surface(stage.points);
+    for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
+        const VisibilityPlane& truth = stage.truth.planes[j];
+        const VisibilityError e =
+            visibility_error(stage.points, j, truth, truth, visibility_tolerance(stage.scene.lights[j].kind));
+        rung.lit += e.lit, rung.umbra += e.umbra, rung.penumbra += e.penumbra, rung.on_boundary += e.on_boundary;
+    }
+}
+
+}  // namespace
+
+bool RungOutcome::broken() const {
+    if (!ran()) return false;
+    return service.how == How::exactly ? interior() > 0 : interior_share() > kBreakingShare;
+}
+
+Climb climb(const LadderRun& run, std::size_t method) {
+    Climb c;
+    for (std::size_t r = 0; r < run.rungs.size(); ++r) {
+        if (!run.rungs[r].unjudged.empty()) break;
+        const RungOutcome& o = run.rungs[r].outcomes[method];
+        if (!c.breaks_at && (o.broken() || !o.stopped.empty())) {
+            c.breaks_at = r;
+            if (!o.stopped.empty()) c.why = o.stopped;
+        }
+        // Only what lasts to the last rung is said to be so "from here on".
+        if (!o.silent())
+            c.silent_from.reset();
+        else if (!c.silent_from)
+            c.silent_from = r;
+        if (o.service)
+            c.not_served_from.reset();
+        else if (!c.not_served_from)
+            c.not_served_from = r;
+        if (!o.service && !c.breaks_at) c.why = o.service.why;
+    }
+    return c;
+}
+
+std::unique_ptr<RungStage> set_stage(Scene scene) {
+    SceneFacts facts    = find_facts(scene);
+    Reference reference = default_reference(facts);
+    MethodRun truth{std::move(reference.choice), {}, {}, {}, {}, 0, {}, {}, {}};
+    auto stage =
+        std::make_unique<RungStage>(RungStage{std::move(scene), std::move(facts), PointBatch{}, std::move(truth)});
+    stage->points = primary_points(RayScene(stage->scene), stage->scene, stage->scene.camera, stage->scene.width,
+                                   stage->scene.height);
+    stage->truth  = run_method(stage->truth.choice, stage->scene, stage->facts, stage->points, kOnce);
+    return stage;
+}
+
+RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vector<Explained>* explained,
+                    MethodRun* run) {
+    RungOutcome o;
+    try {
+        MethodRun ran = run_method(method, stage.scene, stage.facts, stage.points, kOnce);
+        o.service     = ran.service;
+        if (!ran.service) return o;
+        VisibilityError sum;  // only what kinds are made of
+        double absolute = 0;
+        for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
+            Explained light          = explain(stage.scene, stage.points, j, ran, stage.truth);
+            const VisibilityError& e = light.error;
+            o.points += e.points, o.undefined += e.undefined;
+            o.false_shadow.interior += e.false_shadow.interior, o.false_shadow.edge += e.false_shadow.edge;
+            o.false_light.interior += e.false_light.interior, o.false_light.edge += e.false_light.edge;
+            sum.false_shadow.interior += e.false_shadow.interior, sum.acne += e.acne;
+            sum.false_light.interior += e.false_light.interior, sum.interior.penumbra += e.interior.penumbra;
+            sum.leak += e.leak, sum.detachment += e.detachment, sum.unnamed += e.unnamed;
+            absolute += e.mae * double(e.points);
+            if (explained != nullptr) explained->push_back(std::move(light));
+        }
+        if (o.points > 0) o.mae = absolute / double(o.points);
+        o.kind = kind_of(sum);
+        if (run != nullptr) *run = std::move(ran);
+    } catch (const std::exception& e) {
+        o         = {};
+        o.service = {How::approximately, "it stopped"};
+        o.stopped = e.what();
+    }
+    return o;
+}
+
+LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
+                       const std::function<void(const std::string&)>& progress) {
+    LadderRun run{&ladder, ladder.wrong_sum ? std::vector<MethodChoice>{} : methods, {}};
+    for (const double value : ladder.rungs) {
+        if (progress) progress(fmt::format("{}: {:g}", ladder.name, value));
+        Rung& rung = run.rungs.emplace_back();
+        rung.value = value;
+        std::unique_ptr<RungStage> set;
+        try {
+            set = set_stage(ladder.scene(value));
+        } catch (const std::exception& e) {
+            rung.unjudged = fmt::format("no truth: {}", e.what());
+            break;
+        }
+        const RungStage& stage = *set;
+        describe_truth(stage, rung);
+        if (double(rung.surface_points) < kLeastPoints * double(run.rungs[0].surface_points)) {
+            rung.unjudged = fmt::format("the eye sees {} points of the scene, and {} on the first rung",
+                                        rung.surface_points, run.rungs[0].surface_points);
+            break;
+        }
+        if (ladder.wrong_sum) {
+            RungOutcome o;
+            o.service = {How::exactly, "the sum itself, with the true visibility"};
+            o.stopped = wrong_sum(ladder, value, stage);
+            o.points  = rung.surface_points;
+            rung.outcomes.push_back(std::move(o));
+        }
+        for (const MethodChoice& method : run.methods) rung.outcomes.push_back(outcome(stage, method));
+    }
+    return run;
+}
+
+}  // namespace umbra

@@ -1,0 +1,87 @@
+// Climbing a ladder: every method on every rung, held against the truth, and the rung at which each one breaks.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/run.h"
+
+namespace umbra {
+
+/// A method that serves a scene approximately breaks where more than this share of the judged points is wrong in the
+/// interior; one that serves it exactly where any is.
+inline constexpr double kBreakingShare = 0.005;
+
+/// A rung is judged where the eye still sees at least this share of the points that it sees on the first rung: below
+/// it, the scene itself has come apart in its float coordinates, or the eye rays have.
+inline constexpr double kLeastPoints = 0.1;
+
+/// A method that leaves open more than this share of the points that it is asked for no longer answers.
+inline constexpr double kMostUndefined = 0.5;
+
+/// What one method made of one rung, over all lights. Counts are points.
+struct RungOutcome {
+    Service service;
+    std::string stopped;  ///< the message of the exception that ended it; empty where it ran to its end
+    std::uint64_t points = 0, undefined = 0;
+    VisibilityError::Kind false_shadow, false_light;
+    double mae = 0;
+    std::string kind;  ///< of most of the interior errors; empty where there are none
+
+    [[nodiscard]] std::uint64_t interior() const { return false_shadow.interior + false_light.interior; }
+    [[nodiscard]] double interior_share() const { return points == 0 ? 0 : double(interior()) / double(points); }
+    [[nodiscard]] bool ran() const { return service && stopped.empty(); }
+    [[nodiscard]] bool broken() const;
+    [[nodiscard]] bool silent() const {
+        return ran() && double(undefined) > kMostUndefined * double(points + undefined);
+    }
+};
+
+/// One rung: the scene's truth, and each method's outcome in the order of LadderRun::methods.
+struct Rung {
+    double value = 0;
+    std::string unjudged;  ///< why no method is judged on it and on those after it; empty where they are
+    std::string truth;     ///< what the methods were held against, as typed
+    std::uint64_t surface_points = 0, lit = 0, umbra = 0, penumbra = 0, on_boundary = 0;
+    std::vector<RungOutcome> outcomes;
+};
+
+struct LadderRun {
+    const Ladder* ladder = nullptr;
+    std::vector<MethodChoice> methods;  ///< empty for ladders over the sum
+    std::vector<Rung> rungs;            ///< up to and including the first that is not judged
+};
+
+/// How one method fared on one ladder. Rungs are indices into LadderRun::rungs.
+struct Climb {
+    std::optional<std::size_t> breaks_at;        ///< the first rung where it ran and is broken, or where it stopped
+    std::optional<std::size_t> silent_from;      ///< the first from which on it leaves most points open
+    std::optional<std::size_t> not_served_from;  ///< the first from which on it says that it does not serve
+    std::string why;                             ///< of not serving, or of having stopped
+};
+[[nodiscard]] Climb climb(const LadderRun& run, std::size_t method);
+
+/// Everything about one rung that the methods share. It stays where it was made: methods point into it.
+struct RungStage {
+    Scene scene;
+    SceneFacts facts;
+    PointBatch points;
+    MethodRun truth;
+};
+/// Facts, points and truth of a scene. Throws what the methods throw.
+[[nodiscard]] std::unique_ptr<RungStage> set_stage(Scene scene);
+
+/// A method on a stage; `explained`, if given, gets each light's errors point by point where the method ran.
+[[nodiscard]] RungOutcome outcome(const RungStage& stage, const MethodChoice& method,
+                                  std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr);
+
+/// Climbs one ladder with each of the methods. `progress` is told what is being done; may be empty.
+[[nodiscard]] LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
+                                     const std::function<void(const std::string&)>& progress = {});
+
+}  // namespace umbra

@@ -1,0 +1,84 @@
+// A floor that is looked at closely, in the middle of a scene that is not: so that what is a millionth of the scene
+// wide still fills a picture, and its inside is more than an edge band.
+#pragma once
+
+#include <algorithm>
+
+#include "umbra/bench/ladders/themes/stage.h"
+
+namespace umbra {
+
+/// Where the lamp of a close view stands, and halfway to it, above the origin, the occluder: what is w wide there casts
+/// a shadow 2 w wide. Along no axis, and all of it exact in float.
+inline constexpr dvec3 kCloseLamp{1, 2, 0.5};
+inline constexpr dvec3 kHalfway = 0.5 * kCloseLamp;
+
+/// A floor of 8 x 8 in y = 0, but around the origin a tile, four times the window wide, and nothing else near: so that
+/// barycentrics are fine there and eye rays, whose tolerance grows with a triangle, meet no other. The camera sees
+/// `window` world units from top to bottom of the picture, from close by, below the occluder.
+inline void add_close_floor(Scene& scene, double window) {
+    const float w = static_cast<float>(std::min(window, 0.375));
+    const float t = 2 * w, n = std::max(t, 0.5f), r = 4;
+    const Mesh floor{{{-t, 0, -t},
+                      {t, 0, -t},
+                      {t, 0, t},
+                      {-t, 0, t},
+                      {-n, 0, -n},
+                      {n, 0, -n},
+                      {n, 0, n},
+                      {-n, 0, n},
+                      {-r, 0, -n},
+                      {n, 0, -r},
+                      {r, 0, n},
+                      {-n, 0, r},
+                      {-r, 0, -r},
+                      {r, 0, -r},
+                      {r, 0, r},
+                      {-r, 0, r}},
+                     {},
+                     {{0, 2, 1},
+                      {0, 3, 2},  // the tile
+                      {12, 5, 9},
+                      {12, 8, 5},
+                      {13, 6, 10},
+                      {13, 9, 6},  // and around it, turning, a strip a
+                      {14, 7, 11},
+                      {14, 10, 7},
+                      {15, 4, 8},
+                      {15, 11, 4}}};  // side
+    add_body(scene, "floor", floor);
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.height     = w;
+    scene.camera.eye        = w * vec3(0.5f, 2, 1.5f);
+    scene.camera.target     = vec3(0);
+}
+
+inline void add_sun(Scene& scene, vec3 direction) {
+    Light& sun    = scene.lights.emplace_back();
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = direction;
+}
+
+inline void add_close_lamp(Scene& scene) { add_point_light(scene, vec3(kCloseLamp)); }
+
+/// Two directions in the plane of an occluder, perpendicular, each 1 long, along no axis.
+inline const dvec3 kAlong  = dvec3(12, 0, 5) / 13.0;
+inline const dvec3 kAcross = dvec3(-5, 0, 12) / 13.0;
+
+/// The quad a, b, c, d, anticlockwise, as two triangles.
+inline Mesh quad(dvec3 a, dvec3 b, dvec3 c, dvec3 d) {
+    return {{vec3(a), vec3(b), vec3(c), vec3(d)}, {}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+/// A body of six quads, closed: from a corner along three edges, which are right-handed.
+inline Mesh parallelepiped(dvec3 corner, dvec3 x, dvec3 y, dvec3 z) {
+    Mesh mesh = make_box(vec3(1));
+    for (std::size_t i = 0; i < 8; ++i) {
+        const dvec3 share = dvec3(mesh.positions[i]) + 0.5;
+        mesh.positions[i] = vec3(corner + share.x * x + share.y * y + share.z * z);
+    }
+    return mesh;
+}
+
+}  // namespace umbra

@@ -1,0 +1,126 @@
+// Ladders over what is thin, and over how much lies behind one another.
+#include <array>
+#include <cmath>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/themes/chance.h"
+#include "umbra/bench/ladders/themes/close_view.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::array kThicknesses = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+
+/// A closed room, 4 wide, with walls of this share of it, the sun outside, a lamp and the eye within.
+Scene thin_walls_scene(double thickness) {
+    Scene scene = empty_stage();
+    Mesh walls  = make_box({4, 3, 4});
+    Mesh within = make_box(vec3(dvec3(4, 3, 4) - 8 * thickness));
+    for (uvec3& t : within.triangles) t = uvec3(t.x, t.z, t.y);
+    for (const uvec3& t : within.triangles) walls.triangles.push_back(t + 8u);
+    walls.positions.insert(walls.positions.end(), within.positions.begin(), within.positions.end());
+    add_body(scene, "walls", walls);
+    add_body(scene, "table", make_box({1, 0.5f, 0.75f}), at({0.25f, -1, -0.5f}));
+    add_sun(scene, {-0.5f, -1, -0.75f});
+    add_point_light(scene, {0.5f, 1, 0.25f});
+    look(scene, {1.5f, 1, 1.5f}, {-0.5f, -0.75f, -0.5f}, 80);
+    return scene;
+}
+
+/// Five closed rods side by side, this thick and as far apart.
+Scene needles_scene(double width) {
+    Scene scene = empty_stage();
+    add_close_floor(scene, 24 * width);
+    for (int i = -2; i <= 2; ++i) {
+        const dvec3 corner = kHalfway - kAlong + ((2 * i - 0.5) * width) * kAcross;
+        add_body(scene, "rod " + std::to_string(i + 3),
+                 parallelepiped(corner, 2.0 * kAlong, {0, width, 0}, width * kAcross));
+    }
+    add_close_lamp(scene);
+    return scene;
+}
+constexpr std::array kWidths = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
+
+constexpr std::array kLayers = {1e0, 1e1, 1e2, 2.55e2, 2.56e2, 2.57e2, 1e3, 1e4};
+
+/// Sheets one over the other, each a little aside, so that every edge of every shadow is apart.
+Scene layers_scene(double count) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(6, 6));
+    Chance chance;
+    Mesh sheets;
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+        const dvec3 middle = dvec3(0, 0.5 + (i + 0.5) / count, 0) + chance.in_box({0.25, 0, 0.25});
+        const double turn  = chance.between(0, 2 * kPi);
+        const dvec3 x      = 0.6 * dvec3(std::cos(turn), 0, std::sin(turn)),
+                    z      = 0.6 * dvec3(-std::sin(turn), 0, std::cos(turn));
+        const Mesh sheet   = quad(middle - x - z, middle - x + z, middle + x + z, middle + x - z);
+        for (const uvec3& t : sheet.triangles) sheets.triangles.push_back(t + 4 * i);
+        sheets.positions.insert(sheets.positions.end(), sheet.positions.begin(), sheet.positions.end());
+    }
+    add_body(scene, "sheets", sheets);
+    add_point_light(scene, {0.25f, 3, 0.5f});
+    look(scene, {0, 3, 4.5f}, {0, 0.2f, 0});
+    return scene;
+}
+
+constexpr std::array kLeaves = {1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4};
+
+/// Triangles that hang anyhow: every edge is a silhouette.
+Scene leaves_scene(double count) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(6, 6));
+    Chance chance;
+    Mesh leaves;
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+        const dvec3 middle = dvec3(0, 1.1, 0) + chance.in_box({1.5, 0.6, 1.5});
+        for (int k = 0; k < 3; ++k) leaves.positions.emplace_back(middle + chance.in_box(dvec3(0.3)));
+        leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    add_body(scene, "leaves", leaves);
+    add_point_light(scene, {0.5f, 4, 1});
+    look(scene, {0, 3, 5}, {0, 0.3f, 0});
+    return scene;
+}
+
+}  // namespace
+
+const Ladder thin_walls_ladder{
+    .name  = "thin_walls",
+    .title = "Thin walls",
+    .about =
+        "A closed room has walls of this thickness, with the sun outside, a lamp and the eye within: no sunlight comes "
+        "in. What keeps surfaces from shadowing themselves lets light through walls.",
+    .unit  = "of the room",
+    .rungs = kThicknesses,
+    .scene = thin_walls_scene};
+
+const Ladder needles_ladder{
+    .name  = "needles",
+    .title = "Needles",
+    .about =
+        "Five rods lie side by side, this thick and as far apart. The picture shows the stripes of their shadow "
+        "alone, however thin.",
+    .unit  = "of their half length",
+    .rungs = kWidths,
+    .scene = needles_scene};
+
+const Ladder depth_complexity_ladder{
+    .name  = "depth_complexity",
+    .title = "Layers over one another",
+    .about =
+        "So many sheets lie one over the other, and as many volumes hold the floor beneath them: counters of eight "
+        "bits overflow at 256.",
+    .unit  = "layers",
+    .rungs = kLayers,
+    .scene = layers_scene};
+
+const Ladder silhouette_edges_ladder{
+    .name  = "silhouette_edges",
+    .title = "Silhouette edges",
+    .about = "So many triangles hang anyhow over a floor, and all their edges are silhouettes.",
+    .unit  = "triangles",
+    .rungs = kLeaves,
+    .scene = leaves_scene};
+
+}  // namespace umbra

@@ -1,0 +1,210 @@
+// Ladders over the eye, and over what exactly aligned or nearly touching things do to rays and volumes.
+#include <array>
+#include <cmath>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/themes/stage.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::array kSheets  = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0};
+constexpr std::array kDownTo0 = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
+constexpr std::array kUp      = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+constexpr std::array kCells   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 96.0, 192.0};
+
+/// The eye under a stack of sheets, which a lamp lights from above: it is in as many volumes as there are sheets.
+Scene eye_in_volumes(double rung) {
+    Scene scene = empty_stage();
+    const int n = int(rung);
+    add_body(scene, "floor", make_plane(12, 12));
+    for (int i = 0; i < n; ++i) {
+        // From 4 to 5 above the floor, each a little smaller and turned a little.
+        const double share = n == 1 ? 0 : double(i) / (n - 1);
+        mat4 place         = at({0.1f, float(4 + share), 0.2f});
+        place              = glm::rotate(place, float(0.6 * share), vec3(0, 1, 0));
+        add_body(scene, "sheet " + std::to_string(i + 1), make_plane(float(3 - share), float(3 - share)), place);
+    }
+    add_point_light(scene, {0.3f, 9, 0.4f});
+    look(scene, {0.4f, 3.1f, 1.2f}, {0.1f, 0, 0.1f}, 110);
+    return scene;
+}
+
+/// The eye so far from the side of a box's shadow volume, on its outer side; on the last rung in it.
+Scene eye_near_volume_side(double rung) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(8, 8));
+    add_body(scene, "box", make_box(vec3(2)), at({-1, 4, 0}));
+    Light sun;
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = {0, -1, 0};
+    scene.lights.push_back(sun);
+    look(scene, {float(8 * rung), 2, 3.5f}, {0.25f, 0, -0.25f}, 80);
+    return scene;
+}
+
+/// The camera far away, its angle narrowed so that the picture stays.
+Scene far_eye(double rung) {
+    Scene scene        = harmless_stage();
+    const dvec3 away   = glm::normalize(dvec3(scene.camera.eye) - dvec3(scene.camera.target));
+    const double reach = glm::length(dvec3(scene.camera.eye) - dvec3(scene.camera.target));
+    const double tan   = std::tan(glm::radians(double(scene.camera.fov_y)) / 2);
+    scene.camera.eye   = vec3(dvec3(scene.camera.target) + 8 * rung * away);
+    scene.camera.fov_y = float(2 * glm::degrees(std::atan(tan * reach / (8 * rung))));
+    return scene;
+}
+
+/// Boxes at distances 1, 4, 16 ... from the eye, each as large as it is far, up to `rung`.
+Scene near_to_far(double rung) {
+    Scene scene     = empty_stage();
+    const auto side = float(rung);
+    // The floor begins behind the eye.
+    add_object(scene, "floor", {{-side, 0, 1}, {side, 0, 1}, {side, 0, -2 * side}, {-side, 0, -2 * side}}, {},
+               {{0, 1, 2}, {0, 2, 3}}, 0);
+    int i = 0;
+    for (double distance = 1.5; distance <= rung; distance *= 4, ++i) {
+        const auto d = float(distance);
+        add_body(scene, "box " + std::to_string(i + 1), make_box({0.2f * d, 0.4f * d, 0.2f * d}),
+                 at({(i % 2 ? 0.35f : -0.35f) * d, 0.2f * d, -d}));
+    }
+    Light sun;
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = {0.8f, -1, 0.3f};
+    scene.lights.push_back(sun);
+    look(scene, {0, 0.8f, 0.5f}, {0, 0, -1.5f}, 60);
+    return scene;
+}
+
+/// A wall that floats so far above the floor, seen from so close that the gap is some pixels high at every rung; the
+/// sun sends its light through.
+Scene gap(double rung) {
+    Scene scene       = empty_stage();
+    const dvec3 foot  = {3.3, 1.7, 2.1};  // nothing is at 0, where floats are finer
+    const double wide = 8 * (rung > 0 ? rung : 1e-3);
+    const auto place  = [&](double x, double y, double z) { return vec3(foot + dvec3(x, y, z)); };
+    add_object(scene, "floor", {place(-4, 0, 4), place(4, 0, 4), place(4, 0, -4), place(-4, 0, -4)}, {},
+               {{0, 1, 2}, {0, 2, 3}}, 0);
+    const double low = 8 * rung;
+    Mesh wall        = make_box(vec3(1));
+    for (vec3& p : wall.positions) p = place(6 * double(p.x), low + 1 + 2 * double(p.y), -0.25 + 0.5 * double(p.z));
+    add_body(scene, "wall", wall);
+    Light sun;
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = {0.2f, -0.55f, 1};
+    scene.lights.push_back(sun);
+    scene.camera = {.projection = Projection::orthographic,
+                    .eye        = vec3(foot + dvec3(0.3, 1.5, 2.5)),
+                    .target     = vec3(foot + dvec3(0.3, 0, 1.2 * wide)),
+                    .height     = float(6 * wide)};
+    return scene;
+}
+
+/// A closed sheet of cells whose corners and edges lie over the points of the picture, but for rounding: whoever
+/// takes a ray between two triangles that share an edge lets light through.
+Scene aligned_lattice(double rung) {
+    Scene scene = empty_stage();
+    scene.width = 96, scene.height = 96;
+    add_body(scene, "floor", make_plane(12, 12));
+    Mesh sheet = make_plane(9.6f, 9.6f, int(rung));
+    add_body(scene, "sheet", sheet, at({0.05f, 2, 0.05f}));
+    Light sun;
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = {0, -1, 0};
+    scene.lights.push_back(sun);
+    // From under the sheet, so that the picture's pixels are 0.1 wide, the cells a multiple or a half of that.
+    scene.camera = {.projection = Projection::orthographic,
+                    .eye        = {0, 1, 0},
+                    .target     = {0, 0, 0},
+                    .up         = {0, 0, -1},
+                    .height     = 9.6f};
+    return scene;
+}
+
+/// The same for a lamp at twice the sheet's height, under which the sheet's shadow is twice as large.
+Scene aligned_lamp(double rung) {
+    Scene scene = aligned_lattice(1);
+    Scene made  = empty_stage();
+    made.width = 96, made.height = 96;
+    made.camera = scene.camera;
+    add_body(made, "floor", make_plane(12, 12));
+    add_body(made, "sheet", make_plane(4.8f, 4.8f, int(rung)), at({0.025f, 2, 0.025f}));
+    add_point_light(made, {0, 4, 0});
+    return made;
+}
+
+}  // namespace
+
+const Ladder eye_in_volumes_ladder{
+    .name  = "eye_in_volumes",
+    .title = "Eye inside shadow volumes",
+    .about =
+        "The eye stands in the shadow of ever more sheets. A count that starts at the eye must start with all of "
+        "them, and hardware counters overflow at 255.",
+    .unit  = "sheets",
+    .rungs = kSheets,
+    .scene = eye_in_volumes};
+
+const Ladder eye_near_volume_side_ladder{
+    .name  = "eye_near_volume_side",
+    .title = "Eye close to the side of a shadow volume",
+    .about =
+        "The eye comes close to the side of a shadow volume, and on the last rung lies in its plane: it sees that "
+        "side edge-on, and may count it on one side of a pixel and not on the other.",
+    .unit  = "scene sizes",
+    .rungs = kDownTo0,
+    .scene = eye_near_volume_side};
+
+const Ladder far_eye_ladder{
+    .name  = "far_eye",
+    .title = "Distant eye",
+    .about =
+        "The camera moves away while its angle narrows, so that the picture stays: directions of neighbouring "
+        "pixels differ by ever fewer float steps.",
+    .unit  = "scene sizes",
+    .rungs = kUp,
+    .scene = far_eye};
+
+const Ladder near_to_far_ladder{
+    .name  = "near_to_far",
+    .title = "Near to far",
+    .about =
+        "Boxes as large as they are far away, on one floor, from in front of the eye to the horizon: one light "
+        "serves shadows of very different size.",
+    .unit  = "farthest to nearest",
+    .rungs = kUp,
+    .scene = near_to_far};
+
+const Ladder gap_ladder{
+    .name  = "gap",
+    .title = "Gap between occluder and receiver",
+    .about =
+        "A wall comes down to the floor while the picture is drawn closer, so that the light through the gap stays "
+        "visible; on the last rung it stands on the floor. Bias closes or opens gaps.",
+    .unit  = "scene sizes",
+    .rungs = kDownTo0,
+    .scene = gap};
+
+const Ladder aligned_lattice_ladder{
+    .name  = "aligned_lattice",
+    .title = "Sun exactly above edges and vertices",
+    .about =
+        "A sheet of ever more cells whose edges and corners lie above the points of the picture, but for rounding: "
+        "rays go exactly through them or miss them by the last digit, which is where ray tracers are reported to "
+        "leak.",
+    .unit  = "cells a side",
+    .rungs = kCells,
+    .scene = aligned_lattice};
+
+const Ladder aligned_lamp_ladder{
+    .name  = "aligned_lamp",
+    .title = "Lamp exactly above edges and vertices",
+    .about = "The same sheet under a lamp: rays slant, and meet edges and corners at every angle.",
+    .unit  = "cells a side",
+    .rungs = kCells,
+    .scene = aligned_lamp};
+
+}  // namespace umbra

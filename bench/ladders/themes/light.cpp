@@ -1,0 +1,248 @@
+// Ladders over where lamps stand: close to what they light, close to what blocks them, far away, grazing, and many.
+#include <array>
+#include <cmath>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/themes/stage.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::array kDown     = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
+constexpr std::array kDownTo0  = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
+constexpr std::array kFineDown = {1e-1, 3.2e-2, 1e-2, 3.2e-3, 1e-3, 3.2e-4, 1e-4, 3.2e-5,
+                                  1e-5, 3.2e-6, 1e-6, 3.2e-7, 1e-7, 3.2e-8, 1e-8};
+constexpr std::array kUp       = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12};
+constexpr std::array kLamps    = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
+
+/// A floor of cells with a post on its left half, for light that comes along x: the right half stays lit.
+Scene streak_stage() {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(8, 8, 8));
+    add_body(scene, "post", make_box({0.7f, 2.1f, 2.3f}), at({-2.9f, 1.05f, -1.6f}));
+    look(scene, {0.3f, 9, 6.5f}, {0.2f, 0, 0.1f}, 48);
+    return scene;
+}
+
+Scene grazing_sun(double rung) {
+    Scene scene = streak_stage();
+    Light sun;
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = {1, -float(rung), 0.03f};
+    scene.lights.push_back(sun);
+    return scene;
+}
+
+/// Turned about an axis that is none of the coordinates', so that every vertex is rounded: neighbouring cells of the
+/// floor are then not quite in one plane.
+Scene grazing_tilted(double rung) {
+    Scene scene      = streak_stage();
+    const dmat4 turn = glm::rotate(dmat4(1), 0.7, glm::normalize(dvec3(0.4, 1, -0.3)));
+    const auto move  = [&](vec3& p) { p = vec3(turn * dvec4(dvec3(p), 1)); };
+    for (vec3& p : scene.positions) move(p);
+    for (vec3& n : scene.normals) move(n);
+    move(scene.camera.eye), move(scene.camera.target), move(scene.camera.up);
+    Light& lamp   = add_point_light(scene, vec3(0));
+    lamp.position = vec3(turn * dvec4(-40, 40 * rung, 0.3, 1));
+    return scene;
+}
+
+Scene lamp_near_receiver(double rung) {
+    Scene scene = streak_stage();
+    add_point_light(scene, {-3.71f, float(8 * rung), -0.93f});
+    return scene;
+}
+
+/// A lid so close beneath the lamp, and just so far under it, that half of the floor is dark whatever the distance.
+Scene lamp_near_occluder(double rung) {
+    Scene scene      = empty_stage();
+    const vec3 lamp  = {0.31f, 6.13f, 0.17f};
+    const double gap = 6 * rung, low = double(lamp.y) - gap;
+    add_body(scene, "floor", make_plane(8, 8));
+    add_object(scene, "lid",
+               {vec3(dvec3(-3.1, low, -3.3)), vec3(dvec3(double(lamp.x) + 0.1 * gap, low, -3.3)),
+                vec3(dvec3(double(lamp.x) + 0.1 * gap, low, 3.2)), vec3(dvec3(-3.1, low, 3.2))},
+               {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+    add_point_light(scene, lamp);
+    look(scene, {0.3f, 4.5f, 9}, {0.2f, 0, 0.1f}, 42);
+    return scene;
+}
+
+/// One lamp within a closed box, which lets nothing out, and one beside it that lights the room.
+Scene lamp_in_box(double rung) {
+    Scene scene       = empty_stage();
+    const dvec3 place = {0.37, 3.11, 0.23};
+    const dvec3 half  = 10 * rung * dvec3(1, 0.8, 0.9);
+    add_body(scene, "floor", make_plane(8, 8));
+    Mesh box = make_box(vec3(2));
+    for (vec3& p : box.positions) p = vec3(place + half * dvec3(p));
+    add_body(scene, "box", box);
+    add_point_light(scene, vec3(place + half * dvec3(0.3, -0.2, 0.1)));
+    add_point_light(scene, {2.6f, 7.3f, -1.9f});
+    look(scene, {-1, 8, 7}, {0, 0.5f, 0}, 38);
+    return scene;
+}
+
+/// The lamp stands so far above the plane of the box's lid and of the step's; on the last rung it lies in it.
+Scene lamp_near_face_plane(double rung) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(9, 9));
+    add_body(scene, "wall", make_box({0.3f, 5.3f, 6.1f}), at({-3.9f, 2.65f, 0}));
+    const float top = 2.3f;
+    add_object(scene, "box",
+               {{-1.1f, 0.3f, -1.3f},
+                {0.9f, 0.3f, -1.3f},
+                {0.9f, 0.3f, 0.7f},
+                {-1.1f, 0.3f, 0.7f},
+                {-1.1f, top, -1.3f},
+                {0.9f, top, -1.3f},
+                {0.9f, top, 0.7f},
+                {-1.1f, top, 0.7f}},
+               {},
+               {{0, 1, 2},
+                {0, 2, 3},
+                {4, 6, 5},
+                {4, 7, 6},
+                {0, 4, 5},
+                {0, 5, 1},
+                {1, 5, 6},
+                {1, 6, 2},
+                {2, 6, 7},
+                {2, 7, 3},
+                {3, 7, 4},
+                {3, 4, 0}},
+               0);
+    add_point_light(scene, {3.7f, float(double(top) + 8 * rung), 0.21f});
+    look(scene, {6.5f, 6.2f, 7.1f}, {-1.1f, 1.3f, 0}, 45);
+    return scene;
+}
+
+Scene far_lamp(double rung) {
+    Scene scene              = harmless_stage();
+    scene.lights[0].position = vec3(8 * rung * glm::normalize(dvec3(4, 6, 1.5)));
+    return scene;
+}
+
+Scene rectangle_lamp(double rung) {
+    Scene scene     = harmless_stage();
+    Light& light    = scene.lights[0];
+    light.kind      = LightKind::rectangle;
+    light.edge_u    = {float(rung), 0, 0};
+    light.edge_v    = {0, 0, float(rung)};
+    light.direction = {0, -1, 0};
+    return scene;
+}
+
+constexpr std::array kLampShrinks = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+constexpr std::array kLampGrows   = {1e0, 3.2, 1e1, 3.2e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+
+Scene many_lamps(double rung) {
+    Scene scene  = harmless_stage();
+    scene.width  = 64;
+    scene.height = 48;
+    scene.lights.clear();
+    for (int i = 0; i < int(rung); ++i) {
+        // A spiral that leaves no two at the same place. [Helmut Vogel, A Better Way to Construct the Sunflower Head,
+        // 1979]
+        const double angle = 2.399963229728653 * i, radius = 5 * std::sqrt((i + 0.5) / rung);
+        add_point_light(scene, vec3(dvec3(radius * std::cos(angle), 6 + i % 3, radius * std::sin(angle))));
+    }
+    return scene;
+}
+
+}  // namespace
+
+const Ladder grazing_sun_ladder{
+    .name  = "grazing_sun",
+    .title = "Grazing light",
+    .about =
+        "A sun that sinks to the horizon of a floor, beside a post. The rays run along the floor that they start "
+        "on, and the shadow of the post's top moves away without end.",
+    .unit  = "radians above the floor",
+    .rungs = kFineDown,
+    .scene = grazing_sun};
+
+const Ladder grazing_tilted_ladder{
+    .name  = "grazing_tilted",
+    .title = "Grazing light over a tilted floor",
+    .about =
+        "A lamp that sinks to the plane of a floor of cells which floats have rounded one by one: in the end the "
+        "light grazes the unevenness that rounding left, and cells shade their neighbours.",
+    .unit  = "radians above the floor",
+    .rungs = kDown,
+    .scene = grazing_tilted};
+
+const Ladder lamp_near_receiver_ladder{
+    .name  = "lamp_near_receiver",
+    .title = "Lamp close to the receiver",
+    .about =
+        "A lamp sinks onto the floor that it lights: from close by at one end of the picture, grazing at the other.",
+    .unit  = "scene sizes above the floor",
+    .rungs = kDown,
+    .scene = lamp_near_receiver};
+
+const Ladder lamp_near_occluder_ladder{
+    .name  = "lamp_near_occluder",
+    .title = "Lamp close to an occluder",
+    .about =
+        "A lid comes close to the lamp above it, and its rim with it, so that half of the floor stays dark. Rays "
+        "that end before the lamp, and depths that start behind it, miss the lid.",
+    .unit  = "of the lamp's height",
+    .rungs = kFineDown,
+    .scene = lamp_near_occluder};
+
+const Ladder lamp_in_box_ladder{
+    .name  = "lamp_in_box",
+    .title = "Lamp inside a closed occluder",
+    .about =
+        "A closed box shrinks around the lamp within it. Nothing of that lamp may reach the floor; a second lamp "
+        "beside it shows what is lit.",
+    .unit  = "scene sizes",
+    .rungs = kDown,
+    .scene = lamp_in_box};
+
+const Ladder lamp_near_face_plane_ladder{
+    .name  = "lamp_near_face_plane",
+    .title = "Lamp almost in the plane of a face",
+    .about =
+        "A lamp sinks to the plane of a box's lid, and on the last rung lies in it: faces turn from seen to unseen, "
+        "silhouettes jump, and volumes become flat.",
+    .unit  = "scene sizes above the plane",
+    .rungs = kDownTo0,
+    .scene = lamp_near_face_plane};
+
+const Ladder far_lamp_ladder{
+    .name  = "far_lamp",
+    .title = "Distant lamp",
+    .about = "A point light moves away until it is a sun in all but name: depths lose the scene in the distance.",
+    .unit  = "scene sizes",
+    .rungs = kUp,
+    .scene = far_lamp};
+
+const Ladder shrinking_lamp_ladder{
+    .name  = "shrinking_lamp",
+    .title = "Area light that shrinks to a point",
+    .about = "A square lamp shrinks until its penumbra is thinner than any pixel: it must end as the point light does.",
+    .unit  = "side of the lamp, of 8 of the floor",
+    .rungs = kLampShrinks,
+    .scene = rectangle_lamp};
+
+const Ladder growing_lamp_ladder{
+    .name  = "growing_lamp",
+    .title = "Area light that becomes huge",
+    .about =
+        "A square lamp grows far beyond the scene: the umbra vanishes, and most of the lamp is seen at grazing "
+        "angles.",
+    .unit  = "side of the lamp, of 8 of the floor",
+    .rungs = kLampGrows,
+    .scene = rectangle_lamp};
+
+const Ladder many_lamps_ladder{.name  = "many_lamps",
+                               .title = "Number of lamps",
+                               .about = "Ever more lamps in a spiral above the scene, each with shadows of its own.",
+                               .unit  = "lamps",
+                               .rungs = kLamps,
+                               .scene = many_lamps};
+
+}  // namespace umbra

@@ -1,0 +1,69 @@
+// Ladders over where a scene lies and how large it is.
+#include <array>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/themes/stage.h"
+
+namespace umbra {
+namespace {
+
+/// Moves every position, lights and camera included, by exact arithmetic rounded once.
+template <class Map>
+Scene mapped(Scene scene, const Map& map) {
+    const auto move = [&](vec3& p) { p = vec3(map(dvec3(p))); };
+    for (vec3& p : scene.positions) move(p);
+    for (Light& light : scene.lights) move(light.position);
+    move(scene.camera.eye);
+    move(scene.camera.target);
+    return scene;
+}
+
+constexpr std::array kDistances = {1e0,   3.2e0, 1e1,   3.2e1, 1e2,   3.2e2, 1e3,   3.2e3, 1e4,
+                                   3.2e4, 1e5,   3.2e5, 1e6,   3.2e6, 1e7,   3.2e7, 1e8};
+
+Scene far_scene(double rung) {
+    // A direction that is along no axis and in no plane of two.
+    const dvec3 offset = 8 * rung * dvec3(0.75, 0.25, -0.6);
+    return mapped(harmless_stage(), [&](dvec3 p) { return p + offset; });
+}
+
+constexpr std::array kSmaller = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+constexpr std::array kLarger  = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12};
+
+Scene scaled_scene(double rung) {
+    return mapped(harmless_stage(), [&](dvec3 p) { return rung * p; });
+}
+
+}  // namespace
+
+const Ladder far_from_origin_ladder{
+    .name  = "far_from_origin",
+    .title = "Distance from the origin",
+    .about =
+        "The whole scene moves away from the origin, lights and camera with it. Float coordinates there are coarse: "
+        "the shape itself is rounded, and differences of coordinates lose their digits.",
+    .unit  = "scene sizes",
+    .rungs = kDistances,
+    .scene = far_scene};
+
+const Ladder tiny_scene_ladder{
+    .name  = "tiny_scene",
+    .title = "Tiny scene",
+    .about =
+        "The whole scene shrinks, lights and camera with it. Constants in world units become large beside it, and "
+        "squares and products of its lengths underflow in floats.",
+    .unit  = "",
+    .rungs = kSmaller,
+    .scene = scaled_scene};
+
+const Ladder huge_scene_ladder{
+    .name  = "huge_scene",
+    .title = "Huge scene",
+    .about =
+        "The whole scene grows, lights and camera with it. Constants in world units become small beside it, and "
+        "products of its lengths overflow in floats.",
+    .unit  = "",
+    .rungs = kLarger,
+    .scene = scaled_scene};
+
+}  // namespace umbra

@@ -1,0 +1,158 @@
+// Ladders over bad triangles: slivers, in the occluder, in the receiver and seen edge-on by the light, and triangles
+// without area.
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/themes/chance.h"
+#include "umbra/bench/ladders/themes/close_view.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::array kAspects = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+constexpr int kStrips         = 4;
+
+/// Lines along z, so long, one at each coordinate x; from each to the next a strip of two triangles. In y = height.
+Mesh strips(const std::vector<double>& x, double length, double height) {
+    Mesh mesh;
+    for (const double from : x) {
+        mesh.positions.emplace_back(from, height, 0.5 * length);
+        mesh.positions.emplace_back(from, height, -0.5 * length);
+    }
+    for (unsigned k = 0; k + 1 < x.size(); ++k) {
+        mesh.triangles.push_back({2 * k, 2 * k + 2, 2 * k + 3});
+        mesh.triangles.push_back({2 * k, 2 * k + 3, 2 * k + 1});
+    }
+    return mesh;
+}
+
+/// The last strips of a sheet that ends at x = 0 are slivers. The lamp stands straight above, where floats are fine
+/// enough to tell them apart.
+Scene sliver_occluder_scene(double aspect) {
+    Scene scene = empty_stage();
+    add_close_floor(scene, 4 * kStrips / aspect);
+    std::vector<double> x = {-1};
+    for (int k = -kStrips; k <= 0; ++k) x.push_back(k / aspect);
+    add_body(scene, "sheet", strips(x, 1, 1));
+    add_point_light(scene, {0, 2, 0});
+    return scene;
+}
+
+/// The floor is cut into slivers where the edge of a shadow runs across it.
+Scene sliver_receiver_scene(double aspect) {
+    Scene scene = empty_stage();
+    add_close_floor(scene, 4 * kStrips / aspect);
+    scene.objects.clear(), scene.positions.clear(), scene.normals.clear();
+    scene.triangles.clear(), scene.triangle_object.clear();
+    std::vector<double> x = {-2};
+    for (int k = -2 * kStrips; k <= 2 * kStrips; ++k) x.push_back(k / aspect);
+    x.push_back(2);
+    add_body(scene, "floor", strips(x, 4, 0));
+    const dvec3 middle{0, 1, 0};
+    add_body(scene, "sheet",
+             quad(middle - kAlong, middle + kAlong, middle + kAlong + kAcross, middle - kAlong + kAcross));
+    add_point_light(scene, {0, 2, 0});
+    return scene;
+}
+
+constexpr std::array kAngles = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
+
+/// Triangles with sides as 8 : 7 : 1 that the sun sees almost edge-on, all turned about its direction.
+Scene edge_on_scene(double angle) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(8, 8));
+    const dvec3 sun = glm::normalize(dvec3(-0.5, -1, -0.25));
+    const dvec3 u = glm::normalize(glm::cross(sun, dvec3(0, 0, 1))), v = glm::cross(u, sun);
+    Chance chance;
+    Mesh leaves;
+    for (unsigned i = 0; i < 2000; ++i) {
+        const double turn     = chance.between(0, 2 * kPi);
+        const dvec3 side      = std::cos(turn) * u + std::sin(turn) * v;
+        const dvec3 long_side = std::cos(angle) * sun + std::sin(angle) * (std::cos(turn) * v - std::sin(turn) * u);
+        const dvec3 corner    = dvec3(10, 20, 5) + chance.in_box({14, 18, 9});
+        leaves.positions.emplace_back(corner);
+        leaves.positions.emplace_back(corner + 0.8 * long_side);
+        leaves.positions.emplace_back(corner + 0.7 * long_side + 0.1 * side);
+        leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+    }
+    add_body(scene, "leaves", leaves);
+    add_sun(scene, vec3(sun));
+    look(scene, {1, 6, 8}, {0, 0, 0});
+    return scene;
+}
+
+constexpr std::array kCounts = {0.0, 1e0, 1e1, 1e2, 1e3, 1e4};
+
+/// On, beside and above a ball: points, repeated corners and corners on one line (multiples of 1/8, so exactly).
+Scene zero_area_scene(double count) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(4, 4));
+    Mesh ball = transformed(make_sphere(0.5f, 32, 16), at({0, 1, 0}));
+    ball.normals.clear();
+    Chance chance;
+    const auto on_grid = [&] {  // multiples of 1/8
+        const vec3 eighths(chance.in_box(dvec3(16)));
+        return glm::round(eighths) / 8.0f;
+    };
+    for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
+        const uvec3 good = ball.triangles[chance.below(900)];
+        const auto next  = static_cast<unsigned>(ball.positions.size());
+        if (i % 3 == 0) ball.triangles.push_back({good.x, good.y, good.x});
+        if (i % 3 == 1) ball.triangles.push_back({good.z, good.z, good.z});
+        if (i % 3 == 2) {
+            const vec3 from = vec3(0, 2, 0) + 0.5f * on_grid(), step = 0.5f * on_grid();
+            for (const float k : {0.0f, 0.5f, 1.0f}) ball.positions.push_back(from + k * step);
+            ball.triangles.push_back({next, next + 1, next + 2});
+        }
+    }
+    add_body(scene, "ball", ball);
+    add_point_light(scene, {0.5f, 3, 0.25f});
+    look(scene, {1, 3, 3.5f}, {0, 0.4f, 0});
+    return scene;
+}
+
+}  // namespace
+
+const Ladder sliver_occluder_ladder{
+    .name  = "sliver_occluder",
+    .title = "Slivers in the occluder",
+    .about =
+        "The edge of a sheet is made of triangles so many times as long as wide. The picture shows the end of "
+        "their shadow alone; it is the shadow of the sheet in one piece.",
+    .unit  = "length to width",
+    .rungs = kAspects,
+    .scene = sliver_occluder_scene};
+
+const Ladder sliver_receiver_ladder{
+    .name  = "sliver_receiver",
+    .title = "Slivers in the receiver",
+    .about =
+        "The floor is made of triangles so many times as long as wide where the edge of a shadow runs across it: "
+        "barycentrics, and normals from short sides, lose their digits.",
+    .unit  = "length to width",
+    .rungs = kAspects,
+    .scene = sliver_receiver_scene};
+
+const Ladder edge_on_slivers_ladder{
+    .name  = "edge_on_slivers",
+    .title = "Skinny triangles, almost edge-on to the light",
+    .about =
+        "Two thousand triangles with sides as 8 : 7 : 1 make this angle with the sun's direction, in the end but "
+        "for rounding none. Users of ray tracers report hits far from such triangles: shadows that are not there.",
+    .unit  = "radians",
+    .rungs = kAngles,
+    .scene = edge_on_scene};
+
+const Ladder zero_area_ladder{
+    .name  = "zero_area",
+    .title = "Triangles without area",
+    .about =
+        "So many points, repeated corners and corners on a line lie among the triangles of a ball and around it. "
+        "They are no surface and change nothing.",
+    .unit  = "triangles",
+    .rungs = kCounts,
+    .scene = zero_area_scene};
+
+}  // namespace umbra

@@ -1,0 +1,127 @@
+// Ladders over surfaces that coincide, touch and pass through each other.
+#include <array>
+#include <cmath>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/themes/chance.h"
+#include "umbra/bench/ladders/themes/close_view.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::array kCounts = {1e0, 2e0, 5e0, 1e1, 2e1, 5e1, 1e2};
+
+/// Every triangle of a mesh so many times, each copy with corners of its own and every second one turned over.
+Mesh repeated(const Mesh& mesh, double count) {
+    Mesh all;
+    for (int copy = 0; copy < count; ++copy) {
+        const auto first = static_cast<unsigned>(all.positions.size());
+        for (const uvec3& t : mesh.triangles)
+            all.triangles.push_back(first + (copy % 2 == 0 ? t : uvec3(t.x, t.z, t.y)));
+        all.positions.insert(all.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    }
+    return all;
+}
+
+/// A tilted floor with a tilted box over it, every face so many times.
+Scene duplicate_scene(double count) {
+    Scene scene       = empty_stage();
+    const mat4 tilted = glm::rotate(mat4(1), 0.3f, {0.8f, 0, 0.6f});
+    add_body(scene, "floor", repeated(transformed(make_plane(4, 4), tilted), count));
+    add_body(scene, "box", repeated(transformed(make_box(vec3(1)), tilted * at({0.2f, 1, 0})), count));
+    add_point_light(scene, {0.5f, 4, 1});
+    look(scene, {2, 3, 4}, {0, 0.3f, 0});
+    return scene;
+}
+
+constexpr std::array kGaps = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
+
+/// Two solids whose facing sides the lamp's rays run along: light that falls between them meets the floor in a stripe.
+Scene touching_scene(double gap) {
+    Scene scene = empty_stage();
+    add_close_floor(scene, gap > 0 ? 8 * gap : 1e-3);
+    const dvec3 away = 0.25 * kCloseLamp, near = kHalfway - 0.5 * gap * kAcross, far = kHalfway + 0.5 * gap * kAcross;
+    add_body(scene, "this side", parallelepiped(near - kAlong - kAcross, 2.0 * kAlong, away, kAcross));
+    add_body(scene, "that side", parallelepiped(far - kAlong, 2.0 * kAlong, away, kAcross));
+    add_close_lamp(scene);
+    return scene;
+}
+
+constexpr std::array kHeights = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
+
+/// A slab is sunk into a tilted floor and stands out of it by so much.
+Scene sunken_scene(double height) {
+    Scene scene   = empty_stage();
+    const dvec3 x = glm::normalize(dvec3(1, 0.3, -0.2)), n = glm::normalize(glm::cross(dvec3(-0.1, -0.2, 1), x)),
+                z = glm::cross(x, n);
+    add_body(scene, "floor", quad(-2.0 * x - 2.0 * z, -2.0 * x + 2.0 * z, 2.0 * x + 2.0 * z, 2.0 * x - 2.0 * z));
+    const dvec3 u = 0.8 * x + 0.6 * z, v = -0.6 * x + 0.8 * z;
+    add_body(scene, "slab", parallelepiped((height - 0.2) * n - 0.5 * (u + v), u, 0.2 * n, v));
+    add_body(scene, "post", make_cylinder(0.15f, 0.8f, 12), at({0.9f, 0.7f, 0.3f}));
+    add_point_light(scene, {1.5f, 3, 1});
+    look(scene, {1.5f, 2.5f, 3}, {0.2f, 0, 0});
+    return scene;
+}
+
+constexpr std::array kSolids = {5e0, 1e1, 2e1, 5e1, 1e2, 2e2, 5e2, 1e3};
+
+/// Boxes that stand anyhow in one place, through each other and the floor.
+Scene interpenetrating_scene(double count) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(4, 4));
+    Chance chance;
+    for (int i = 0; i < count; ++i) {
+        const vec3 axis   = glm::normalize(vec3(chance.in_box(dvec3(1))));
+        const vec3 place  = vec3(0, 0.4f, 0) + vec3(chance.in_box({0.8, 0.5, 0.8}));
+        const vec3 size   = vec3(0.6f) + vec3(chance.in_box(dvec3(0.4)));
+        const mat4 turned = glm::rotate(at(place), static_cast<float>(chance.between(0, 3)), axis);
+        add_body(scene, "box " + std::to_string(i + 1), make_box(size), turned);
+    }
+    add_point_light(scene, {-1.5f, 4, 2});
+    look(scene, {0.5f, 3.5f, 4}, {0, 0.3f, 0});
+    return scene;
+}
+
+}  // namespace
+
+const Ladder duplicate_faces_ladder{
+    .name  = "duplicate_faces",
+    .title = "Coplanar duplicates",
+    .about =
+        "Every triangle of a tilted floor and of a box is there so many times, bit-equal, turned either way. Nothing "
+        "may change: a surface does not shadow its own twin.",
+    .unit  = "copies",
+    .rungs = kCounts,
+    .scene = duplicate_scene};
+
+const Ladder touching_solids_ladder{
+    .name  = "touching_solids",
+    .title = "Gap between solids",
+    .about =
+        "Two solids stand so far apart, in the end they share a face. The light runs along their facing sides and "
+        "through the gap: a stripe on the floor, which is all the picture shows.",
+    .unit  = "of their length",
+    .rungs = kGaps,
+    .scene = touching_scene};
+
+const Ladder sunken_slab_ladder{
+    .name  = "sunken_slab",
+    .title = "A slab that hardly stands out of the floor",
+    .about =
+        "A slab is sunk into a tilted floor but for this height. The floor passes so close beneath its upper side "
+        "and must not shadow it.",
+    .unit  = "of its length",
+    .rungs = kHeights,
+    .scene = sunken_scene};
+
+const Ladder interpenetrating_solids_ladder{
+    .name  = "interpenetrating_solids",
+    .title = "Solids through each other",
+    .about =
+        "So many boxes stand in one place, through each other: at each crease the surfaces come as close as pixels "
+        "tell, with no edge in any mesh.",
+    .unit  = "boxes",
+    .rungs = kSolids,
+    .scene = interpenetrating_scene};
+
+}  // namespace umbra

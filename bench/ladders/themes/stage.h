@@ -1,0 +1,53 @@
+// What the scenes of the ladders are put together from: bodies, a point light, a camera that sees the floor.
+#pragma once
+
+#include <glm/gtc/matrix_transform.hpp>
+#include <string>
+
+#include "umbra/core/scene/primitives.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+/// An empty scene with one grey material and a picture of 128 x 96: large enough for an interior beside the edge band.
+inline Scene empty_stage() {
+    Scene scene;
+    scene.materials.push_back({.name = "grey"});
+    scene.width  = 128;
+    scene.height = 96;
+    return scene;
+}
+
+inline void add_body(Scene& scene, const std::string& name, const Mesh& mesh, const mat4& placed = mat4(1)) {
+    const Mesh moved = transformed(mesh, placed);
+    add_object(scene, name, moved.positions, moved.normals, moved.triangles, 0);
+}
+inline mat4 at(vec3 place) { return glm::translate(mat4(1), place); }
+
+inline Light& add_point_light(Scene& scene, vec3 position) {
+    Light light;
+    light.name     = scene.lights.empty() ? "lamp" : "lamp_" + std::to_string(scene.lights.size() + 1);
+    light.position = position;
+    return scene.lights.emplace_back(light);
+}
+
+inline void look(Scene& scene, vec3 eye, vec3 target, float fov_y = 45) {
+    scene.camera.eye    = eye;
+    scene.camera.target = target;
+    scene.camera.fov_y  = fov_y;
+}
+
+/// A floor of 8 x 8, on it a box of 2 x 2 x 2 and above it a tetrahedron in the air, one lamp; all coordinates are
+/// multiples of 1/2, so that the shape survives rough rounding.
+inline Scene harmless_stage() {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(8, 8));
+    add_body(scene, "box", make_box(vec3(2)), at({-1, 1, 0}));
+    add_object(scene, "tetrahedron", {{1, 2, -1}, {3, 2, -1}, {2, 2, 1}, {2, 4, 0}}, {},
+               {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}, 0);
+    add_point_light(scene, {4, 6, 1.5f});
+    look(scene, {-1, 8, 7}, {0, 0.5f, 0}, 38);
+    return scene;
+}
+
+}  // namespace umbra

@@ -1,0 +1,55 @@
+#include "umbra/bench/out/staged_files.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+
+namespace fs = std::filesystem;
+
+namespace {
+fs::path beside(fs::path file) { return file += ".part"; }
+}  // namespace
+
+StagedFiles::~StagedFiles() {
+    std::error_code ignored;
+    for (const fs::path& file : files_) fs::remove(beside(file), ignored);
+}
+
+/// False where it is staged already.
+bool StagedFiles::stage(const fs::path& file) {
+    std::error_code error;
+    fs::create_directories(file.parent_path(), error);
+    if (error) throw InputError(fmt::format("{}: cannot be made: {}", file.parent_path().string(), error.message()));
+    return files_.insert(file).second;
+}
+
+void StagedFiles::write(const fs::path& file, std::string_view content) {
+    stage(file);
+    std::ofstream stream(beside(file), std::ios::binary);
+    stream.write(content.data(), std::streamsize(content.size()));
+    stream.close();
+    if (!stream) throw InputError(fmt::format("{}: cannot be written", file.string()));
+}
+
+void StagedFiles::copy(const fs::path& from, const fs::path& to) {
+    if (!stage(to)) return;
+    std::error_code error;
+    fs::copy_file(from, beside(to), fs::copy_options::overwrite_existing, error);
+    if (error)
+        throw InputError(fmt::format("{}: cannot be copied from {}: {}", to.string(), from.string(), error.message()));
+}
+
+void StagedFiles::commit() {
+    for (const fs::path& file : files_) {
+        std::error_code error;
+        fs::rename(beside(file), file, error);
+        if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+    }
+    files_.clear();
+}
+
+}  // namespace umbra

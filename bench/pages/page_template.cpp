@@ -1,0 +1,49 @@
+#include "umbra/bench/pages/page_template.h"
+
+#include <kainjow/mustache.hpp>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "report_assets.h"
+
+namespace umbra {
+namespace {
+
+using nlohmann::json;
+
+/// Empty strings and lists are false to a template, so that {{#x}} asks whether there is anything to show.
+kainjow::mustache::data template_data(const json& view) {
+    if (view.is_boolean()) return view.get<bool>();
+    if (view.is_string()) {
+        if (view.get_ref<const std::string&>().empty()) return false;
+        return view.get<std::string>();
+    }
+    if (view.is_array()) {
+        kainjow::mustache::data list(kainjow::mustache::data::type::list);
+        for (const json& item : view) list << template_data(item);
+        return list;
+    }
+    kainjow::mustache::data object;
+    for (const auto& entry : view.items()) object.set(entry.key(), template_data(entry.value()));
+    return object;
+}
+
+}  // namespace
+
+std::string render_page(std::string_view page, const json& view) {
+    kainjow::mustache::data data = template_data(view);
+    for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
+                                        {"bias_map", assets::bias_map_html},
+                                        {"picture", assets::picture_html},
+                                        {"classes", assets::classes_html},
+                                        {"ladder_table", assets::ladder_table_html},
+                                        {"scales", assets::scales_html},
+                                        {"scale_colours", assets::scale_colours_html}})
+        data.set(name, std::string(partial));
+    kainjow::mustache::mustache text{std::string(page)};
+    std::string html = text.render(data);
+    if (!text.is_valid()) throw std::logic_error("report template: " + text.error_message());
+    return html;
+}
+
+}  // namespace umbra

@@ -1,0 +1,149 @@
+#include "umbra/bench/pages/report_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "umbra/bench/pages/error_palette.h"
+#include "umbra/bench/pages/report_text.h"
+
+namespace umbra {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+SceneFiles::SceneFiles(const ScenePage& scene, StagedFiles& staged) : scene_(scene), staged_(staged) {
+    for (const char* side : {"width", "height"}) {
+        const Field pixels = scene.root["size"][side];
+        if (!pixels.present()) continue;
+        if (const double n = *pixels.number(); n < 1 || n > 1e6) pixels.refuse("pixels, from 1 to a million,");
+        size_[side] = fmt::format("{:.0f}", *pixels.number());
+    }
+}
+
+std::string SceneFiles::link(const Field& file, const fs::path& from) const {
+    const fs::path name = file.required_text();
+    const fs::path path = scene_.data / name;
+    if (name.is_absolute() || *path.lexically_normal().lexically_relative(scene_.data).begin() == "..")
+        file.refuse("a file in the same folder");
+    if (!fs::is_regular_file(path)) file.refuse("a file that is there");
+    if (scene_.page != scene_.data) staged_.copy(path, (scene_.page / name).lexically_normal());
+    return url((scene_.page / name).lexically_normal().lexically_relative(from));
+}
+
+json SceneFiles::figure(const Field& file, const std::string& who, const std::string& what,
+                        const std::string& alt) const {
+    if (!file.present()) return false;
+    json view    = size_;
+    view["src"]  = link(file, scene_.page);
+    view["who"]  = who;
+    view["what"] = what;
+    view["alt"]  = alt;
+    return view;
+}
+
+json SceneFiles::exr(const Field& files) const {
+    const Field file = files["exr"];
+    if (!file.present() || !fs::is_regular_file(scene_.data / file.required_text())) return false;
+    return link(file, scene_.page);
+}
+
+bool serves(const Field& method) {
+    const Field how        = method["serves"]["how"];
+    const std::string word = how.required_text();
+    if (word != "exactly" && word != "approximately" && word != "not")
+        how.refuse("\"exactly\", \"approximately\" or \"not\"");
+    return word != "not";
+}
+
+std::string method_id(const Field& method) {
+    const std::string id = method["id"].text();
+    return id.empty() ? method["name"].required_text() : id;
+}
+
+std::string method_label(const Field& method, const std::vector<Field>& methods) {
+    const std::string name = method["name"].required_text(), title = method["title"].text(),
+                      text = method["text"].text();
+    const auto runs =
+        std::count_if(methods.begin(), methods.end(), [&](const Field& m) { return m["name"].text() == name; });
+    const std::string shown = title.empty() ? in_words(name) : title;
+    const auto colon        = text.find(':');
+    return runs > 1 && colon != std::string::npos ? fmt::format("{} ({})", shown, text.substr(colon + 1)) : shown;
+}
+
+std::vector<std::string> method_ids(const std::vector<ScenePage>& scenes) {
+    std::vector<std::string> ids;
+    for (const ScenePage& scene : scenes)
+        for (const Field& method : scene.root["methods"].items())
+            if (const std::string id = method_id(method); std::find(ids.begin(), ids.end(), id) == ids.end())
+                ids.push_back(id);
+    return ids;
+}
+
+namespace {
+std::optional<double> sum(std::optional<double> a, std::optional<double> b) {
+    if (!a || !b) return std::nullopt;
+    return *a + *b;
+}
+}  // namespace
+
+Totals totals(const Field& method) {
+    Totals t;
+    double points = 0, absolute = 0;
+    for (const Field& error : method["errors"].items()) {
+        for (const char* kind : {"false_shadow", "false_light"}) {
+            t.interior += error[kind]["interior"].number().value_or(0);
+            t.edge += error[kind]["edge"].number().value_or(0);
+        }
+        if (const auto mae = error["mae"].number()) {
+            const double n = error["points"].number().value_or(1);
+            points += n;
+            absolute += *mae * n;
+        }
+    }
+    if (points > 0) t.mae = absolute / points;
+    const Field times = method["times"];
+    t.camera_ms       = times["visibility_ms"]["median"].number();
+    t.light_ms        = sum(t.camera_ms, times["aim_ms"]["median"].number());
+    t.object_ms       = sum(t.light_ms, times["build_ms"]["median"].number());
+    return t;
+}
+
+bool is_reference(const Field& root, const Field& method) {
+    const std::string text = method["text"].text();
+    return !text.empty() && text == root["reference"]["text"].text();
+}
+
+json class_legend() {
+    json all = json::array();
+    for (const ErrorColour& entry : kErrorPalette)
+        all.push_back({{"name", std::string(entry.name)}, {"colour", std::string(entry.srgb)}});
+    return all;
+}
+
+json run_view(const Field& root) {
+    const Field machine = root["machine"];
+    std::vector<std::string> parts;
+    if (const auto cpu = machine["cpu"].text(); !cpu.empty()) parts.push_back(cpu);
+    if (const auto n = machine["cores"].number()) parts.push_back(fmt::format("{:.0f} cores", *n));
+    if (const auto n = machine["threads"].number()) parts.push_back(fmt::format("{:.0f} threads used", *n));
+    if (const auto n = machine["memory_bytes"].number(); n && *n > 0)
+        parts.push_back(fmt::format("{:.0f} GiB", *n / (1024.0 * 1024 * 1024)));
+    if (const auto s = machine["system"].text(); !s.empty()) parts.push_back(s);
+    if (const auto s = machine["compiler"].text(); !s.empty()) parts.push_back(s);
+    return {{"command", root["command"].text()},
+            {"machine", fmt::format("{}", fmt::join(parts, ", "))},
+            {"version", root["version"].text()}};
+}
+
+json reference_view(const Field& root) {
+    const Field reference   = root["reference"];
+    const std::string title = reference["title"].text();
+    return {{"title", title.empty() ? in_words(reference["name"].text()) : title},
+            {"text", reference["text"].text()},
+            {"exact", reference["exact"].flag()},
+            {"note", reference["note"].text()}};
+}
+
+}  // namespace umbra

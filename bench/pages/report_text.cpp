@@ -1,0 +1,77 @@
+#include "umbra/bench/pages/report_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace umbra {
+
+std::string superscript(int value) {
+    static constexpr std::array<const char*, 10> digits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string raised;
+    for (const char c : std::to_string(value)) raised += c == '-' ? "⁻" : digits[std::size_t(c - '0')];
+    return raised;
+}
+
+std::string score(std::optional<double> value) {
+    if (!value) return kNone;
+    const double size      = std::abs(*value);
+    const std::string sign = *value < 0 ? "−" : "";
+    if (size == 0) return "0";
+    const int exponent = int(std::floor(std::log10(size)));
+    if (exponent >= -4 && exponent < 6) return fmt::format("{}{:.{}f}", sign, size, std::max(0, 2 - exponent));
+    const std::string rounded = fmt::format("{:.1e}", size);  // 1.2e-05
+    const auto e              = rounded.find('e');
+    return fmt::format("{}{}·10{}", sign, rounded.substr(0, e), superscript(std::stoi(rounded.substr(e + 1))));
+}
+
+std::string milliseconds(std::optional<double> ms) { return ms && *ms > 0 && *ms < 0.001 ? "< 0.001" : score(ms); }
+
+std::string count(std::optional<double> value) {
+    if (!value) return kNone;
+    std::string digits = fmt::format("{:.0f}", *value);
+    for (auto at = std::ptrdiff_t(digits.size()) - 3; at > 0; at -= 3)
+        if (digits[std::size_t(at) - 1] != '-') digits.insert(std::size_t(at), "\u202f");
+    return digits;
+}
+
+std::string percent(std::optional<double> share) {
+    if (!share) return kNone;
+    return fmt::format("{:g}", std::floor(*share * 1000 + 1e-9) / 10);
+}
+
+std::string mebibytes(std::optional<double> bytes) {
+    return bytes ? score(*bytes / (1024.0 * 1024.0)) : std::string(kNone);
+}
+
+std::string in_words(std::string key) {
+    std::replace(key.begin(), key.end(), '_', ' ');
+    return key;
+}
+
+std::string kind_in_words(const std::string& kind) {
+    const bool area = kind == "rectangle" || kind == "disk" || kind == "sphere";
+    return kind.empty() ? kind : kind + (area ? " light (area)" : " light");
+}
+
+std::string place_in_words(const std::string& place) {
+    if (place == "at_infinity") return "at infinity";
+    if (place == "outside_view") return "outside the view";
+    if (place == "inside_view") return "inside the view";
+    if (place == "at_eye") return "at the eye";
+    return in_words(place);
+}
+
+std::string url(const std::filesystem::path& path) {
+    std::string encoded;
+    for (const char c : path.generic_string()) {
+        const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '/' ||
+                           c == '.' || c == '-' || c == '_' || c == '~';
+        encoded += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+    }
+    return encoded;
+}
+
+}  // namespace umbra

@@ -1,0 +1,162 @@
+// The report: results.json files -> numbers and sentences in the shape of the page templates -> pages.
+//
+// The templates (bench/report/*.html) hold the words and the markup; the views (report_index, report_scene) fill them.
+#include "umbra/bench/report/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "report_assets.h"
+#include "umbra/bench/ladders/ladder_page.h"
+#include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/report_page.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/report_index.h"
+#include "umbra/bench/report/report_scene.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::vector<fs::path> results_files(const fs::path& dir) {
+    std::vector<fs::path> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(dir, error))
+        if (entry.is_directory() && fs::exists(entry.path() / "results.json"))
+            files.push_back(entry.path() / "results.json");
+    if (error)
+        throw InputError(
+            fmt::format("{}: {} (a folder that umbra compare wrote would be right)", dir.string(), error.message()));
+    std::sort(files.begin(), files.end());
+    if (files.empty() && fs::exists(dir / "results.json")) files.push_back(dir / "results.json");
+    if (files.empty())
+        throw InputError(fmt::format(
+            "{}: holds no results.json, nor does any folder in it (a folder that umbra compare wrote would be right)",
+            dir.string()));
+    return files;
+}
+
+/// A scene's name as the name of a folder.
+std::string folder_name(const std::string& scene) {
+    std::string name;
+    for (const char c : scene) name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
+    return name;
+}
+
+/// What lies in the folders: scenes that were compared, and at most one climb of ladders.
+struct Found {
+    std::vector<ScenePage> scenes;
+    std::optional<fs::path> ladders;
+};
+
+Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
+    std::vector<ScenePage> all;
+    std::optional<fs::path> ladders;
+    for (const fs::path& dir : dirs) {
+        const auto first = std::ptrdiff_t(all.size());
+        for (const fs::path& file : results_files(dir)) {
+            ScenePage scene{.root  = read_results(file),
+                            .data  = fs::canonical(file.parent_path()),
+                            .page  = {},
+                            .name  = {},
+                            .title = {}};
+            if (scene.root["ladders"].present()) {
+                ladders = scene.data;
+                continue;
+            }
+            if (scene.root["bias"].present()) continue;  // a study of one method, with a page of its own
+            scene.name      = scene.root["scene"]["name"].required_text();
+            scene.title     = scene.root["scene"]["title"].text();
+            scene.triangles = scene.root["facts"]["triangles"].number().value_or(0);
+            if (!scene.root["methods"].present()) scene.root["methods"].refuse("an array");
+            if (scene.title.empty()) scene.title = in_words(scene.name);
+            const bool seen =
+                std::any_of(all.begin(), all.end(), [&](const ScenePage& other) { return other.data == scene.data; });
+            if (!seen) all.push_back(std::move(scene));
+        }
+        // From the simple to the large, which is also the order of a lecture.
+        std::stable_sort(all.begin() + first, all.end(),
+                         [](const ScenePage& a, const ScenePage& b) { return a.triangles < b.triangles; });
+    }
+
+    std::set<fs::path> taken;
+    const auto below_out = [&](const ScenePage& scene) {
+        const fs::path relative = scene.data.lexically_relative(out);
+        return relative != "." && *relative.begin() != "..";
+    };
+    for (ScenePage& scene : all)
+        if (below_out(scene)) taken.insert(scene.page = scene.data);
+    for (ScenePage& scene : all) {
+        for (int i = 1; scene.page.empty(); ++i) {
+            const fs::path folder = out / (folder_name(scene.name) + (i > 1 ? fmt::format("-{}", i) : ""));
+            if (taken.insert(folder).second) scene.page = folder;
+        }
+    }
+    return {std::move(all), std::move(ladders)};
+}
+
+/// The ladders' table for the first page, and their own page with all that belongs to it where it can be handed out
+/// with the report. Returns what the template shows; false where no ladders were climbed.
+json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, StagedFiles& staged) {
+    if (!folder) return false;
+    fs::path place          = *folder;
+    const fs::path relative = folder->lexically_relative(out);
+    if (relative == "." || *relative.begin() == "..") {
+        place = out / "ladders";
+        for (const auto& entry : fs::recursive_directory_iterator(*folder))
+            if (entry.is_regular_file()) staged.copy(entry.path(), place / entry.path().lexically_relative(*folder));
+    }
+    const Field root       = read_results(*folder / "results.json");
+    const std::string page = url((place / "index.html").lexically_relative(out));
+    return {{"page", page},
+            {"table", ladder_table_view(root, page)},
+            {"showcase", ladder_showcase_view(root, page)},
+            {"count", std::to_string(root["ladders"].items().size())}};
+}
+
+}  // namespace
+
+void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const ReportOptions& options) {
+    if (dirs.empty()) throw UsageError("report: no folder given (one that umbra compare wrote would be right)");
+    const fs::path root                  = fs::weakly_canonical(fs::absolute(out));
+    const Found found                    = find_results(dirs, root);
+    const std::vector<ScenePage>& scenes = found.scenes;
+    const std::vector<std::string> order = method_ids(scenes);
+
+    StagedFiles staged;
+    std::vector<SceneFiles> files;
+    files.reserve(scenes.size());
+    for (const ScenePage& scene : scenes) files.emplace_back(scene, staged);
+
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const fs::path& page = scenes[i].page;
+        const auto neighbour = [&](std::size_t k) {
+            return json{{"title", scenes[k].title},
+                        {"href", url((scenes[k].page / "index.html").lexically_relative(page))}};
+        };
+        json view        = scene_view(files[i], order);
+        view["root"]     = url(root.lexically_relative(page) / "");
+        view["report"]   = options.title;
+        view["previous"] = i > 0 ? neighbour(i - 1) : json(false);
+        view["next"]     = i + 1 < scenes.size() ? neighbour(i + 1) : json(false);
+        if (page != scenes[i].data) staged.copy(scenes[i].data / "results.json", page / "results.json");
+        staged.write(page / "index.html", render_page(assets::scene_html, view));
+    }
+    json index         = index_view(scenes, files, root, options.title);
+    index["root"]      = "";
+    index["stability"] = ladder_section(found.ladders, root, staged);
+    staged.write(root / "index.html", render_page(assets::index_html, index));
+    staged.write(root / "report.css", assets::report_css);
+    staged.write(root / "report.js", assets::report_js);
+    staged.commit();
+}
+
+}  // namespace umbra

@@ -1,0 +1,16 @@
+// What the page of one scene shows.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/pages/report_page.h"
+
+namespace umbra {
+
+/// Everything that report/scene.html shows, but for the links to its neighbours. The place of a method in `styles`
+/// (their ids) gives it the same mark in the charts of all pages.
+[[nodiscard]] nlohmann::json scene_view(const SceneFiles& files, const std::vector<std::string>& styles);
+
+}  // namespace umbra

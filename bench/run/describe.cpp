@@ -1,0 +1,141 @@
+#include "umbra/bench/run/describe.h"
+
+#include <fmt/format.h>
+#include <sys/sysinfo.h>
+
+#include <cmath>
+#include <fstream>
+#include <thread>
+
+namespace umbra {
+namespace {
+
+/// The value behind `key` in a file of "key<separator>value" lines; empty where it is not there.
+std::string value_of(const char* file, std::string_view key, char separator) {
+    std::ifstream in(file);
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with(key)) continue;
+        const std::size_t at = line.find(separator);
+        if (at == std::string::npos) continue;
+        std::string value = line.substr(at + 1);
+        while (!value.empty() && (value.front() == ' ' || value.front() == '"')) value.erase(value.begin());
+        while (!value.empty() && value.back() == '"') value.pop_back();
+        return value;
+    }
+    return {};
+}
+
+/// One word a place, for scripts.
+std::string_view place_word(LightPlace place) {
+    switch (place) {
+        case LightPlace::at_infinity: return "at_infinity";
+        case LightPlace::outside_view: return "outside_view";
+        case LightPlace::inside_view: return "inside_view";
+        case LightPlace::at_eye: return "at_eye";
+    }
+    return "";
+}
+
+Json vector_json(dvec3 v) { return {number(v.x), number(v.y), number(v.z)}; }
+
+std::string_view to_string(Parameter::Type type) {
+    switch (type) {
+        case Parameter::Type::integer: return "integer";
+        case Parameter::Type::real: return "real";
+        case Parameter::Type::choice: return "choice";
+        case Parameter::Type::boolean: return "boolean";
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string_view version() { return UMBRA_VERSION; }
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json machine_json(int threads) {
+    struct sysinfo info {};
+    sysinfo(&info);
+    return {{"cpu", value_of("/proc/cpuinfo", "model name", ':')},
+            {"cores", std::thread::hardware_concurrency()},
+            {"threads", threads},
+            {"memory_bytes", static_cast<std::uint64_t>(info.totalram) * info.mem_unit},
+            {"system", value_of("/etc/os-release", "PRETTY_NAME", '=')},
+            {"compiler", UMBRA_COMPILER}};
+}
+
+Json scene_json(const Scene& scene) {
+    return {{"name", scene.name},
+            {"title", scene.title},
+            {"shows", scene.shows},
+            {"source", scene.source},
+            {"warnings", scene.warnings}};
+}
+
+Json facts_json(const SceneFacts& facts) {
+    Json objects = Json::array();
+    for (const ObjectFacts& o : facts.objects)
+        objects.push_back({{"name", o.name},
+                           {"triangles", o.triangles},
+                           {"vertices", o.vertices},
+                           {"boundary_edges", o.boundary_edges},
+                           {"nonmanifold_edges", o.nonmanifold_edges},
+                           {"misoriented_edges", o.misoriented_edges},
+                           {"nonmanifold_vertices", o.nonmanifold_vertices},
+                           {"degenerate_triangles", o.degenerate_triangles},
+                           {"duplicate_triangles", o.duplicate_triangles},
+                           {"components", o.components},
+                           {"closed", o.closed},
+                           {"outward", o.outward},
+                           {"planar", o.planar},
+                           {"area", number(o.area)},
+                           {"volume", number(o.volume)}});
+    Json planes = Json::array();
+    for (const PlanarReceiver& p : facts.planes)
+        planes.push_back({{"normal", vector_json(p.normal)},
+                          {"offset", number(p.offset)},
+                          {"area", number(p.area)},
+                          {"triangles", p.triangles.size()}});
+    return {{"triangles", facts.triangles},
+            {"extent", {{"min", vector_json(dvec3(facts.box.min))}, {"max", vector_json(dvec3(facts.box.max))}}},
+            {"objects", objects},
+            {"planes", planes},
+            {"planar_area_share", number(facts.planar_area_share)},
+            {"eye_inside_closed_object", facts.eye_inside_closed_object},
+            {"requires", requires_list(facts)},
+            {"not_required", not_required_list(facts)}};
+}
+
+Json lights_json(const SceneFacts& facts) {
+    Json lights = Json::array();
+    for (const LightFacts& l : facts.lights)
+        lights.push_back({{"name", l.name}, {"kind", to_string(l.kind)}, {"place", place_word(l.place)}});
+    return lights;
+}
+
+Json method_json(const MethodInfo& info) {
+    Json parameters = Json::array();
+    for (const Parameter& p : info.parameters) {
+        Json entry = {{"name", p.name}, {"type", to_string(p.type)}, {"default", p.fallback}, {"doc", p.doc}};
+        if (p.type == Parameter::Type::integer || p.type == Parameter::Type::real) {
+            entry["min"] = p.min;
+            entry["max"] = p.max;
+        }
+        if (p.type == Parameter::Type::choice) entry["choices"] = p.choices;
+        parameters.push_back(std::move(entry));
+    }
+    return {{"name", info.name},
+            {"title", info.title},
+            {"paper", info.paper},
+            {"summary", info.summary},
+            {"parameters", parameters}};
+}
+
+Json service_json(const Service& service) { return {{"how", to_string(service.how)}, {"why", service.why}}; }
+
+Json timing_json(const Timing& t) {
+    return {{"median", number(t.median)}, {"min", number(t.min)}, {"max", number(t.max)}, {"runs", t.runs}};
+}
+
+}  // namespace umbra

@@ -1,0 +1,29 @@
+// Errors with their causes: asks a method and its reference which triangles they hold responsible.
+#pragma once
+
+#include <optional>
+
+#include "umbra/bench/run/run.h"
+#include "umbra/core/errors/error_classes.h"
+#include "umbra/core/errors/noise.h"
+#include "umbra/core/errors/shadow_edges.h"
+#include "umbra/core/errors/visibility_error.h"
+
+namespace umbra {
+
+/// One light of one method held against the reference.
+struct Explained {
+    ClassPlane classes;
+    VisibilityError error;
+    std::optional<EdgeDisplacement> displacement;
+    std::optional<PenumbraWidth> penumbra_width;  ///< area lights only
+    std::optional<Noise> noise;                   ///< of methods that have some, in area lights
+};
+
+/// Sorts every point into its class and counts them; measures edges and penumbrae. All but `noise`. Both runs are of
+/// this scene and batch, and serve it; their methods are asked again where interior errors need a name, and are left
+/// aimed at `light` then.
+[[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
+                                const MethodRun& reference);
+
+}  // namespace umbra

@@ -1,0 +1,21 @@
+// The noise of sampling methods: the same question with other random numbers.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "umbra/bench/run/run.h"
+#include "umbra/core/errors/noise.h"
+
+namespace umbra {
+
+/// Runs of a method with other seeds than its own, for its noise. The relative error of a variance from K runs is
+/// sqrt(2 / (K - 1)) at one point, and nothing over the thousands of a penumbra.
+inline constexpr int kNoiseRuns = 8;
+
+/// One meter a light, fed with kNoiseRuns runs; empty for methods that have no seed (their answers are always the same)
+/// and for lights without an area (their samples all fall on one place).
+[[nodiscard]] std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
+                                                                const SceneFacts& facts, const PointBatch& points);
+
+}  // namespace umbra

@@ -1,0 +1,104 @@
+#include "umbra/bench/run/results_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+
+using nlohmann::json;
+
+struct Field::Document {
+    std::string file;
+    json root;
+};
+
+void Field::refuse(std::string_view expected) const {
+    std::string found = "nothing";
+    if (value_) found = value_->is_structured() ? fmt::format("an {}", value_->type_name()) : value_->dump();
+    if (found.size() > 60) found = found.substr(0, 57) + "...";
+    throw InputError(fmt::format("{}:{}: found {} ({} would be right)", document_->file,
+                                 pointer_.empty() ? "/" : pointer_, found, expected));
+}
+
+Field Field::operator[](std::string_view key) const {
+    if (value_ && !value_->is_object()) refuse("an object");
+    const json* member = nullptr;
+    if (value_) {
+        const auto it = value_->find(key);
+        if (it != value_->end() && !it->is_null()) member = &*it;
+    }
+    return {document_, member, pointer_ + (json::json_pointer() / std::string(key)).to_string()};
+}
+
+std::string Field::text() const {
+    if (!value_) return {};
+    if (!value_->is_string()) refuse("a string");
+    return value_->get<std::string>();
+}
+
+std::string Field::required_text() const {
+    std::string s = text();
+    if (s.empty()) refuse("a string that is not empty");
+    return s;
+}
+
+std::optional<double> Field::number() const {
+    if (!value_) return std::nullopt;
+    if (!value_->is_number()) refuse("a number");
+    return value_->get<double>();
+}
+
+bool Field::flag() const {
+    if (value_ && !value_->is_boolean()) refuse("true or false");
+    return value_ && value_->get<bool>();
+}
+
+std::vector<Field> Field::items() const {
+    std::vector<Field> all;
+    if (!value_) return all;
+    if (!value_->is_array()) refuse("an array");
+    for (std::size_t i = 0; i < value_->size(); ++i)
+        all.push_back({document_, &(*value_)[i], fmt::format("{}/{}", pointer_, i)});
+    return all;
+}
+
+std::vector<std::pair<std::string, Field>> Field::members() const {
+    std::vector<std::pair<std::string, Field>> all;
+    if (!value_) return all;
+    if (!value_->is_object()) refuse("an object");
+    for (const auto& entry : value_->items()) all.emplace_back(entry.key(), (*this)[entry.key()]);
+    return all;
+}
+
+Field read_results(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError(fmt::format("{}: cannot be opened (a results.json would be right)", file.string()));
+    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+
+    auto document  = std::make_shared<Field::Document>();
+    document->file = file.string();
+    try {
+        document->root = json::parse(bytes);
+    } catch (const json::parse_error& error) {
+        const auto end  = bytes.begin() + std::ptrdiff_t(std::clamp<std::size_t>(error.byte, 1, bytes.size() + 1) - 1);
+        const auto line = 1 + std::count(bytes.begin(), end, '\n');
+        const auto newline = std::find(std::make_reverse_iterator(end), bytes.rend(), '\n').base();
+        throw InputError(fmt::format("{}:{}:{}: not JSON, or cut off here (a whole results.json would be right)",
+                                     file.string(), line, 1 + (end - newline)));
+    } catch (const json::exception&) {  // a number beyond double
+        throw InputError(fmt::format("{}: a number is out of range (finite numbers would be right)", file.string()));
+    }
+
+    Field root{document, &document->root, ""};
+    if (root["schema"].number() != kResultsSchema)
+        root["schema"].refuse(fmt::format("{}, results as this version writes them,", kResultsSchema));
+    return root;
+}
+
+}  // namespace umbra

@@ -1,0 +1,96 @@
+#include "umbra/bench/run/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+namespace umbra {
+namespace {
+
+double now_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void check_contract(std::string_view name, const VisibilityPlane& plane, const std::vector<Facing>& facing) {
+    for (std::size_t i = 0; i < plane.s.size(); ++i) {
+        const bool asked    = facing[i] == Facing::partly || facing[i] == Facing::front;
+        const bool in_range = plane.s[i] >= 0 && plane.s[i] <= 1;
+        if (!in_range || plane.defined[i] > kOnBoundary ||
+            (!asked && (plane.s[i] != 0 || plane.defined[i] != kDefined)))
+            throw std::logic_error(fmt::format("{} breaks its contract at point {}: visibility {}, defined {}, {}",
+                                               name, i, plane.s[i], plane.defined[i],
+                                               asked ? "asked for" : "not asked for"));
+    }
+}
+
+}  // namespace
+
+Timing time_runs(const Repeats& repeats, const std::function<void()>& work) {
+    std::vector<double> times;
+    double spent = 0;
+    do {
+        const double start = now_ms();
+        work();
+        times.push_back(now_ms() - start);
+        spent += times.back();
+    } while (static_cast<int>(times.size()) < repeats.max_runs && spent < repeats.budget_ms);
+    std::sort(times.begin(), times.end());
+    const std::size_t n = times.size();
+    const double median = n % 2 ? times[n / 2] : 0.5 * (times[n / 2 - 1] + times[n / 2]);
+    return {median, times.front(), times.back(), static_cast<int>(n)};
+}
+
+Timing total(const std::vector<Timing>& timings) {
+    Timing sum;
+    for (const Timing& t : timings) {
+        sum.median += t.median;
+        sum.min += t.min;
+        sum.max += t.max;
+        sum.runs = sum.runs == 0 ? t.runs : std::min(sum.runs, t.runs);
+    }
+    return sum;
+}
+
+double MethodRun::coverage(const PointBatch& points) const {
+    std::size_t asked = 0, given = 0;
+    for (std::size_t j = 0; j < planes.size(); ++j)
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (points.facing[j][i] == Facing::none || points.facing[j][i] == Facing::away) continue;
+            ++asked;
+            given += planes[j].defined[i] != kUndefined;
+        }
+    return asked == 0 ? 1.0 : static_cast<double>(given) / static_cast<double>(asked);
+}
+
+void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
+    run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
+    VisibilityPlane plane;
+    plane.s.resize(points.size());
+    plane.defined.resize(points.size());
+    run.visibility.push_back(time_runs(repeats, [&] {
+        std::fill(plane.s.begin(), plane.s.end(), 0.0f);
+        std::fill(plane.defined.begin(), plane.defined.end(), kDefined);
+        run.method->visibility(points, light, plane.s, plane.defined);
+    }));
+    check_contract(run.choice.info->name, plane, points.facing[light]);
+    run.planes.push_back(std::move(plane));
+    const std::span<const float> doubt = run.method->half_widths();
+    run.half_widths.emplace_back(doubt.begin(), doubt.end());
+}
+
+MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
+                     const Repeats& repeats) {
+    MethodRun run{choice, {}, {}, {}, {}, 0, {}, {}, {}};
+    run.method  = choice.info->make(choice.settings);
+    run.service = run.method->serves(facts);
+    if (!run.service) return run;
+
+    run.build = time_runs(repeats, [&] { run.method->build(scene, facts); });
+    for (LightId light = 0; light < scene.lights.size(); ++light) run_light(run, points, light, repeats);
+    run.memory_bytes = run.method->memory_bytes();
+    return run;
+}
+
+}  // namespace umbra

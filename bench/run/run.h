@@ -1,0 +1,58 @@
+// Running a method on a scene: the three phases, timed apart, and the S_j planes that come out.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "umbra/core/errors/visibility_error.h"
+#include "umbra/core/render/points.h"
+#include "umbra/core/scene/facts.h"
+#include "umbra/core/scene/scene.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// Wall-clock times of one phase, milliseconds. One run is a figure; fewer than three say little about spread.
+struct Timing {
+    double median = 0, min = 0, max = 0;
+    int runs = 0;
+};
+
+/// How often a phase is repeated: until `max_runs` or `budget_ms` is spent, whichever is first, at least once.
+struct Repeats {
+    int max_runs     = 5;
+    double budget_ms = 300;
+};
+
+/// Calls `work` repeatedly and times each call.
+[[nodiscard]] Timing time_runs(const Repeats& repeats, const std::function<void()>& work);
+
+/// What one method made of one scene. Where it does not serve, only `choice` and `service` mean something.
+struct MethodRun {
+    MethodChoice choice;
+    Service service;
+    Timing build;
+    std::vector<Timing> aim, visibility;          ///< [light]
+    std::size_t memory_bytes = 0;                 ///< after the last light was aimed at
+    std::vector<VisibilityPlane> planes;          ///< [light]
+    std::vector<std::vector<float>> half_widths;  ///< [light][point]: the method's own doubt; empty where it has none
+    std::shared_ptr<Method> method;               ///< built, and aimed at the last light: to be asked further
+
+    /// Share of the points that S_j is asked for (any light in front) that it is given for, [0, 1]; 1 where none is.
+    [[nodiscard]] double coverage(const PointBatch& points) const;
+};
+
+/// Runs all phases for all lights. Throws std::logic_error if the method breaks its contract (values outside [0, 1],
+/// or an answer for points that it must leave alone): a picture of such values would be worse than none.
+[[nodiscard]] MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
+                                   const PointBatch& points, const Repeats& repeats);
+
+/// The last two phases for one light, on points that may be others than those of the other lights: adds to `run`, whose
+/// method has been built.
+void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats);
+
+/// Sum of the medians (and of minima and maxima) of several timings: what all lights together cost.
+[[nodiscard]] Timing total(const std::vector<Timing>& timings);
+
+}  // namespace umbra

@@ -1,0 +1,506 @@
+// How close the G-buffer, one S_j pass and the build come to bare Embree loops on the same scene.
+//
+// Each iteration runs ours and the bare loop in turn, so that a machine whose speed drifts cannot favour one. Reported
+// is ours; the counters hold the medians in ms and `ratio`, the median over the turns of ours by the fastest bare loop
+// (`cpu_ratio`: the same of processor time, which other programs on the machine disturb less).
+// Before the clock starts the answers are compared, and a wrong one gets no number.
+//
+//     limits_benchmark [--scene=FILE] [--size=WxH] [Google Benchmark's options]
+#if __has_include(<embree3/rtcore.h>)
+#include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <string_view>
+
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/ray.h"
+#include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+namespace {
+
+// ---- scenes --------------------------------------------------------------------------------------------------------
+
+mat4 placed(vec3 position, vec3 axis) {  // turns +y to `axis`
+    const vec3 y = glm::normalize(axis);
+    const vec3 x = glm::normalize(glm::cross(y, std::abs(y.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 0, 1)));
+    return {vec4(x, 0), vec4(y, 0), vec4(glm::cross(x, y), 0), vec4(position, 1)};
+}
+
+void add(Scene& scene, const std::string& name, const Mesh& mesh, const mat4& place) {
+    const Mesh m = transformed(mesh, place);
+    add_object(scene, name, m.positions, m.normals, m.triangles, 0);
+}
+
+void add_lights(Scene& scene, vec3 place, vec3 target, float size) {
+    const vec3 down = glm::normalize(target - place), u = glm::normalize(glm::cross(down, vec3(0, 1, 0)));
+    Light point;
+    point.name     = "point";
+    point.position = place;
+    Light area     = point;
+    area.name      = "area";
+    area.kind      = LightKind::rectangle;
+    area.direction = down;
+    area.edge_u    = u * size;
+    area.edge_v    = glm::cross(down, u) * size;
+    scene.lights   = {point, area};
+}
+
+/// A few bodies of 9,000 triangles on a floor.
+Scene simple_scene() {
+    Scene scene;
+    scene.materials.emplace_back();
+    add(scene, "floor", make_plane(12, 12), mat4(1));
+    add(scene, "box", make_box({0.8f, 1.1f, 0.8f}), placed({-1.3f, 0.55f, -0.2f}, {0, 1, 0}));
+    add(scene, "ball", make_sphere(0.6f, 64, 32), placed({0.1f, 0.6f, -0.4f}, {0, 1, 0}));
+    add(scene, "ring", make_torus(0.45f, 0.15f, 64, 32), placed({1.3f, 0.62f, 0.1f}, {0.35f, 0.25f, 1}));
+    add(scene, "marble", make_sphere(0.25f, 32, 16), placed({0.45f, 0.25f, 0.9f}, {0, 1, 0}));
+    scene.camera.eye    = {0, 2.2f, 4.8f};
+    scene.camera.target = {0, 0.55f, 0};
+    add_lights(scene, {3, 5, 2}, scene.camera.target, 1);
+    return scene;
+}
+
+/// 64 rings of 16,000 triangles each, every one turned otherwise.
+Scene tori_scene() {
+    Scene scene;
+    scene.materials.emplace_back();
+    add(scene, "floor", make_plane(12, 12), mat4(1));
+    const Mesh ring = make_torus(0.22f, 0.07f, 125, 64);
+    for (int i = 0; i < 64; ++i) {
+        const int row = i / 8, column = i % 8;
+        const auto a = static_cast<float>(row), b = static_cast<float>(column);
+        add(scene, fmt::format("ring{}", i), ring,
+            placed({(a - 3.5f) * 0.62f, 0.42f + 0.25f * std::sin(1.7f * a + b), (b - 3.5f) * 0.62f},
+                   {std::sin(2.1f * a), std::cos(a + 3 * b), std::sin(1.3f * b)}));
+    }
+    scene.camera.eye    = {0, 3.2f, 5.2f};
+    scene.camera.target = {0, 0.55f, 0};
+    add_lights(scene, {3, 5, 2}, scene.camera.target, 1);
+    return scene;
+}
+
+Scene file_scene(const std::string& file) {
+    Scene scene     = load_scene(file);
+    const Box box   = bounds(scene);
+    const vec3 size = vec3(box.diagonal());
+    add_lights(scene, box.centre() + size * vec3(0.5f, 1, 0.4f), box.centre(), 0.2f * size.x);
+    return scene;
+}
+
+// ---- bare Embree ---------------------------------------------------------------------------------------------------
+
+/// Embree without anything around it. `flags`: RTC_SCENE_FLAG_NONE is its fastest, ROBUST what core/ray uses.
+class Bare {
+public:
+    Bare(const Scene& scene, RTCSceneFlags flags) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+        RTCGeometry g = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        std::copy(scene.positions.begin(), scene.positions.end(),
+                  static_cast<vec3*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 12,
+                                                             scene.positions.size())));
+        std::copy(scene.triangles.begin(), scene.triangles.end(),
+                  static_cast<uvec3*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12,
+                                                              scene.triangles.size())));
+        rtcCommitGeometry(g);
+        rtcAttachGeometry(scene_, g);
+        rtcReleaseGeometry(g);
+        rtcSetSceneFlags(scene_, flags);
+        rtcCommitScene(scene_);
+    }
+    ~Bare() {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+    Bare(const Bare&)            = delete;
+    Bare& operator=(const Bare&) = delete;
+
+    void intersect(const int* valid, RTCRayHit8& rays) const {
+#if RTC_VERSION_MAJOR >= 4
+        RTCIntersectArguments a;
+        rtcInitIntersectArguments(&a);
+        a.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+        rtcIntersect8(valid, scene_, &rays, &a);
+#else
+        RTCIntersectContext c;
+        rtcInitIntersectContext(&c);
+        c.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+        rtcIntersect8(valid, scene_, &c, &rays);
+#endif
+    }
+    void occluded(const int* valid, RTCRay8& rays) const {
+#if RTC_VERSION_MAJOR >= 4
+        rtcOccluded8(valid, scene_, &rays);
+#else
+        RTCIntersectContext c;
+        rtcInitIntersectContext(&c);
+        rtcOccluded8(valid, scene_, &c, &rays);
+#endif
+    }
+    void occluded(RTCRay* rays, unsigned count) const {
+#if RTC_VERSION_MAJOR >= 4  // has no streams
+        for (unsigned k = 0; k < count; ++k) rtcOccluded1(scene_, rays + k);
+#else
+        RTCIntersectContext c;
+        rtcInitIntersectContext(&c);
+        rtcOccluded1M(scene_, &c, rays, count, sizeof(RTCRay));
+#endif
+    }
+
+private:
+    RTCDevice device_;
+    RTCScene scene_;
+};
+
+struct BareGBuffer {
+    std::vector<float> px, py, pz, nx, ny, nz;
+    std::vector<std::uint32_t> triangle;
+};
+
+constexpr int kTileWidth = 16, kTileHeight = 8;
+
+template <class Tile>
+void for_tiles(int width, int height, const Tile& tile) {
+    const int across = width / kTileWidth;
+    parallel_ranges(static_cast<std::size_t>(across * (height / kTileHeight)), 8, [&](std::size_t b, std::size_t e) {
+        const FlushDenormals flush;
+        for (std::size_t i = b; i < e; ++i)
+            tile(static_cast<int>(i) % across * kTileWidth, static_cast<int>(i) / across * kTileHeight);
+    });
+}
+
+void bare_gbuffer(const Bare& bare, const CameraFrame& f, BareGBuffer& g) {
+    const std::size_t pixels = static_cast<std::size_t>(f.width) * static_cast<std::size_t>(f.height);
+    for (auto* plane : {&g.px, &g.py, &g.pz, &g.nx, &g.ny, &g.nz}) plane->resize(pixels);
+    g.triangle.resize(pixels);
+    const vec3 eye(f.eye), forward(f.forward), right(f.right * f.half_width), up(f.up * f.half_height);
+    const float sx = 2.0f / static_cast<float>(f.width), sy = 2.0f / static_cast<float>(f.height);
+    for_tiles(f.width, f.height, [&](int x0, int y0) {
+        alignas(32) const int valid[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+        for (int y = y0; y < y0 + kTileHeight; y += 2)
+            for (int x = x0; x < x0 + kTileWidth; x += 4) {
+                RTCRayHit8 h;
+                vec3 d[8];
+                for (int k = 0; k < 8; ++k) {
+                    d[k] = forward + right * (sx * (static_cast<float>(x + (k & 3)) + 0.5f) - 1) -
+                           up * (sy * (static_cast<float>(y + (k >> 2)) + 0.5f) - 1);
+                    h.ray.org_x[k] = eye.x, h.ray.org_y[k] = eye.y, h.ray.org_z[k] = eye.z;
+                    h.ray.dir_x[k] = d[k].x, h.ray.dir_y[k] = d[k].y, h.ray.dir_z[k] = d[k].z;
+                    h.ray.tnear[k] = 0, h.ray.tfar[k] = kInfinity, h.ray.time[k] = 0;
+                    h.ray.mask[k] = ~0u, h.ray.flags[k] = 0, h.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+                }
+                bare.intersect(valid, h);
+                for (int k = 0; k < 8; ++k) {
+                    const int i   = (y + (k >> 2)) * f.width + x + (k & 3);
+                    g.triangle[i] = kNoTriangle;
+                    if (h.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID) continue;
+                    g.triangle[i] = h.hit.primID[k];
+                    vec3 n        = glm::normalize(vec3(h.hit.Ng_x[k], h.hit.Ng_y[k], h.hit.Ng_z[k]));
+                    if (glm::dot(n, d[k]) > 0) n = -n;
+                    const vec3 p = eye + d[k] * h.ray.tfar[k] + n * 1e-3f;
+                    g.px[i] = p.x, g.py[i] = p.y, g.pz[i] = p.z, g.nx[i] = n.x, g.ny[i] = n.y, g.nz[i] = n.z;
+                }
+            }
+    });
+}
+
+/// Bare shadow rays from its own G-buffer; visible samples a pixel. `samples`: 1 aims at the centre, 16 jitters 4 x 4.
+struct BareShadows {
+    const Bare& bare;
+    const CameraFrame& frame;
+    const BareGBuffer& g;
+    const Light& light;
+    int samples;
+    std::vector<std::uint8_t> seen;
+
+    [[nodiscard]] bool facing(int i) const {
+        const vec3 d = light.position - vec3(g.px[i], g.py[i], g.pz[i]);
+        return g.triangle[i] != kNoTriangle && g.nx[i] * d.x + g.ny[i] * d.y + g.nz[i] * d.z > 0;
+    }
+    [[nodiscard]] vec3 target(int k, std::uint32_t& random) const {
+        if (samples == 1) return light.position;
+        const auto next = [&] {
+            random = random * 1664525u + 1013904223u;
+            return static_cast<float>(random >> 8) * 0x1p-24f;
+        };
+        const float u = (static_cast<float>(k & 3) + next()) / 4 - 0.5f;
+        const float v = (static_cast<float>(k >> 2) + next()) / 4 - 0.5f;
+        return light.position + light.edge_u * u + light.edge_v * v;
+    }
+
+    void packets() {
+        for_tiles(frame.width, frame.height, [&](int x0, int y0) {
+            auto random = static_cast<std::uint32_t>(y0 * frame.width + x0);
+            RTCRay8 r;
+            for (int k = 0; k < 8; ++k) r.tnear[k] = 0, r.time[k] = 0, r.mask[k] = ~0u, r.flags[k] = 0, r.id[k] = 0;
+            alignas(32) int valid[8];
+            const auto aim = [&](int k, int i, vec3 at) {
+                r.org_x[k] = g.px[i], r.org_y[k] = g.py[i], r.org_z[k] = g.pz[i];
+                r.dir_x[k] = at.x - g.px[i], r.dir_y[k] = at.y - g.py[i], r.dir_z[k] = at.z - g.pz[i];
+                r.tfar[k] = 0.9999f;
+            };
+            if (samples == 1) {
+                for (int y = y0; y < y0 + kTileHeight; y += 2)
+                    for (int x = x0; x < x0 + kTileWidth; x += 4) {
+                        int any = 0;
+                        for (int k = 0; k < 8; ++k) {
+                            const int i = (y + (k >> 2)) * frame.width + x + (k & 3);
+                            valid[k]    = facing(i) ? -1 : 0;
+                            any |= valid[k];
+                            aim(k, i, light.position);
+                        }
+                        if (any == 0) continue;
+                        bare.occluded(valid, r);
+                        for (int k = 0; k < 8; ++k)
+                            if (valid[k] != 0) seen[(y + (k >> 2)) * frame.width + x + (k & 3)] = r.tfar[k] >= 0;
+                    }
+                return;
+            }
+            std::fill_n(valid, 8, -1);
+            for (int y = y0; y < y0 + kTileHeight; ++y)
+                for (int x = x0; x < x0 + kTileWidth; ++x) {
+                    const int i = y * frame.width + x;
+                    if (!facing(i)) continue;
+                    int n = 0;
+                    for (int first = 0; first < samples; first += 8) {
+                        for (int k = 0; k < 8; ++k) aim(k, i, target(first + k, random));
+                        bare.occluded(valid, r);
+                        for (int k = 0; k < 8; ++k) n += r.tfar[k] >= 0;
+                    }
+                    seen[i] = static_cast<std::uint8_t>(n);
+                }
+        });
+    }
+
+    void streams() {
+        for_tiles(frame.width, frame.height, [&](int x0, int y0) {
+            auto random = static_cast<std::uint32_t>(y0 * frame.width + x0);
+            alignas(64) static thread_local RTCRay rays[kTileWidth * kTileHeight * 16];
+            static thread_local int pixel[kTileWidth * kTileHeight * 16];
+            unsigned count = 0;
+            for (int y = y0; y < y0 + kTileHeight; ++y)
+                for (int x = x0; x < x0 + kTileWidth; ++x) {
+                    const int i = y * frame.width + x;
+                    if (!facing(i)) continue;
+                    seen[i] = 0;
+                    for (int k = 0; k < samples; ++k) {
+                        const vec3 at = target(k, random);
+                        pixel[count]  = i;
+                        rays[count++] = {
+                            g.px[i], g.py[i], g.pz[i], 0, at.x - g.px[i], at.y - g.py[i], at.z - g.pz[i], 0,
+                            0.9999f, ~0u,     0,       0};
+                    }
+                }
+            if (count > 0) bare.occluded(rays, count);
+            for (unsigned k = 0; k < count; ++k)
+                seen[pixel[k]] = static_cast<std::uint8_t>(seen[pixel[k]] + (rays[k].tfar >= 0));
+        });
+    }
+};
+
+// ---- timing in turns -----------------------------------------------------------------------------------------------
+
+/// Milliseconds on the clock, and of all processors together: the second is what a busy machine leaves comparable.
+struct Cost {
+    double wall = 0, cpu = 0;
+};
+
+Cost cost_of(const std::function<void()>& f) {
+    const auto begin        = std::chrono::steady_clock::now();
+    const std::clock_t work = std::clock();
+    f();
+    return {std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(),
+            1e3 * static_cast<double>(std::clock() - work) / CLOCKS_PER_SEC};
+}
+
+double median(std::vector<double> v) {
+    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
+    return v[v.size() / 2];
+}
+
+struct Contender {
+    std::string name;
+    std::function<void()> run;
+};
+
+/// Runs ours and the bare ones round after round, in an order that turns.
+void in_turns(benchmark::State& state, const std::function<void()>& ours, const std::vector<Contender>& bare) {
+    std::vector<Contender> all{{"ours", ours}};
+    all.insert(all.end(), bare.begin(), bare.end());
+    for (const Contender& c : all) c.run();
+    std::vector<std::vector<double>> wall(all.size());
+    std::vector<double> ratios, cpu_ratios;
+    std::size_t round = 0;
+    for (auto _ : state) {
+        std::vector<Cost> costs(all.size());
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            const std::size_t which = (k + round) % all.size();
+            costs[which]            = cost_of(all[which].run);
+        }
+        ++round;
+        for (std::size_t k = 0; k < all.size(); ++k) wall[k].push_back(costs[k].wall);
+        const auto fastest = [&](double Cost::*member) {
+            double least = costs[1].*member;
+            for (std::size_t k = 2; k < all.size(); ++k) least = std::min(least, costs[k].*member);
+            return least;
+        };
+        ratios.push_back(costs[0].wall / fastest(&Cost::wall));
+        cpu_ratios.push_back(costs[0].cpu / fastest(&Cost::cpu));
+        state.SetIterationTime(costs[0].wall / 1e3);
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) state.counters[all[k].name + "_ms"] = median(wall[k]);
+    state.counters["ratio"]     = median(ratios);
+    state.counters["cpu_ratio"] = median(cpu_ratios);
+}
+
+// ---- the passes ----------------------------------------------------------------------------------------------------
+
+/// One scene with what all passes need, made at the first use.
+struct Bench {
+    std::string name;
+    std::function<Scene()> make;
+    int width = 1920, height = 1080;
+    bool ready = false;
+    Scene scene;
+    std::unique_ptr<RayScene> rays;
+    std::unique_ptr<Bare> fast, robust;
+    PointBatch points;
+    BareGBuffer bare_points;
+
+    void prepare() {
+        if (std::exchange(ready, true)) return;
+        scene  = make();
+        rays   = std::make_unique<RayScene>(scene);
+        fast   = std::make_unique<Bare>(scene, RTC_SCENE_FLAG_NONE);
+        robust = std::make_unique<Bare>(scene, RTC_SCENE_FLAG_ROBUST);
+        points = primary_points(*rays, scene, scene.camera, width, height);
+        bare_gbuffer(*fast, *points.raster, bare_points);
+    }
+};
+
+void time_build(benchmark::State& state, Bench& bench) {
+    bench.prepare();
+    in_turns(state, [&] { RayScene(bench.scene); },
+             {{"bare", [&] { Bare(bench.scene, RTC_SCENE_FLAG_NONE); }},
+              {"robust", [&] { Bare(bench.scene, RTC_SCENE_FLAG_ROBUST); }}});
+    state.counters["triangles"] = static_cast<double>(bench.scene.triangles.size());
+}
+
+void time_gbuffer(benchmark::State& state, Bench& bench) {
+    bench.prepare();
+    std::size_t differ = 0;
+    for (std::size_t i = 0; i < bench.points.size(); ++i)
+        differ += bench.points.triangle[i] != bench.bare_points.triangle[i];
+    if (differ * 2000 > bench.points.size())  // rays through edges may go either way
+        return state.SkipWithError(fmt::format("{} pixels see other triangles", differ).c_str());
+    BareGBuffer scratch;
+    PointBatch points;
+    const CameraFrame f = *bench.points.raster;
+    in_turns(state,
+             [&] { primary_points(*bench.rays, bench.scene, bench.scene.camera, bench.width, bench.height, points); },
+             {{"bare", [&] { bare_gbuffer(*bench.fast, f, scratch); }},
+              {"robust", [&] { bare_gbuffer(*bench.robust, f, scratch); }}});
+    state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * bench.points.size()));
+}
+
+void time_visibility(benchmark::State& state, Bench& bench, LightId light, const char* settings) {
+    bench.prepare();
+    const int samples         = light == 0 ? 1 : 16;
+    const MethodChoice choice = parse_method(settings);
+    const auto method         = choice.info->make(choice.settings);
+    method->build(bench.scene, find_facts(bench.scene));
+    method->aim(light);
+    std::vector<float> s(bench.points.size());
+    std::vector<std::uint8_t> defined(bench.points.size(), 1);
+    const CameraFrame f = *bench.points.raster;
+    const auto shadows  = [&](const Bare& bare) {
+        return BareShadows{bare,
+                           f,
+                           bench.bare_points,
+                           bench.scene.lights[light],
+                           samples,
+                           std::vector<std::uint8_t>(bench.points.size())};
+    };
+    BareShadows fast = shadows(*bench.fast), robust = shadows(*bench.robust);
+    const auto ours = [&] { method->visibility(bench.points, light, s, defined); };
+
+    ours();
+    fast.packets();
+    double difference = 0, count = 0;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+        if (bench.points.facing[light][i] < Facing::front) continue;
+        difference += std::abs(static_cast<double>(s[i]) - fast.seen[i] / static_cast<double>(samples));
+        ++count;
+    }
+    if (difference > count * (samples == 1 ? 0.002 : 0.02))
+        return state.SkipWithError(fmt::format("differs from bare rays by {} on average", difference / count).c_str());
+
+    std::vector<Contender> bare{{"packet", [&] { fast.packets(); }},
+                                {"stream", [&] { fast.streams(); }},
+                                {"robust_packet", [&] { robust.packets(); }},
+                                {"robust_stream", [&] { robust.streams(); }}};
+    in_turns(state, ours, bare);
+    state.counters["difference"] = difference / count;
+    state.SetItemsProcessed(static_cast<std::int64_t>(static_cast<double>(state.iterations()) * count * samples));
+}
+
+}  // namespace
+}  // namespace umbra
+
+int main(int argc, char** argv) {
+    using namespace umbra;
+    std::vector<std::unique_ptr<Bench>> benches;
+    int width = 1920, height = 1080;
+    const auto scene = [&](std::string name, std::function<Scene()> make) {
+        benches.push_back(std::make_unique<Bench>());
+        benches.back()->name = std::move(name);
+        benches.back()->make = std::move(make);
+    };
+    scene("simple", simple_scene);
+    scene("tori", tori_scene);
+    std::vector<char*> rest;
+    for (int i = 0; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (argument.starts_with("--scene="))
+            scene("file", [file = std::string(argument.substr(8))] { return file_scene(file); });
+        else if (argument.starts_with("--size="))
+            std::sscanf(argv[i] + 7, "%dx%d", &width, &height);
+        else
+            rest.push_back(argv[i]);
+    }
+    for (const auto& bench : benches) {
+        Bench& b       = *bench;
+        b.width        = std::max(1, width / kTileWidth) * kTileWidth;  // the bare loops know whole tiles only
+        b.height       = std::max(1, height / kTileHeight) * kTileHeight;
+        const auto add = [&](const char* pass, auto&& function, int rounds) {
+            benchmark::RegisterBenchmark((b.name + "/" + pass).c_str(), function)
+                ->UseManualTime()
+                ->Unit(benchmark::kMillisecond)
+                ->Iterations(rounds);
+        };
+        add(
+            "build", [&b](benchmark::State& s) { time_build(s, b); }, 5);
+        add(
+            "gbuffer", [&b](benchmark::State& s) { time_gbuffer(s, b); }, 11);
+        add(
+            "point", [&b](benchmark::State& s) { time_visibility(s, b, 0, "ray_traced"); }, 11);
+        add(
+            "area16", [&b](benchmark::State& s) { time_visibility(s, b, 1, "ray_traced:samples=16"); }, 5);
+    }
+    int count = static_cast<int>(rest.size());
+    benchmark::Initialize(&count, rest.data());
+    if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}

@@ -1,0 +1,14 @@
+// Signs that must not be wrong: filtered in double, decided in exact rationals where the filter cannot tell.
+#pragma once
+
+#include "umbra/core/base/math.h"
+
+namespace umbra {
+
+/// +1 where q lies on the side that the normal cross(b - a, c - a) points to, -1 on the other, 0 in the plane. Exact.
+[[nodiscard]] int side_of_plane(vec3 a, vec3 b, vec3 c, vec3 q);
+
+/// Sign of dot(cross(b - a, c - a), d). Exact.
+[[nodiscard]] int side_of_direction(vec3 a, vec3 b, vec3 c, vec3 d);
+
+}  // namespace umbra

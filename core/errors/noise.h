@@ -1,0 +1,34 @@
+// Noise and bias of a sampling method, told apart by asking it several times.
+#pragma once
+
+#include <vector>
+
+#include "umbra/core/errors/error_classes.h"
+
+namespace umbra {
+
+/// Root mean squares over the points, so that the expected squared error of one run is noise^2 + bias^2.
+struct Noise {
+    int runs    = 0;
+    double rms  = 0;  ///< of one run about its own mean: sqrt of the mean variance, unbiased
+    double bias = 0;  ///< of the mean of infinitely many runs against the reference
+};
+
+/// Takes the planes of runs that differ in nothing but their random numbers.
+class NoiseMeter {
+public:
+    explicit NoiseMeter(std::size_t points) : mean_(points, 0.0), squares_(points, 0.0) {}
+
+    void add(const std::vector<float>& s);
+
+    /// Over the points that both planes define. Of K runs' mean M, (M - reference)^2 is expected to be bias^2 +
+    /// variance / K; the second is taken off with the variance found, and what is left is no less than 0. So over n
+    /// points, a bias below about noise / sqrt(K) (2 / n)^(1/4) cannot be told from none. At least two runs.
+    [[nodiscard]] Noise result(const ClassPlane& classes, const VisibilityPlane& reference) const;
+
+private:
+    int runs_ = 0;
+    std::vector<double> mean_, squares_;  ///< of each point, and of its differences from that mean
+};
+
+}  // namespace umbra

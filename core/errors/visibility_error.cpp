@@ -1,0 +1,83 @@
+#include "umbra/core/errors/visibility_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace umbra {
+namespace {
+
+constexpr float kFullOrNone = 1.0f / 1024;
+
+/// Adds one point that both planes define to the count that its class means.
+void count_wrong(ErrorClass c, std::uint64_t& level, VisibilityError& e) {
+    const auto interior = [&](VisibilityError::Kind& kind, std::uint64_t& cause) {
+        ++kind.interior;
+        ++cause;
+        ++level;
+    };
+    std::uint64_t other = 0;
+    switch (c) {
+        case ErrorClass::terminator: ++e.terminator.normal_away; break;
+        case ErrorClass::terminator_wrong: ++e.terminator.normal_away, ++e.terminator.wrong; break;
+        case ErrorClass::false_shadow_edge: ++e.false_shadow.edge; break;
+        case ErrorClass::false_shadow: interior(e.false_shadow, other); break;
+        case ErrorClass::acne: interior(e.false_shadow, e.acne); break;
+        case ErrorClass::false_light_edge: ++e.false_light.edge; break;
+        case ErrorClass::false_light: interior(e.false_light, e.unnamed); break;
+        case ErrorClass::detachment: interior(e.false_light, e.detachment); break;
+        case ErrorClass::leak: interior(e.false_light, e.leak); break;
+        default: break;
+    }
+}
+
+}  // namespace
+
+VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes, const VisibilityPlane& s,
+                             const VisibilityPlane& reference, std::span<const float> half_widths) {
+    if (classes.size() != points.size() || s.s.size() != points.size() || reference.s.size() != points.size())
+        throw std::logic_error("visibility error: a plane is not of the batch's size");
+    VisibilityError e;
+    double absolute = 0, squared = 0, difference = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        switch (classes[i]) {
+            case ErrorClass::no_surface: continue;
+            case ErrorClass::away: ++e.away; continue;
+            case ErrorClass::terminator_away: ++e.away, ++e.terminator.facet_away; continue;
+            case ErrorClass::not_judged: ++e.not_judged; continue;
+            case ErrorClass::undefined: ++e.undefined; continue;
+            case ErrorClass::on_boundary: ++e.on_boundary; continue;
+            default: break;
+        }
+        ++e.points;
+        const float r = reference.s[i];
+        const auto at = [&](auto& levels) -> std::uint64_t& {
+            return r > 1 - kFullOrNone ? levels.lit : r < kFullOrNone ? levels.umbra : levels.penumbra;
+        };
+        ++at(e);
+        count_wrong(classes[i], at(e.interior), e);
+
+        const double d = static_cast<double>(s.s[i]) - static_cast<double>(r);
+        absolute += std::abs(d);
+        squared += d * d;
+        difference += d;
+        e.max = std::max(e.max, std::abs(d));
+        if (!half_widths.empty()) e.max_half_width = std::max(e.max_half_width, static_cast<double>(half_widths[i]));
+    }
+    if (e.points > 0) {
+        const auto n = static_cast<double>(e.points);
+        e.mae        = absolute / n;
+        e.rmse       = std::sqrt(squared / n);
+        e.bias       = difference / n;
+    }
+    return e;
+}
+
+VisibilityError visibility_error(const PointBatch& points, LightId light, const VisibilityPlane& s,
+                                 const VisibilityPlane& reference, float tolerance,
+                                 std::span<const float> half_widths) {
+    return count_errors(points, error_classes(points, light, s, reference, tolerance, half_widths), s, reference,
+                        half_widths);
+}
+
+}  // namespace umbra

@@ -1,0 +1,31 @@
+#include "umbra/core/image/image.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umbra {
+
+std::array<std::size_t, 3> colour_channels(const Image& image) {
+    std::array<std::size_t, 3> found{};
+    const char* const names[] = {"R", "G", "B"};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto at = std::find(image.channels.begin(), image.channels.end(), names[c]);
+        if (at == image.channels.end()) return {0, 0, 0};
+        found[c] = std::size_t(at - image.channels.begin());
+    }
+    return found;
+}
+
+// In double: 1.055f - 0.055f falls short of 1, and white must be white.
+
+float srgb_from_linear(float x) {
+    const double v = std::abs(double(x));
+    return std::copysign(float(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055), x);
+}
+
+float linear_from_srgb(float x) {
+    const double v = std::abs(double(x));
+    return std::copysign(float(v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4)), x);
+}
+
+}  // namespace umbra

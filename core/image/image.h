@@ -1,0 +1,35 @@
+// Images in memory: scene-linear floats with named channels.
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "umbra/core/base/math.h"
+
+namespace umbra {
+
+/// Pixels row by row from the top, channels interleaved.
+struct Image {
+    int width = 0, height = 0;
+    std::vector<std::string> channels;            ///< "R", "G", "B", "S.key", ...
+    std::vector<float> data;                      ///< width * height * channels.size()
+    std::map<std::string, std::string> metadata;  ///< "umbra:scene", "umbra:method", ...; written to EXR and PNG
+
+    Image() = default;
+    Image(int w, int h, std::vector<std::string> names)
+        : width(w), height(h), channels(std::move(names)), data(std::size_t(w) * std::size_t(h) * channels.size()) {}
+    [[nodiscard]] std::size_t pixels() const { return std::size_t(width) * std::size_t(height); }
+    [[nodiscard]] float& at(std::size_t pixel, std::size_t c) { return data[pixel * channels.size() + c]; }
+    [[nodiscard]] float at(std::size_t pixel, std::size_t c) const { return data[pixel * channels.size() + c]; }
+};
+
+/// Where R, G and B are among the channels; the first channel three times, as grey, in an image that lacks one of them.
+[[nodiscard]] std::array<std::size_t, 3> colour_channels(const Image& image);
+
+/// Encodes one linear value to sRGB (IEC 61966-2-1) and back; both for [0, 1], odd beyond.
+[[nodiscard]] float srgb_from_linear(float x);
+[[nodiscard]] float linear_from_srgb(float x);
+
+}  // namespace umbra

@@ -1,0 +1,181 @@
+#include "umbra/core/image/image_io.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/image/image_headers.h"
+
+namespace umbra {
+namespace {
+
+/// The library's reason in one line.
+std::string one_line(std::string reason) {
+    while (!reason.empty() && std::isspace(static_cast<unsigned char>(reason.back()))) reason.pop_back();
+    std::replace(reason.begin(), reason.end(), '\n', ' ');
+    return reason.empty() ? "unknown reason" : reason;
+}
+
+/// Refuses what would take memory, or cannot be compared pixel by pixel, from the header alone.
+void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+    if (spec.deep) throw InputError(fmt::format("{}: deep image (flat ones are read)", file.string()));
+    if (spec.depth > 1) throw InputError(fmt::format("{}: volume (pictures are read)", file.string()));
+    if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
+        throw InputError(fmt::format("{}: empty image: {}x{} pixels, {} channels", file.string(), spec.width,
+                                     spec.height, spec.nchannels));
+    const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
+    // 4 channels of the largest picture; many channels of a smaller one.
+    if (pixels > kMaxPixels || pixels * std::size_t(spec.nchannels) > 4 * kMaxPixels)
+        throw InputError(
+            fmt::format("{}: too large: {}x{} pixels, {} channels (at most {} million pixels, and 4 "
+                        "times as many values)",
+                        file.string(), spec.width, spec.height, spec.nchannels, kMaxPixels >> 20));
+}
+
+/// Reads a few rows at a time, or a row of tiles, and lets memory grow with what has been read: headers lie about
+/// sizes.
+void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Image& image) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const std::size_t row       = std::size_t(spec.width) * std::size_t(spec.nchannels);
+    const bool tiled            = spec.tile_height > 0;
+    const int strip             = tiled ? spec.tile_height : 64;
+    for (int y = 0; y < spec.height; y += strip) {
+        const int rows = std::min(strip, spec.height - y);
+        const int top  = spec.y + y;
+        image.data.resize(row * std::size_t(y + rows));
+        float* const begin = image.data.data() + row * std::size_t(y);
+        const bool done    = tiled ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z,
+                                                      spec.z + 1, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, begin)
+                                   : input.read_scanlines(0, 0, top, top + rows, spec.z, 0, spec.nchannels,
+                                                          OIIO::TypeDesc::FLOAT, begin);
+        if (!done || input.has_error())
+            throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(input.geterror())));
+    }
+}
+
+/// The library multiplies by a rounded 1 / levels; this divides, so that 8 and 16 bits of one value are one float.
+void round_once(Image& image, double levels) {
+    for (float& x : image.data) x = float(std::round(double(x) * levels) / levels);
+}
+
+/// A name beside `file` that no other process writes to; the ending is kept, since it tells the format.
+std::filesystem::path beside(const std::filesystem::path& file) {
+    return file.parent_path() / fmt::format(".{}.{}{}", file.stem().string(), getpid(), file.extension().string());
+}
+
+/// Removes the file unless it was moved away.
+struct Partial {
+    std::filesystem::path path;
+    ~Partial() {
+        std::error_code ignored;
+        std::filesystem::remove(path, ignored);
+    }
+};
+
+std::vector<unsigned char> to_8_bit(const Image& image, std::size_t channels) {
+    std::vector<unsigned char> bytes;
+    bytes.reserve(image.pixels() * channels);
+    for (std::size_t i = 0; i < image.pixels(); ++i) {
+        for (std::size_t c = 0; c < channels; ++c) {
+            const float x = image.at(i, c);
+            bytes.push_back(x > 0 ? static_cast<unsigned char>(std::lround(255 * std::min(x, 1.0f))) : 0);  // NaN: 0
+        }
+    }
+    return bytes;
+}
+
+std::size_t png_channels(const Image& image) {
+    const std::size_t n = image.channels.size();
+    if (n < 3) return 1;
+    return n > 3 && image.channels[3] == "A" ? 4 : 3;
+}
+
+void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, const Image& image, bool is_png) {
+    const auto check = [&](bool done) {
+        if (!done) throw std::runtime_error(one_line(output.geterror()));
+    };
+    const std::size_t channels = is_png ? png_channels(image) : image.channels.size();
+    OIIO::ImageSpec spec(image.width, image.height, int(channels),
+                         is_png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
+    spec.channelnames.assign(image.channels.begin(), image.channels.begin() + std::ptrdiff_t(channels));
+    for (const auto& [key, value] : image.metadata) spec.attribute(key, value);
+    if (is_png) {
+        spec.attribute("oiio:ColorSpace", "sRGB");
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+    } else {
+        spec.attribute("compression", "zip");
+    }
+    check(output.open(path.string(), spec));
+    check(is_png ? output.write_image(OIIO::TypeDesc::UINT8, to_8_bit(image, channels).data())
+                 : output.write_image(OIIO::TypeDesc::FLOAT, image.data.data()));
+    check(output.close());
+}
+
+}  // namespace
+
+LoadedImage read_image(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto status = std::filesystem::status(file, error);
+    if (!std::filesystem::exists(status)) throw InputError(fmt::format("{}: no such file", file.string()));
+    if (std::filesystem::is_directory(status))
+        throw InputError(fmt::format("{}: is a folder (an image file is needed)", file.string()));
+    try {
+        if (const std::string claim = find_false_claim(file); !claim.empty())
+            throw InputError(fmt::format("{}: cannot read image: {}", file.string(), claim));
+        OIIO::ImageSpec wish;
+        wish.attribute("oiio:UnassociatedAlpha", 1);  // as stored, not multiplied by alpha
+        const auto input = OIIO::ImageInput::open(file.string(), &wish);
+        if (!input)
+            throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(OIIO::geterror())));
+        const OIIO::ImageSpec& spec = input->spec();
+        check_header(file, spec);
+
+        LoadedImage loaded;
+        loaded.image.width  = spec.width;
+        loaded.image.height = spec.height;
+        loaded.image.channels.assign(spec.channelnames.begin(), spec.channelnames.end());
+        loaded.x                    = spec.x;
+        loaded.y                    = spec.y;
+        const auto stored           = OIIO::TypeDesc::BASETYPE(spec.format.basetype);
+        const bool is_short_integer = stored == OIIO::TypeDesc::UINT8 || stored == OIIO::TypeDesc::INT8 ||
+                                      stored == OIIO::TypeDesc::UINT16 || stored == OIIO::TypeDesc::INT16;
+        loaded.encoding = is_short_integer ? Encoding::srgb : Encoding::linear;
+        for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+            if (attribute.type() == OIIO::TypeDesc::STRING)
+                loaded.image.metadata[attribute.name().string()] = attribute.get_string();
+        read_pixels(file, *input, loaded.image);
+        if (stored == OIIO::TypeDesc::UINT8) round_once(loaded.image, 255);
+        if (stored == OIIO::TypeDesc::UINT16) round_once(loaded.image, 65535);
+        return loaded;
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& reason) {  // what a decoder throws through the library
+        throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(reason.what())));
+    }
+}
+
+void write_image(const std::filesystem::path& file, const Image& image) {
+    const std::string ending = file.extension().string();
+    if (ending != ".exr" && ending != ".png")
+        throw InputError(fmt::format("{}: cannot write image: unknown ending (.exr or .png)", file.string()));
+    if (image.channels.empty() || image.data.size() != image.pixels() * image.channels.size() || image.data.empty())
+        throw std::logic_error("write_image: the image is empty, or its size and its data disagree");
+    const std::filesystem::path folder = file.parent_path();
+    if (!folder.empty() && !std::filesystem::is_directory(folder))
+        throw InputError(fmt::format("{}: cannot write image: no folder {}", file.string(), folder.string()));
+    try {
+        const Partial partial{beside(file)};
+        const auto output = OIIO::ImageOutput::create(partial.path.string());
+        if (!output) throw std::runtime_error(one_line(OIIO::geterror()));
+        write_pixels(*output, partial.path, image, ending == ".png");
+        std::filesystem::rename(partial.path, file);
+    } catch (const std::exception& reason) {
+        throw InputError(fmt::format("{}: cannot write image: {}", file.string(), reason.what()));
+    }
+}
+
+}  // namespace umbra

@@ -1,0 +1,29 @@
+// Image files through OpenImageIO. A library of its own, since OpenImageIO costs every process 0.3 s at start.
+#pragma once
+
+#include <filesystem>
+
+#include "umbra/core/image/image.h"
+
+namespace umbra {
+
+/// How the numbers of a file stand for light.
+enum class Encoding : std::uint8_t { linear, srgb };
+
+struct LoadedImage {
+    Image image;                           ///< values as the file stores them, scaled to [0, 1] for integer formats
+    Encoding encoding = Encoding::linear;  ///< srgb for 8- and 16-bit integer files, linear for all others
+    int x = 0, y = 0;                      ///< where the stored pixels begin (an EXR's data window)
+};
+
+/// Reads any image that OpenImageIO reads (first subimage, no conversion). Throws InputError. Files that claim more
+/// pixels than `kMaxPixels`, or 4 times as many values, are refused before memory is taken. Alpha is not multiplied in.
+inline constexpr std::size_t kMaxPixels = 1u << 28;
+[[nodiscard]] LoadedImage read_image(const std::filesystem::path& file);
+
+/// Writes .exr (float, ZIP) as is, or .png (8 bit): the first one or three channels (four where the fourth is A), which
+/// must be display values in [0, 1] already encoded; values are clamped and rounded, NaN is written as 0. Written
+/// beside and moved into place, so that a file that was there stays whole if this fails. Throws InputError.
+void write_image(const std::filesystem::path& file, const Image& image);
+
+}  // namespace umbra

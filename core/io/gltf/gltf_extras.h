@@ -1,0 +1,31 @@
+// What glTF lacks, from `extras.umbra`: Phong terms, area lights, and what belongs to a scene. Internal to core.
+#pragma once
+
+#include <optional>
+
+#include "umbra/core/io/json_text.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+/// The object extras.umbra of a glTF object, or null.
+[[nodiscard]] const JsonValue* find_umbra(const JsonValue& object);
+/// That of the scene that the file shows.
+[[nodiscard]] const JsonValue* find_scene_umbra(const JsonText& json);
+
+// Each refuses keys that it does not know, and changes only what is given.
+void apply_material_extras(const JsonText& json, const JsonValue& umbra, Material& material);
+void apply_light_extras(const JsonText& json, const JsonValue& umbra, Light& light);
+
+/// The "light" of a node: a rectangle, disk or sphere that `transform` places; nothing where it has none.
+[[nodiscard]] std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbra,
+                                                   const dmat4& transform);
+
+struct SceneExtras {
+    bool ambient  = false;
+    bool exposure = false;
+};
+/// Says what was given.
+SceneExtras apply_scene_extras(const JsonText& json, const JsonValue& umbra, Scene& scene);
+
+}  // namespace umbra

@@ -1,0 +1,184 @@
+#include "umbra/core/io/scene_writer.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+namespace umbra {
+namespace {
+
+std::string quoted(const std::string& s) {
+    return nlohmann::json(s).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// The shortest digits that the reader, which goes through double, makes the same float of.
+std::string number(float x) {
+    if (x == 0) return std::signbit(x) ? "-0.0" : "0";  // "-0" is an integer, which has no sign of its own
+    std::string text = fmt::format("{}", x);
+    return static_cast<float>(std::strtod(text.c_str(), nullptr)) == x ? text
+                                                                       : fmt::format("{}", static_cast<double>(x));
+}
+std::string vector(vec3 v) { return fmt::format("[{}, {}, {}]", number(v.x), number(v.y), number(v.z)); }
+
+/// Members of one JSON object, those that differ from their defaults.
+class Members {
+public:
+    void add(std::string_view key, const std::string& value) {
+        text_ += fmt::format("{}\"{}\": {}", text_.empty() ? "" : ", ", key, value);
+    }
+    void differing(std::string_view key, float value, float fallback) {
+        if (value != fallback) add(key, number(value));
+    }
+    void differing(std::string_view key, vec3 value, vec3 fallback) {
+        if (value != fallback) add(key, vector(value));
+    }
+    [[nodiscard]] std::string text() const { return "{" + text_ + "}"; }
+
+private:
+    std::string text_;
+};
+
+std::string camera_text(const Camera& c) {
+    Members m;
+    m.add("eye", vector(c.eye));
+    m.add("target", vector(c.target));
+    m.add("up", vector(c.up));
+    if (c.projection == Projection::perspective)
+        m.add("fov", number(c.fov_y));
+    else
+        m.add("height", number(c.height));
+    return m.text();
+}
+
+std::string material_text(const Material& material) {
+    const Material fallback;
+    Members m;
+    m.differing("k_a", material.k_a, fallback.k_a);
+    m.differing("k_d", material.k_d, fallback.k_d);
+    m.differing("k_s", material.k_s, fallback.k_s);
+    m.differing("O_d", material.O_d, fallback.O_d);
+    m.differing("O_s", material.O_s, fallback.O_s);
+    m.differing("emission", material.emission, fallback.emission);
+    m.differing("shininess", material.shininess, fallback.shininess);
+    if (material.lobe == Lobe::blinn_phong) m.add("lobe", "\"blinn_phong\"");
+    if (!material.two_sided) m.add("two_sided", "false");
+    m.differing("opacity", material.opacity, fallback.opacity);
+    m.differing("reflect", material.reflect, fallback.reflect);
+    m.differing("transmit", material.transmit, fallback.transmit);
+    m.differing("index_of_refraction", material.index_of_refraction, fallback.index_of_refraction);
+    return m.text();
+}
+
+void add_spot(Members& m, const Spot& spot) {
+    // Degrees in double: the way back rounds to the same float of radians.
+    const auto degrees = [](float radians) { return fmt::format("{}", glm::degrees(static_cast<double>(radians))); };
+    constexpr std::string_view falloffs[] = {"\"cosine\"", "\"zachmann\"", "\"smooth\""};
+    m.add("falloff", std::string(falloffs[static_cast<std::size_t>(spot.falloff)]));
+    m.add("cutoff", degrees(spot.cutoff));
+    m.add("inner", degrees(spot.inner));
+    m.add("exponent", number(spot.exponent));
+}
+
+std::string light_text(const Light& light) {
+    Members m;
+    m.add("type", fmt::format("\"{}\"", to_string(light.kind)));
+    m.add("name", quoted(light.name));
+    if (light.kind != LightKind::directional) m.add("position", vector(light.position));
+    if (light.kind == LightKind::directional || light.kind == LightKind::spot || light.kind == LightKind::disk)
+        m.add("direction", vector(light.direction));
+    if (light.kind == LightKind::rectangle) {
+        m.add("edge_u", vector(light.edge_u));
+        m.add("edge_v", vector(light.edge_v));
+    }
+    if (light.kind == LightKind::disk || light.kind == LightKind::sphere) m.add("radius", number(light.radius));
+    if (light.kind == LightKind::spot) add_spot(m, light.spot);
+    m.differing("diffuse", light.diffuse, vec3(1));
+    m.differing("specular", light.specular, vec3(1));
+    m.differing("ambient", light.ambient, vec3(0));
+    if (light.kind != LightKind::directional) {
+        const Attenuation& a = light.attenuation;
+        m.differing("attenuation", vec3(a.c1, a.c2, a.c3), vec3(1, 0, 0));
+        if (!a.clamp) m.add("clamp", "false");
+        m.differing("range", light.range, 0);
+    }
+    return m.text();
+}
+
+std::string object_text(const Scene& scene, const Object& object, const std::string& material) {
+    const auto first = scene.triangles.begin() + object.first_triangle;
+    std::map<std::uint32_t, std::uint32_t> index;  // of the positions that it uses, in their order
+    for (auto t = first; t != first + object.triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) index[(*t)[k]] = 0;
+    std::string positions, normals, triangles;
+    std::uint32_t next = 0;
+    bool smooth        = false;
+    for (auto& [position, number_in_object] : index) {
+        number_in_object = next++;
+        positions += fmt::format("{}{}", positions.empty() ? "" : ", ", vector(scene.positions[position]));
+        normals += fmt::format("{}{}", normals.empty() ? "" : ", ", vector(scene.normals[position]));
+        smooth = smooth || scene.normals[position] != vec3(0);
+    }
+    for (auto t = first; t != first + object.triangle_count; ++t)
+        triangles += fmt::format("{}[{}, {}, {}]", triangles.empty() ? "" : ", ", index.at((*t)[0]), index.at((*t)[1]),
+                                 index.at((*t)[2]));
+    return fmt::format(
+        "{{\"type\": \"triangles\", \"name\": {}, \"material\": {},\n     \"positions\": [{}],\n{}     \"triangles\": "
+        "[{}]}}",
+        quoted(object.name), quoted(material), positions,
+        smooth ? fmt::format("     \"normals\": [{}],\n", normals) : "", triangles);
+}
+
+/// Names for the materials that no other has, and that are not empty.
+std::vector<std::string> material_names(const Scene& scene) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (const Material& m : scene.materials) {
+        const std::string base = m.name.empty() ? "material" : m.name;
+        std::string name       = base;
+        for (int n = 2; !taken.insert(name).second; ++n) name = fmt::format("{} {}", base, n);
+        names.push_back(name);
+    }
+    return names;
+}
+
+/// A list or an object of items, one a line.
+template <class Items, class Text>
+std::string lines(const Items& items, const Text& text) {
+    std::string all;
+    for (const auto& item : items) all += fmt::format("{}\n    {}", all.empty() ? "" : ",", text(item));
+    return all;
+}
+
+}  // namespace
+
+std::string native_text(const Scene& scene) {
+    const std::vector<std::string> names = material_names(scene);
+    constexpr std::string_view tones[]   = {"clamp", "divide", "hue"};
+    std::vector<std::size_t> material_list(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) material_list[i] = i;
+
+    std::string text = "{\n";
+    if (!scene.title.empty()) text += fmt::format("  \"title\": {},\n", quoted(scene.title));
+    if (!scene.shows.empty()) text += fmt::format("  \"shows\": {},\n", quoted(scene.shows));
+    text +=
+        fmt::format("  \"size\": [{}, {}],\n  \"camera\": {},\n", scene.width, scene.height, camera_text(scene.camera));
+    text +=
+        fmt::format("  \"ambient\": {}, \"background\": {}, \"tone\": \"{}\", \"exposure\": {}, \"viewer\": \"{}\",\n",
+                    vector(scene.ambient), vector(scene.background), tones[static_cast<std::size_t>(scene.tone)],
+                    number(scene.exposure), scene.local_viewer ? "local" : "infinite");
+    text += fmt::format("  \"materials\": {{{}\n  }},\n", lines(material_list, [&](std::size_t i) {
+                            return fmt::format("{}: {}", quoted(names[i]), material_text(scene.materials[i]));
+                        }));
+    text += fmt::format("  \"lights\": [{}\n  ],\n", lines(scene.lights, light_text));
+    text += fmt::format("  \"objects\": [{}\n  ]\n}}\n", lines(scene.objects, [&](const Object& object) {
+                            return object_text(scene, object, names[object.material]);
+                        }));
+    return text;
+}
+
+}  // namespace umbra

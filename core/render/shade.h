@@ -1,0 +1,24 @@
+// The sum: Phong's terms with S_j, evaluated in world space, and what makes a displayable picture of it.
+#pragma once
+
+#include <span>
+
+#include "umbra/core/image/image.h"
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/visibility_plane.h"
+
+namespace umbra {
+
+/// R G B, scene-linear, of a raster batch: I_e + I_a k_a O_d + sum_j S_j f_att,j I_j (...). `visibility` holds one
+/// plane a light; undefined points count as lit (S_j = 1) and are not part of image errors. Terms that no material or
+/// light asks for are not computed. Parallel; the same bits for any number of threads.
+[[nodiscard]] Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility);
+
+/// N, unit: the vertex normals interpolated, on the side of the geometric normal (which faces the eye where the
+/// material is two-sided). A vertex whose normal is zero lends the geometric one. Point i has a surface.
+[[nodiscard]] dvec3 shading_normal(const Scene& scene, const PointBatch& points, std::size_t i);
+
+/// Exposure, then the scene's tone map (REQUIREMENTS B7), then sRGB encoding: R G B in [0, 1] to be written as PNG.
+[[nodiscard]] Image displayed(const Image& linear, ToneMap tone, float exposure);
+
+}  // namespace umbra

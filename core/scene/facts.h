@@ -1,0 +1,67 @@
+// Scene facts: what a scene requires, found once, so that what it does not require is not computed.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbra/core/scene/planes.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+/// Topology of one object, over positions welded where they are bit-equal.
+struct ObjectFacts {
+    std::string name;
+    std::uint32_t triangles = 0, vertices = 0;   ///< vertices after welding, used ones only
+    std::uint32_t boundary_edges       = 0;      ///< one face
+    std::uint32_t nonmanifold_edges    = 0;      ///< three or more faces
+    std::uint32_t misoriented_edges    = 0;      ///< two faces that run it in the same direction
+    std::uint32_t nonmanifold_vertices = 0;      ///< more than one fan of faces
+    std::uint32_t degenerate_triangles = 0;      ///< exact zero area (two equal welded corners included)
+    std::uint32_t duplicate_triangles  = 0;      ///< same three welded corners as an earlier one, in any order
+    std::uint32_t components           = 0;      ///< connected over shared welded vertices
+    bool closed                        = false;  ///< closed 2-manifold: none of the faults above, duplicates included
+    bool outward                       = false;  ///< closed and of positive volume
+    bool planar                        = false;  ///< all its triangles lie in one plane
+    double area = 0, volume = 0;                 ///< volume by the divergence theorem; where the object is not closed,
+                                                 ///< that of the cones from the world's origin to its triangles
+    Box box;
+};
+
+/// Where a light stands to the eye, the lecture's four cases.
+enum class LightPlace : std::uint8_t { at_infinity, outside_view, inside_view, at_eye };
+[[nodiscard]] std::string_view to_string(LightPlace place);
+
+struct LightFacts {
+    std::string name;
+    LightKind kind   = LightKind::point;
+    LightPlace place = LightPlace::at_infinity;
+    bool hard() const { return !is_area(kind); }  ///< S_j is 0 or 1
+};
+
+struct SceneFacts {
+    std::uint64_t triangles = 0;
+    Box box;
+    std::vector<ObjectFacts> objects;
+    std::vector<LightFacts> lights;
+    std::vector<PlanarReceiver> planes;  ///< those with at least `planar_share` of the scene's area each, largest first
+    double planar_area_share     = 0;    ///< share of the scene's area that lies in `planes`, [0, 1]
+    std::uint32_t closed_objects = 0, open_objects = 0, nonmanifold_objects = 0, misoriented_objects = 0;
+    std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0;
+    bool has_specular = false, has_emission = false, has_transparency = false, has_mirrors = false, has_ambient = false,
+         has_attenuation = false, has_one_sided = false;
+    bool hard_lights_only         = true;
+    bool eye_inside_closed_object = false;
+};
+
+/// A plane counts as a receiver from this share of the scene's area on.
+inline constexpr double kPlanarShare = 0.005;
+
+[[nodiscard]] SceneFacts find_facts(const Scene& scene);
+
+/// What the scene asks a renderer for, and what it does not ask for: a phrase each, for people.
+[[nodiscard]] std::vector<std::string> requires_list(const SceneFacts& facts);
+[[nodiscard]] std::vector<std::string> not_required_list(const SceneFacts& facts);
+
+}  // namespace umbra

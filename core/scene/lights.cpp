@@ -1,0 +1,76 @@
+#include "umbra/core/scene/lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace umbra {
+
+std::string_view to_string(LightKind kind) {
+    switch (kind) {
+        case LightKind::directional: return "directional";
+        case LightKind::point: return "point";
+        case LightKind::spot: return "spot";
+        case LightKind::rectangle: return "rectangle";
+        case LightKind::disk: return "disk";
+        case LightKind::sphere: return "sphere";
+    }
+    return "";
+}
+
+ToLight to_light(const Light& light, vec3 p) {
+    // In double: a light far away must not lose its direction, nor a tiny scene its distances.
+    if (light.kind == LightKind::directional) return {vec3(-glm::normalize(dvec3(light.direction))), kInfinity};
+    const dvec3 v         = dvec3(light.position) - dvec3(p);
+    const double distance = glm::length(v);
+    if (distance == 0) return {vec3(0), 0};
+    return {vec3(v / distance), static_cast<float>(distance)};
+}
+
+float attenuation_factor(const Attenuation& a, float distance) {
+    if (std::isinf(distance)) return 1;  // a light at infinity is not attenuated
+    const double d           = distance;
+    const double denominator = a.c1 + a.c2 * d + a.c3 * d * d;
+    // Positive coefficients make a zero denominator possible only at d = 0 with c1 = 0: the limit is capped, so that
+    // the sum stays finite and still falls monotonically.
+    const double factor = denominator > 0 ? 1 / denominator : static_cast<double>(std::numeric_limits<float>::max());
+    return static_cast<float>(std::min(factor, a.clamp ? 1.0 : 1e30));
+}
+
+namespace {
+
+/// In double: a cosine near 1 that is off by one float step is off by 6 % once it is raised to 1e6.
+float spot_factor_of(const Spot& spot, double cos_angle) {
+    const double cos_cutoff = std::cos(spot.cutoff);
+    if (cos_angle < cos_cutoff || cos_angle <= 0) return 0;
+    const auto power = [&] { return std::pow(std::min(cos_angle, 1.0), static_cast<double>(spot.exponent)); };
+    switch (spot.falloff) {
+        case SpotFalloff::cosine: return static_cast<float>(power());
+        case SpotFalloff::zachmann:
+            // As the lecture prints it, it goes negative near the rim for n > 1: clamped at 0.
+            return static_cast<float>(std::max(0.0, (power() - cos_cutoff) / (1 - cos_cutoff)));
+        case SpotFalloff::smooth: {
+            const double cos_inner = std::cos(spot.inner);
+            const double t = std::clamp((cos_angle - cos_cutoff) / std::max(1e-3, cos_inner - cos_cutoff), 0.0, 1.0);
+            return static_cast<float>(t * t);
+        }
+    }
+    return 0;
+}
+
+}  // namespace
+
+float spot_factor(const Spot& spot, float cos_angle) { return spot_factor_of(spot, static_cast<double>(cos_angle)); }
+
+float falloff(const Light& light, vec3 p) {
+    const ToLight to = to_light(light, p);
+    if (light.range > 0 && to.distance > light.range) return 0;
+    float factor = attenuation_factor(light.attenuation, to.distance);
+    if (light.kind == LightKind::spot) {
+        if (to.distance == 0) return 0;  // in no direction from it
+        const dvec3 from_light = glm::normalize(dvec3(p) - dvec3(light.position));
+        factor *= spot_factor_of(light.spot, glm::dot(glm::normalize(dvec3(light.direction)), from_light));
+    }
+    return factor;
+}
+
+}  // namespace umbra

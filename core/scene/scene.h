@@ -1,0 +1,75 @@
+// The scene: world-space triangles with objects and materials, lights, one camera. Made once, read by all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "umbra/core/base/math.h"
+#include "umbra/core/scene/camera.h"
+#include "umbra/core/scene/lights.h"
+#include "umbra/core/scene/materials.h"
+
+namespace umbra {
+
+using TriangleId                        = std::uint32_t;
+inline constexpr TriangleId kNoTriangle = 0xffffffffu;
+inline constexpr double kMaxCoordinate  = 1e18;  ///< larger magnitudes are refused where scenes are read
+
+/// A run of consecutive triangles that moves together and has one material.
+struct Object {
+    std::string name;
+    std::uint32_t first_triangle = 0;
+    std::uint32_t triangle_count = 0;
+    std::uint32_t material       = 0;
+};
+
+enum class ToneMap : std::uint8_t {
+    clamp,   ///< min(I, 1)
+    divide,  ///< I / max(I over the image), where that is above 1
+    hue      ///< compresses the largest channel, scales the others with it: keeps hue and saturation
+};
+
+/// Pixels along a side of a picture, in a scene file and on the command line.
+inline constexpr int kMaxPictureSide = 16384;
+
+struct Scene {
+    std::string name;    ///< file name without folder and ending; names output folders
+    std::string title;   ///< for people; defaults to `name`
+    std::string shows;   ///< one sentence: what this scene shows
+    std::string source;  ///< the file it came from; empty if made in memory
+
+    std::vector<vec3> positions;                 ///< finite
+    std::vector<vec3> normals;                   ///< one a position, unit; zero where the face normal is meant
+    std::vector<uvec3> triangles;                ///< indices into positions, anticlockwise seen from outside
+    std::vector<std::uint32_t> triangle_object;  ///< one a triangle
+    std::vector<Object> objects;                 ///< in order of first_triangle, covering all triangles
+    std::vector<Material> materials;
+    std::vector<Light> lights;
+
+    Camera camera;
+    int width  = 640;  ///< the picture's size where the command names none
+    int height = 360;
+    vec3 ambient{1};     ///< I_a, global
+    vec3 background{0};  ///< where the eye ray meets nothing
+    ToneMap tone      = ToneMap::clamp;
+    float exposure    = 1;     ///< factor before the tone map
+    bool local_viewer = true;  ///< false: V is constant, against the view direction (B9)
+
+    std::vector<std::string> warnings;  ///< what loading assumed, a sentence each
+
+    [[nodiscard]] vec3 vertex(TriangleId t, int k) const { return positions[triangles[t][k]]; }
+};
+
+/// Bounds of all triangles' vertices (unused positions do not count).
+[[nodiscard]] Box bounds(const Scene& scene);
+
+/// cross(b - a, c - a) in double; not normalised; its length is twice the area.
+[[nodiscard]] dvec3 area_normal(const Scene& scene, TriangleId t);
+
+/// Adds an object: positions, normals (may be empty: face normals) and triangles in world space.
+/// Returns its index. The caller owns what it passed; everything is copied. Throws std::invalid_argument
+/// where a triangle names a position that is not there.
+std::uint32_t add_object(Scene& scene, std::string name, const std::vector<vec3>& positions,
+                         const std::vector<vec3>& normals, const std::vector<uvec3>& triangles, std::uint32_t material);
+
+}  // namespace umbra

@@ -1,0 +1,124 @@
+// A rectangle or disk light seen from one surface point, in coordinates in which the light is fixed: a point q is
+// q - p = X u + Y v + W (c - p), with c the light's centre and u, v its half axes. Seen from p, q lies over the place
+// (X/W, Y/W) of the light; the light is |x|, |y| <= 1 or the unit disk, and what stands before it has 0 < W < 1.
+//
+// X, Y and W are quotients of determinants over one denominator, det(u, v, c - p) squared apart: x, y and signs need
+// the numerators alone.
+//
+// In double each numerator comes with a bound on its error; in rationals there is none.
+#pragma once
+
+#include "umbra/shadows/exact/exact_point.h"
+
+namespace umbra {
+
+/// The light's plane: centre and half axes. For a sphere it moves with the point and is rounded to double once.
+struct LightPlane {
+    dvec3 u{1, 0, 0}, v{0, 0, 1};
+    Entries centre_from_corner;             ///< centre less the first corner of the point's triangle
+    std::optional<Rational3> exact_centre;  ///< in rationals; without, the corner and centre_from_corner as they stand
+    double rounding = 0;                    ///< how far the light's rim may lie from where it is meant to be, in units
+                                            ///< of the half axes
+};
+
+/// A point in numerators: (X, Y, W) times a positive number, the same for all points.
+template <class T>
+struct Numerators {
+    T x, y, w;
+    double error = 0;  ///< of each
+};
+
+class FloatSpace {
+public:
+    using Number = double;
+
+    FloatSpace(const ExactPoint& p, const LightPlane& frame) : p_(p) {
+        const dvec3 &u = frame.u, &v = frame.v;
+        const Entries r   = p.to(frame.centre_from_corner);
+        const double side = std::max(largest(u), largest(v));
+        gx_               = glm::cross(v, r.value);
+        gy_               = glm::cross(r.value, u);
+        gw_               = glm::cross(u, v);
+        // A component is a difference of two products: off by twice the entry's error, and by three roundings.
+        g_error_             = side * (2 * r.error + 6 * kUnit * std::max(largest(r.value), side));
+        g_size_              = std::max({largest(gx_), largest(gy_), largest(gw_)});
+        const double gw_size = largest(gw_), gw_error = 6 * kUnit * side * side;
+        height_ = glm::dot(gw_, r.value);
+        height_error_ =
+            3 * (gw_size * r.error + gw_error * (largest(r.value) + r.error)) + 12 * kUnit * gw_size * largest(r.value);
+        orientation_ = std::abs(height_) > height_error_ && height_error_ > 1e-290 ? (height_ > 0 ? 1 : -1) : kUnsure;
+        if (orientation_ == -1) gx_ = -gx_, gy_ = -gy_, gw_ = -gw_, height_ = -height_;
+        to_centre_ = r;
+    }
+
+    /// +1 where (u, v, c - p) is right-handed, so that orientations in the light's plane are those of the world seen
+    /// from p; -1 where it is not; kUnsure.
+    [[nodiscard]] int orientation() const { return orientation_; }
+    /// W's numerator on the light's plane.
+    [[nodiscard]] double height() const { return height_; }
+
+    [[nodiscard]] Numerators<double> project(vec3 q) const {
+        const Entries d   = p_.to(q);
+        const double size = largest(d.value);
+        // Of a sum of three products: the entries' errors, and five roundings.
+        return {glm::dot(d.value, gx_), glm::dot(d.value, gy_), glm::dot(d.value, gw_),
+                3 * (size * g_error_ + d.error * (g_size_ + g_error_)) + 15 * kUnit * size * g_size_};
+    }
+
+    /// Whether q stands in or beyond the light's plane: 1, 0 or kUnsure.
+    [[nodiscard]] int beyond(const Numerators<double>& q) const {
+        const double over = q.w - height_, error = q.error + height_error_;
+        return over > error ? 1 : over < -error ? 0 : kUnsure;
+    }
+
+    [[nodiscard]] const Entries& to_centre() const { return to_centre_; }
+    [[nodiscard]] dvec3 gx() const { return gx_; }
+    [[nodiscard]] dvec3 gy() const { return gy_; }
+    [[nodiscard]] dvec3 gw() const { return gw_; }
+    [[nodiscard]] double g_error() const { return g_error_; }
+    [[nodiscard]] double height_error() const { return height_error_; }
+
+private:
+    const ExactPoint& p_;
+    Entries to_centre_;
+    dvec3 gx_{0}, gy_{0}, gw_{0};
+    double g_error_ = 0, g_size_ = 0, height_ = 0, height_error_ = 0;
+    int orientation_ = kUnsure;
+};
+
+class RationalSpace {
+public:
+    using Number = Rational;
+
+    RationalSpace(const ExactPoint& p, const LightPlane& frame) : p_(p.exact()) {
+        const Rational3 u = rational(frame.u), v = rational(frame.v);
+        const Rational3 c =
+            frame.exact_centre ? *frame.exact_centre : rational(p.corner()) + rational(frame.centre_from_corner.value);
+        const Rational3 r = c - p_;
+        gx_               = cross(v, r);
+        gy_               = cross(r, u);
+        gw_               = cross(u, v);
+        height_           = dot(gw_, r);
+        orientation_      = static_cast<int>(CGAL::sign(height_));
+        if (orientation_ == -1) {
+            for (Rational3* g : {&gx_, &gy_, &gw_})
+                for (Rational& x : *g) x = -x;
+            height_ = -height_;
+        }
+    }
+
+    [[nodiscard]] int orientation() const { return orientation_; }  ///< 0 where p lies in the light's plane
+    [[nodiscard]] const Rational& height() const { return height_; }
+    [[nodiscard]] Numerators<Rational> project(vec3 q) const {
+        const Rational3 d = rational(q) - p_;
+        return {dot(d, gx_), dot(d, gy_), dot(d, gw_), 0};
+    }
+    [[nodiscard]] int beyond(const Numerators<Rational>& q) const { return q.w >= height_ ? 1 : 0; }
+
+private:
+    Rational3 p_, gx_, gy_, gw_;
+    Rational height_;
+    int orientation_ = 0;
+};
+
+}  // namespace umbra

@@ -1,0 +1,151 @@
+// A bounding volume hierarchy that never loses a box: for exact questions, so apart from Embree.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "umbra/core/base/math.h"
+
+namespace umbra {
+
+/// Binary tree of axis-aligned boxes, split by binned surface area. What is in a box is known to the caller: items are
+/// indices into the boxes that the tree was made of.
+/// [Ingo Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007]
+class BoxTree {
+public:
+    using Item = std::uint32_t;
+
+    explicit BoxTree(std::vector<Box> boxes);
+
+    /// A piece of a line: from + s direction, 0 <= s <= length (which may be infinite). `slack` is how far the true
+    /// piece may lie from this one, in every coordinate.
+    struct Piece {
+        dvec3 from{0}, direction{0, 1, 0};
+        double length = 1;
+        double slack  = 0;
+    };
+
+    /// Calls visit(item) for every item whose box the piece may meet, until visit returns false. Conservative:
+    /// the boxes are widened by more than the rounding of the test.
+    template <class Visit>
+    void visit(const Piece& piece, const Visit& visit) const {
+        if (nodes_.empty()) return;
+        const dvec3 inverse = 1.0 / piece.direction;  // infinite where a component is 0: the test below copes
+        std::uint32_t stack[64];
+        int depth      = 0;
+        stack[depth++] = 0;
+        while (depth > 0) {
+            const Node& node = nodes_[stack[--depth]];
+            if (!meets(node, piece, inverse)) continue;
+            if (node.count > 0) {
+                for (std::uint32_t k = 0; k < node.count; ++k)
+                    if (!visit(order_[node.first + k])) return;
+            } else {
+                stack[depth++] = node.first;
+                stack[depth++] = node.first + 1;
+            }
+        }
+    }
+
+    /// A convex region: the points q with dot(normal, q - from) + offset >= 0 for each of its planes. Of what is
+    /// meant, `from` may lie `slack` off in every coordinate, and each normal `tilt`.
+    struct Region {
+        struct Plane {
+            dvec3 normal{0};
+            double offset = 0;
+        };
+        std::array<Plane, 5> planes{};
+        dvec3 from{0};
+        double slack = 0, tilt = 0;
+    };
+
+    /// The same for every item whose box may meet the region: all of those, and some that only come close. Asks
+    /// enter(node, box) first, and leaves out all that is in nodes for which it says no.
+    template <class Enter, class Visit>
+    void visit(const Region& region, const Enter& enter, const Visit& visit) const {
+        if (nodes_.empty()) return;
+        std::uint32_t stack[64];
+        int depth      = 0;
+        stack[depth++] = 0;
+        while (depth > 0) {
+            const std::uint32_t index = stack[--depth];
+            const Node& node          = nodes_[index];
+            if (!meets(node, region) || !enter(index, Box{node.min, node.max})) continue;
+            if (node.count > 0) {
+                for (std::uint32_t k = 0; k < node.count; ++k)
+                    if (!visit(order_[node.first + k])) return;
+            } else {
+                stack[depth++] = node.first;
+                stack[depth++] = node.first + 1;
+            }
+        }
+    }
+
+    /// What `enter` may want to know: of(item) of all items in a node, joined; one a node.
+    template <class Of, class Join>
+    [[nodiscard]] auto summaries(const Of& of, const Join& join) const {
+        std::vector<decltype(of(Item{}))> all(nodes_.size());
+        for (std::size_t n = nodes_.size(); n-- > 0;) {  // children come after their parent
+            const Node& node = nodes_[n];
+            all[n]           = node.count > 0 ? of(order_[node.first]) : join(all[node.first], all[node.first + 1]);
+            for (std::uint32_t k = 1; k < node.count; ++k) all[n] = join(all[n], of(order_[node.first + k]));
+        }
+        return all;
+    }
+
+    [[nodiscard]] std::size_t memory_bytes() const {
+        return nodes_.size() * sizeof(Node) + order_.size() * sizeof(Item);
+    }
+
+private:
+    struct Node {
+        vec3 min{0}, max{0};
+        std::uint32_t first = 0;  ///< leaf: index into order_; inner: index of two neighbouring nodes
+        std::uint32_t count = 0;  ///< 0: inner
+    };
+
+    static bool meets(const Node& node, const Piece& piece, const dvec3& inverse) {
+        double enter = 0, leave = piece.length;
+        for (int k = 0; k < 3; ++k) {
+            // Widened by the slack and, relative to the numbers at hand, by far more than two roundings.
+            const double lo   = static_cast<double>(node.min[k]) - piece.from[k];
+            const double hi   = static_cast<double>(node.max[k]) - piece.from[k];
+            const double wide = piece.slack + 1e-14 * (std::abs(lo) + std::abs(hi));
+            if (piece.direction[k] == 0) {
+                if (lo > wide || hi < -wide) return false;
+                continue;
+            }
+            double a = (lo - wide) * inverse[k], b = (hi + wide) * inverse[k];
+            if (a > b) std::swap(a, b);
+            enter = std::max(enter, a);
+            leave = std::min(leave, b);
+        }
+        return enter <= leave + 1e-14 * std::abs(leave);
+    }
+
+    /// Of each plane, the corner that lies farthest on its inner side. What rounding does to the sum is below 1e-14 of
+    /// its terms' magnitudes.
+    static bool meets(const Node& node, const Region& region) {
+        const dvec3 lo = dvec3(node.min) - region.from, hi = dvec3(node.max) - region.from;
+        for (const Region::Plane& plane : region.planes) {
+            double value = plane.offset, wide = 1e-14 * std::abs(plane.offset);
+            for (int k = 0; k < 3; ++k) {
+                const double n = plane.normal[k], q = n > 0 ? hi[k] : lo[k];
+                value += n * q;
+                wide += std::abs(n) * (region.slack + 1e-14 * std::abs(q)) + region.tilt * (std::abs(q) + region.slack);
+            }
+            if (value < -wide) return false;
+        }
+        return true;
+    }
+
+    struct Builder;
+    std::vector<Node> nodes_;
+    std::vector<Item> order_;
+};
+
+}  // namespace umbra

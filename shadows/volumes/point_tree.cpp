@@ -1,0 +1,275 @@
+#include "umbra/shadows/volumes/point_tree.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+namespace umbra {
+namespace {
+
+// ---- where to look from ---------------------------------------------------------------------------------------------
+
+/// A direction along no axis, diagonal or other direction that scenes are built from: seen from there no edge hides
+/// another and no plane is edge on.
+const dvec3 kGeneric = glm::normalize(dvec3(0.5377014291, 0.6423909307, 0.5461827730));
+
+ViewFrame looking_at(dvec3 target, dvec3 origin) {
+    ViewFrame view;
+    view.origin  = origin;
+    view.forward = glm::normalize(target - origin);
+    view.right =
+        glm::normalize(glm::cross(view.forward, std::abs(view.forward.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0)));
+    view.down = glm::cross(view.forward, view.right);
+    return view;
+}
+
+/// The eye's view where all points lie well in front of it, but from a little beside the eye: so that a plane or an
+/// edge that contains the eye, as in scenes laid out on a grid, or a light at the eye, is no special case. A far eye
+/// comes nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye:
+/// they are looked at from outside their box.
+ViewFrame choose_view(const PointBatch& points, std::span<const std::uint32_t> active) {
+    Box box;
+    for (const std::uint32_t i : active) box = extend(box, points.position(i));
+    const dvec3 centre = 0.5 * (dvec3(box.min) + dvec3(box.max));
+    double radius      = 0.5 * glm::length(dvec3(box.max) - dvec3(box.min));
+    if (radius == 0) radius = std::max(0x1p-10 * glm::length(centre), 0x1p-60);
+
+    dvec3 back = kGeneric;
+    if (points.raster && points.raster->projection == Projection::perspective) {
+        const CameraFrame& f = *points.raster;
+        const dvec3 to_eye   = f.eye - centre;
+        const double away    = glm::length(to_eye);
+        double nearest       = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t i : active)
+            nearest = std::min(nearest, glm::dot(dvec3(points.position(i)) - f.eye, f.forward));
+        if (away > 8 * radius) {
+            back = to_eye / away;
+        } else if (nearest > 0x1p-20 * (radius + away)) {
+            const dvec3 aside = (0x1p-14 * nearest) * kGeneric;
+            return {f.eye + aside, f.right, -f.up, f.forward};
+        }
+    } else if (points.raster) {
+        back = -points.raster->forward;
+    }
+    return looking_at(centre, centre + 4 * radius * back + 0x1p-10 * radius * kGeneric);
+}
+
+// ---- the order of points --------------------------------------------------------------------------------------------
+
+/// Every second bit of the result is one of v's sixteen. [Guy Morton, A Computer Oriented Geodetic Data Base, 1966]
+std::uint32_t spread(std::uint32_t v) {
+    v = (v | v << 8) & 0x00ff00ffu;
+    v = (v | v << 4) & 0x0f0f0f0fu;
+    v = (v | v << 2) & 0x33333333u;
+    v = (v | v << 1) & 0x55555555u;
+    return v;
+}
+
+bool needs_answer(Facing f) { return f == Facing::front || f == Facing::partly; }
+
+/// Points that need an answer; those of a raster in blocks of 8 x 8 pixels along Morton's curve, so that neighbours in
+/// the list are neighbours in the picture.
+std::vector<std::uint32_t> active_points(const PointBatch& points, std::span<const Facing> facing) {
+    std::vector<std::uint32_t> active;
+    active.reserve(points.size());
+    if (!points.raster) {
+        for (std::uint32_t i = 0; i < points.size(); ++i)
+            if (needs_answer(facing[i])) active.push_back(i);
+        return active;
+    }
+    const auto width  = static_cast<std::uint32_t>(points.raster->width);
+    const auto height = static_cast<std::uint32_t>(points.raster->height);
+    std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>> blocks;
+    for (std::uint32_t y = 0; y < height; y += 8)
+        for (std::uint32_t x = 0; x < width; x += 8) blocks.push_back({spread(x / 8) | spread(y / 8) << 1, {x, y}});
+    std::sort(blocks.begin(), blocks.end());
+    for (const auto& [key, corner] : blocks)
+        for (std::uint32_t y = corner.second; y < std::min(corner.second + 8, height); ++y)
+            for (std::uint32_t x = corner.first; x < std::min(corner.first + 8, width); ++x)
+                if (needs_answer(facing[y * width + x])) active.push_back(y * width + x);
+    return active;
+}
+
+/// Sorts points without a raster along Morton's curve over their projections.
+void sort_by_projection(std::vector<std::uint32_t>& index, const PointBatch& points, const ViewFrame& view) {
+    const auto projected = [&](std::uint32_t i) {
+        const dvec3 p = view.seen(dvec3(points.position(i)));
+        return dvec2(p.x, p.y) / p.z;
+    };
+    dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const std::uint32_t i : index) low = glm::min(low, projected(i)), high = glm::max(high, projected(i));
+    const dvec2 scale = 65535.0 / glm::max(high - low, dvec2(std::numeric_limits<double>::min()));
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> keys(index.size());
+    parallel_ranges(index.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const dvec2 cell = glm::clamp((projected(index[k]) - low) * scale, dvec2(0), dvec2(65535));
+            keys[k] = {spread(static_cast<std::uint32_t>(cell.x)) | spread(static_cast<std::uint32_t>(cell.y)) << 1,
+                       index[k]};
+        }
+    });
+    tbb::parallel_sort(keys.begin(), keys.end());
+    for (std::size_t k = 0; k < index.size(); ++k) index[k] = keys[k].second;
+}
+
+// ---- half-spaces over boxes -----------------------------------------------------------------------------------------
+
+enum class Cover : std::uint8_t { none, some, all };
+
+/// Certain answers only: what lies nearer to the plane than the rounding of f, at any point of the box, is `some`, so
+/// that a point gets the same answer whether a box or the point itself is asked.
+Cover cover(const HalfSpace& f, dvec3 min, dvec3 max) {
+    const double x0 = f.nx * min.x, x1 = f.nx * max.x, y0 = f.ny * min.y, y1 = f.ny * max.y, w0 = f.nw * min.z,
+                 w1       = f.nw * max.z;
+    const double low      = std::min(x0, x1) + std::min(y0, y1) + f.nz + std::min(w0, w1);
+    const double high     = std::max(x0, x1) + std::max(y0, y1) + f.nz + std::max(w0, w1);
+    const double rounding = 0x1p-49 * (std::max(std::abs(x0), std::abs(x1)) + std::max(std::abs(y0), std::abs(y1)) +
+                                       std::abs(f.nz) + std::max(std::abs(w0), std::abs(w1)));
+    return high < -rounding ? Cover::none : low > rounding ? Cover::all : Cover::some;
+}
+
+}  // namespace
+
+dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin) {
+    const TriangleId t     = points.triangle[i];
+    const dvec3 corners[3] = {dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)), dvec3(scene.vertex(t, 2))};
+    double weight[3]       = {0, points.u[i], points.v[i]};
+    weight[0]              = 1 - weight[1] - weight[2];
+    // Most points are far inside: a weight times a height is a distance.
+    constexpr double kClear = 0x1p-44, kMostShare = 0x1p-26;
+    if (std::min({weight[0], weight[1], weight[2]}) < kMostShare) {
+        const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
+        double far        = 0;
+        for (const dvec3 c : corners) far = std::max(far, glm::length(c - origin));
+        for (int k = 0; k < 3; ++k) {
+            const int l = (k + 1) % 3, m = (k + 2) % 3;
+            const double opposite = glm::length(corners[l] - corners[m]);
+            const double share    = std::min(kMostShare, kClear * far * opposite / area);
+            if (weight[k] >= share) continue;
+            // Towards the corner, from the nearer of the others that has the weight to give.
+            const bool l_is_nearer = glm::length(corners[l] - corners[k]) < glm::length(corners[m] - corners[k]);
+            const int near = l_is_nearer ? l : m, other = l_is_nearer ? m : l;
+            weight[weight[near] > 0.25 ? near : other] -= share - weight[k];
+            weight[k] = share;
+        }
+    }
+    return (corners[0] - origin) + weight[1] * (corners[1] - corners[0]) + weight[2] * (corners[2] - corners[0]);
+}
+
+// ---- the tree -------------------------------------------------------------------------------------------------------
+
+PointTree::PointTree(const Scene& scene, const PointBatch& points, LightId light)
+    : index_(active_points(points, points.facing[light])) {
+    if (index_.empty()) return;
+    view_ = choose_view(points, index_);
+    if (!points.raster) sort_by_projection(index_, points, view_);
+    project(scene, points);
+    build_nodes();
+}
+
+void PointTree::project(const Scene& scene, const PointBatch& points) {
+    const std::size_t padded = (size() + kLeaf - 1) / kLeaf * kLeaf;
+    for (std::vector<double>* v : {&x_, &y_, &w_}) v->resize(padded, 0);
+    count_.resize(padded, 0);
+    parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const dvec3 p = view_.turned(named_point(scene, points, index_[k], view_.origin));
+            x_[k] = p.x / p.z, y_[k] = p.y / p.z, w_[k] = 1 / p.z;
+        }
+    });
+}
+
+void PointTree::build_nodes() {
+    levels_.emplace_back((size() + kLeaf - 1) / kLeaf);
+    parallel_ranges(levels_[0].size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            Node& n = levels_[0][leaf];
+            n.min = n.max = dvec3(x_[leaf * kLeaf], y_[leaf * kLeaf], w_[leaf * kLeaf]);
+            for (std::size_t k = leaf * kLeaf; k < std::min(size(), (leaf + 1) * kLeaf); ++k) {
+                n.min = glm::min(n.min, dvec3(x_[k], y_[k], w_[k]));
+                n.max = glm::max(n.max, dvec3(x_[k], y_[k], w_[k]));
+            }
+        }
+    });
+    while (levels_.back().size() > 1) {
+        const std::vector<Node>& below = levels_.back();
+        std::vector<Node> level((below.size() + kFanOut - 1) / kFanOut);
+        for (std::size_t i = 0; i < level.size(); ++i) {
+            level[i] = below[i * kFanOut];
+            for (std::size_t c = i * kFanOut; c < std::min(below.size(), (i + 1) * kFanOut); ++c)
+                level[i].min = glm::min(level[i].min, below[c].min),
+                level[i].max = glm::max(level[i].max, below[c].max);
+        }
+        levels_.push_back(std::move(level));
+    }
+}
+
+void PointTree::add(const Region& region, std::int32_t weight) {
+    if (!levels_.empty()) descend(region, weight, levels_.size() - 1, 0, (1u << region.count) - 1);
+}
+
+/// `open` has a bit for each face that does not yet hold the whole node.
+void PointTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t node, unsigned open) {
+    Node& n = levels_[level][node];
+    if (glm::any(glm::lessThan(n.max, region.box_min)) || glm::any(glm::greaterThan(n.min, region.box_max))) return;
+    // The box alone rules small regions out of large nodes; their faces are asked where they can tell more.
+    const dvec3 region_size = region.box_max - region.box_min, node_size = n.max - n.min;
+    const bool small = level > 0 && 2 * region_size.x < node_size.x && 2 * region_size.y < node_size.y;
+    for (unsigned rest = small ? 0 : open; rest != 0; rest &= rest - 1) {
+        const auto face = static_cast<unsigned>(std::countr_zero(rest));
+        switch (cover(region.faces[face], n.min, n.max)) {
+            case Cover::none: return;
+            case Cover::all: open &= ~(1u << face); break;
+            case Cover::some: break;
+        }
+    }
+    if (open == 0) {
+        std::atomic_ref(n.count).fetch_add(weight, std::memory_order_relaxed);
+    } else if (level == 0) {
+        add_to_leaf(region, weight, node, open);
+    } else {
+        const std::size_t last = std::min(levels_[level - 1].size(), (node + 1) * kFanOut);
+        for (std::size_t child = node * kFanOut; child < last; ++child) descend(region, weight, level - 1, child, open);
+    }
+}
+
+void PointTree::add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open) {
+    const double* x = &x_[leaf * kLeaf];
+    const double* y = &y_[leaf * kLeaf];
+    const double* w = &w_[leaf * kLeaf];
+    alignas(64) std::array<double, kLeaf> least;
+    least.fill(std::numeric_limits<double>::infinity());
+    for (; open != 0; open &= open - 1) {
+        const HalfSpace f = region.faces[static_cast<std::size_t>(std::countr_zero(open))];
+        for (std::size_t k = 0; k < kLeaf; ++k) {
+            const double value = (f.nx * x[k] + f.ny * y[k]) + (f.nz + f.nw * w[k]) + f.tie;
+            least[k]           = value < least[k] ? value : least[k];
+        }
+    }
+    std::uint64_t within = 0;
+    for (std::size_t k = 0; k < kLeaf; ++k) within |= std::uint64_t(least[k] > 0) << k;
+    for (; within != 0; within &= within - 1) {
+        std::int32_t& count = count_[leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(within))];
+        std::atomic_ref(count).fetch_add(weight, std::memory_order_relaxed);
+    }
+}
+
+void PointTree::push_down() {
+    for (std::size_t level = levels_.size(); level-- > 0;) {
+        std::vector<Node>& nodes = levels_[level];
+        for (std::size_t i = 0; i < nodes.size(); ++i) {
+            if (nodes[i].count == 0) continue;
+            if (level > 0) {
+                const std::size_t last = std::min(levels_[level - 1].size(), (i + 1) * kFanOut);
+                for (std::size_t c = i * kFanOut; c < last; ++c) levels_[level - 1][c].count += nodes[i].count;
+            } else {
+                for (std::size_t k = i * kLeaf; k < (i + 1) * kLeaf; ++k) count_[k] += nodes[i].count;
+            }
+            nodes[i].count = 0;
+        }
+    }
+}
+
+}  // namespace umbra

@@ -1,0 +1,135 @@
+#include "umbra/shadows/zbuffer/casters.h"
+
+#include <bit>
+#include <cmath>
+
+namespace umbra {
+namespace {
+
+constexpr double kRounding = 0x1p-22;  // of a corner that was computed in float, relative
+constexpr double kGrazing  = 1e-6;     // sine: flatter light may as well lie in the plane
+
+double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
+    const dvec3 n     = glm::cross(b - a, c - a);
+    const auto within = [&](dvec3 from, dvec3 to) { return glm::dot(glm::cross(to - from, p - from), n) >= 0; };
+    if (glm::dot(n, n) > 0 && within(a, b) && within(b, c) && within(c, a))
+        return std::abs(glm::dot(p - a, n)) / glm::length(n);
+    const auto to_segment = [&](dvec3 from, dvec3 to) {
+        const dvec3 d       = to - from;
+        const double length = glm::dot(d, d);
+        const double t      = length > 0 ? std::clamp(glm::dot(p - from, d) / length, 0.0, 1.0) : 0.0;
+        return glm::length(from + t * d - p);
+    };
+    return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
+}  // namespace
+
+Casters::Casters(const Scene& scene, const SceneFacts& facts, bool leave_out)
+    : scene_(&scene), planes_of_position_(scene.positions.size(), 0) {
+    std::vector<std::uint8_t> plane_of_triangle(scene.triangles.size(), kMaxPlanes);
+    if (leave_out) find_planes(facts, plane_of_triangle);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            planes_of_position_[scene.triangles[t][k]] |= std::uint64_t{1} << plane_of_triangle[t];
+    for (const Object& object : scene.objects)
+        for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
+            const TriangleId t = object.first_triangle + i;
+            if (i == 0 || plane_of_triangle[t] != parts_.back().plane)
+                parts_.push_back({t, 0, plane_of_triangle[t], {}});
+            parts_.back().count += 1;
+            for (int k = 0; k < 3; ++k) parts_.back().box = extend(parts_.back().box, scene.vertex(t, k));
+        }
+    find_sides();
+}
+
+void Casters::find_planes(const SceneFacts& facts, std::vector<std::uint8_t>& plane_of_triangle) {
+    const vec3 corner    = glm::max(glm::abs(facts.box.min), glm::abs(facts.box.max));
+    const double largest = std::max({corner.x, corner.y, corner.z});
+    for (const PlanarReceiver& plane : facts.planes) {
+        if (planes_.size() == kMaxPlanes) break;
+        for (TriangleId t : plane.triangles) plane_of_triangle[t] = static_cast<std::uint8_t>(planes_.size());
+        planes_.push_back({plane.normal, plane.offset, plane.tolerance + kRounding * largest, {}, {}});
+    }
+}
+
+void Casters::find_sides() {
+    const std::size_t n = planes_.size();
+    parallel_ranges(n, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            Plane& plane = planes_[i];
+            plane.others.resize(n);
+            for (std::size_t p = 0; p < planes_of_position_.size(); ++p) {
+                const std::uint64_t in = planes_of_position_[p];
+                if (in == 0) continue;
+                const double distance = glm::dot(plane.normal, dvec3(scene_->positions[p])) - plane.offset;
+                plane.scene.add(distance);
+                for (std::uint64_t rest = in & ~(std::uint64_t{1} << kMaxPlanes); rest != 0; rest &= rest - 1)
+                    plane.others[std::countr_zero(rest)].add(distance);
+            }
+        }
+    });
+}
+
+void Casters::select(const Light& light) {
+    const bool infinite = light.kind == LightKind::directional;
+    std::vector<std::size_t> set;
+    std::vector<int> side(planes_.size());
+    drawn_  = ~std::uint64_t{0};
+    fitted_ = ~std::uint64_t{0};
+    for (std::size_t i = 0; i < planes_.size(); ++i) {
+        const Plane& plane    = planes_[i];
+        const double distance = infinite ? -glm::dot(plane.normal, glm::normalize(dvec3(light.direction)))
+                                         : glm::dot(plane.normal, dvec3(light.position)) - plane.offset;
+        const double least    = infinite ? kGrazing : plane.tolerance;
+        side[i]               = distance > least ? 1 : distance < -least ? -1 : 0;
+        if (side[i] == 0) continue;
+        if (plane.has_on_side(plane.scene, side[i])) drawn_ &= ~(std::uint64_t{1} << i);
+        if (std::ranges::all_of(set, [&](std::size_t j) {
+                return plane.has_on_side(plane.others[j], side[i]) &&
+                       planes_[j].has_on_side(planes_[j].others[i], side[j]);
+            })) {
+            set.push_back(i);
+            fitted_ &= ~(std::uint64_t{1} << i);
+        }
+    }
+    box_ = {};
+    for (const Part& part : parts_)
+        if (has(fitted_, part)) box_ = extend(box_, part.box);
+}
+
+double Casters::distance(dvec3 p) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Part& part : parts_) {
+        if (!has(fitted_, part)) continue;
+        const dvec3 to_box = glm::max(glm::max(dvec3(part.box.min) - p, p - dvec3(part.box.max)), 0.0);
+        if (glm::length(to_box) >= nearest) continue;
+        const std::array<Extent, 1> range = reduce<1>(part.count, [&](std::size_t i, std::array<Extent, 1>& all) {
+            const auto t = static_cast<TriangleId>(part.first + i);
+            all[0].add(distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
+                                            dvec3(scene_->vertex(t, 2))));
+        });
+        nearest                           = std::min(nearest, range[0].min);
+    }
+    return nearest;
+}
+
+std::vector<std::span<const uvec3>> Casters::seen_by(const dmat4& clip_from_world) const {
+    std::vector<std::span<const uvec3>> runs;
+    for (const Part& part : parts_) {
+        if (!has(drawn_, part)) continue;
+        std::array<int, 5> outside{};
+        for (int corner = 0; corner < 8; ++corner) {
+            const dvec4 c = clip_from_world * dvec4(corner & 1 ? part.box.max.x : part.box.min.x,
+                                                    corner & 2 ? part.box.max.y : part.box.min.y,
+                                                    corner & 4 ? part.box.max.z : part.box.min.z, 1);
+            const std::array<bool, 5> is_outside{c.w <= 0, c.x > c.w, c.x<-c.w, c.y> c.w, c.y < -c.w};
+            for (int side = 0; side < 5; ++side) outside[side] += is_outside[side];
+        }
+        if (std::ranges::find(outside, 8) == outside.end())
+            runs.push_back(std::span(scene_->triangles).subspan(part.first, part.count));
+    }
+    return runs;
+}
+
+}  // namespace umbra

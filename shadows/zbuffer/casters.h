@@ -1,0 +1,118 @@
+// What of a scene can block a light, and where it lies.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/scene/facts.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+/// An interval of numbers, empty at first.
+struct Extent {
+    double min = +std::numeric_limits<double>::infinity();
+    double max = -std::numeric_limits<double>::infinity();
+    void add(double v) { min = std::min(min, v), max = std::max(max, v); }
+    void add(const Extent& r) { min = std::min(min, r.min), max = std::max(max, r.max); }
+    [[nodiscard]] double centre() const { return 0.5 * (min + max); }
+    [[nodiscard]] double half() const { return 0.5 * (max - min); }
+};
+
+/// What can cast a shadow, and where it lies.
+///
+/// Scenes stand on floors and between walls that reach far beyond all else, and a map fitted to those wastes its
+/// samples. What such planes do, seen from a light:
+///   - Where the whole scene lies on the light's side of a plane, it blocks nothing: no segment between two points of a
+///     closed half-space crosses its border. It is not drawn.
+///   - A set of planes, each with the others on the light's side, blocks nothing of these planes. All else that they
+///     or other triangles block lies where other triangles lie, or behind those: the map's window need only hold
+///     triangles outside the set. What is not in the window is lit.
+class Casters {
+public:
+    Casters(const Scene& scene, const SceneFacts& facts, bool leave_out);
+
+    /// Leaves out what need not be drawn, or not be fitted to, as seen from `light`.
+    void select(const Light& light);
+
+    [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] const Box& box() const { return box_; }  ///< of what is fitted to
+    [[nodiscard]] std::size_t memory_bytes() const {
+        return planes_of_position_.size() * sizeof(std::uint64_t) + parts_.size() * sizeof(Part);
+    }
+
+    /// Extent of each of the n values that `values` gives for a position, over all that is fitted to.
+    template <std::size_t n, class Values>
+    [[nodiscard]] std::array<Extent, n> ranges(const Values& values) const {
+        return reduce<n>(planes_of_position_.size(), [&](std::size_t i, std::array<Extent, n>& all) {
+            if ((planes_of_position_[i] & fitted_) == 0) return;
+            const std::array<double, n> v = values(dvec3(scene_->positions[i]));
+            for (std::size_t k = 0; k < n; ++k) all[k].add(v[k]);
+        });
+    }
+
+    /// From p to the nearest point of what is fitted to.
+    [[nodiscard]] double distance(dvec3 p) const;
+
+    /// Those triangles that are drawn, but for parts whose boxes lie wholly beyond one side of the view.
+    [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world) const;
+
+private:
+    static constexpr std::size_t kGrain      = 4096;
+    static constexpr std::uint8_t kMaxPlanes = 63;  ///< as many may be left out; also says "in none of them"
+
+    struct Plane {
+        dvec3 normal;
+        double offset;
+        double tolerance;            ///< how far corners that mean to lie in it, or to touch it, may miss it
+        Extent scene;                ///< distances of the whole scene
+        std::vector<Extent> others;  ///< distances of the other planes' triangles
+
+        [[nodiscard]] bool has_on_side(const Extent& distances, int side) const {
+            return side > 0 ? distances.min >= -tolerance : distances.max <= tolerance;
+        }
+    };
+    /// Consecutive triangles of one object that lie in one of planes_ together, or in none.
+    struct Part {
+        TriangleId first;
+        std::uint32_t count;
+        std::uint8_t plane;
+        Box box;
+    };
+
+    [[nodiscard]] static bool has(std::uint64_t planes, const Part& part) { return (planes >> part.plane & 1) != 0; }
+
+    void find_planes(const SceneFacts& facts, std::vector<std::uint8_t>& plane_of_triangle);
+
+    /// Where each plane has the others, and the scene.
+    void find_sides();
+
+    /// Ranges over `add(i, ranges)` for all i below `count`, in parallel.
+    template <std::size_t n, class Add>
+    [[nodiscard]] static std::array<Extent, n> reduce(std::size_t count, const Add& add) {
+        const std::size_t blocks = (count + kGrain - 1) / kGrain;
+        std::vector<std::array<Extent, n>> partial(blocks);
+        parallel_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t block = begin; block < end; ++block)
+                for (std::size_t i = block * kGrain; i < std::min((block + 1) * kGrain, count); ++i)
+                    add(i, partial[block]);
+        });
+        std::array<Extent, n> all;
+        for (const auto& p : partial)
+            for (std::size_t k = 0; k < n; ++k) all[k].add(p[k]);
+        return all;
+    }
+
+    const Scene* scene_;
+    std::vector<Plane> planes_;
+    std::vector<std::uint64_t> planes_of_position_;  ///< bit i: corner of a triangle in planes_[i]; kMaxPlanes: in none
+    std::vector<Part> parts_;
+    std::uint64_t drawn_ = 0, fitted_ = 0;  ///< bits as in planes_of_position_
+    Box box_;
+};
+
+}  // namespace umbra

@@ -1,0 +1,76 @@
+// Comparing a surface point with a depth map: where it lies there, how far it is moved towards the light first (the
+// bias), and which samples are asked (the filter).
+#pragma once
+
+#include <optional>
+
+#include "umbra/shadows/zbuffer/light_views.h"
+
+namespace umbra {
+
+/// What a sample is compared with.
+enum class BiasMode : std::uint8_t {
+    automatic,       ///< the nearer of the point and its plane at the sample, and nearer still: see below
+    receiver_plane,  ///< the point's plane at the sample
+    manual           ///< the point
+};
+
+/// The automatic bias
+///
+/// A sample shows a surface elsewhere than at the point, up to half a sample off. Where it is the point's own plane,
+/// its depth there is known but for rounding (receiver_plane). Where the surface is curved or folded, what the map
+/// holds may lie above that plane by as much as the surface rises in half a sample: with the fold's angle, the flatter
+/// the light falls the more. So the automatic bias takes the nearer of plane and point and adds a width and a quarter
+/// of the gradient. All in all it never moves a sample by more than 16 widths from the plane: where light grazes, depth
+/// gradients are without bound, and a bias that follows them lifts points out of the shadow of what is just before them
+/// (graphics hardware has had a clamp of its slope bias for the same reason). What follows:
+///   - a plane has no acne at any slope, but for light below 1/16000 of a radian, where snapped corners shift its depth
+///     by more than the limit;
+///   - a shadow never comes off by more than 16 widths of a sample (of a kernel, that many times as much) from the
+///     point's plane. But that plane is asked beyond the triangle, and where light grazes a small steep facet it may
+///     rise over what shades the facet: the wider the kernel, the sooner.
+///
+/// Daniel Holbert. Saying Goodbye to Shadow Acne. 2011; Hang Dou, Yajie Yan, Ethan Kerzner, Zeng Dai, Chris Wyman.
+/// Adaptive Depth Bias for Shadow Maps. 2014; John Isidoro. Shadow Mapping: GPU-based Tips and Techniques. 2006.
+inline constexpr double kMostAutomatic = 16;
+
+/// The first and the last move the point in widths of a sample there, `slope` in depth gradients of its plane.
+struct Bias {
+    BiasMode mode        = BiasMode::automatic;
+    double constant      = 0;
+    double slope         = 0;
+    double normal_offset = 0;
+};
+
+struct Filter {
+    int radius    = 0;  ///< (2 radius + 1)^2 samples
+    bool bilinear = false;
+};
+
+/// A surface point's triangle, exact in double.
+struct Facet {
+    dvec3 a, ab, ac;
+    dvec3 normal;  ///< unit, on the side of the batch's normal
+};
+
+/// The receiver in one map: where the point lies, and its triangle's plane r(x, y) there.
+struct Receiver {
+    double x, y;                 ///< samples
+    double r;                    ///< nearness of the point
+    double r_x, r_y;             ///< nearness of its plane, a sample
+    double bias;                 ///< nearness added to all comparisons
+    double slack = 0, most = 0;  ///< automatic: nearness added to the nearer of plane and point, most above the plane
+};
+
+/// The receiver in a view, or nothing where the view does not cover it.
+[[nodiscard]] std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p, const Bias& bias,
+                                              const Filter& filter);
+
+/// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth.
+[[nodiscard]] float lit_share(const DepthMap& map, const Receiver& receiver, BiasMode mode, const Filter& filter);
+
+/// Of those samples that lit_share finds blocked, the one nearest to the point; none where it finds none.
+[[nodiscard]] std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& receiver, BiasMode mode,
+                                                  const Filter& filter);
+
+}  // namespace umbra

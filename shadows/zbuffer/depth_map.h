@@ -1,0 +1,80 @@
+// Depth maps, and the rasteriser that draws triangles into them: what is nearest to the light along each direction.
+//
+// Kept as *nearness* r: 1 on the near plane, 0 on the far one, affine in 1/z (perspective) or in z (orthographic),
+// hence linear over the map. Reversed so that floating point spends its fine steps where 1/z has its coarse ones.
+// [Eugene Lapidous, Guofang Jiao, Optimal Depth Buffer for Low-Cost Graphics Hardware, 1999]
+#pragma once
+
+#include <bit>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "umbra/core/base/math.h"
+
+namespace umbra {
+
+/// unormN: depth 1 - r in steps of 1 / (2^N - 1), rounded to nearest as graphics hardware does; float32: r itself.
+enum class DepthFormat : std::uint8_t { unorm16, unorm24, unorm32, float32 };
+
+/// Which triangles are drawn, by the side that the light sees (anticlockwise corners: front).
+enum class Faces : std::uint8_t { all, front, back };
+
+class DepthMap {
+public:
+    /// Cleared. Every sample takes 4 bytes, whatever the format.
+    DepthMap(int width, int height, DepthFormat format);
+
+    [[nodiscard]] int width() const { return width_; }
+    [[nodiscard]] int height() const { return height_; }
+    [[nodiscard]] DepthFormat format() const { return format_; }
+    [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(words_[0]); }
+
+    /// Nearness kept at sample (x, y); 0 where nothing was drawn. x to the right and y down as the light sees it.
+    [[nodiscard]] double nearness(int x, int y) const {
+        if (format_ == DepthFormat::float32) return std::bit_cast<float>(kFarWord - word(x, y));
+        return 1 - word(x, y) * step_;
+    }
+    [[nodiscard]] bool is_empty(int x, int y) const { return word(x, y) == far_word_; }
+
+    /// As kept: smaller is nearer, in every format.
+    [[nodiscard]] std::uint32_t word(int x, int y) const { return words_[static_cast<std::size_t>(y) * width_ + x]; }
+
+    /// Distance of neighbouring values of the format at nearness r: what rounding costs at most, twice.
+    [[nodiscard]] double quantum(double r) const;
+
+    /// Draws triangles (runs of corner indices into `positions`) so that every sample keeps the nearest.
+    ///
+    /// `clip_from_world` gives (X, Y, R, W): the map shows -W <= X, Y <= W, nearness is R / W limited to [0, 1], and W
+    /// is at most about 1 for everything in the scene. Nothing is clipped by depth: what lies between the light and the
+    /// near plane is drawn with nearness 1. Sample (x, y) lies at X/W = (2x + 1) / width - 1, and so on.
+    ///
+    /// Watertight: corners are snapped to 1/1024 of a sample's spacing, edge functions are exact, and of two triangles
+    /// that share an edge exactly one draws the samples on it (top-left rule).
+    /// Parallel; the same bits for any number of threads and any order of triangles.
+    void draw(const dmat4& clip_from_world, std::span<const vec3> positions,
+              std::span<const std::span<const uvec3>> runs, Faces faces);
+
+    /// Which triangle each sample shows: draws the same once more and names the one whose depth the map kept, the first
+    /// of several, by its place in `all`, of which the runs are parts; kNoOwner where there is none. As costly as
+    /// drawing: for explaining a map.
+    [[nodiscard]] std::vector<std::uint32_t> owners(const dmat4& clip_from_world, std::span<const vec3> positions,
+                                                    std::span<const uvec3> all,
+                                                    std::span<const std::span<const uvec3>> runs, Faces faces) const;
+    static constexpr std::uint32_t kNoOwner = 0xffffffffu;
+
+    static constexpr int kSnap = 1024;  ///< corners are snapped to 1 / kSnap of a sample's spacing
+
+private:
+    static constexpr std::uint32_t kFarWord = 0x3f800000;  ///< the bits of 1.0f
+
+    int width_, height_;
+    DepthFormat format_;
+    double step_;             ///< unorm: value of the last bit
+    std::uint32_t far_word_;  ///< nearness 0
+    // Unorm depth as it is; float as kFarWord - (bits of r), since the bits of floats that are not negative are in the
+    // floats' order.
+    std::vector<std::uint32_t> words_;
+};
+
+}  // namespace umbra

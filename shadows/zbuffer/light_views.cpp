@@ -1,0 +1,133 @@
+#include "umbra/shadows/zbuffer/light_views.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+constexpr double kWide      = 1.19175359;  // tan 50 degrees: beyond this one map wastes more than six
+constexpr double kWideCone  = 1.7320509;   // tan 60 degrees, for a spot's own cone
+constexpr double kFloatNear = 1e-6;        // near / far; reversed floats resolve any such ratio evenly
+constexpr double kEpsilon   = std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+double LightViews::half_of_memory() {
+    return 0.5 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+std::size_t LightViews::memory_bytes() const {
+    std::size_t bytes = casters_.memory_bytes();
+    for (const MapView& view : views_) bytes += view.map.memory_bytes();
+    return bytes;
+}
+
+std::vector<TriangleId> LightViews::owners(const MapView& view) const {
+    static_assert(DepthMap::kNoOwner == kNoTriangle);
+    const dmat4 clip_from_world = view.frame.clip_from_world();
+    return view.map.owners(clip_from_world, scene().positions, scene().triangles, casters_.seen_by(clip_from_world),
+                           options_.faces);
+}
+
+void LightViews::add_view(LightFrame frame, int resolution) {
+    const double inner = 1 - 2 * options_.border / resolution;
+    frame.half /= inner;
+    if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
+    // What casts without being fitted to may lie before the near plane, where it is drawn as nearness 1: what it shades
+    // must stay behind that when a bias has moved it.
+    const double room = options_.headroom * 2 * std::max(frame.half.x, frame.half.y) / resolution;
+    if (frame.perspective) {
+        // Of unorm depth, a step at `far` must not exceed a sample's width there: near bounds that step.
+        const double floor = options_.format == DepthFormat::float32
+                                 ? kFloatNear
+                                 : resolution * DepthMap(1, 1, options_.format).quantum(1) / 2;
+        frame.near = std::min(std::max(frame.near * (1 - room), floor * frame.far), (1 - 64 * kEpsilon) * frame.far);
+    } else {
+        frame.near = std::min(frame.near, frame.far) - room;
+    }
+    // The scene's last depth is not nearness 0, where the steps of floats no longer tell how far they are rounded.
+    frame.far += 0.01 * (frame.far - frame.near);
+    if (casters_.seen_by(frame.clip_from_world()).empty()) return;
+    const double bytes = 4.0 * resolution * resolution;
+    if (static_cast<double>(memory_bytes()) + bytes > options_.memory_limit)
+        throw UsageError(
+            fmt::format("shadow_zbuffer: resolution={} takes more than half of the machine's memory "
+                        "({:.0f} MiB a map, {} of them as yet; choose a smaller one)",
+                        options_.resolution, bytes / (1 << 20), views_.size()));
+    views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
+}
+
+void LightViews::aim_directional(dvec3 direction) {
+    LightFrame frame = looking_along(dvec3(casters_.box().centre()), direction, false);
+    fit_to_scene(frame, casters_, kInfinity);
+    add_view(frame, options_.resolution);
+}
+
+void LightViews::set_depth(LightFrame& frame, double nearest) const {
+    const auto depth = casters_.ranges<1>([&](dvec3 p) { return std::array{frame.light_space(p).z}; });
+    frame.far        = depth[0].max > 0 ? depth[0].max : 1;
+    frame.near       = std::max(depth[0].min, nearest / std::sqrt(1 + glm::dot(frame.half, frame.half)));
+}
+
+void LightViews::aim_around(const Light& light) {
+    const dvec3 origin(light.position);
+    // Reversed floats resolve any distance from the light as well as any other, unorm depth does not.
+    const double nearest = options_.format == DepthFormat::float32 ? 0 : casters_.distance(origin);
+    LightFrame cube =
+        looking_along(origin, light.kind == LightKind::spot ? dvec3(light.direction) : dvec3(0, 0, 1), true);
+    int resolution = options_.resolution;
+    if (light.kind == LightKind::spot) {
+        const double rim = std::tan(static_cast<double>(light.spot.cutoff));
+        LightFrame cone  = cube;
+        if (rim > 0 && fit_to_scene(cone, casters_, std::min(rim, kWideCone))) return add_view(cone, resolution);
+        if (rim > 0 && rim <= kWideCone) {
+            cone.half = dvec2(rim);
+            set_depth(cone, nearest);
+            add_view(cone, resolution);
+            cover_all_ = options_.surround > 0;
+            if (!cover_all_) return;
+            resolution = static_cast<int>(std::ceil(std::max(options_.surround * resolution, 4 * options_.border)));
+        }
+    }
+    const dvec3 to_scene = dvec3(casters_.box().centre()) - origin;
+    if (views_.empty() && glm::length(to_scene) > 0) {
+        LightFrame whole = looking_along(origin, to_scene, true);
+        if (fit_to_scene(whole, casters_, kWide)) return add_view(whole, resolution);
+    }
+    // Sides of the cube as even permutations and turns of one right-handed frame.
+    const std::array<dvec3, 3> axes{cube.x, cube.y, cube.z};
+    for (int k = 0; k < 3; ++k)
+        for (double sign : {1.0, -1.0}) {
+            LightFrame side = cube;
+            side.x          = sign * axes[(k + 1) % 3];
+            side.y          = axes[(k + 2) % 3];
+            side.z          = sign * axes[k];
+            set_depth(side, nearest);
+            add_view(side, resolution);
+        }
+}
+
+void LightViews::aim(LightId light) {
+    views_.clear();
+    cover_all_     = true;
+    const Light& l = casters_.scene().lights[light];
+    casters_.select(l);
+    if (casters_.box().empty()) return;
+    if (l.kind == LightKind::directional)
+        aim_directional(dvec3(l.direction));
+    else
+        aim_around(l);
+    for (MapView& view : views_) {
+        const dmat4 clip_from_world = view.frame.clip_from_world();
+        view.map.draw(clip_from_world, casters_.scene().positions, casters_.seen_by(clip_from_world), options_.faces);
+    }
+}
+
+}  // namespace umbra

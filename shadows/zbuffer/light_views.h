@@ -1,0 +1,66 @@
+// The maps of one light: which views cover the directions that it sees, and drawing them.
+//
+//   directional     one orthographic view, fitted to the scene, in the roll about the light's direction of least area
+//   point, area     one perspective view fitted to the scene where that fits into a cone of 50 degrees; else six faces
+//                   of a cube. Area lights stand in their centres
+//   spot            one view of the cone, shrunk to the scene, and where the scene reaches out of it six faces at
+//                   `surround` of the resolution: the spot's factor in the sum is 0 there, S_j is not
+//
+// Maps reach over their view's border by as much as the filter does, so that no filter ever crosses a cube's seam.
+#pragma once
+
+#include "umbra/shadows/zbuffer/depth_map.h"
+#include "umbra/shadows/zbuffer/light_frame.h"
+
+namespace umbra {
+
+/// A map and where it looks from.
+struct MapView {
+    LightFrame frame;
+    DepthMap map;
+};
+
+class LightViews {
+public:
+    /// Half of what the machine has.
+    [[nodiscard]] static double half_of_memory();
+
+    struct Options {
+        int resolution      = 2048;
+        DepthFormat format  = DepthFormat::float32;
+        Faces faces         = Faces::all;
+        bool fit_to_casters = true;
+        double surround     = 0.5;
+        double border       = 2;                 ///< samples by which a map reaches over its view
+        double headroom     = 64;                ///< samples' widths by which a bias may move points towards the light
+        double memory_limit = half_of_memory();  ///< bytes, for all maps of a light
+    };
+
+    LightViews(const Scene& scene, const SceneFacts& facts, const Options& options)
+        : options_(options), casters_(scene, facts, options.fit_to_casters) {}
+
+    /// Draws the maps of `light`. Throws UsageError where they would not fit into memory.
+    void aim(LightId light);
+
+    [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
+    /// Which triangle each sample of a view's map shows, kNoTriangle where none. Draws the map again.
+    [[nodiscard]] std::vector<TriangleId> owners(const MapView& view) const;
+    /// False where what lies outside a spot's cone was left out; else nothing that casts lies where no view looks.
+    [[nodiscard]] bool cover_all() const { return cover_all_; }
+    [[nodiscard]] const Scene& scene() const { return casters_.scene(); }
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    void add_view(LightFrame frame, int resolution);
+    void aim_directional(dvec3 direction);
+    void aim_around(const Light& light);
+    /// Depth limits of a perspective window about the axis, with no geometry nearer to the light than `nearest`.
+    void set_depth(LightFrame& frame, double nearest) const;
+
+    Options options_;
+    Casters casters_;
+    std::vector<MapView> views_;
+    bool cover_all_ = true;
+};
+
+}  // namespace umbra

@@ -1,0 +1,209 @@
+// compare: what it writes, that it follows its schema, that it replaces nothing that is not its own.
+#include "umbra/bench/compare/compare.h"
+
+#include <gtest/gtest.h>
+#include <rapidjson/document.h>
+#include <rapidjson/error/en.h>
+#include <rapidjson/schema.h>
+#include <rapidjson/stringbuffer.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/image/image_io.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+void write(const fs::path& file, std::string_view text) { std::ofstream(file, std::ios::binary) << text; }
+
+class Compare : public testing::Test {
+protected:
+    void SetUp() override {
+        folder_ = fs::temp_directory_path() / ("umbra-compare-" + std::to_string(::getpid()));
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        scene_ = folder_ / "lamp_over_box.json";
+        write(scene_, R"({
+            "shows": "A box under a lamp & a panel <here>.",
+            "camera": {"eye": [0, 3, 6], "target": [0, 0.5, 0]},
+            "lights": [{"name": "lamp", "type": "point", "position": [2, 4, 1]},
+                       {"name": "panel", "type": "rectangle", "position": [-2, 4, 1], "edge_u": [1, 0, 0], "edge_v": [0, 0, 1]}],
+            "objects": [{"name": "floor", "type": "plane", "size": [8, 8]},
+                        {"name": "ball", "type": "sphere", "radius": 1.2, "transform": [{"translate": [1.8, 1.2, 0.8]}]},
+                        {"name": "box", "type": "box", "size": [1, 1, 1], "transform": [{"translate": [0, 1, 0]}]}]
+        })");
+        options_.out     = folder_ / "out";
+        options_.size    = {96, 54};
+        options_.command = "umbra compare lamp_over_box.json -o out";
+        options_.repeats = {1, 0};
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    fs::path folder_, scene_;
+    CompareOptions options_;
+};
+
+TEST_F(Compare, RecordFollowsItsSchemaAndNamesFilesThatExist) {
+    const ScenesDone done = compare_scenes({scene_}, options_);
+    ASSERT_TRUE(done.failed.empty()) << done.failed[0];
+    ASSERT_EQ(done.names, std::vector<std::string>{"lamp_over_box"});
+
+    rapidjson::Document schema_document;
+    schema_document.Parse(text_of(UMBRA_SCHEMA).c_str());
+    ASSERT_FALSE(schema_document.HasParseError());
+    const rapidjson::SchemaDocument schema(schema_document);
+
+    for (const fs::path& file : {options_.out / "lamp_over_box/results.json", options_.out / "results.json"}) {
+        const std::string text = text_of(file);
+        rapidjson::Document record;
+        record.Parse(text.c_str());
+        ASSERT_FALSE(record.HasParseError()) << file;
+        rapidjson::SchemaValidator valid(schema);
+        rapidjson::StringBuffer where;
+        const bool accepted = record.Accept(valid);
+        valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
+        EXPECT_TRUE(accepted) << file << " at " << where.GetString() << ": "
+                              << (accepted ? "" : valid.GetInvalidSchemaKeyword());
+
+        const Json json    = Json::parse(text);
+        std::size_t served = 0;
+        for (const Json& method : json["methods"]) {
+            if (method["serves"]["how"] == "not") continue;
+            ++served;
+            for (const char* key : {"exr", "png", "flip"})
+                EXPECT_TRUE(fs::exists(file.parent_path() / method["files"][key])) << method["files"][key];
+            for (const Json& light : method["files"]["lights"])
+                for (const Json& name : light) EXPECT_TRUE(fs::exists(file.parent_path() / name)) << name;
+            EXPECT_EQ(method["errors"].size(), 2u);
+        }
+        EXPECT_GE(served, 3u);
+    }
+}
+
+TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
+    options_.methods = {"ray_traced", "exact"};
+    const Json whole = compare_scene(scene_, options_);
+    EXPECT_TRUE(whole["reference"]["judged"].is_null());
+    options_.points   = 300;
+    const Json sample = compare_scene(scene_, options_), again = compare_scene(scene_, options_);
+
+    const Json& judged = sample["reference"]["judged"];
+    EXPECT_NEAR(judged["points"], 300.0, 100);
+    for (std::size_t m = 0; m < 2; ++m) {
+        const Json &lamp = sample["methods"][m]["errors"][0], &panel = sample["methods"][m]["errors"][1];
+        EXPECT_EQ(lamp, whole["methods"][m]["errors"][0]) << "a light without an area is judged everywhere";
+        EXPECT_EQ(panel, again["methods"][m]["errors"][1]) << "the sample is always the same";
+        const auto of = [](const Json& e) {
+            return e["points"].get<int>() + e["undefined"].get<int>() + e["on_boundary"].get<int>() +
+                   e["away"].get<int>() + e["not_judged"].get<int>();
+        };
+        EXPECT_EQ(of(panel), judged["of"]);
+        EXPECT_LE(panel["points"], judged["points"]);
+        const int all = whole["methods"][m]["errors"][1]["terminator"]["normal_away"];
+        EXPECT_GT(all, 5);
+        EXPECT_LT(2 * panel["terminator"]["normal_away"].get<int>(), all) << "what is not judged is not counted";
+        EXPECT_GT(panel["points"], 100);
+        EXPECT_FALSE(panel["penumbra_width_px"].is_null()) << "guesses say where boundaries are";
+        EXPECT_GT(panel["penumbra"], 5);
+    }
+    // Judged are exact answers and not guesses: exact agrees with itself, and rays err by about what they err overall.
+    EXPECT_EQ(sample["methods"][1]["errors"][1]["max"], 0);
+    const double mae = whole["methods"][0]["errors"][1]["mae"], sampled = sample["methods"][0]["errors"][1]["mae"];
+    EXPECT_GT(sampled, 0.2 * mae);
+    EXPECT_LT(sampled, 5 * mae);
+}
+
+TEST_F(Compare, SchemaRefusesWhatItShould) {
+    rapidjson::Document schema_document;
+    schema_document.Parse(text_of(UMBRA_SCHEMA).c_str());
+    const rapidjson::SchemaDocument schema(schema_document);
+    options_.methods   = {"ray_traced"};
+    Json good          = compare_scene(scene_, options_);
+    const auto accepts = [&](const Json& record) {
+        rapidjson::Document document;
+        document.Parse(record.dump().c_str());
+        rapidjson::SchemaValidator valid(schema);
+        return document.Accept(valid);
+    };
+    EXPECT_TRUE(accepts(good));
+    for (const char* pointer :
+         {"/methods/0/errors/0/false_light/interior", "/methods/0/coverage", "/reference/exact", "/schema"}) {
+        Json bad                         = good;
+        bad[Json::json_pointer(pointer)] = "wrong";
+        EXPECT_FALSE(accepts(bad)) << pointer;
+    }
+    good["methods"][0]["colour"] = "an unknown key";
+    EXPECT_FALSE(accepts(good));
+}
+
+TEST_F(Compare, PictureFileHoldsOnePlaneALight) {
+    options_.methods = {"shadow_zbuffer"};
+    compare_scene(scene_, options_);
+    const LoadedImage exr = read_image(options_.out / "lamp_over_box/shadow_zbuffer.exr");
+    EXPECT_EQ(exr.image.channels, (std::vector<std::string>{"R", "G", "B", "S.lamp", "S.panel"}));
+    EXPECT_EQ(exr.image.metadata.at("umbra:method"), "shadow_zbuffer");
+}
+
+TEST_F(Compare, SamePlanesWhateverTheRepeats) {
+    options_.methods = {"shadow_volumes"};
+    compare_scene(scene_, options_);
+    const std::string once = text_of(options_.out / "lamp_over_box/shadow_volumes.S.lamp.png");
+    options_.repeats       = {3, 1e9};
+    compare_scene(scene_, options_);
+    EXPECT_EQ(once, text_of(options_.out / "lamp_over_box/shadow_volumes.S.lamp.png"));
+}
+
+TEST_F(Compare, ReplacesOnlyItsOwnFolders) {
+    fs::create_directories(options_.out / "lamp_over_box");
+    write(options_.out / "lamp_over_box/thesis.tex", "two years of work");
+    EXPECT_THROW((void)compare_scene(scene_, options_), InputError);
+    EXPECT_EQ(text_of(options_.out / "lamp_over_box/thesis.tex"), "two years of work");
+}
+
+TEST_F(Compare, UnreadableSceneLeavesTheOldResult) {
+    options_.methods = {"ray_traced"};
+    compare_scene(scene_, options_);
+    const std::string before = text_of(options_.out / "lamp_over_box/results.json");
+    write(scene_, "{ \"lights\": [");
+    const ScenesDone done = compare_scenes({scene_}, options_);
+    EXPECT_EQ(done.failed.size(), 1u);
+    EXPECT_EQ(text_of(options_.out / "lamp_over_box/results.json"), before);
+    for (const fs::directory_entry& entry : fs::directory_iterator(options_.out))
+        EXPECT_NE(entry.path().filename().string()[0], '.') << "left over: " << entry.path();
+}
+
+TEST_F(Compare, ScenesOfOneNameAreRefused) {
+    fs::create_directories(folder_ / "other");
+    fs::copy_file(scene_, folder_ / "other/lamp_over_box.json");
+    EXPECT_THROW((void)compare_scenes({scene_, folder_ / "other/lamp_over_box.json"}, options_), UsageError);
+}
+
+TEST(ParseSize, TakesSizesOnly) {
+    EXPECT_EQ(parse_size("1920x1080").width, 1920);
+    EXPECT_EQ(parse_size("1920x1080").height, 1080);
+    for (const char* bad :
+         {"", "x", "12", "12x", "x12", "0x5", "-3x5", "12x12x12", "99999x1", "16384x16384", "1e3x10", " 4x4"})
+        EXPECT_THROW((void)parse_size(bad), UsageError) << bad;
+}
+
+TEST(TimeRuns, StaysWithinItsBudgetButRunsOnce) {
+    int calls = 0;
+    EXPECT_EQ(time_runs({5, 1e9}, [&] { ++calls; }).runs, 5);
+    EXPECT_EQ(calls, 5);
+    EXPECT_EQ(time_runs({5, 0}, [&] { ++calls; }).runs, 1);
+}
+
+}  // namespace
+}  // namespace umbra

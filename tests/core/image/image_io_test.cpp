@@ -1,0 +1,295 @@
+#include "umbra/core/image/image_io.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/image/metrics.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder that goes away with the test.
+class ImageIo : public testing::Test {
+protected:
+    ImageIo() { fs::create_directories(folder); }
+    ~ImageIo() override { fs::remove_all(folder); }
+    fs::path folder =
+        fs::temp_directory_path() /
+        (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "." + std::to_string(getpid()));
+
+    [[nodiscard]] fs::path write(const char* name, const std::string& bytes) const {
+        std::ofstream(folder / name, std::ios::binary) << bytes;
+        return folder / name;
+    }
+};
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The message that reading ends in.
+std::string refusal(const fs::path& file) {
+    try {
+        static_cast<void>(read_image(file));
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "(was read)";
+}
+
+Image noise(int width, int height, std::vector<std::string> channels) {
+    Image image(width, height, std::move(channels));
+    std::uint32_t state = 1;
+    for (float& x : image.data) {
+        state = state * 1664525u + 1013904223u;
+        x     = float(state >> 8) / float(1u << 24);
+    }
+    return image;
+}
+
+/// A PNG header is checked by a CRC, so that a lie about the size needs a new one.
+std::uint32_t crc32(std::string_view bytes) {
+    std::uint32_t crc = ~0u;
+    for (const char byte : bytes) {
+        crc ^= static_cast<unsigned char>(byte);
+        for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ ((crc & 1) ? 0xedb88320u : 0u);
+    }
+    return ~crc;
+}
+void put_big_endian(std::string& bytes, std::size_t at, std::uint32_t value) {
+    for (std::size_t k = 0; k < 4; ++k) bytes[at + k] = static_cast<char>(value >> (24 - 8 * k));
+}
+std::string png_claiming(std::string png, std::uint32_t width, std::uint32_t height) {
+    put_big_endian(png, 16, width);
+    put_big_endian(png, 20, height);
+    put_big_endian(png, 29, crc32(std::string_view(png).substr(12, 17)));
+    return png;
+}
+
+TEST_F(ImageIo, ExrKeepsChannelsMetadataAndEveryBit) {
+    Image image    = noise(37, 21, {"R", "G", "B", "S.lamp", "S.sun", "N.x", "id.face"});
+    image.data[5]  = std::numeric_limits<float>::quiet_NaN();
+    image.data[6]  = kInfinity;
+    image.data[7]  = -0.0f;
+    image.data[8]  = 1e-42f;
+    image.data[13] = 16777215;
+    image.metadata = {{"umbra:scene", "court"}, {"umbra:command", "umbra render \"a b\" -o x"}, {"umbra:note", "üß"}};
+    write_image(folder / "a.exr", image);
+
+    const LoadedImage loaded = read_image(folder / "a.exr");
+    EXPECT_EQ(loaded.encoding, Encoding::linear);
+    ASSERT_EQ(loaded.image.width, 37);
+    ASSERT_EQ(loaded.image.height, 21);
+    for (const auto& [key, value] : image.metadata) EXPECT_EQ(loaded.image.metadata.at(key), value);
+    std::vector<std::string> sorted = loaded.image.channels;
+    std::sort(sorted.begin(), sorted.end());
+    ASSERT_EQ(sorted, (std::vector<std::string>{"B", "G", "N.x", "R", "S.lamp", "S.sun", "id.face"}));
+    EXPECT_EQ(loaded.image.channels[0], "R");
+    for (std::size_t c = 0; c < image.channels.size(); ++c) {
+        const auto at      = std::find(loaded.image.channels.begin(), loaded.image.channels.end(), image.channels[c]);
+        const auto in_file = std::size_t(at - loaded.image.channels.begin());
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+            ASSERT_EQ(std::bit_cast<std::uint32_t>(loaded.image.at(i, in_file)),
+                      std::bit_cast<std::uint32_t>(image.at(i, c)))
+                << image.channels[c] << ' ' << i;
+    }
+}
+
+TEST_F(ImageIo, PngRoundsToEightBitsAndKeepsMetadata) {
+    Image image(5, 1, {"R", "G", "B"});
+    image.data = {0, 1, 0.5f, -3, 7, std::numeric_limits<float>::quiet_NaN(), 0.25f, 0.2499f, 1e-3f, 0, 0, 0, 1, 1, 1};
+    image.metadata = {{"umbra:method", "ray_traced:samples=64"}};
+    write_image(folder / "a.png", image);
+    const LoadedImage loaded = read_image(folder / "a.png");
+    EXPECT_EQ(loaded.encoding, Encoding::srgb);
+    EXPECT_EQ(loaded.image.channels, image.channels);
+    EXPECT_EQ(loaded.image.metadata.at("umbra:method"), "ray_traced:samples=64");
+    const std::vector<int> expected{0, 255, 128, 0, 255, 0, 64, 64, 0, 0, 0, 0, 255, 255, 255};
+    for (std::size_t k = 0; k < expected.size(); ++k)
+        EXPECT_EQ(std::lround(255 * loaded.image.data[k]), expected[k]) << k;
+}
+
+TEST_F(ImageIo, PngTakesOneThreeOrFourChannels) {
+    for (const auto& [channels, stored] : std::vector<std::pair<std::vector<std::string>, std::size_t>>{
+             {{"S.lamp"}, 1}, {{"R", "G", "B", "S.lamp"}, 3}, {{"R", "G", "B", "A"}, 4}}) {
+        const Image image = noise(9, 4, channels);
+        write_image(folder / "a.png", image);
+        const Image loaded = read_image(folder / "a.png").image;
+        ASSERT_EQ(loaded.channels.size(), stored);
+        for (std::size_t i = 0; i < image.pixels(); ++i)  // alpha is not multiplied in, neither way
+            for (std::size_t c = 0; c < stored; ++c) EXPECT_NEAR(loaded.at(i, c), image.at(i, c), 0.5 / 255 + 1e-6);
+    }
+}
+
+TEST_F(ImageIo, IntegersAreScaledWithOneRounding) {
+    // OpenImageIO's own conversion to float is off by a bit for half of all bytes, so that 8 and 16 bits would differ.
+    Image image(256, 1, {"Y"});
+    for (std::size_t i = 0; i < 256; ++i) image.data[i] = float(i) / 255;
+    write_image(folder / "a.png", image);
+    EXPECT_EQ(read_image(folder / "a.png").image.data, image.data);
+}
+
+TEST_F(ImageIo, SameImageSameBytes) {
+    const Image image = noise(64, 64, {"R", "G", "B"});
+    for (const char* name : {"a.exr", "a.png"}) {
+        write_image(folder / name, image);
+        const std::string first = bytes_of(folder / name);
+        write_image(folder / name, image);  // over the old one
+        EXPECT_EQ(bytes_of(folder / name), first);
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);  // nothing partial is left
+}
+
+TEST_F(ImageIo, FailedWriteSaysWhyAndLeavesNothing) {
+    const Image image = noise(4, 4, {"R", "G", "B"});
+    fs::create_directories(folder / "taken.png" / "full");
+    for (const char* name : {"taken.png", "missing/a.exr", "a.jpg", "a"}) {
+        try {
+            write_image(folder / name, image);
+            ADD_FAILURE() << name << " was written";
+        } catch (const InputError& error) {
+            EXPECT_EQ(std::string(error.what()).find((folder / name).string() + ": cannot write image: "), 0u)
+                << error.what();
+        }
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
+TEST_F(ImageIo, RefusesWhatIsNoImageFile) {
+    EXPECT_EQ(refusal(folder / "none.exr"), (folder / "none.exr").string() + ": no such file");
+    EXPECT_NE(refusal(folder).find("is a folder"), std::string::npos);
+    for (const char* name : {"a.exr", "a.png", "a.jpg", "a.tif", "a.hdr", "a"}) {
+        for (const char* content : {"", "x", "this is no image at all, however one looks at it"}) {
+            const std::string reason = refusal(write(name, content));
+            EXPECT_EQ(reason.find((folder / name).string() + ": cannot read image: "), 0u) << reason;
+            EXPECT_GT(reason.size(), (folder / name).string().size() + 30) << reason;
+            EXPECT_EQ(reason.find('\n'), std::string::npos) << reason;
+        }
+    }
+}
+
+TEST_F(ImageIo, RefusesTruncatedFiles) {
+    const Image image = noise(80, 60, {"R", "G", "B"});
+    for (const char* name : {"a.exr", "a.png"}) {
+        write_image(folder / name, image);
+        const std::string whole = bytes_of(folder / name);
+        for (const double share : {0.001, 0.01, 0.1, 0.5, 0.9, 0.98}) {
+            const fs::path file      = write(name, whole.substr(0, std::size_t(share * double(whole.size()))));
+            const std::string reason = refusal(file);
+            EXPECT_EQ(reason.find(file.string() + ": cannot read image: "), 0u) << share << ' ' << reason;
+        }
+    }
+}
+
+TEST_F(ImageIo, RefusesHeadersThatLieAboutTheSize) {
+    write_image(folder / "a.png", noise(8, 8, {"R", "G", "B"}));
+    const std::string png = bytes_of(folder / "a.png");
+    EXPECT_EQ(refusal(write("same.png", png_claiming(png, 8, 8))), "(was read)");
+    // Beyond the limit; and within it, where the pixels run out at once.
+    EXPECT_NE(refusal(write("huge.png", png_claiming(png, 900000, 900000))), "(was read)");
+    EXPECT_NE(refusal(write("large.png", png_claiming(png, 16000, 16000))).find("cannot read image"),
+              std::string::npos);
+    EXPECT_NE(refusal(write("none.png", png_claiming(png, 0, 8))), "(was read)");
+
+    write_image(folder / "a.exr", noise(8, 8, {"R", "G", "B"}));
+    const std::string exr = bytes_of(folder / "a.exr");
+    for (const std::int32_t corner : {16000, 40000, 2000000000, -5}) {
+        std::string lie = exr;
+        for (const char* name : {"dataWindow", "displayWindow"}) {
+            // name 0, "box2i" 0, size 4 bytes, xmin ymin xmax ymax
+            const std::size_t at = lie.find(name) + std::strlen(name) + 1 + 6 + 4;
+            for (const std::size_t k : {8u, 12u}) std::memcpy(&lie[at + k], &corner, 4);
+        }
+        EXPECT_NE(refusal(write("lie.exr", lie)), "(was read)") << corner;
+    }
+}
+
+TEST_F(ImageIo, RefusesChunksAndAttributesLongerThanTheFile) {
+    Image image    = noise(8, 8, {"R", "G", "B"});
+    image.metadata = {{"umbra:scene", "court"}};
+    write_image(folder / "a.exr", image);
+    std::string exr      = bytes_of(folder / "a.exr");
+    const std::size_t at = exr.find("umbra:scene") + std::strlen("umbra:scene") + 1 + std::strlen("string") + 1;
+    ASSERT_EQ(exr[at], 5);
+    exr[at + 3] = 0x55;
+    EXPECT_NE(refusal(write("lie.exr", exr)).find("attribute umbra:scene claims 1426063365 bytes"), std::string::npos);
+
+    write_image(folder / "a.png", image);
+    std::string png           = bytes_of(folder / "a.png");
+    png[png.find("tEXt") - 4] = 0x55;
+    EXPECT_NE(refusal(write("lie.png", png)).find("a chunk claims 14260633"), std::string::npos)
+        << refusal(folder / "lie.png");
+}
+
+TEST_F(ImageIo, SurvivesFlippedBytes) {
+    // Any answer will do but a crash (the sanitizers watch).
+    const Image image = noise(16, 16, {"R", "G", "B"});
+    for (const char* name : {"a.exr", "a.png"}) {
+        write_image(folder / name, image);
+        const std::string whole = bytes_of(folder / name);
+        for (std::size_t at = 0; at < whole.size(); at += at < 600 ? 5 : 61) {
+            std::string broken       = whole;
+            broken[at]               = static_cast<char>(broken[at] ^ 0x55);
+            const std::string reason = refusal(write(name, broken));
+            EXPECT_FALSE(reason.empty());
+        }
+    }
+}
+
+/// Pooled values of the reference implementation of FLIP 1.6: see tests/data/README.md.
+struct FlipCase {
+    const char* name;
+    double mean, weighted_median, first_quartile, third_quartile, min, max;
+};
+class FlipReference : public testing::TestWithParam<FlipCase> {};
+
+TEST_P(FlipReference, IsMet) {
+    const FlipCase& expected = GetParam();
+    const bool hdr           = std::string(expected.name) == "hdr_bright";
+    const fs::path folder    = fs::path(UMBRA_TEST_DATA) / "flip";
+    const auto load          = [&](const char* part) {
+        return read_image(folder / (std::string(expected.name) + part + (hdr ? ".exr" : ".png"))).image;
+    };
+    const Image reference = load("_ref");
+    const Image test      = load("_test");
+    const Flip flip       = hdr ? flip_hdr(reference, test) : flip_ldr(reference, test);
+    EXPECT_NEAR(flip.mean, expected.mean, 2e-5);
+    EXPECT_NEAR(flip.weighted_median, expected.weighted_median, 2e-5);
+    EXPECT_NEAR(flip.first_quartile, expected.first_quartile, 2e-5);
+    EXPECT_NEAR(flip.third_quartile, expected.third_quartile, 2e-5);
+    EXPECT_NEAR(flip.min, expected.min, 2e-5);
+    EXPECT_NEAR(flip.max, expected.max, 2e-5);
+    if (hdr) {
+        EXPECT_NEAR(flip.start_exposure, -0.1710, 5e-5);
+        EXPECT_NEAR(flip.stop_exposure, 2.8641, 5e-5);
+        EXPECT_EQ(flip.exposures, 4);
+        return;
+    }
+    const Image map = load("_map");
+    double worst    = 0;
+    for (std::size_t i = 0; i < flip.map.size(); ++i)
+        worst = std::max(worst, std::abs(255.0 * flip.map[i] - 255.0 * map.at(i, 0)));
+    EXPECT_LT(worst, 0.51);  // the map is rounded to 8 bits
+}
+INSTANTIATE_TEST_SUITE_P(
+    Pairs, FlipReference,
+    testing::Values(FlipCase{"shadow_map_size", 0.008591, 0.126565, 0.042153, 0.205649, 0, 0.372673},
+                    FlipCase{"stencil_vs_pcf", 0.049035, 0.212030, 0.209136, 0.225190, 0, 0.570010},
+                    FlipCase{"filter_kind", 0.052875, 0.174695, 0.124994, 0.195553, 0, 0.288104},
+                    FlipCase{"grey_step", 0.054038, 0.298072, 0.193508, 0.334065, 0, 0.338895},
+                    FlipCase{"odd_checker", 0.004925, 0.025729, 0.001681, 0.025736, 0.001579, 0.398275},
+                    FlipCase{"black_white", 0.967384, 0.967388, 0.967388, 0.967388, 0.967388, 0.967388},
+                    FlipCase{"hdr_bright", 0.019339, 0.260763, 0.093229, 0.488991, 0, 0.793282}),
+    [](const auto& each) { return std::string(each.param.name); });
+
+}  // namespace
+}  // namespace umbra

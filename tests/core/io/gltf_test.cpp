@@ -1,0 +1,711 @@
+#include <cstring>
+
+#include "umbra/tests/support/scene_files.h"
+
+namespace umbra {
+namespace {
+
+template <class T>
+std::string bytes_of(std::initializer_list<T> numbers) {
+    std::string s(numbers.size() * sizeof(T), '\0');
+    std::memcpy(s.data(), numbers.begin(), s.size());
+    return s;
+}
+
+std::string base64(std::string_view bytes) {
+    static constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        std::uint32_t x = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            x = x << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : kDigits[x >> (18 - 6 * k) & 63];
+    }
+    return out;
+}
+
+// A unit square in z = 0, its corners in the order of a strip; 116 bytes:
+//     0 positions, 48 normals (0, 0, 2), 96 six 16-bit indices, 108 four 8-bit ones in the order of a fan, 112 four
+//     bytes
+const std::string kSquare =
+    bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}) + bytes_of<float>({0, 0, 2, 0, 0, 2, 0, 0, 2, 0, 0, 2}) +
+    bytes_of<std::uint16_t>({0, 1, 2, 2, 1, 3}) + bytes_of<std::uint8_t>({0, 1, 3, 2}) + std::string(4, '\0');
+
+const std::string kAccessors = R"("accessors": [
+    {"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
+    {"bufferView": 0, "byteOffset": 48, "componentType": 5126, "count": 4, "type": "VEC3"},
+    {"bufferView": 0, "byteOffset": 96, "componentType": 5123, "count": 6, "type": "SCALAR"},
+    {"bufferView": 0, "byteOffset": 108, "componentType": 5121, "count": 4, "type": "SCALAR"}],
+  "bufferViews": [{"buffer": 0, "byteLength": 116}])";
+
+const std::string kMesh = R"("meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2}]}])";
+
+std::string buffers(std::string_view bytes = kSquare) {
+    return fmt::format(R"("buffers": [{{"byteLength": {}, "uri": "data:application/octet-stream;base64,{}"}}])",
+                       bytes.size(), base64(bytes));
+}
+
+/// A document of these top-level members, with the square's accessors and buffer behind them.
+std::string document(const std::string& members) {
+    return R"({"asset": {"version": "2.0"},)"
+           "\n" +
+           members + ",\n" + kAccessors + ",\n" + buffers() + "}";
+}
+
+/// One with these nodes, all of them roots, and the square as mesh 0.
+std::string with_nodes(const std::string& nodes, const std::string& more = "") {
+    return document("\"nodes\": [" + nodes + "], " + (more.empty() ? "" : more + ", ") + kMesh);
+}
+
+Scene load(const std::string& text) {
+    const TemporaryFolder folder;
+    Scene scene = load_scene(folder.write("t.gltf", text));
+    expect_sound(scene);
+    return scene;
+}
+
+std::string glb(std::string json, std::string_view bin, bool with_bin = true) {
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const auto size = [](std::size_t n) { return bytes_of<std::uint32_t>({std::uint32_t(n)}); };
+    std::string s   = size(json.size()) + "JSON" + json;
+    if (with_bin) s += size(bin.size()) + std::string("BIN\0", 4) + std::string(bin);
+    return "glTF" + size(2) + size(s.size() + 12) + s;
+}
+
+void expect_near(vec3 a, vec3 b, float tolerance = 1e-5f) {
+    EXPECT_LT(glm::distance(a, b), tolerance) << a.x << ' ' << a.y << ' ' << a.z;
+}
+
+// ---- geometry ----
+
+TEST(Gltf, NodesPlaceMeshes) {
+    // Twice as large, turned by 90 degrees about y, moved.
+    const Scene scene = load(with_nodes(
+        R"({"mesh": 0, "name": "wall", "scale": [2, 2, 2], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476], "translation": [10, 0, 0]})"));
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(scene.objects[0].name, "wall");
+    expect_near(scene.vertex(0, 0), {10, 0, 0});
+    expect_near(scene.vertex(0, 1), {10, 0, -2});
+    expect_near(scene.vertex(0, 2), {10, 2, 0});
+    expect_near(scene.normals[scene.triangles[0].x], {1, 0, 0});
+    EXPECT_GT(area_normal(scene, 0).x, 0);
+    EXPECT_TRUE(warns(scene, "no scenes"));
+}
+
+TEST(Gltf, ChildrenFollowTheirParents) {
+    // Matrices are stored column by column; the last four numbers are the translation.
+    const Scene scene = load(document(
+        R"("scene": 0, "scenes": [{"nodes": [1], "name": "family"}], "nodes": [{"mesh": 0, "translation": [0, 0, 5]},
+           {"children": [0, 2], "matrix": [0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1]}, {"mesh": 0}, {"mesh": 0}], )" +
+        kMesh));
+    ASSERT_EQ(scene.objects.size(), 2u) << "node 3 is in no scene";
+    expect_near(scene.vertex(0, 1), {3, 1, 5});
+    expect_near(scene.vertex(2, 1), {3, 1, 0});
+    EXPECT_EQ(scene.title, "family");
+}
+
+TEST(Gltf, AMirrorTurnsTheWinding) {
+    const Scene scene = load(with_nodes(R"({"mesh": 0, "scale": [-1, 1, 1]})"));
+    for (TriangleId t = 0; t < 2; ++t) EXPECT_GT(area_normal(scene, t).z, 0) << "still seen from +z";
+    expect_near(scene.normals[0], {0, 0, 1});
+}
+
+TEST(Gltf, UnevenScalesTurnNormalsTheOtherWay) {
+    // The plane x + y = const, stretched along x, leans more towards y.
+    const std::string bytes = bytes_of<float>({1, 0, 0, 0, 1, 0, 0, 1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 0});
+    const Scene scene       = load(R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0, "scale": [2, 1, 1]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}, {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 72}], )" +
+                                   buffers(bytes) + "}");
+    expect_near(scene.normals[0], vec3(glm::normalize(dvec3(1, 2, 0))));
+    EXPECT_GT(glm::dot(glm::normalize(area_normal(scene, 0)), dvec3(scene.normals[0])), 0.99999);
+}
+
+TEST(Gltf, ScalesThatFlattenLeaveFaceNormals) {
+    const Scene scene = load(with_nodes(R"({"mesh": 0, "scale": [1, 1, 0]})"));
+    EXPECT_EQ(scene.normals[0], vec3(0));
+    EXPECT_EQ(scene.triangles.size(), 2u);
+}
+
+TEST(Gltf, StripsAndFansAreTheSameSquare) {
+    for (const char* primitive : {R"({"attributes": {"POSITION": 0}, "mode": 5})",
+                                  R"({"attributes": {"POSITION": 0}, "indices": 3, "mode": 6})",
+                                  R"({"attributes": {"POSITION": 0}, "indices": 2, "mode": 4})"}) {
+        const Scene scene =
+            load(document(fmt::format(R"("nodes": [{{"mesh": 0}}], "meshes": [{{"primitives": [{}]}}])", primitive)));
+        ASSERT_EQ(scene.triangles.size(), 2u) << primitive;
+        for (TriangleId t = 0; t < 2; ++t) EXPECT_EQ(area_normal(scene, t), dvec3(0, 0, 1)) << primitive;
+        EXPECT_EQ(scene.normals[0], vec3(0)) << "none given: face normals";
+    }
+}
+
+TEST(Gltf, PointsLinesAndTheIncompleteAreLeftOutWithAWarning) {
+    const Scene scene = load(document(R"("nodes": [{"mesh": 0, "skin": 0}], "meshes": [{"primitives": [
+        {"attributes": {"POSITION": 0}, "mode": 0}, {"attributes": {"POSITION": 0}, "mode": 3},
+        {"attributes": {"NORMAL": 1}}, {"attributes": {"POSITION": 0, "COLOR_0": 1}, "targets": [{"POSITION": 0}]}]}])"));
+    EXPECT_EQ(scene.triangles.size(), 1u);
+    EXPECT_TRUE(warns(scene, "2 primitives of points or lines"));
+    EXPECT_TRUE(warns(scene, "without positions"));
+    EXPECT_TRUE(warns(scene, "has 4 corners, which leave some over"));
+    EXPECT_TRUE(warns(scene, "Colours of vertices"));
+    EXPECT_TRUE(warns(scene, "Morph targets"));
+    EXPECT_TRUE(warns(scene, "Skins"));
+}
+
+TEST(Gltf, InterleavedQuantisedSparseAndMissingData) {
+    // Positions as normalised bytes 4 apart; accessor 1 is zeros with element 2 and 3 replaced.
+    const std::string bytes = bytes_of<std::int8_t>({-127, -127, 0, 99, 127, -127, 0, 99, -128, 127, 0, 99}) +
+                              bytes_of<std::uint16_t>({1, 2}) + bytes_of<float>({1, 0, 0, 0, 1, 0});
+    const Scene scene = load(
+        R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_mesh_quantization"], "extensionsRequired": ["KHR_mesh_quantization"],
+        "nodes": [{"mesh": 0}, {"mesh": 1}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}, {"primitives": [{"attributes": {"POSITION": 1}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5120, "normalized": true, "count": 3, "type": "VEC3"},
+                      {"componentType": 5126, "count": 3, "type": "VEC3", "sparse": {"count": 2,
+                        "indices": {"bufferView": 1, "componentType": 5123}, "values": {"bufferView": 1, "byteOffset": 4}}}],
+        "bufferViews": [{"buffer": 0, "byteLength": 12, "byteStride": 4}, {"buffer": 0, "byteOffset": 12, "byteLength": 28}], )" +
+        buffers(bytes) + "}");
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(scene.vertex(0, 0), vec3(-1, -1, 0));
+    EXPECT_EQ(scene.vertex(0, 2), vec3(-1, 1, 0)) << "-128 stands for -1 too";
+    EXPECT_EQ(scene.vertex(1, 0), vec3(0));
+    EXPECT_EQ(scene.vertex(1, 2), vec3(0, 1, 0));
+    EXPECT_FALSE(warns(scene, "KHR_mesh_quantization"));
+}
+
+TEST(Gltf, BuffersInFilesAndInTheBinaryChunk) {
+    const TemporaryFolder folder;
+    (void)folder.write("my data.bin", kSquare + "more than is needed");
+    const std::string rest = R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], )" + kMesh + ", " + kAccessors;
+    const Scene outside =
+        load_scene(folder.write("a.gltf", rest + R"(, "buffers": [{"byteLength": 116, "uri": "my%20data.bin"}]})"));
+    EXPECT_EQ(outside.triangles.size(), 2u);
+    const Scene inside =
+        load_scene(folder.write("a.glb", glb(rest + R"(, "buffers": [{"byteLength": 116}]})", kSquare)));
+    EXPECT_EQ(inside.positions, outside.positions);
+    EXPECT_EQ(inside.name, "a");
+}
+
+TEST(Gltf, AFileWithoutNodesShowsItsMeshes) {
+    const Scene scene = load(document(kMesh));
+    EXPECT_EQ(scene.triangles.size(), 2u);
+    EXPECT_TRUE(warns(scene, "no nodes"));
+}
+
+TEST(Gltf, AnEmptyDocumentIsAnEmptyScene) {
+    const Scene scene = load(R"({"asset": {"version": "2.0"}})");
+    EXPECT_TRUE(scene.triangles.empty());
+    EXPECT_TRUE(warns(scene, "no triangles"));
+}
+
+// ---- cameras ----
+
+TEST(Gltf, PerspectiveCameraOfTheFirstNode) {
+    const Scene scene = load(with_nodes(
+        R"({"mesh": 0}, {"camera": 1, "translation": [0, 0, 7]}, {"camera": 0})",
+        R"("cameras": [{"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1, "znear": 0, "zfar": 1}},
+                                            {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1, "aspectRatio": 2}}])"));
+    EXPECT_EQ(scene.camera.projection, Projection::perspective);
+    EXPECT_NEAR(scene.camera.fov_y, 0.5 * 180 / kPi, 1e-5);
+    EXPECT_EQ(scene.camera.eye, vec3(0, 0, 7));
+    expect_near(glm::normalize(scene.camera.target - scene.camera.eye), {0, 0, -1});
+    EXPECT_EQ(scene.camera.up, vec3(0, 1, 0));
+    EXPECT_EQ(scene.width, 640);
+    EXPECT_EQ(scene.height, 320);
+    EXPECT_TRUE(warns(scene, "several cameras"));
+}
+
+TEST(Gltf, OrthographicCameraTurnedByItsNode) {
+    // Looks down, from above, with the world's -z upwards in the picture.
+    const Scene scene = load(with_nodes(
+        R"({"mesh": 0}, {"camera": 0, "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476], "scale": [3, 3, 3], "translation": [0, 9, 0]})",
+        R"("cameras": [{"type": "orthographic", "orthographic": {"xmag": 2, "ymag": 4, "znear": 0, "zfar": 100}}])"));
+    EXPECT_EQ(scene.camera.projection, Projection::orthographic);
+    EXPECT_EQ(scene.camera.height, 8);
+    expect_near(glm::normalize(scene.camera.target - scene.camera.eye), {0, -1, 0});
+    expect_near(scene.camera.up, {0, 0, -1});
+    EXPECT_EQ(scene.width, 320);
+    EXPECT_EQ(scene.height, 640);
+}
+
+// ---- lights ----
+
+std::string punctual(const std::string& lights) {
+    return R"("extensions": {"KHR_lights_punctual": {"lights": [)" + lights + "]}}";
+}
+std::string shining(int light, const std::string& more = "") {
+    return fmt::format(R"({{"extensions": {{"KHR_lights_punctual": {{"light": {}}}}}{}}})", light, more);
+}
+
+TEST(Gltf, PunctualLights) {
+    const Scene scene = load(with_nodes(
+        R"({"mesh": 0},)" + shining(0, R"(, "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476])") + "," +
+            shining(1, R"(, "translation": [0, 0, 4], "name": "lamp post")") + "," +
+            shining(2, R"(, "translation": [0, 0, 2], "scale": [5, 5, 5])") + "," + shining(1),
+        punctual(
+            R"({"type": "directional", "name": "sun", "color": [1, 0.5, 0]}, {"type": "point", "intensity": 8, "range": 10},
+                    {"type": "spot", "name": "spot", "spot": {"innerConeAngle": 0.1, "outerConeAngle": 1.5707963705062866}})")));
+    ASSERT_EQ(scene.lights.size(), 4u);
+    const Light& sun = scene.lights[0];
+    EXPECT_EQ(sun.kind, LightKind::directional);
+    EXPECT_EQ(sun.diffuse, vec3(1, 0.5f, 0));
+    expect_near(glm::normalize(sun.direction), {0, -1, 0});
+    EXPECT_EQ(falloff(sun, vec3(0, -1e6f, 0)), 1);
+    const Light& lamp = scene.lights[1];
+    EXPECT_EQ(lamp.name, "lamp_post") << "a nameless light is called as its node is";
+    EXPECT_EQ(lamp.diffuse, vec3(8));
+    EXPECT_EQ(lamp.specular, vec3(8));
+    EXPECT_FLOAT_EQ(falloff(lamp, vec3(0)), 1.0f / 16);
+    EXPECT_FLOAT_EQ(falloff(lamp, vec3(0, 0, 3.75f)), 16) << "nearer than 1 it is not limited";
+    EXPECT_EQ(falloff(lamp, vec3(0, 0, -7)), 0) << "out of range";
+    const Light& spot = scene.lights[2];
+    expect_near(spot.direction, {0, 0, -1});
+    EXPECT_EQ(spot.spot.falloff, SpotFalloff::smooth);
+    EXPECT_FLOAT_EQ(spot.spot.inner, 0.1f);
+    EXPECT_FLOAT_EQ(falloff(spot, vec3(0)), 0.25f) << "a node's scale does not reach its light";
+}
+
+TEST(Gltf, UnknownKindsOfLightsAreLeftOut) {
+    const Scene scene = load(with_nodes(R"({"mesh": 0},)" + shining(0), punctual(R"({"type": "laser", "name": "l"})")));
+    EXPECT_TRUE(warns(scene, "unknown type \"laser\""));
+    EXPECT_EQ(scene.lights.at(0).name, "default");
+}
+
+TEST(Gltf, ExposureMakesLuxVisible) {
+    // 20 000 lux on a square: as is it would be white.
+    const std::string sun = R"({"type": "directional", "intensity": 20000})";
+    const Scene bright    = load(with_nodes(R"({"mesh": 0},)" + shining(0), punctual(sun)));
+    EXPECT_FLOAT_EQ(bright.exposure, 1.0f / 20000);
+    EXPECT_TRUE(warns(bright, "the exposure is set to 5e-05"));
+    const Scene normal =
+        load(with_nodes(R"({"mesh": 0},)" + shining(0), punctual(R"({"type": "directional", "intensity": 1.5})")));
+    EXPECT_EQ(normal.exposure, 1);
+    const Scene said =
+        load(with_nodes(R"({"mesh": 0},)" + shining(0),
+                        punctual(sun) + R"(, "scenes": [{"nodes": [0, 1], "extras": {"umbra": {"exposure": 0.5}}}])"));
+    EXPECT_EQ(said.exposure, 0.5f);
+}
+
+// ---- materials ----
+
+Material material(const std::string& json) {
+    const Scene scene = load(
+        document(R"("nodes": [{"mesh": 0}], "materials": [)" + json +
+                 R"(], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 2, "material": 0}]}])"));
+    return scene.materials.at(0);
+}
+
+TEST(GltfMaterial, DielectricsAndMetals) {
+    const Material plastic = material(
+        R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 0.5], "metallicFactor": 0, "roughnessFactor": 0.5}})");
+    EXPECT_EQ(plastic.O_d, vec3(0.5f, 0.25f, 1));
+    EXPECT_FLOAT_EQ(plastic.k_d.r, 0.96f);
+    EXPECT_EQ(plastic.k_a, plastic.k_d);
+    EXPECT_FLOAT_EQ(plastic.k_s.g, 0.04f) << "a = 0.25: the peak 1 / (4 a^2) = 4 is limited to 1";
+    EXPECT_FLOAT_EQ(plastic.shininess, 7.5f) << "1 / (2 a^2) - 1/2";
+    EXPECT_FALSE(plastic.two_sided);
+    EXPECT_EQ(plastic.opacity, 1) << "alphaMode is OPAQUE";
+    const Material gold = material(
+        R"({"doubleSided": true, "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 0.75, 0.25, 0.5], "roughnessFactor": 0.25}})");
+    EXPECT_EQ(gold.k_d, vec3(0));
+    EXPECT_EQ(gold.k_s, vec3(1, 0.75f, 0.25f));
+    EXPECT_FLOAT_EQ(gold.shininess, 127.5f);
+    EXPECT_TRUE(gold.two_sided);
+    EXPECT_EQ(gold.opacity, 0.5f);
+    const Material rough = material(R"({"name": "none given"})");
+    EXPECT_EQ(rough.k_s, vec3(0.25f)) << "metal and rough by default: F0 = 1, a = 1";
+    EXPECT_EQ(rough.shininess, 1);
+    const Material mirror = material(R"({"pbrMetallicRoughness": {"roughnessFactor": 0}})");
+    EXPECT_EQ(mirror.shininess, 10000);
+}
+
+TEST(GltfMaterial, NoneGivesBackMoreThanItGets) {
+    for (const double m : {0.0, 0.3, 1.0})
+        for (const double r : {0.0, 0.2, 0.6, 1.0})
+            for (const double c : {0.0, 0.5, 1.0}) {
+                const Material x = material(fmt::format(
+                    R"({{"pbrMetallicRoughness": {{"baseColorFactor": [{0}, {0}, {0}, 1], "metallicFactor": {1}, "roughnessFactor": {2}}}}})",
+                    c, m, r));
+                EXPECT_LE(x.k_d.r * x.O_d.r + x.k_s.r * x.O_s.r, 1.00001f) << c << ' ' << m << ' ' << r;
+            }
+}
+
+TEST(GltfMaterial, EmissionAndExtensions) {
+    EXPECT_EQ(
+        material(
+            R"({"emissiveFactor": [1, 0.5, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}})")
+            .emission,
+        vec3(4, 2, 0));
+    const Material unlit = material(
+        R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 0.5, 0, 1]}, "extensions": {"KHR_materials_unlit": {}}})");
+    EXPECT_EQ(unlit.emission, vec3(1, 0.5f, 0));
+    EXPECT_EQ(unlit.k_d + unlit.k_s + unlit.k_a, vec3(0));
+    const Material glass = material(
+        R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.9}, "KHR_materials_ior": {"ior": 1.3}}})");
+    EXPECT_EQ(glass.transmit, 0.9f);
+    EXPECT_EQ(glass.index_of_refraction, 1.3f);
+    const Material gloss = material(
+        R"({"extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [0.5, 0.5, 0.5, 1], "specularFactor": [0.25, 0.2, 0.1], "glossinessFactor": 0.5}}})");
+    EXPECT_EQ(gloss.O_d, vec3(0.5f));
+    EXPECT_EQ(gloss.k_d, vec3(0.75f));
+    EXPECT_EQ(gloss.k_s, vec3(0.25f, 0.2f, 0.1f));
+    EXPECT_FLOAT_EQ(gloss.shininess, 7.5f);
+}
+
+TEST(GltfMaterial, TexturesAreNotReadNorEvenOpened) {
+    const Scene scene =
+        load(document(R"("nodes": [{"mesh": 0}], "images": [{"uri": "/dev/zero"}], "textures": [{"source": 0}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}, "normalTexture": {"index": 0}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 2, "material": 0}]}])"));
+    EXPECT_EQ(std::count_if(scene.warnings.begin(), scene.warnings.end(),
+                            [](const std::string& w) { return w.starts_with("Textures"); }),
+              1);
+}
+
+// ---- extensions ----
+
+TEST(Gltf, ExtensionsThatAreNotRead) {
+    EXPECT_TRUE(warns(
+        load(document(
+            R"("extensionsUsed": ["ACME_fur", "KHR_texture_transform"], "extensionsRequired": ["KHR_texture_transform"])")),
+        "ignored: ACME_fur, KHR_texture_transform."));
+}
+
+// ---- extras.umbra ----
+
+TEST(GltfExtras, EverythingThatTheFormatLacks) {
+    const Scene scene = load_scene(std::filesystem::path(UMBRA_TEST_DATA) / "gltf/extras.gltf");
+    expect_sound(scene);
+    EXPECT_EQ(scene.title, "what glTF lacks");
+    EXPECT_EQ(scene.shows.substr(0, 8), "All that");
+    EXPECT_EQ(scene.ambient, vec3(0.2f, 0.2f, 0.25f));
+    EXPECT_EQ(scene.background, vec3(0.5f));
+    EXPECT_EQ(scene.tone, ToneMap::hue);
+    EXPECT_EQ(scene.exposure, 0.75f);
+    EXPECT_FALSE(scene.local_viewer);
+    EXPECT_EQ(scene.width, 320);
+    EXPECT_EQ(scene.height, 200);
+
+    ASSERT_EQ(scene.lights.size(), 4u);
+    const Light& panel = scene.lights[0];
+    EXPECT_EQ(panel.kind, LightKind::rectangle);
+    EXPECT_EQ(panel.name, "ceiling_panel");
+    expect_near(panel.position, {0, 4, 0});
+    EXPECT_NEAR(glm::length(panel.edge_u), 2, 1e-5) << "the node is scaled by 2";
+    EXPECT_NEAR(glm::length(panel.edge_v), 1, 1e-5);
+    expect_near(panel.direction, {0, -1, 0});
+    EXPECT_EQ(panel.diffuse, vec3(12));
+    EXPECT_FLOAT_EQ(falloff(panel, vec3(0, 2, 0)), 0.25f);
+    const Light& dish = scene.lights[1];
+    EXPECT_EQ(dish.kind, LightKind::disk);
+    EXPECT_EQ(dish.name, "dish");
+    EXPECT_EQ(dish.radius, 0.25f);
+    expect_near(dish.direction, {0, -1, 0});
+    EXPECT_EQ(dish.diffuse, vec3(1, 0.9f, 0.8f));
+    EXPECT_EQ(falloff(dish, vec3(-2, 0, 1)), 1);
+    EXPECT_EQ(dish.range, 9);
+    const Light& bulb = scene.lights[2];
+    EXPECT_EQ(bulb.kind, LightKind::sphere);
+    EXPECT_FLOAT_EQ(bulb.radius, 0.2f);
+    EXPECT_EQ(bulb.diffuse, vec3(2));
+    EXPECT_EQ(bulb.specular, vec3(0));
+    EXPECT_TRUE(bulb.attenuation.clamp);
+    const Light& lamp = scene.lights[3];
+    EXPECT_EQ(lamp.kind, LightKind::spot);
+    EXPECT_EQ(lamp.spot.falloff, SpotFalloff::cosine);
+    EXPECT_EQ(lamp.spot.exponent, 4);
+    EXPECT_EQ(lamp.diffuse, vec3(8, 4, 2));
+    EXPECT_EQ(lamp.specular, vec3(1));
+    EXPECT_EQ(lamp.ambient, vec3(0.05f));
+    EXPECT_FLOAT_EQ(falloff(lamp, vec3(0, 3, 2)), 1.0f / 3) << "1 / (1 + d^2 / 2)";
+
+    const Material& m = scene.materials[1];
+    EXPECT_EQ(m.k_a, vec3(0.2f));
+    EXPECT_EQ(m.k_d, vec3(0.6f, 0.1f, 0.1f));
+    EXPECT_EQ(m.k_s, vec3(0.4f));
+    EXPECT_EQ(m.O_d, vec3(1, 0.9f, 0.8f));
+    EXPECT_EQ(m.emission, vec3(0, 0, 0.1f));
+    EXPECT_EQ(m.shininess, 40);
+    EXPECT_EQ(m.lobe, Lobe::blinn_phong);
+    EXPECT_TRUE(m.two_sided);
+    EXPECT_EQ(m.opacity, 0.9f);
+    EXPECT_EQ(m.reflect, 0.1f);
+    EXPECT_EQ(m.transmit, 0.05f);
+    EXPECT_EQ(m.index_of_refraction, 1.4f);
+}
+
+TEST(GltfExtras, AMirroredPanelFacesTheSameWay) {
+    for (const char* scale : {"[1, 1, 1]", "[-1, 1, 1]", "[1, -2, 1]"}) {
+        const Scene scene = load(with_nodes(fmt::format(
+            R"({{"mesh": 0}}, {{"scale": {}, "extras": {{"umbra": {{"light": {{"type": "rectangle", "size": [1, 1]}}}}}}}})",
+            scale)));
+        expect_near(scene.lights.at(0).direction, {0, 0, -1});
+    }
+}
+
+// ---- bad input ----
+
+struct Bad {
+    std::string name, text, expected;
+    std::string file = "bad.gltf";
+};
+void PrintTo(const Bad& bad, std::ostream* out) { *out << bad.name; }
+
+class BadGltf : public ::testing::TestWithParam<Bad> {};
+
+TEST_P(BadGltf, IsRefusedWithPlaceAndReason) {
+    const TemporaryFolder folder;
+    const auto file           = folder.write(GetParam().file, GetParam().text);
+    const std::string message = refusal(file);
+    EXPECT_EQ(message.rfind(file.string(), 0), 0u) << message;
+    EXPECT_NE(message.find(GetParam().expected), std::string::npos) << message;
+}
+
+std::string with(std::string s, const std::string& from, const std::string& to) {
+    return s.replace(s.find(from), from.size(), to);
+}
+const std::string kGood = with_nodes(R"({"mesh": 0})");
+std::string node(const std::string& members) { return with_nodes("{" + members + "}"); }
+std::string light(const std::string& json) { return with_nodes(R"({"mesh": 0})", punctual(json)); }
+std::string camera(const std::string& json) { return with_nodes(R"({"mesh": 0})", R"("cameras": [)" + json + "]"); }
+std::string extras(const std::string& json) { return with_nodes(R"({"mesh": 0, "extras": {"umbra": )" + json + "}}"); }
+std::string floats(float x) {
+    return kGood.substr(0, kGood.find("\"buffers\"")) + buffers(bytes_of<float>({x}) + kSquare.substr(4)) + "}";
+}
+std::string accessor(const std::string& json) {
+    return R"({"asset": {"version": "2.0"}, "accessors": [)" + json + "]}";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Document, BadGltf,
+    ::testing::ValuesIn(std::vector<Bad>{
+        {"empty", "", "empty (a glTF 2.0 file"},
+        {"not_json", "{]", ":1:2: not JSON"},
+        {"cut_off", kGood.substr(0, kGood.size() - 40), "not JSON"},
+        {"number_beyond", with(kGood, R"("mesh": 0)", R"("mesh": 1e999)"), "too large"},
+        {"nan", with(kGood, R"("mesh": 0)", R"("mesh": NaN)"), "not JSON"},
+        {"a_list", "[]", "(an object"},
+        {"no_asset", "{}", "no \"asset\""},
+        {"version_1", R"({"asset": {"version": "1.0"}})", ":1:23: version \"1.0\""},
+        {"version_number", R"({"asset": {"version": 2}})", "version is the number 2"},
+        {"nodes_object", R"({"asset": {"version": "2.0"}, "nodes": {}})", "nodes is an object"},
+        {"nested", R"({"asset": {"version": "2.0"}, "extras": )" + std::string(1000000, '['), "nested deeper"},
+        {"requires_draco", document(R"("extensionsRequired": ["KHR_draco_mesh_compression"])"),
+         "requires the extension KHR_draco_mesh_compression"},
+        {"requires_unknown", document(R"("extensionsRequired": ["ACME_fur"])"),
+         ":2:24: the file requires the extension ACME_fur"},
+        {"draco_inside",
+         with(kGood, R"("accessors": [)", R"("accessors": [{"componentType": 5126, "count": 4, "type": "VEC3"},)")
+             .replace(kGood.find(R"({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2})"), 58,
+                      R"({"attributes": {"POSITION": 0}, "extensions": {"KHR_draco_mesh_compression": {}}})"),
+         "is compressed"},
+    }),
+    [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Data, BadGltf,
+    ::testing::ValuesIn(std::vector<Bad>{
+        {"nan", floats(std::nanf("")), "accessors[0]: component 0 of element 0 is nan"},
+        {"infinity", floats(-kInfinity), "accessors[0]: component 0 of element 0 is -inf"},
+        {"too_far", floats(1e19f), "places a vertex at"},
+        {"index_beyond",
+         kGood.substr(0, kGood.find("\"buffers\"")) + buffers(kSquare.substr(0, 96) + "\x04" + kSquare.substr(97)) +
+             "}",
+         "index 0 of meshes[0].primitives[0] is 4, but there are 4 positions"},
+        {"no_buffer", with(kGood, R"("buffer": 0)", R"("buffer": 1)"), "buffer 1 is not there (the file has 1"},
+        {"negative_buffer", with(kGood, R"("buffer": 0)", R"("buffer": -1)"), "buffer is -1"},
+        {"half_a_buffer", with(kGood, R"("buffer": 0)", R"("buffer": 0.5)"), "buffer is 0.5"},
+        {"no_view", with(kGood, R"("bufferView": 0)", R"("bufferView": 9)"), "bufferView 9 is not there"},
+        {"view_too_long", with(kGood, R"("byteLength": 116})", R"("byteLength": 117})"),
+         "bufferViews[0] is bytes 0 to 117 of a buffer of 116"},
+        {"view_beyond", with(kGood, R"({"buffer": 0, )", R"({"buffer": 0, "byteOffset": 9007199254740992, )"),
+         "bufferViews[0] is bytes 9007199254740992"},
+        {"view_negative", with(kGood, R"({"buffer": 0, )", R"({"buffer": 0, "byteOffset": -4, )"), "byteOffset is -4"},
+        {"view_empty", with(kGood, R"("byteLength": 116})", R"("byteLength": 0})"), "byteLength is 0"},
+        {"stride_small", with(kGood, R"({"buffer": 0, )", R"({"buffer": 0, "byteStride": 4, )"), "a byteStride of 4"},
+        {"stride_huge", with(kGood, R"({"buffer": 0, )", R"({"buffer": 0, "byteStride": 4000000000, )"),
+         "byteStride is"},
+        {"count_too_large", with(kGood, R"("count": 4)", R"("count": 11)"), "accessors[0] has 11 elements"},
+        {"count_huge", with(kGood, R"("count": 4)", R"("count": 9007199254740991)"),
+         "accessors[0] has 9007199254740991 elements"},
+        {"count_zero", with(kGood, R"("count": 4)", R"("count": 0)"), "count is 0"},
+        {"count_word", with(kGood, R"("count": 4)", R"("count": "four")"), "count is the string \"four\""},
+        {"count_missing", with(kGood, R"("count": 4,)", ""), "accessors[0] has no count"},
+        {"offset_beyond", with(kGood, R"("byteOffset": 48)", R"("byteOffset": 116)"), "accessors[1] has 4 elements"},
+        {"component_type", with(kGood, "5126", "5124"), "componentType is 5124"},
+        {"type", with(kGood, "VEC3", "VEC5"), "VEC5"},
+        {"zeros_without_end", accessor(R"({"componentType": 5126, "count": 4000000000, "type": "MAT4"})"),
+         "4000000000 elements and no bufferView"},
+        {"sparse_huge",
+         accessor(
+             R"({"componentType": 5126, "count": 4, "type": "VEC3", "sparse": {"count": 4000000000, "indices": {}, "values": {}}})"),
+         "count is 4e+09"},
+        {"unequal_counts", with(kGood, R"("NORMAL": 1)", R"("NORMAL": 2)"),
+         "NORMAL has 6 elements, another attribute 4"},
+        {"position_scalar", with(kGood, R"({"POSITION": 0, "NORMAL": 1})", R"({"POSITION": 2})"),
+         "POSITION is no accessor of type VEC3"},
+        {"indices_float", with(kGood, R"("indices": 2)", R"("indices": 0)"), "indices are no accessor of type SCALAR"},
+        {"no_attributes", with(kGood, R"("attributes")", R"("attribs")"), "has no attributes"},
+        {"mode", with(kGood, R"("indices": 2)", R"("mode": 7)"), "mode is 7"},
+        {"material", with(kGood, R"("indices": 2)", R"("material": 0)"), "material 0 is not there (the file has 0"},
+        {"length_beyond", with(kGood, R"("byteLength": 116,)", R"("byteLength": 117,)"),
+         "buffers[0] says 117 bytes, but 116 are there"},
+        {"length_huge", with(kGood, R"("byteLength": 116,)", R"("byteLength": 9007199254740991,)"),
+         "but 116 are there"},
+        {"no_base64", with(kGood, ";base64,", ";base64,*"), "what is not base64"},
+        {"no_comma", with(kGood, ";base64,", ";base64"), "the data URI is malformed"},
+        {"two_semicolons", with(kGood, ";base64,", ";;base64,"), "the data URI is malformed"},
+        {"missing_file", with(kGood, "data:application/octet-stream;base64,", "no/such/"), "there is no file"},
+        {"the_web", with(kGood, "data:application/octet-stream;base64,", "https://example.org/"),
+         "is not read (a file beside this one"},
+        {"absolute", with(kGood, "data:application/octet-stream;base64,", "/dev/"),
+         "is not read (a file beside this one"},
+        {"no_uri", R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4}]})", "buffers[0] has no uri"},
+    }),
+    [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Things, BadGltf,
+    ::testing::ValuesIn(std::vector<Bad>{
+        {"mesh", node(R"("mesh": 1)"), "mesh 1 is not there (the file has 1, counted from 0)"},
+        {"camera", node(R"("camera": 0)"), "camera 0 is not there (the file has 0"},
+        {"light", with_nodes(shining(0)), "light 0 is not there"},
+        {"child", node(R"("children": [7])"), "node 7 is not there"},
+        {"own_child", node(R"("children": [0])"), "nodes[0] is its own ancestor"},
+        {"loop", with_nodes(R"({"children": [1]}, {"children": [2]}, {"children": [0]})"),
+         "is its own ancestor (a tree would be right)"},
+        {"two_parents", with_nodes(R"({"children": [2]}, {"children": [2]}, {})"),
+         "node 2 is a child of node 0 already"},
+        {"scene", with_nodes(R"({"mesh": 0})", R"("scene": 3, "scenes": [{}])"), "scene 3 is not there"},
+        {"scene_node", with_nodes(R"({"mesh": 0})", R"("scenes": [{"nodes": [1]}])"), "node 1 is not there"},
+        {"scene_twice", with_nodes(R"({"mesh": 0})", R"("scenes": [{"nodes": [0, 0]}])"), "node 0 is named twice"},
+        {"scene_of_children", with_nodes(R"({"children": [1]}, {})", R"("scenes": [{"nodes": [1]}])"),
+         "node 1 is the child of another"},
+        {"matrix_short", node(R"("matrix": [1, 0, 0])"), "(16 numbers"},
+        {"matrix_projective", node(R"("matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1])"),
+         "the last row of matrix is (1, 0, 0, 1)"},
+        {"matrix_and_scale", node(R"("matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "scale": [1, 1, 1])"),
+         "both matrix and scale"},
+        {"rotation_zero", node(R"("rotation": [0, 0, 0, 0])"), "rotation has length 0"},
+        {"translation_far", node(R"("translation": [0, 0, 1e300])"), "1e+300"},
+        {"scale_twice", with_nodes(R"({"children": [1], "scale": [1e15, 1, 1]}, {"mesh": 0, "scale": [1e15, 1, 1]})"),
+         "places a vertex at"},
+        {"light_angles", light(R"({"type": "spot", "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.1}})"),
+         "innerConeAngle 0.2 is not less than outerConeAngle 0.1"},
+        {"light_angles_same", light(R"({"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.25}})"),
+         "is not less"},
+        {"light_wide", light(R"({"type": "spot", "spot": {"outerConeAngle": 1.57079644}})"),
+         "(an angle above 0, at most pi/2"},
+        {"light_inner", light(R"({"type": "spot", "spot": {"innerConeAngle": -0.01}})"), "innerConeAngle is -0.01"},
+        {"light_no_spot", light(R"({"type": "spot"})"), "without \"spot\""},
+        {"light_no_type", light(R"({})"), "lights[0] has no type"},
+        {"light_type", light(R"({"type": 3})"), "type is the number 3"},
+        {"light_colour", light(R"({"type": "point", "color": "#ff3366"})"), "color is the string"},
+        {"light_colours", light(R"({"type": "point", "color": [1, 1, 1, 1]})"), "color is a list of 4 values"},
+        {"light_negative", light(R"({"type": "point", "intensity": -1})"), "intensity is -1"},
+        {"light_bright", light(R"({"type": "point", "intensity": 1e300})"), "intensity is 1e+300"},
+        {"light_range", light(R"({"type": "point", "range": 0})"), "range is 0"},
+        {"camera_far", camera(R"({"type": "perspective", "perspective": {"yfov": 1, "znear": 10, "zfar": 1}})"),
+         "zfar 1 is not beyond znear 10"},
+        {"camera_angle", camera(R"({"type": "perspective", "perspective": {"yfov": 3.2, "znear": 1}})"),
+         "yfov is 3.2 (an angle between 0 and pi"},
+        {"camera_no_angle", camera(R"({"type": "perspective", "perspective": {"znear": 1}})"),
+         "cameras[0] has no yfov"},
+        {"camera_type", camera(R"({"type": "fisheye"})"), "fisheye"},
+        {"camera_flat",
+         camera(R"({"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 0, "znear": 0, "zfar": 1}})"),
+         "xmag or ymag is 0"},
+        {"camera_in_a_flat_node",
+         with_nodes(R"({"camera": 0, "scale": [0, 0, 0]})",
+                    R"("cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}])"),
+         "a transform without direction"},
+        {"material_metallic", document(R"("materials": [{"pbrMetallicRoughness": {"metallicFactor": 1.5}}])"),
+         "metallicFactor is 1.5 (a number from 0 to 1"},
+        {"material_base", document(R"("materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])"),
+         "baseColorFactor is a list of 3 values (4 numbers"},
+        {"material_alpha", document(R"("materials": [{"alphaMode": "GLASS"}])"), "GLASS"},
+        {"material_texture", document(R"("materials": [{"normalTexture": {"index": 0, "scale": "big"}}])"),
+         "scale is the string \"big\""},
+        {"extras_unknown", extras(R"({"lamp": {}})"), "\"lamp\""},
+        {"extras_text", extras(R"("light")"), "extras.umbra of a node is the string"},
+        {"extras_light_type", extras(R"({"light": {"type": "area"}})"), "\"area\""},
+        {"extras_no_size", extras(R"({"light": {"type": "rectangle"}})"), "\"size\""},
+        {"extras_radius", extras(R"({"light": {"type": "disk", "radius": -1}})"), "radius is -1"},
+        {"extras_both", extras(R"({"light": {"type": "disk", "radius": 1, "size": [1, 1]}})"),
+         "a rectangle has a size"},
+        {"extras_attenuation", extras(R"({"light": {"type": "disk", "radius": 1, "attenuation": [0, 0, 0]}})"),
+         "divides by zero"},
+        {"extras_ellipse",
+         with_nodes(R"({"scale": [1, 2, 1], "extras": {"umbra": {"light": {"type": "disk", "radius": 1}}}})"),
+         "an ellipse"},
+        {"extras_sheared",
+         with_nodes(
+             R"({"matrix": [1,0,0,0, 0.5,1,0,0, 0,0,1,0, 0,0,0,1], "extras": {"umbra": {"light": {"type": "rectangle", "size": [1, 1]}}}})"),
+         "a parallelogram"},
+        {"extras_material", document(R"("materials": [{"extras": {"umbra": {"shininess": -3}}}])"), "shininess is -3"},
+    }),
+    [](const auto& test) { return test.param.name; });
+
+const std::string kGlb = glb(R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], )" + kMesh + ", " + kAccessors +
+                                 R"(, "buffers": [{"byteLength": 116}]})",
+                             kSquare);
+
+INSTANTIATE_TEST_SUITE_P(
+    Glb, BadGltf,
+    ::testing::ValuesIn(std::vector<Bad>{
+        {"magic", "GLTF" + kGlb.substr(4), "byte 0: does not begin with the letters glTF", "a.glb"},
+        {"short", kGlb.substr(0, 15), "byte 0: 15 bytes", "a.glb"},
+        {"version", with(kGlb, std::string("\x02\0\0\0", 4), std::string("\x01\0\0\0", 4)), "byte 4: version 1",
+         "a.glb"},
+        {"cut_off", kGlb.substr(0, kGlb.size() - 1), "byte 8: the header says", "a.glb"},
+        {"too_long", kGlb + "x", "byte 8: the header says", "a.glb"},
+        {"chunk", kGlb.substr(0, 12) + "\xff\xff\xff\xff" + kGlb.substr(16), "byte 12: a chunk of 4294967295 bytes",
+         "a.glb"},
+        {"first_chunk", with(kGlb, "JSON", "BLOB"), "byte 16: the first chunk is not JSON", "a.glb"},
+        {"no_bin", glb(R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 116}]})", "", false),
+         "buffers[0] has no uri", "a.glb"},
+        {"small_bin", glb(R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 117}]})", kSquare),
+         "says 117 bytes, but 116 are there", "a.glb"},
+    }),
+    [](const auto& test) { return test.param.name; });
+
+TEST(Gltf, AMillionNodesInAChainAreNoTrouble) {
+    std::string nodes = R"({"mesh": 0})";
+    for (int i = 0; i < 100000; ++i) nodes += fmt::format(",\n{{\"children\": [{}]}}", i);
+    const Scene scene = load(with_nodes(nodes));
+    EXPECT_EQ(scene.triangles.size(), 2u);
+}
+
+TEST(Gltf, ManyNodesOfOneMeshAreCountedBeforeTheyAreMade) {
+    // 4096 zeros make 1365 triangles, 80,000 nodes too many of them.
+    std::string nodes = R"({"mesh": 0})";
+    for (int i = 0; i < 80000; ++i) nodes += R"(,{"mesh": 0})";
+    const TemporaryFolder folder;
+    const auto file = folder.write("a.gltf", R"({"asset": {"version": "2.0"}, "nodes": [)" + nodes +
+                                                 R"(], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"componentType": 5126, "count": 4096, "type": "VEC3"}]})");
+    EXPECT_NE(refusal(file).find("triangles with this node"), std::string::npos);
+}
+
+TEST(Gltf, Mutants) {
+    const std::string everything = with_nodes(
+        R"({"mesh": 0, "children": [1]}, {"camera": 0, "scale": [1, 2, 1], "rotation": [0, 0, 0, 1]},)" + shining(0) +
+            R"(, {"extras": {"umbra": {"light": {"type": "disk", "radius": 1}}}})",
+        punctual(R"({"type": "spot", "intensity": 5, "spot": {"outerConeAngle": 1}})") +
+            R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}], "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0}}], "scene": 0, "scenes": [{"nodes": [0, 2, 3]}])");
+    expect_survives_mutants("gltf", {everything, kGood});
+}
+TEST(Glb, Mutants) {
+    const std::string json = kGlb.substr(20, kGlb.size() - 20 - 8 - kSquare.size());
+    expect_survives_mutants("glb", {json + '\0' + kSquare}, [](const std::string& both) {
+        const std::size_t cut = std::min(both.find('\0'), both.size());
+        return glb(both.substr(0, cut), both.substr(std::min(cut + 1, both.size())));
+    });
+}
+TEST(Glb, MutantsOfTheContainer) {
+    // Most are refused for their lengths; some change what no one reads.
+    expect_survives_mutants("glb", {glb(R"({"asset": {"version": "2.0"}})", std::string(2000, 'x'))});
+}
+
+}  // namespace
+}  // namespace umbra

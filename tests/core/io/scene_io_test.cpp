@@ -1,0 +1,178 @@
+// What loading does whatever the format: dispatch, unreadable files, the checks and defaults that all share.
+#include "umbra/core/io/scene_io.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_readers.h"
+#include "umbra/core/scene/primitives.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+std::string message_of(const std::filesystem::path& file) {
+    try {
+        (void)load_scene(file);
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "loaded";
+}
+
+SceneFile with_box() {
+    SceneFile read;
+    const Mesh box = make_box(vec3(1));
+    read.scene.materials.emplace_back();
+    add_object(read.scene, "box", box.positions, box.normals, box.triangles, 0);
+    read.has_camera = true;
+    Light light;
+    light.position = {0, 5, 0};
+    read.scene.lights.push_back(light);
+    return read;
+}
+
+std::string refusal(SceneFile read) {
+    try {
+        (void)finish_scene(std::move(read), "folder/made.obj");
+    } catch (const InputError& e) {
+        return e.what();
+    }
+    return "accepted";
+}
+
+TEST(LoadScene, UnknownEndingsNameTheKnownOnes) {
+    EXPECT_EQ(message_of("a/scene.blend"),
+              "a/scene.blend: unknown ending \".blend\" (known: .json .gltf .glb .obj .nff .ply .off .stl)");
+    EXPECT_NE(message_of("scene").find("scene: no ending"), std::string::npos);
+    EXPECT_NE(message_of("").find("no ending"), std::string::npos);
+}
+
+TEST(LoadScene, EndingsAreReadInAnyCase) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(message_of(folder.write("A.JSON", "{}")), "loaded");
+}
+
+TEST(LoadScene, FilesThatCannotBeReadSayWhy) {
+    const TemporaryFolder folder;
+    EXPECT_NE(message_of(folder.path() / "none.json").find("none.json: no such file"), std::string::npos);
+    std::filesystem::create_directories(folder.path() / "folder.json");
+    EXPECT_NE(message_of(folder.path() / "folder.json").find("is a folder"), std::string::npos);
+    std::filesystem::create_symlink("/dev/zero", folder.path() / "endless.json");
+    EXPECT_NE(message_of(folder.path() / "endless.json").find("larger than"), std::string::npos);
+}
+
+TEST(FinishScene, NamesAndSource) {
+    const Scene s = finish_scene(with_box(), "folder/made.obj");
+    EXPECT_EQ(s.name, "made");
+    EXPECT_EQ(s.title, "made");
+    EXPECT_EQ(s.source, "folder/made.obj");
+    EXPECT_TRUE(s.warnings.empty());
+}
+
+TEST(FinishScene, NumbersThatAreNoneAreRefused) {
+    for (const float bad : {kInfinity, -kInfinity, std::nanf(""), 1.5e18f}) {
+        SceneFile read            = with_box();
+        read.scene.positions[3].y = bad;
+        EXPECT_NE(refusal(read).find("folder/made.obj: a vertex at"), std::string::npos) << bad;
+        read                    = with_box();
+        read.scene.camera.eye.x = bad;
+        EXPECT_NE(refusal(read).find("camera"), std::string::npos) << bad;
+        read                            = with_box();
+        read.scene.lights[0].position.z = bad;
+        EXPECT_NE(refusal(read).find("light \"\": position"), std::string::npos) << bad;
+        read                          = with_box();
+        read.scene.materials[0].k_d.g = bad;
+        EXPECT_NE(refusal(read).find("k_d"), std::string::npos) << bad;
+    }
+    SceneFile read          = with_box();
+    read.scene.normals[0].x = kInfinity;
+    EXPECT_NE(refusal(read).find("a vertex normal"), std::string::npos);
+}
+
+TEST(FinishScene, IndicesOutOfRangeAreRefused) {
+    SceneFile read            = with_box();
+    read.scene.triangles[2].z = 8;
+    EXPECT_NE(refusal(read).find("there are 8, counted from 0"), std::string::npos) << refusal(read);
+}
+
+TEST(FinishScene, NormalsBecomeUnit) {
+    SceneFile read        = with_box();
+    read.scene.normals[0] = {0, 3e-30f, 4e-30f};
+    read.scene.normals[1] = {0, 0, 0};
+    const Scene s         = finish_scene(std::move(read), "x.obj");
+    EXPECT_NEAR(s.normals[0].y, 0.6, 1e-6);
+    EXPECT_EQ(s.normals[1], vec3(0)) << "zero stands for the face normal";
+}
+
+TEST(FinishScene, CamerasThatCannotSeeAreRefused) {
+    SceneFile read           = with_box();
+    read.scene.camera.target = read.scene.camera.eye;
+    EXPECT_NE(refusal(read).find("eye and target are the same point"), std::string::npos);
+    read                 = with_box();
+    read.scene.camera.up = read.scene.camera.target - read.scene.camera.eye;
+    EXPECT_NE(refusal(read).find("parallel"), std::string::npos);
+    read                    = with_box();
+    read.scene.camera.fov_y = 180;
+    EXPECT_NE(refusal(read).find("fov is 180"), std::string::npos);
+    read             = with_box();
+    read.scene.width = 1 << 20;
+    EXPECT_NE(refusal(read).find("the picture is 1048576 x 360"), std::string::npos);
+}
+
+TEST(FinishScene, LightsThatCannotShineAreRefused) {
+    const auto with = [](auto change) {
+        SceneFile read = with_box();
+        change(read.scene.lights[0]);
+        return refusal(std::move(read));
+    };
+    EXPECT_NE(with([](Light& l) { l.attenuation = {0, 0, 0, true}; }).find("divides by zero"), std::string::npos);
+    EXPECT_NE(with([](Light& l) { l.diffuse.r = -1; }).find("diffuse is (-1, 1, 1)"), std::string::npos);
+    EXPECT_NE(with([](Light& l) { l.kind = LightKind::sphere; }).find("radius is 0"), std::string::npos);
+    EXPECT_NE(with([](Light& l) { l.kind = LightKind::directional, l.direction = vec3(0); }).find("direction is"),
+              std::string::npos);
+    EXPECT_NE(with([](Light& l) { l.kind = LightKind::rectangle, l.edge_v = l.edge_u; }).find("span no area"),
+              std::string::npos);
+    EXPECT_NE(with([](Light& l) { l.kind = LightKind::spot, l.spot.cutoff = 2; }).find("half angle"),
+              std::string::npos);
+    EXPECT_NE(with([](Light& l) {
+                  l.kind = LightKind::spot, l.spot.falloff = SpotFalloff::smooth, l.spot.inner = 1;
+              }).find("inner"),
+              std::string::npos);
+    EXPECT_NE(with([](Light& l) { l.range = -1; }).find("range is -1"), std::string::npos);
+    EXPECT_EQ(with([](Light& l) { l.kind = LightKind::spot, l.spot.cutoff = float(kPi / 2); }), "accepted");
+}
+
+TEST(FinishScene, DirectionsOfAnyLengthAreScaledWithoutRounding) {
+    SceneFile read                 = with_box();
+    read.scene.lights[0].kind      = LightKind::directional;
+    read.scene.lights[0].direction = {3e-38f, -7e-38f, 1e-38f};
+    const Scene s                  = finish_scene(std::move(read), "x.obj");
+    const vec3 d                   = s.lights[0].direction;
+    EXPECT_EQ(d.x / d.y, 3e-38f / -7e-38f);
+    EXPECT_TRUE(std::abs(d.y) >= 0.5f && std::abs(d.y) < 1);
+}
+
+TEST(FinishScene, DefaultCameraFramesTinyHugeAndFlatScenes) {
+    for (const vec3 scale : {vec3(1e-12f), vec3(1e15f), vec3(1, 0, 1), vec3(1, 100, 1), vec3(100, 1, 1)}) {
+        SceneFile read  = with_box();
+        read.has_camera = false;
+        for (vec3& p : read.scene.positions) p *= scale;
+        const Scene s       = finish_scene(std::move(read), "x.obj");
+        const CameraFrame f = frame(s.camera, s.width, s.height);
+        double widest       = 0;
+        for (const vec3 p : s.positions) {
+            const dvec3 q = f.project(dvec3(p));
+            ASSERT_GT(q.z, 0);
+            widest = std::max({widest, std::abs(q.x / s.width * 2 - 1), std::abs(q.y / s.height * 2 - 1)});
+        }
+        EXPECT_LT(widest, 1) << "cut off";
+        EXPECT_GT(widest, 0.2) << "lost in the distance";
+    }
+}
+
+}  // namespace
+}  // namespace umbra

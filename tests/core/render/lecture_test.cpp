@@ -1,0 +1,170 @@
+// What the lectures say of shadows, asked of every method.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "umbra/core/render/shade.h"
+#include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/method.h"
+#include "umbra/tests/support/known_scenes.h"
+#include "umbra/tests/support/method_case.h"
+
+namespace umbra {
+namespace {
+
+/// What a method that says exactly may get wrong, and one that says approximately: shares of the points.
+double allowed(const Service& service) { return service.how == How::exactly ? 0 : 0.01; }
+
+class Lecture : public testing::TestWithParam<const MethodInfo*> {
+protected:
+    const MethodInfo& info() const { return *GetParam(); }
+};
+
+/// A square over a floor; the light is the caller's to place.
+Scene square_over_floor(LightKind kind) {
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.width      = 160;
+    scene.height     = 100;
+    scene.camera.eye = {0, 5, 6};
+    const Mesh floor = make_plane(8, 8), square = make_plane(2, 2);
+    add_object(scene, "floor", floor.positions, {}, floor.triangles, 0);
+    std::vector<vec3> raised = square.positions;
+    for (vec3& p : raised) p.y += 1;
+    add_object(scene, "square", raised, {}, square.triangles, 0);
+    scene.lights.emplace_back();
+    scene.lights[0].name += "light";
+    scene.lights[0].kind = kind;
+    return scene;
+}
+
+/// How many points are lit, in the umbra, and between.
+struct Tally {
+    std::size_t lit = 0, umbra = 0, penumbra = 0;
+    [[nodiscard]] std::size_t points() const { return lit + umbra + penumbra; }
+};
+
+Tally tally(const PointBatch& points, const VisibilityPlane& plane) {
+    Tally t;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (is_open(points, 0, i) && plane.defined[i])
+            ++(plane.s[i] == 1 ? t.lit : plane.s[i] == 0 ? t.umbra : t.penumbra);
+    return t;
+}
+
+TEST_P(Lecture, WithTheOnlyLightAtTheEyeNoShadowIsSeen) {
+    const KnownScene known = known_scene("light_at_eye");
+    MethodCase run(info(), known.scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    const PointBatch points = primary(known.scene);
+    run.prepare(0);
+    const Tally t = tally(points, run.visibility(points, 0));
+    EXPECT_GT(t.lit, 3000u);
+    EXPECT_LE(static_cast<double>(t.umbra + t.penumbra), allowed(run.serves()) * static_cast<double>(t.points()));
+}
+
+TEST_P(Lecture, PointLightsGiveUmbraOnly) {
+    Scene scene              = square_over_floor(LightKind::point);
+    scene.lights[0].position = {0.3f, 4, 0.2f};
+    MethodCase run(info(), scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    const PointBatch points = primary(scene);
+    run.prepare(0);
+    const Tally t = tally(points, run.visibility(points, 0));
+    EXPECT_GT(t.umbra, 500u);
+    EXPECT_GT(t.lit, 500u);
+    EXPECT_EQ(t.penumbra, 0u);
+}
+
+TEST_P(Lecture, WhatLiesInShadowIsStillLitByTheAmbientTerm) {
+    Scene scene              = square_over_floor(LightKind::point);
+    scene.lights[0].position = {0.3f, 4, 0.2f};
+    scene.materials[0].k_a   = {0.25f, 0.5f, 0.125f};
+    scene.materials[0].O_d   = {1, 0.5f, 0.5f};
+    scene.ambient            = {0.5f, 1, 1};
+    const vec3 ambient       = scene.ambient * scene.materials[0].k_a * scene.materials[0].O_d;
+    MethodCase run(info(), scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    const PointBatch points = primary(scene);
+    run.prepare(0);
+    const std::array planes{run.visibility(points, 0)};
+    const Image image    = shade(scene, points, planes);
+    std::size_t in_umbra = 0, lit = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!is_open(points, 0, i) || !planes[0].defined[i]) continue;
+        for (int c = 0; c < 3; ++c) {
+            const float value = image.at(i, static_cast<std::size_t>(c));
+            if (planes[0].s[i] == 0) {
+                ASSERT_FLOAT_EQ(value, ambient[c]);
+            } else {
+                ASSERT_GT(value, ambient[c]);
+            }
+        }
+        ++(planes[0].s[i] == 0 ? in_umbra : lit);
+    }
+    EXPECT_GT(in_umbra, 500u);
+    EXPECT_GT(lit, 500u);
+}
+
+TEST_P(Lecture, ADirectionalLightIsTheLimitOfAFarPointLight) {
+    const vec3 towards{-1, 2, 0.5f};
+    Scene sun               = square_over_floor(LightKind::directional);
+    sun.lights[0].direction = -towards;
+    MethodCase run(info(), sun);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    const PointBatch points = primary(sun);
+    run.prepare(0);
+    const VisibilityPlane limit = run.visibility(points, 0);
+
+    std::size_t before = points.size();
+    for (const float distance : {3.0f, 30.0f, 300.0f, 1e5f}) {
+        Scene lamp              = square_over_floor(LightKind::point);
+        lamp.lights[0].position = distance * towards;
+        MethodCase near(info(), lamp);
+        const PointBatch same = primary(lamp);
+        near.prepare(0);
+        const VisibilityPlane plane = near.visibility(same, 0);
+        std::size_t differing       = 0;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            differing += is_open(points, 0, i) && limit.defined[i] && plane.s[i] != limit.s[i];
+        EXPECT_LE(differing, before) << "at " << distance;
+        if (distance == 3.0f) {
+            EXPECT_GT(differing, 100u) << "near by, the two are not alike";
+        }
+        before = differing;
+    }
+    // At the last distance the shadow's outline is off by less than 1e-4: at most a pixel here and there.
+    EXPECT_LE(static_cast<double>(before), 2 + allowed(run.serves()) * static_cast<double>(points.size()));
+}
+
+TEST_P(Lecture, UmbraShrinksAndPenumbraGrowsWithTheLight) {
+    Tally before;
+    for (const float width : {0.1f, 0.6f, 1.2f, 2.4f}) {
+        Scene scene               = square_over_floor(LightKind::rectangle);
+        scene.lights[0].position  = {0, 4, 0};
+        scene.lights[0].edge_u    = {width, 0, 0};
+        scene.lights[0].edge_v    = {0, 0, -width};
+        scene.lights[0].direction = {0, 1, 0};
+        MethodCase run(info(), scene);
+        const Service service = run.serves();
+        if (!service) GTEST_SKIP() << service.why;
+        // Some methods take the light at its centre, and say so.
+        if (service.why.find("centres") != std::string::npos) GTEST_SKIP() << service.why;
+        const PointBatch points = primary(scene);
+        run.prepare(0);
+        const Tally t = tally(points, run.visibility(points, 0));
+        if (before.points() > 0) {
+            EXPECT_LT(t.umbra, before.umbra) << "width " << width;
+            EXPECT_GT(t.penumbra, before.penumbra) << "width " << width;
+        }
+        before = t;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryMethod, Lecture, testing::ValuesIn(methods().begin(), methods().end()),
+                         [](const auto& param) { return std::string(param.param->name); });
+
+}  // namespace
+}  // namespace umbra

@@ -1,0 +1,164 @@
+// Silhouettes: known bodies, chains that close, and McGuire's expected number.
+#include "umbra/shadows/volumes/silhouettes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/scene/primitives.h"
+
+namespace umbra {
+namespace {
+
+Scene scene_of(const std::vector<Mesh>& meshes) {
+    Scene scene;
+    scene.materials.emplace_back();
+    for (const Mesh& m : meshes)
+        add_object(scene, "object" + std::to_string(scene.objects.size()), m.positions, {}, m.triangles, 0);
+    return scene;
+}
+
+Light towards(vec3 travel) {
+    Light light;
+    light.kind      = LightKind::directional;
+    light.direction = travel;
+    return light;
+}
+
+/// Sum of the angles between the normals of neighbouring triangles over pi, of a closed mesh.
+double expected_silhouette(const Scene& scene) {
+    const SilhouetteMeshes meshes(scene);
+    const auto normal = [&](TriangleId t) { return glm::normalize(area_normal(scene, t)); };
+    double sum        = 0;
+    for (const auto& e : meshes.meshes()[0].closed_edges) {
+        const dvec3 l = normal(e.left), r = normal(e.right);
+        sum += std::atan2(glm::length(glm::cross(l, r)), glm::dot(l, r));
+    }
+    return sum / kPi;
+}
+
+TEST(Silhouettes, ABoxHasSixFromEverywhere) {
+    const auto statistics = silhouette_statistics(scene_of({make_box({1, 2, 3})}), 1000, 1);
+    ASSERT_EQ(statistics.size(), 1u);
+    EXPECT_EQ(statistics[0].object, "object0");
+    EXPECT_EQ(statistics[0].directions, 1000u);
+    EXPECT_EQ(statistics[0].mean, 6);
+    EXPECT_EQ(statistics[0].standard_error, 0);
+}
+
+TEST(Silhouettes, TheMeanIsTheSumOfDihedralAnglesOverPi) {
+    for (const Mesh& mesh : {make_sphere(1, 24, 12), make_torus(1, 0.4f, 24, 14), make_cone(1, 2, 17)}) {
+        const Scene scene     = scene_of({mesh});
+        const double expected = expected_silhouette(scene);
+        for (const std::uint64_t seed : {1u, 2u, 3u}) {
+            const SilhouetteStatistics s = silhouette_statistics(scene, 5000, seed)[0];
+            EXPECT_GT(s.standard_error, 0);
+            EXPECT_LT(std::abs(s.mean - expected), 3.5 * s.standard_error) << s.mean << " expected " << expected;
+        }
+    }
+}
+
+TEST(Silhouettes, DirectionsDependOnTheSeedAndNotOnThreads) {
+    const Scene scene = scene_of({make_torus(1, 0.4f, 24, 14), make_plane(1, 1)});
+    const auto all    = silhouette_statistics(scene, 1000, 5);
+    const auto other  = silhouette_statistics(scene, 1000, 6);
+    const ThreadLimit one(1);
+    const auto single = silhouette_statistics(scene, 1000, 5);
+    for (std::size_t o = 0; o < 2; ++o) {
+        EXPECT_EQ(all[o].mean, single[o].mean);
+        EXPECT_EQ(all[o].standard_error, single[o].standard_error);
+    }
+    EXPECT_NE(all[0].mean, other[0].mean);
+}
+
+TEST(Silhouettes, TheBorderOfAnOpenMeshAlwaysCounts) {
+    EXPECT_EQ(silhouette_statistics(scene_of({make_plane(1, 1)}), 500, 1)[0].mean, 4);
+    // A misoriented pair is the same square to the light.
+    Mesh plane = make_plane(1, 1);
+    std::swap(plane.triangles[0][0], plane.triangles[0][1]);
+    EXPECT_EQ(silhouette_statistics(scene_of({plane}), 500, 1)[0].mean, 4);
+    // Three triangles on one edge: it and the six others.
+    Mesh fan;
+    fan.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0.1f}, {-1, 0, 0.2f}, {0.3f, 0, 1}};
+    fan.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+    EXPECT_EQ(silhouette_statistics(scene_of({fan}), 500, 1)[0].mean, 7);
+}
+
+TEST(Silhouettes, KnowsClosedMeshesAndSolids) {
+    const Mesh box = make_box({1, 1, 1});
+    Mesh open = box, inward = box, touching = box, mixed = box, flipped = box;
+    open.triangles.pop_back();
+    for (uvec3& t : inward.triangles) std::swap(t[1], t[2]);
+    std::swap(flipped.triangles[3][0], flipped.triangles[3][1]);
+    const auto append = [](Mesh& to, const Mesh& from, vec3 at, bool turn) {
+        const auto base = static_cast<std::uint32_t>(to.positions.size());
+        for (const vec3 p : from.positions) to.positions.push_back(p + at);
+        for (const uvec3 t : from.triangles) to.triangles.push_back(base + (turn ? uvec3(t[1], t[0], t[2]) : t));
+    };
+    append(touching, box, {1, 1, 1}, false);  // at one corner
+    append(mixed, box, {3, 0, 0}, true);
+    const SilhouetteMeshes meshes(scene_of({box, open, inward, touching, mixed, flipped, make_torus(1, 0.3f, 9, 7)}));
+    const bool closed[] = {true, false, true, false, true, false, true};
+    const bool solid[]  = {true, false, false, false, false, false, true};
+    for (std::size_t o = 0; o < 7; ++o) {
+        EXPECT_EQ(meshes.closed(o), closed[o]) << o;
+        EXPECT_EQ(meshes.solid(o), solid[o]) << o;
+    }
+}
+
+TEST(Silhouettes, ATriangleInAPlaneWithTheLightFacesItNot) {
+    const Scene scene = scene_of({make_box({2, 2, 2})});
+    int sum = 0, absolute = 0;
+    for (const std::int8_t f : facing_triangles(scene, towards({0, -1, 0}))) sum += f, absolute += f * f;
+    EXPECT_EQ(sum, 0);
+    EXPECT_EQ(absolute, 4);  // top and bottom; the other four faces are seen edge on
+    Light light;             // in the planes of the top and of the face at +x
+    light.position = {1, 1, 5};
+    absolute       = 0;
+    for (const std::int8_t f : facing_triangles(scene, light)) absolute += f * f;
+    EXPECT_EQ(absolute, 8);
+}
+
+TEST(Silhouettes, ASunAboveABoxSeesASquare) {
+    const Scene scene = scene_of({make_box({2, 2, 2})});
+    const SilhouetteMeshes meshes(scene);
+    std::vector<std::int8_t> turn = facing_triangles(scene, towards({0, -1, 0}));
+    for (std::int8_t& t : turn) t = std::max<std::int8_t>(t, 0);
+    const auto edges = meshes.edges(turn);
+    ASSERT_EQ(edges.size(), 4u);
+    for (const SilhouetteEdge& e : edges) {
+        EXPECT_EQ(std::abs(e.weight), 1);
+        EXPECT_EQ(meshes.vertices()[e.a].y, 1);
+        EXPECT_EQ(meshes.vertices()[e.b].y, 1);
+    }
+}
+
+// Whatever triangles are chosen and however they are turned, their boundary runs into every vertex as often as out.
+TEST(Silhouettes, EdgesCloseForAnySoup) {
+    std::mt19937 random(1);
+    for (int round = 0; round < 20; ++round) {
+        Mesh soup;
+        for (int k = 0; k < 12; ++k) soup.positions.emplace_back(random() % 7, random() % 7, random() % 7);
+        for (int k = 0; k < 60; ++k) soup.triangles.emplace_back(random() % 12, random() % 12, random() % 12);
+        const Scene scene = scene_of({soup, make_sphere(1, 8, 5)});
+        const SilhouetteMeshes meshes(scene);
+        std::vector<std::int8_t> turn(scene.triangles.size());
+        for (std::int8_t& t : turn) t = static_cast<std::int8_t>(static_cast<int>(random() % 3) - 1);
+        std::map<std::uint32_t, int> flow;
+        std::size_t edges = 0;
+        for (const SilhouetteEdge& e : meshes.edges(turn)) {
+            EXPECT_NE(e.weight, 0);
+            flow[e.a] += e.weight;
+            flow[e.b] -= e.weight;
+            ++edges;
+        }
+        EXPECT_GT(edges, 20u);
+        for (const auto& [vertex, sum] : flow) EXPECT_EQ(sum, 0) << vertex;
+    }
+}
+
+}  // namespace
+}  // namespace umbra
