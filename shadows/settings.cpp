@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 
 #include "umbra/core/base/error.h"
 
@@ -17,72 +17,108 @@ bool read_number(std::string_view text, double& value) {
     return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
 }
 
-bool is_choice(std::string_view choices, std::string_view value) {
+std::vector<std::string_view> split(std::string_view list) {
+    std::vector<std::string_view> words;
     while (true) {
-        const std::size_t bar = choices.find('|');
-        if (choices.substr(0, bar) == value) return true;
-        if (bar == std::string_view::npos) return false;
-        choices.remove_prefix(bar + 1);
+        const std::size_t bar = list.find('|');
+        words.push_back(list.substr(0, bar));
+        if (bar == std::string_view::npos) return words;
+        list.remove_prefix(bar + 1);
     }
-}
-
-/// The value as it is kept: numbers in shortest form, so that 1, 1.0 and 1e0 are the same setting.
-std::string canonical(const Parameter& p, std::string_view value) {
-    double number = 0;
-    switch (p.type) {
-        case Parameter::Type::boolean:
-            if (value == "true" || value == "false") return std::string(value);
-            throw UsageError(fmt::format("{}={} is neither true nor false", p.name, value));
-        case Parameter::Type::choice:
-            if (is_choice(p.choices, value)) return std::string(value);
-            throw UsageError(fmt::format("{}={} is no choice (known: {})", p.name, value, p.choices));
-        case Parameter::Type::integer:
-            if (!read_number(value, number) || number != std::floor(number))
-                throw UsageError(fmt::format("{}={} is no whole number", p.name, value));
-            break;
-        case Parameter::Type::real:
-            if (!read_number(value, number)) throw UsageError(fmt::format("{}={} is no finite number", p.name, value));
-            break;
-    }
-    if (number < p.min || number > p.max)
-        throw UsageError(fmt::format("{}={} is out of range ({} to {})", p.name, value, p.min, p.max));
-    return fmt::format("{}", number);
 }
 
 }  // namespace
 
-Settings::Settings(std::span<const Parameter> parameters) : parameters_(parameters) {
-    for (const Parameter& p : parameters_) values_[std::string(p.name)] = canonical(p, p.fallback);
+std::string_view to_string(Phase phase) {
+    switch (phase) {
+        case Phase::build: return "build";
+        case Phase::aim: return "aim";
+        case Phase::visibility: return "visibility";
+    }
+    return "";
 }
 
-const Parameter& Settings::find(std::string_view name) const {
-    std::string known;
-    for (const Parameter& p : parameters_) {
-        if (p.name == name) return p;
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", p.name);
+std::string_view to_string(Parameter::Type type) {
+    switch (type) {
+        case Parameter::Type::integer: return "integer";
+        case Parameter::Type::real: return "real";
+        case Parameter::Type::choice: return "choice";
+        case Parameter::Type::boolean: return "boolean";
     }
-    throw UsageError(fmt::format("unknown setting \"{}\" (known: {})", name, known));
+    return "";
+}
+
+std::string Parameter::text(double value) const {
+    if (type == Type::boolean) return value != 0 ? "true" : "false";
+    if (type == Type::choice) return std::string(split(choices).at(static_cast<std::size_t>(value)));
+    return fmt::format("{}", value);
+}
+
+double Parameter::parse(std::string_view given) const {
+    double number = 0;
+    switch (type) {
+        case Type::boolean:
+            if (given == "true") return 1;
+            if (given == "false") return 0;
+            throw UsageError(fmt::format("{}={}: expected true or false", name, given));
+        case Type::choice: {
+            const auto words = split(choices);
+            const auto found = std::ranges::find(words, given);
+            if (found != words.end()) return static_cast<double>(found - words.begin());
+            throw UsageError(fmt::format("{}={}: expected one of {}", name, given, choices));
+        }
+        case Type::integer:
+            if (!read_number(given, number) || number != std::floor(number))
+                throw UsageError(fmt::format("{}={}: expected an integer", name, given));
+            break;
+        case Type::real:
+            if (!read_number(given, number))
+                throw UsageError(fmt::format("{}={}: expected a finite number", name, given));
+            break;
+    }
+    if (number < min || number > max) throw UsageError(fmt::format("{}={}: expected {} to {}", name, given, min, max));
+    return number;
+}
+
+Settings::Settings(std::span<const Parameter> parameters) : parameters_(parameters) {
+    for (const Parameter& p : parameters_) values_.push_back(p.fallback);
+}
+
+std::size_t Settings::index(std::string_view name) const {
+    std::string known;
+    for (std::size_t k = 0; k < parameters_.size(); ++k) {
+        if (parameters_[k].name == name) return k;
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", parameters_[k].name);
+    }
+    throw UsageError(fmt::format("unknown setting \"{}\" (known: {})", name, known.empty() ? "none" : known));
 }
 
 void Settings::set(std::string_view name, std::string_view value) {
-    const Parameter& p           = find(name);
-    values_[std::string(p.name)] = canonical(p, value);
+    const std::size_t k = index(name);
+    values_[k]          = parameters_[k].parse(value);
 }
 
-int Settings::integer(std::string_view name) const { return static_cast<int>(std::lround(real(name))); }
-
-double Settings::real(std::string_view name) const {
-    double value = 0;
-    if (!read_number(values_.at(std::string(name)), value)) throw std::logic_error("setting is no number");
-    return value;
+void Settings::set(std::string_view name, double value) {
+    const std::size_t k  = index(name);
+    const Parameter& p   = parameters_[k];
+    const bool is_number = p.type == Parameter::Type::integer || p.type == Parameter::Type::real;
+    values_[k]           = p.parse(is_number ? fmt::format("{}", value) : p.text(value));
 }
 
-const std::string& Settings::choice(std::string_view name) const { return values_.at(std::string(name)); }
-bool Settings::boolean(std::string_view name) const { return values_.at(std::string(name)) == "true"; }
+double Settings::value(std::string_view name) const { return values_[index(name)]; }
+
+std::string Settings::text(const Parameter& p) const { return p.text(value(p.name)); }
 
 bool Settings::is_default(std::string_view name) const {
-    const Parameter& p = find(name);
-    return values_.at(std::string(name)) == canonical(p, p.fallback);
+    const std::size_t k = index(name);
+    return values_[k] == parameters_[k].fallback;
+}
+
+Phase first_changed_phase(const Settings& from, const Settings& to) {
+    Phase first = Phase::visibility;
+    for (const Parameter& p : from.parameters())
+        if (from.value(p.name) != to.value(p.name)) first = std::min(first, p.phase);
+    return first;
 }
 
 }  // namespace umbra

@@ -1,49 +1,104 @@
-// Named, typed, documented, ranged parameters of a method, and a set of values for them.
+// Parameters of a method: each one is a member of the method's own options struct with a name, a range, a unit and the
+// first phase that has to be repeated when it changes. Text is parsed once, when a setting is typed; methods read their
+// struct.
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
+#include <type_traits>
 #include <vector>
 
 namespace umbra {
 
-/// One parameter: `fallback` is its default, as it would be typed.
+/// The phases of a method, in order: an object moved, a light moved, the camera moved.
+enum class Phase : std::uint8_t { build, aim, visibility };
+[[nodiscard]] std::string_view to_string(Phase phase);  ///< "build", "aim", "visibility"
+
+/// One parameter. Made by `parameter<&Options::member>`. Values of all types are kept as double: integers as they are,
+/// booleans as 0 and 1, choices as the index into `choices`, which is the value of the member's enumerator.
 struct Parameter {
     enum class Type : std::uint8_t { integer, real, choice, boolean };
-    std::string_view name;
-    Type type = Type::real;
-    std::string_view fallback;
-    std::string_view doc;  ///< one sentence, with the unit
-    double min = 0;        ///< integer, real: closed range
-    double max = 0;
-    std::string_view choices{};  ///< choice: "a|b|c"
-};
 
-/// Values for all parameters of one method; those not given have their defaults. Values are checked when set.
+    std::string_view name;
+    std::string_view doc;             ///< one sentence
+    std::string_view unit{};          ///< of a number: "texels", "rays a point"; empty for a pure number
+    Phase phase = Phase::visibility;  ///< the first phase to repeat when it changes
+    double min = 0, max = 0;          ///< integer, real: closed range
+    std::string_view choices{};       ///< choice: "a|b|c", in the order of the enumerators from 0
+    std::string_view sweep{};         ///< "16|64|256": values that are worth comparing; empty: leave it at its default
+    Type type                                  = Type::real;  ///< from the member
+    double fallback                            = 0;           ///< the default: the member's initializer
+    void (*store)(double value, void* options) = nullptr;     ///< writes the member
+
+    /// The value as it is typed: numbers in shortest form. `parse` throws UsageError: what was found, what is expected.
+    [[nodiscard]] std::string text(double value) const;
+    [[nodiscard]] double parse(std::string_view text) const;
+};
+[[nodiscard]] std::string_view to_string(Parameter::Type type);  ///< "integer", "real", "choice", "boolean"
+
+namespace settings_detail {
+template <class T>
+struct MemberOf;
+template <class Class, class Value>
+struct MemberOf<Value Class::*> {
+    using Options = Class;
+    using Type    = Value;
+};
+}  // namespace settings_detail
+
+/// The parameter that sets `member`, a pointer to an int, a double, a bool or an enumeration of an options struct whose
+/// default constructor gives the defaults. `about` says all but the type, the default and the store.
+template <auto member>
+[[nodiscard]] Parameter parameter(Parameter about) {
+    using Options = typename settings_detail::MemberOf<decltype(member)>::Options;
+    using Type    = typename settings_detail::MemberOf<decltype(member)>::Type;
+    static_assert(std::is_same_v<Type, int> || std::is_same_v<Type, double> || std::is_same_v<Type, bool> ||
+                  std::is_enum_v<Type>);
+    about.type     = std::is_same_v<Type, bool>  ? Parameter::Type::boolean
+                     : std::is_same_v<Type, int> ? Parameter::Type::integer
+                     : std::is_enum_v<Type>      ? Parameter::Type::choice
+                                                 : Parameter::Type::real;
+    about.fallback = static_cast<double>(Options{}.*member);
+    about.store    = [](double value, void* options) {
+        static_cast<Options*>(options)->*member = static_cast<Type>(value);
+    };
+    return about;
+}
+
+/// Values for all parameters of one method; those not set have their defaults. Values are checked when set.
 class Settings {
 public:
     explicit Settings(std::span<const Parameter> parameters);  ///< all defaults; `parameters` must outlive this
 
-    /// Throws UsageError naming the parameter, what was found and what would be right.
+    /// Throws UsageError naming the parameter, what was found and what is expected.
     void set(std::string_view name, std::string_view value);
+    void set(std::string_view name, double value);  ///< for a choice the index; throws as above
 
-    [[nodiscard]] int integer(std::string_view name) const;
-    [[nodiscard]] double real(std::string_view name) const;
-    [[nodiscard]] const std::string& choice(std::string_view name) const;
-    [[nodiscard]] bool boolean(std::string_view name) const;
-
-    [[nodiscard]] std::span<const Parameter> parameters() const { return parameters_; }
-    [[nodiscard]] const std::map<std::string, std::string>& values() const { return values_; }
+    [[nodiscard]] double value(std::string_view name) const;   ///< throws UsageError where there is no such parameter
+    [[nodiscard]] std::string text(const Parameter& p) const;  ///< as it is typed; `p` is one of parameters()
     [[nodiscard]] bool is_default(std::string_view name) const;
+    [[nodiscard]] std::span<const Parameter> parameters() const { return parameters_; }
+    [[nodiscard]] bool operator==(const Settings& other) const { return values_ == other.values_; }
+
+    /// The method's own struct with every value in its member. `Options` is the struct the parameters were made for.
+    template <class Options>
+    [[nodiscard]] Options as() const {
+        Options options;
+        for (std::size_t k = 0; k < parameters_.size(); ++k) parameters_[k].store(values_[k], &options);
+        return options;
+    }
 
 private:
-    const Parameter& find(std::string_view name) const;
+    [[nodiscard]] std::size_t index(std::string_view name) const;
     std::span<const Parameter> parameters_;
-    std::map<std::string, std::string> values_;  ///< every parameter, canonical text
+    std::vector<double> values_;  ///< one a parameter
 };
+
+/// The first phase to repeat when `from` becomes `to`, which are settings of one method; Phase::visibility where they
+/// are equal.
+[[nodiscard]] Phase first_changed_phase(const Settings& from, const Settings& to);
 
 }  // namespace umbra

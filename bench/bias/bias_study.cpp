@@ -6,12 +6,11 @@
 #include <tuple>
 
 #include "umbra/core/base/error.h"
-#include "umbra/shadows/zbuffer/shadow_zbuffer.h"
 
 namespace umbra {
 namespace {
 
-/// What a light's points are held against.
+/// What a light's points are compared with.
 struct Truth {
     enum class Place : std::uint8_t { unjudged, interior, edge };
     std::vector<Place> place;
@@ -19,13 +18,13 @@ struct Truth {
 };
 
 Truth find_truth(Method& reference, const PointBatch& points, LightId light) {
-    VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), kDefined)};
+    VisibilityPlane plane(points.size());
     reference.aim(light);
-    reference.visibility(points, light, plane.s, plane.defined);
+    reference.visibility(points, light, plane.out());
     const std::vector<std::uint8_t> band = edge_band(points, light, plane, kHardTolerance);
     Truth truth{std::vector<Truth::Place>(points.size(), Truth::Place::unjudged), {}};
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (points.facing[light][i] == Facing::front && plane.defined[i] == kDefined)
+        if (points.facing[light][i] == Facing::front && plane.answer[i] == Answer::given)
             truth.place[i] = band[i] != 0 ? Truth::Place::edge : Truth::Place::interior;
     truth.s = std::move(plane.s);
     return truth;
@@ -34,7 +33,7 @@ Truth find_truth(Method& reference, const PointBatch& points, LightId light) {
 BiasErrors count_wrong(const Truth& truth, const VisibilityPlane& plane) {
     BiasErrors errors;
     for (std::size_t i = 0; i < plane.s.size(); ++i) {
-        if (truth.place[i] == Truth::Place::unjudged || plane.defined[i] != kDefined) continue;
+        if (truth.place[i] == Truth::Place::unjudged || plane.answer[i] != Answer::given) continue;
         const float difference = plane.s[i] - truth.s[i];
         if (std::abs(difference) <= kHardTolerance) continue;
         VisibilityError::Kind& kind = difference < 0 ? errors.false_shadow : errors.false_light;
@@ -43,39 +42,50 @@ BiasErrors count_wrong(const Truth& truth, const VisibilityPlane& plane) {
     return errors;
 }
 
-/// shadow_zbuffer on one scene, whose maps are asked with any bias.
+/// The studied method on one scene. A setting repeats only the phases that it changes.
 class Lookups {
 public:
     Lookups(const PreparedScene& prepared, const MethodChoice& choice)
-        : points_(prepared.points), method_(choice.settings) {
-        method_.build(prepared.scene, prepared.facts);
-        plane_.s.resize(points_.size());
-        plane_.defined.resize(points_.size());
+        : points_(prepared.points), settings_(choice.settings), method_(choice.make()), plane_(prepared.points.size()) {
+        method_->build(prepared.scene, prepared.facts);
     }
-    void aim(LightId light) { method_.aim(light_ = light); }
-    [[nodiscard]] BiasErrors errors(const Truth& truth, const Bias& bias) {
-        std::ranges::fill(plane_.s, 0.0f);
-        std::ranges::fill(plane_.defined, kDefined);
-        method_.set_bias(bias);
-        method_.visibility(points_, light_, plane_.s, plane_.defined);
+    void aim(LightId light) { method_->aim(light_ = light); }
+    [[nodiscard]] BiasErrors errors(const Truth& truth, const Settings& settings) {
+        const Phase from = first_changed_phase(settings_, settings);
+        settings_        = settings;
+        method_->configure(settings_);
+        if (from <= Phase::aim) method_->aim(light_);
+        plane_.clear();
+        method_->visibility(points_, light_, plane_.out());
         return count_wrong(truth, plane_);
     }
 
 private:
     const PointBatch& points_;
-    ShadowZBuffer method_;
+    Settings settings_;
+    std::unique_ptr<Method> method_;
     VisibilityPlane plane_;
     LightId light_ = 0;
 };
 
-MethodChoice choose(const std::string& settings, double normal_offset) {
-    MethodChoice choice = parse_method(settings.empty() ? "shadow_zbuffer" : "shadow_zbuffer:" + settings);
+constexpr std::string_view kStudied = "shadow_zbuffer";  // the method whose bias this command is about
+
+MethodChoice choose(const std::string& settings) {
+    MethodChoice choice =
+        parse_method(settings.empty() ? std::string(kStudied) : fmt::format("{}:{}", kStudied, settings));
     for (const char* studied : {"bias", "constant", "slope", "normal_offset"})
         if (!choice.settings.is_default(studied))
-            throw UsageError(fmt::format(
-                "--map {}: {} is what is studied (settings of maps and filters would be right)", settings, studied));
-    choice.settings.set("normal_offset", fmt::format("{}", normal_offset));
+            throw UsageError(fmt::format("--map {}: {} is what the study varies, expected settings of maps and filters",
+                                         settings, studied));
     return choice;
+}
+
+Settings with_bias(Settings settings, std::string_view mode, double constant, double slope, double normal_offset) {
+    settings.set("bias", mode);
+    settings.set("constant", constant);
+    settings.set("slope", slope);
+    settings.set("normal_offset", normal_offset);
+    return settings;
 }
 
 /// Every light without extent, in its centre.
@@ -128,8 +138,9 @@ BiasStudy add_up(const std::vector<BiasStudy>& studies) {
 
 BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const BiasGrid& grid,
                      const std::function<void(const std::string&)>& progress) {
-    std::vector<MethodChoice> choices;  // a slice; first of all, since they may be refused
-    for (double offset : grid.normal_offsets) choices.push_back(choose(settings, offset));
+    const MethodChoice studied = choose(settings);
+    for (double offset : grid.normal_offsets)  // first of all, since one may be refused
+        (void)studied.info->make(with_bias(studied.settings, "manual", 0, 0, offset));
     harden_lights(prepared);
     const Scene& scene = prepared.scene;
     BiasStudy study{scene.name, scene.title, {}, 0, {}, {}, {}};
@@ -138,32 +149,26 @@ BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const 
         for (double slope : grid.slopes)
             for (double constant : grid.constants) study.cells.push_back({constant, slope, offset, {}});
 
-    progress(fmt::format("{}: exact", scene.name));
-    const MethodChoice choice               = parse_method("exact");
-    const std::unique_ptr<Method> reference = choice.info->make(choice.settings);
-    reference->build(scene, prepared.facts);
-    std::vector<Truth> truths;
+    const Reference reference = default_reference(prepared.facts);
+    progress(fmt::format("{}: {}", scene.name, reference.choice.info->name));
+    const std::unique_ptr<Method> exact = reference.choice.make();
+    exact->build(scene, prepared.facts);
+    Lookups lookups(prepared, studied);
+    const auto bias = [&](std::string_view mode, double constant, double slope, double normal_offset) {
+        return with_bias(studied.settings, mode, constant, slope, normal_offset);
+    };
     for (LightId light = 0; light < scene.lights.size(); ++light) {
-        truths.push_back(find_truth(*reference, prepared.points, light));
+        const Truth truth = find_truth(*exact, prepared.points, light);
         study.points += static_cast<std::uint64_t>(
-            std::ranges::count_if(truths.back().place, [](Truth::Place p) { return p != Truth::Place::unjudged; }));
-    }
-
-    const std::size_t slice = grid.constants.size() * grid.slopes.size();
-    for (std::size_t k = 0; k < grid.normal_offsets.size(); ++k) {
-        // The border of a map depends on the offset: maps of their own are what the method itself would draw.
-        Lookups lookups(prepared, choices[k]);
-        for (LightId light = 0; light < scene.lights.size(); ++light) {
-            progress(
-                fmt::format("{}: {}, normal offset {}", scene.name, scene.lights[light].name, grid.normal_offsets[k]));
-            lookups.aim(light);
-            if (grid.normal_offsets[k] == 0) {
-                study.automatic += lookups.errors(truths[light], {BiasMode::automatic, 0, 0, 0});
-                study.receiver_plane += lookups.errors(truths[light], {BiasMode::receiver_plane, 0, 0, 0});
-            }
-            for (BiasCell& cell : std::span(study.cells).subspan(k * slice, slice))
-                cell.errors +=
-                    lookups.errors(truths[light], {BiasMode::manual, cell.constant, cell.slope, cell.normal_offset});
+            std::ranges::count_if(truth.place, [](Truth::Place p) { return p != Truth::Place::unjudged; }));
+        lookups.aim(light);
+        study.automatic += lookups.errors(truth, bias("auto", 0, 0, 0));
+        study.receiver_plane += lookups.errors(truth, bias("receiver_plane", 0, 0, 0));
+        for (BiasCell& cell : study.cells) {
+            if (cell.constant == 0 && cell.slope == 0)
+                progress(
+                    fmt::format("{}: {}, normal offset {}", scene.name, scene.lights[light].name, cell.normal_offset));
+            cell.errors += lookups.errors(truth, bias("manual", cell.constant, cell.slope, cell.normal_offset));
         }
     }
     return study;

@@ -1,7 +1,6 @@
 // The bias study of the shadow z-buffer: false shadow (acne) against false light (detachment) over what bias can be.
 //
-// A depth map does not depend on the bias that it is looked up with: it is drawn once a light and normal offset, and
-// asked with every setting of a grid. The truth is `exact`.
+// Settings of the visibility phase alone reuse the maps that are there; the truth is the default reference.
 #pragma once
 
 #include <functional>

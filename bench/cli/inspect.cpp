@@ -33,8 +33,7 @@ Json inspect_json(const Scene& scene, const SceneFacts& facts, const SilhouetteO
     Json record = {{"schema", kResultsSchema},   {"version", version()},         {"scene", scene_json(scene)},
                    {"facts", facts_json(facts)}, {"lights", lights_json(facts)}, {"methods", Json::array()}};
     for (const MethodInfo* info : methods())
-        record["methods"].push_back(
-            {{"name", info->name}, {"serves", service_json(info->make(Settings(info->parameters))->serves(facts))}});
+        record["methods"].push_back({{"name", info->name}, {"serves", service_json(info->make()->serves(facts))}});
     if (silhouettes.directions > 0) {
         record["silhouettes"] = Json::array();
         for (const SilhouetteStatistics& s : silhouette_statistics(scene, silhouettes.directions, silhouettes.seed))

@@ -28,7 +28,7 @@ Json climb_ladders(const LadderOptions& options) {
     for (const std::string& text : options.methods) methods_chosen.push_back(parse_method(text));
     if (options.methods.empty())
         for (const MethodInfo* info : methods())
-            if (info != &find_method("exact")) methods_chosen.push_back({info, Settings(info->parameters)});
+            if (info->by_default && !info->reference) methods_chosen.emplace_back(*info);
 
     Json record = {{"schema", kResultsSchema},         {"version", version()},
                    {"command", options.command},       {"machine", machine_json(options.threads)},

@@ -87,7 +87,8 @@ int list(bool as_json) {
                                       : p.contains("min")
                                           ? fmt::format("{} to {}", p["min"].get<double>(), p["max"].get<double>())
                                           : "true or false";
-            fmt::print("    {}={}  ({})  {}\n", p["name"].get<std::string>(), p["default"].get<std::string>(), range,
+            fmt::print("    {}={}  ({})  {}\n", p["name"].get<std::string>(),
+                       p["default"].is_string() ? p["default"].get<std::string>() : p["default"].dump(), range,
                        p["doc"].get<std::string>());
         }
     }

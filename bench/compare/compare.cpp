@@ -56,7 +56,7 @@ std::map<std::string, std::string> metadata(const Scene& scene, const MethodChoi
 Json parameters_json(const Settings& settings) {
     Json values = Json::object();
     for (const Parameter& p : settings.parameters())
-        values[std::string(p.name)] = settings.values().at(std::string(p.name));
+        values[std::string(p.name)] = setting_json(p, settings.value(p.name));
     return values;
 }
 
@@ -108,7 +108,7 @@ Json noise_json(const std::optional<Noise>& n) {
     return {{"runs", n->runs}, {"noise_rmse", number(n->rms)}, {"bias_rmse", number(n->bias)}};
 }
 
-Json error_json(const std::string& light, const Explained& explained, bool bracketed) {
+Json error_json(const std::string& light, const Explained& explained) {
     const VisibilityError& e = explained.error;
     // Detachment and leak are told apart by the occluder: null where the reference names none.
     const bool named = e.unnamed == 0;
@@ -132,7 +132,7 @@ Json error_json(const std::string& light, const Explained& explained, bool brack
              {{"facet_away", e.terminator.facet_away},
               {"normal_away", e.terminator.normal_away},
               {"wrong", e.terminator.wrong}}},
-            {"bracket", bracketed ? Json{{"max_half_width", number(e.max_half_width)}} : Json()},
+            {"bracket", e.max_half_width > 0 ? Json{{"max_half_width", number(e.max_half_width)}} : Json()},
             {"mae", number(e.mae)},
             {"rmse", number(e.rmse)},
             {"max", number(e.max)},
@@ -143,8 +143,8 @@ Json error_json(const std::string& light, const Explained& explained, bool brack
 }
 
 Json judged_json(const ReferenceRun& reference) {
-    if (reference.guess.empty()) return nullptr;
-    return {{"points", reference.judged}, {"of", reference.of}, {"guess", reference.guess}};
+    if (reference.stand_in.empty()) return nullptr;
+    return {{"points", reference.judged}, {"of", reference.of}, {"guess", reference.stand_in}};
 }
 
 /// Differences of the pictures over covered pixels: where a method leaves any light undefined, the reference's pixel
@@ -152,8 +152,8 @@ Json judged_json(const ReferenceRun& reference) {
 Json image_json(const fs::path& folder, const std::string& id, const MethodRun& run, Rendered rendered,
                 const Rendered& reference, Json& files) {
     for (const VisibilityPlane& plane : run.planes)
-        for (std::size_t i = 0; i < plane.defined.size(); ++i)
-            if (!plane.defined[i])
+        for (std::size_t i = 0; i < plane.size(); ++i)
+            if (!plane.defined(i))
                 for (std::size_t c = 0; c < 3; ++c) {
                     rendered.linear.at(i, c) = reference.linear.at(i, c);
                     rendered.shown.at(i, c)  = reference.shown.at(i, c);
@@ -200,7 +200,7 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
                                {"visibility_ms", timing_json(run.visibility[j])}});
         explained.push_back(explain(scene, prepared.points, j, run, reference));
         if (noise[j]) explained.back().noise = noise[j]->result(explained.back().classes, reference.planes[j]);
-        errors.push_back(error_json(light.name, explained.back(), !reference.half_widths[j].empty()));
+        errors.push_back(error_json(light.name, explained.back()));
     }
     entry["times"]        = {{"build_ms", timing_json(run.build)},
                              {"aim_ms", timing_json(total(run.aim))},
@@ -269,7 +269,8 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     std::vector<MethodChoice> choices;
     for (const std::string& text : options.methods) choices.push_back(parse_method(text));
     if (options.methods.empty())
-        for (const MethodInfo* info : methods()) choices.push_back({info, Settings(info->parameters)});
+        for (const MethodInfo* info : methods())
+            if (info->by_default) choices.emplace_back(*info);
 
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size);
@@ -282,11 +283,11 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     Reference reference = default_reference(prepared.facts);
     if (options.reference) {
         reference       = {parse_method(*options.reference), false, "Chosen on the command line."};
-        reference.exact = reference.choice.info == &find_method("exact");
+        reference.exact = reference.choice.info->reference;
     }
     tell("reference " + reference.choice.text());
-    const ReferenceRun held_against = run_reference(reference, scene, prepared.facts, prepared.points, options.points);
-    const MethodRun& reference_run  = held_against.run;
+    const ReferenceRun reference_ran = run_reference(reference, scene, prepared.facts, prepared.points, options.points);
+    const MethodRun& reference_run   = reference_ran.run;
     const Rendered reference_rendered = render(scene, prepared.points, reference_run.planes);
 
     Json record = {{"schema", kResultsSchema},
@@ -305,7 +306,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                      {"parameters", parameters_json(reference.choice.settings)},
                      {"exact", reference.exact},
                      {"note", reference.note},
-                     {"judged", judged_json(held_against)},
+                     {"judged", judged_json(reference_ran)},
                      {"times",
                       {{"build_ms", timing_json(reference_run.build)},
                        {"aim_ms", timing_json(total(reference_run.aim))},
@@ -319,10 +320,10 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     for (const MethodChoice& choice : choices) {
         // Where the whole picture is too dear for the reference, it is so for the same method in the list, too.
         const bool itself = choice.text() == reference.choice.text();
-        if (itself && options.methods.empty() && !held_against.guess.empty()) continue;
+        if (itself && options.methods.empty() && !reference_ran.stand_in.empty()) continue;
         tell(choice.text());
         const bool slow     = total(reference_run.visibility).median > options.repeats.budget_ms;
-        const MethodRun run = itself && slow && held_against.guess.empty()
+        const MethodRun run = itself && slow && reference_ran.stand_in.empty()
                                   ? reference_run
                                   : run_method(choice, scene, prepared.facts, prepared.points, options.repeats);
         record["methods"].push_back(method_entry(staging, unique_id(choice.info->name, used), prepared, run,

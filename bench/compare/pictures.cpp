@@ -64,7 +64,7 @@ Image picture(int width, int height, const Colour& colour) {
 Image visibility_picture(const PointBatch& points, const VisibilityPlane& plane) {
     return picture(points.raster->width, points.raster->height, [&](std::size_t i, std::size_t x, std::size_t y) {
         if (points.triangle[i] == kNoTriangle) return kNoSurface;
-        return plane.defined[i] ? vec3(plane.s[i]) : hatched(x, y);
+        return plane.defined(i) ? vec3(plane.s[i]) : hatched(x, y);
     });
 }
 
@@ -72,7 +72,7 @@ Image difference_picture(const PointBatch& points, LightId light, const Visibili
                          const VisibilityPlane& reference) {
     return picture(points.raster->width, points.raster->height, [&](std::size_t i, std::size_t x, std::size_t y) {
         if (points.facing[light][i] == Facing::none) return kNoSurface;
-        if (!plane.defined[i] || !reference.defined[i]) return hatched(x, y);
+        if (!plane.defined(i) || !reference.defined(i)) return hatched(x, y);
         return ramp(kDifference, 0.5f + 0.5f * (plane.s[i] - reference.s[i]));
     });
 }
@@ -109,7 +109,7 @@ Image with_planes(const Image& linear, const Scene& scene, const PointBatch& poi
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) image.at(i, c) = linear.at(i, c);
         for (std::size_t j = 0; j < planes.size(); ++j)
-            image.at(i, 3 + j) = planes[j].defined[i] ? planes[j].s[i] : std::numeric_limits<float>::quiet_NaN();
+            image.at(i, 3 + j) = planes[j].defined(i) ? planes[j].s[i] : std::numeric_limits<float>::quiet_NaN();
         if (!with_geometry) continue;
         const TriangleId t = points.triangle[i];
         const bool hit     = t != kNoTriangle;

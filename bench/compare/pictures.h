@@ -6,7 +6,7 @@
 #include "umbra/core/errors/error_classes.h"
 #include "umbra/core/image/image.h"
 #include "umbra/core/render/points.h"
-#include "umbra/core/render/visibility_plane.h"
+#include "umbra/core/render/visibility.h"
 
 namespace umbra {
 

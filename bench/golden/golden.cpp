@@ -49,20 +49,22 @@ Image coded(const PreparedScene& prepared, const MethodRun& run) {
     Image image(kPlaneSize.width, kPlaneSize.height, std::move(channels));
     for (std::size_t i = 0; i < image.pixels(); ++i)
         for (std::size_t c = 0; c < planes.size(); ++c)
-            image.at(i, c) = planes[c]->defined[i] == kUndefined    ? std::numeric_limits<float>::quiet_NaN()
-                             : planes[c]->defined[i] == kOnBoundary ? kOnBoundaryCode
-                                                                    : planes[c]->s[i];
+            image.at(i, c) = planes[c]->answer[i] == Answer::undefined     ? std::numeric_limits<float>::quiet_NaN()
+                             : planes[c]->answer[i] == Answer::on_boundary ? kOnBoundaryCode
+                                                                           : planes[c]->s[i];
     image.metadata = {{"umbra:scene", prepared.scene.name}, {"umbra:method", std::string(run.choice.info->name)}};
     return image;
 }
 
 /// The plane of one channel, as methods write it.
 VisibilityPlane decoded(const Image& image, std::size_t channel) {
-    VisibilityPlane plane;
+    VisibilityPlane plane(image.pixels());
     for (std::size_t i = 0; i < image.pixels(); ++i) {
-        const float x = image.at(i, channel);
-        plane.defined.push_back(std::isnan(x) ? kUndefined : x == kOnBoundaryCode ? kOnBoundary : kDefined);
-        plane.s.push_back(std::isnan(x) ? 0 : std::abs(x));  // a point on the boundary is shown as lit
+        const float x   = image.at(i, channel);
+        plane.answer[i] = std::isnan(x)          ? Answer::undefined
+                          : x == kOnBoundaryCode ? Answer::on_boundary
+                                                 : Answer::given;
+        plane.s[i]      = std::isnan(x) ? 0 : std::abs(x);  // a point on the boundary is shown as lit
     }
     return plane;
 }
@@ -260,7 +262,7 @@ Json with_ranges(Json figures, const PreparedScene& prepared, const MethodChoice
     std::vector<Json> samples;
     for (int k = 0; k < kRangeSeeds; ++k) {
         MethodChoice seeded = choice;
-        seeded.settings.set("seed", std::to_string(1000 + k));
+        seeded.settings.set(choice.info->seed, 1000 + k);
         samples.push_back(
             figures_of(prepared, run_method(seeded, prepared.scene, prepared.facts, prepared.points, {1, 0}), exact));
     }
@@ -455,7 +457,7 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     const std::string name = file.stem().string();
     std::vector<MethodChoice> choices;
     for (const MethodInfo* info : methods())
-        if (wanted(options, name, info->name)) choices.push_back({info, Settings(info->parameters)});
+        if (info->by_default && wanted(options, name, info->name)) choices.emplace_back(*info);
     if (choices.empty()) return {};
 
     const fs::path figures_file = options.folder / name / "figures.json";

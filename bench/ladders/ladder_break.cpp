@@ -36,7 +36,7 @@ Json write_break(const std::filesystem::path& folder, const std::string& name, c
 
     const std::unique_ptr<RungStage> stage = set_stage(scene);
     std::vector<Explained> explained;
-    MethodRun run{method, {}, {}, {}, {}, 0, {}, {}, {}};
+    MethodRun run{method};
     const RungOutcome o = outcome(*stage, method, &explained, &run);
     LightId worst       = 0;
     const auto interior = [&](LightId j) {

@@ -52,7 +52,7 @@ void describe_truth(const RungStage& stage, Rung& rung) {
 
 bool RungOutcome::broken() const {
     if (!ran()) return false;
-    return service.how == How::exactly ? interior() > 0 : interior_share() > kBreakingShare;
+    return service.how >= How::to_rounding ? interior() > 0 : interior_share() > kBreakingShare;
 }
 
 Climb climb(const LadderRun& run, std::size_t method) {
@@ -81,7 +81,7 @@ Climb climb(const LadderRun& run, std::size_t method) {
 std::unique_ptr<RungStage> set_stage(Scene scene) {
     SceneFacts facts    = find_facts(scene);
     Reference reference = default_reference(facts);
-    MethodRun truth{std::move(reference.choice), {}, {}, {}, {}, 0, {}, {}, {}};
+    MethodRun truth{std::move(reference.choice)};
     auto stage =
         std::make_unique<RungStage>(RungStage{std::move(scene), std::move(facts), PointBatch{}, std::move(truth)});
     stage->points = primary_points(RayScene(stage->scene), stage->scene, stage->scene.camera, stage->scene.width,

@@ -14,7 +14,7 @@
 namespace umbra {
 
 /// A method that serves a scene approximately breaks where more than this share of the judged points is wrong in the
-/// interior; one that serves it exactly where any is.
+/// interior; one that serves it exactly or to rounding where any is.
 inline constexpr double kBreakingShare = 0.005;
 
 /// A rung is judged where the eye still sees at least this share of the points that it sees on the first rung: below

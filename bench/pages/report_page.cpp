@@ -52,8 +52,8 @@ json SceneFiles::exr(const Field& files) const {
 bool serves(const Field& method) {
     const Field how        = method["serves"]["how"];
     const std::string word = how.required_text();
-    if (word != "exactly" && word != "approximately" && word != "not")
-        how.refuse("\"exactly\", \"approximately\" or \"not\"");
+    if (word != "exactly" && word != "to_rounding" && word != "approximately" && word != "not")
+        how.refuse("\"exactly\", \"to_rounding\", \"approximately\" or \"not\"");
     return word != "not";
 }
 

@@ -16,7 +16,7 @@ using nlohmann::json;
 json parameters(const Field& method) {
     json all = json::array();
     for (const auto& [name, value] : method["parameters"].members())
-        all.push_back({{"name", name}, {"value", value.text()}});
+        all.push_back({{"name", name}, {"value", value.scalar()}});
     return all;
 }
 

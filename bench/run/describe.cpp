@@ -38,16 +38,6 @@ std::string_view place_word(LightPlace place) {
 
 Json vector_json(dvec3 v) { return {number(v.x), number(v.y), number(v.z)}; }
 
-std::string_view to_string(Parameter::Type type) {
-    switch (type) {
-        case Parameter::Type::integer: return "integer";
-        case Parameter::Type::real: return "real";
-        case Parameter::Type::choice: return "choice";
-        case Parameter::Type::boolean: return "boolean";
-    }
-    return "";
-}
-
 }  // namespace
 
 std::string_view version() { return UMBRA_VERSION; }
@@ -114,22 +104,42 @@ Json lights_json(const SceneFacts& facts) {
     return lights;
 }
 
+Json setting_json(const Parameter& p, double value) {
+    switch (p.type) {
+        case Parameter::Type::integer: return static_cast<std::int64_t>(value);
+        case Parameter::Type::real: return value;
+        case Parameter::Type::boolean: return value != 0;
+        case Parameter::Type::choice: return p.text(value);
+    }
+    return {};
+}
+
 Json method_json(const MethodInfo& info) {
-    Json parameters = Json::array();
+    Json parameters = Json::array(), presets = Json::array();
     for (const Parameter& p : info.parameters) {
-        Json entry = {{"name", p.name}, {"type", to_string(p.type)}, {"default", p.fallback}, {"doc", p.doc}};
+        Json entry = {{"name", p.name}, {"type", to_string(p.type)},   {"default", setting_json(p, p.fallback)},
+                      {"unit", p.unit}, {"phase", to_string(p.phase)}, {"doc", p.doc}};
         if (p.type == Parameter::Type::integer || p.type == Parameter::Type::real) {
             entry["min"] = p.min;
             entry["max"] = p.max;
         }
         if (p.type == Parameter::Type::choice) entry["choices"] = p.choices;
+        if (!p.sweep.empty()) entry["sweep"] = p.sweep;
         parameters.push_back(std::move(entry));
     }
+    for (const Preset& p : info.presets)
+        presets.push_back({{"name", p.name}, {"settings", p.settings}, {"doc", p.doc}});
     return {{"name", info.name},
             {"title", info.title},
             {"paper", info.paper},
             {"summary", info.summary},
-            {"parameters", parameters}};
+            {"measures", to_string(info.make()->measures())},
+            {"reference", info.reference},
+            {"by_default", info.by_default},
+            {"needs_raster", info.needs_raster},
+            {"noise", !info.seed.empty()},
+            {"parameters", parameters},
+            {"presets", presets}};
 }
 
 Json service_json(const Service& service) { return {{"how", to_string(service.how)}, {"why", service.why}}; }

@@ -18,7 +18,8 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json scene_json(const Scene& scene);
 [[nodiscard]] Json facts_json(const SceneFacts& facts);
 [[nodiscard]] Json lights_json(const SceneFacts& facts);
-[[nodiscard]] Json method_json(const MethodInfo& info);  ///< with parameters, their ranges and documentation
+[[nodiscard]] Json method_json(const MethodInfo& info);             ///< with parameters, their ranges and documentation
+[[nodiscard]] Json setting_json(const Parameter& p, double value);  ///< typed: a number, a boolean or a word
 [[nodiscard]] Json service_json(const Service& service);
 [[nodiscard]] Json timing_json(const Timing& timing);
 [[nodiscard]] Json number(double value);  ///< null where it is not finite: JSON has no infinity

@@ -20,17 +20,16 @@ std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, L
 Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
                   const MethodRun& reference) {
     const VisibilityPlane &s = run.planes[light], &truth = reference.planes[light];
-    const std::vector<float>& half_widths = reference.half_widths[light];
-    const float tolerance                 = visibility_tolerance(scene.lights[light].kind);
+    const float tolerance = visibility_tolerance(scene.lights[light].kind);
 
     Explained e;
-    e.classes = error_classes(points, light, s, truth, tolerance, half_widths);
+    e.classes = error_classes(points, light, s, truth, tolerance, reference.judged_points(light));
     mark_terminator(e.classes, scene, points, light);
     const auto dark = points_of_class(e.classes, ErrorClass::false_shadow);
     mark_acne(e.classes, scene, points, dark, blamed(run, points, light, dark));
     const auto bright = points_of_class(e.classes, ErrorClass::false_light);
     mark_detachment(e.classes, scene, points, light, bright, blamed(reference, points, light, bright));
-    e.error        = count_errors(points, e.classes, s, truth, half_widths);
+    e.error        = count_errors(points, e.classes, s, truth);
     e.displacement = edge_displacement(points, e.classes, s, truth);
     if (is_area(scene.lights[light].kind)) e.penumbra_width = penumbra_width(points, e.classes, s, truth);
     return e;

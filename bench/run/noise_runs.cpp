@@ -7,31 +7,32 @@ namespace umbra {
 namespace {
 
 /// Spread, since methods may take their seed as an offset into one sequence.
-std::string other_seed(int own, int run) { return std::to_string((own + 1000003LL * (run + 1)) % 2147483647LL); }
+double other_seed(double own, int run) {
+    return static_cast<double>((static_cast<std::int64_t>(own) + 1000003LL * (run + 1)) % 2147483647LL);
+}
 
 }  // namespace
 
 std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
                                                   const SceneFacts& facts, const PointBatch& points) {
     std::vector<std::optional<NoiseMeter>> meters(scene.lights.size());
-    const auto parameters = choice.settings.parameters();
-    if (std::ranges::find(parameters, "seed", &Parameter::name) == parameters.end()) return meters;
+    const std::string_view seed = choice.info->seed;
+    if (seed.empty()) return meters;
     for (LightId j = 0; j < scene.lights.size(); ++j)
         if (is_area(scene.lights[j].kind)) meters[j].emplace(points.size());
     if (std::ranges::none_of(meters, [](const auto& meter) { return meter.has_value(); })) return meters;
 
     for (int run = 0; run < kNoiseRuns; ++run) {
         Settings settings = choice.settings;
-        settings.set("seed", other_seed(choice.settings.integer("seed"), run));
+        settings.set(seed, other_seed(choice.settings.value(seed), run));
         const std::unique_ptr<Method> method = choice.info->make(settings);
         method->build(scene, facts);
         for (LightId j = 0; j < scene.lights.size(); ++j) {
             if (!meters[j]) continue;
-            std::vector<float> s(points.size(), 0);
-            std::vector<std::uint8_t> defined(points.size(), kDefined);
+            VisibilityPlane plane(points.size());
             method->aim(j);
-            method->visibility(points, j, s, defined);
-            meters[j]->add(s);
+            method->visibility(points, j, plane.out());
+            meters[j]->add(plane.s);
         }
     }
     return meters;

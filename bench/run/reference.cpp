@@ -10,9 +10,6 @@
 namespace umbra {
 namespace {
 
-constexpr int kReferenceSamples = 1024;  ///< an area light; Owen-Sobol's error at an edge is then about 1/200
-constexpr int kGuessSamples     = 256;
-
 /// An exact point of a penumbra costs about the triangles between it and the light. Pictures of up to kWhole points
 /// times triangles are answered whole. Beyond, the sample has kSampled over the triangles, within these limits: of
 /// 16384 points a share of 1 % is known to 0.08 %, of 2048 to 0.2 %.
@@ -58,46 +55,54 @@ std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint
     return sample;
 }
 
-/// The answers at the sample among guesses everywhere else.
-void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, const VisibilityPlane& guess,
-             const std::vector<Facing>& facing) {
-    VisibilityPlane whole = guess;
-    for (std::size_t i = 0; i < whole.defined.size(); ++i)
-        if (facing[i] == Facing::partly || facing[i] == Facing::front) whole.defined[i] = kGuess;
-    std::vector<float> doubt(run.half_widths[light].empty() ? 0 : facing.size(), 0.0f);
+/// The answers at the sample among those of the stand-in everywhere else, which judge nothing.
+void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, const VisibilityPlane& stand_in,
+             const PointBatch& points) {
+    VisibilityPlane whole = stand_in;
+    std::vector<std::uint8_t> judged(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) judged[i] = !points.asks(light, i);
+    const VisibilityPlane& answers = run.planes[light];
     for (std::size_t k = 0; k < sample.size(); ++k) {
-        whole.s[sample[k]]       = run.planes[light].s[k];
-        whole.defined[sample[k]] = run.planes[light].defined[k];
-        if (!doubt.empty()) doubt[sample[k]] = run.half_widths[light][k];
+        whole.s[sample[k]]          = answers.s[k];
+        whole.answer[sample[k]]     = answers.answer[k];
+        whole.half_width[sample[k]] = answers.half_width[k];
+        judged[sample[k]]           = 1;
     }
-    run.planes[light]      = std::move(whole);
-    run.half_widths[light] = std::move(doubt);
+    run.planes[light] = std::move(whole);
+    run.judged[light] = std::move(judged);
+}
+
+/// What stands in where no reference serves, or where one takes too long at every point.
+MethodChoice stand_in_for_reference() {
+    for (const MethodInfo* info : methods())
+        if (!info->stand_in.empty()) return parse_method(fmt::format("{}:{}", info->name, info->stand_in));
+    throw UsageError("no method in the list can stand in for a reference");
 }
 
 }  // namespace
 
 Reference default_reference(const SceneFacts& facts) {
-    MethodChoice best     = parse_method("exact");
-    const Service service = best.info->make(best.settings)->serves(facts);
-    if (service) return {std::move(best), true, service.why};
-    return {
-        parse_method(fmt::format("ray_traced:samples={},sampler=sobol", kReferenceSamples)), false,
-        fmt::format(
-            "Ray-traced shadows with {} samples a point and area light: better sampled, not exact. Its own error at a "
-            "shadow edge is of the order of 1/{}. The exact method does not serve here: {}.",
-            kReferenceSamples, kReferenceSamples / 4, service.why)};
+    std::string why;
+    for (const MethodInfo* info : methods()) {
+        if (!info->reference) continue;
+        const Service service = info->make()->serves(facts);
+        if (service) return {MethodChoice(*info), true, service.why};
+        why += fmt::format(" {} does not serve here: {}.", info->title, service.why);
+    }
+    MethodChoice choice = stand_in_for_reference();
+    return {choice, false, fmt::format("{}: better sampled, not exact.{}", choice.info->title, why)};
 }
 
 ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
                            const PointBatch& points, std::optional<std::uint64_t> wanted) {
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
-    // Only the exact reference is dear: every other one is asked for the whole picture unless told otherwise.
+    // Only the exact reference is slow: every other one answers for the whole picture, unless `wanted` says otherwise.
     if (!wanted) wanted = any_area && reference.exact ? affordable(scene, all) : all;
 
-    ReferenceRun done{{reference.choice, {}, {}, {}, {}, 0, {}, {}, {}}, all, all, {}};
+    ReferenceRun done{MethodRun{reference.choice}, all, all, {}};
     MethodRun& run = done.run;
-    run.method     = reference.choice.info->make(reference.choice.settings);
+    run.method     = reference.choice.make();
     run.service    = run.method->serves(facts);
     if (!run.service)
         throw UsageError(
@@ -108,19 +113,19 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
         return done;
     }
 
-    const MethodRun guess =
-        run_method(parse_method(fmt::format("ray_traced:samples={}", kGuessSamples)), scene, facts, points, kOnce);
+    const MethodRun stand_in                = run_method(stand_in_for_reference(), scene, facts, points, kOnce);
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
     run.build                               = time_runs(kOnce, [&] { run.method->build(scene, facts); });
+    run.judged.resize(scene.lights.size());
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const bool area = is_area(scene.lights[light].kind);
         run_light(run, area ? sampled : points, light, kOnce);
-        if (area) scatter(run, light, sample, guess.planes[light], points.facing[light]);
+        if (area) scatter(run, light, sample, stand_in.planes[light], points);
     }
     run.memory_bytes = run.method->memory_bytes();
     done.judged      = sample.size();
-    done.guess       = guess.choice.text();
+    done.stand_in    = stand_in.choice.text();
     return done;
 }
 

@@ -1,4 +1,4 @@
-// What methods are held against: which reference, and on how many points.
+// Which reference methods are compared with, and at how many points.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +9,23 @@
 
 namespace umbra {
 
-/// What the others are held against, and why that is a reference and what it is not.
+/// What the others are compared with, why that is a reference, and what it is not.
 struct Reference {
     MethodChoice choice;
     bool exact = false;
     std::string note;
 };
 
-/// `exact` where it serves the scene, else ray-traced shadows with many samples.
+/// The first method of the list that may be a reference and serves the scene, else a stand-in that is not exact.
 [[nodiscard]] Reference default_reference(const SceneFacts& facts);
 
-/// The reference's answers: for lights without an area at all points of the picture, for area lights at all or at a
-/// stratified sample of them. Elsewhere its planes hold guesses (kGuess): ray-traced shadows with many samples, which
-/// say where boundaries are and make the reference's picture, and which judge nothing.
+/// The reference's answers: at all points of the picture for lights without an area; for area lights at all points, or
+/// at a stratified sample of them. Elsewhere its planes hold values of another method (MethodInfo::stand_in), which
+/// locate shadow edges and make the reference's picture, and judge nothing (MethodRun::judged).
 struct ReferenceRun {
     MethodRun run;
     std::uint64_t judged = 0, of = 0;  ///< points, of those with a surface; equal where the whole picture is judged
-    std::string guess;                 ///< the method of the guesses; empty where there are none
+    std::string stand_in;              ///< the other method, as typed; empty where every point is judged
 };
 
 /// `wanted`: how many points to judge an area light on; none: the whole picture where that is not too dear, by a rule

@@ -48,6 +48,11 @@ std::string Field::required_text() const {
     return s;
 }
 
+std::string Field::scalar() const {
+    if (value_ && value_->is_structured()) refuse("a string, a number, true or false");
+    return !value_ ? "" : value_->is_string() ? value_->get<std::string>() : value_->dump();
+}
+
 std::optional<double> Field::number() const {
     if (!value_) return std::nullopt;
     if (!value_->is_number()) refuse("a number");

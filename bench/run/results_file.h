@@ -21,6 +21,7 @@ public:
 
     [[nodiscard]] std::string text() const;           ///< empty where absent
     [[nodiscard]] std::string required_text() const;  ///< neither absent nor empty
+    [[nodiscard]] std::string scalar() const;         ///< a string as it is, a number or a boolean as JSON writes it
     [[nodiscard]] std::optional<double> number() const;
     [[nodiscard]] bool flag() const;                 ///< false where absent
     [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent

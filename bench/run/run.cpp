@@ -13,24 +13,26 @@ double now_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void check_contract(std::string_view name, const VisibilityPlane& plane, const std::vector<Facing>& facing) {
+void check_contract(std::string_view name, const VisibilityPlane& plane, const PointBatch& points, LightId light) {
     for (std::size_t i = 0; i < plane.s.size(); ++i) {
-        const bool asked    = facing[i] == Facing::partly || facing[i] == Facing::front;
-        const bool in_range = plane.s[i] >= 0 && plane.s[i] <= 1;
-        if (!in_range || plane.defined[i] > kOnBoundary ||
-            (!asked && (plane.s[i] != 0 || plane.defined[i] != kDefined)))
-            throw std::logic_error(fmt::format("{} breaks its contract at point {}: visibility {}, defined {}, {}",
-                                               name, i, plane.s[i], plane.defined[i],
-                                               asked ? "asked for" : "not asked for"));
+        const bool asked = points.asks(light, i);
+        const bool in_range =
+            plane.s[i] >= 0 && plane.s[i] <= 1 && plane.half_width[i] >= 0 && plane.half_width[i] <= 1;
+        const bool untouched = plane.s[i] == 0 && plane.half_width[i] == 0 && plane.answer[i] == Answer::given;
+        if (!in_range || plane.answer[i] > Answer::on_boundary || (!asked && !untouched))
+            throw std::logic_error(fmt::format(
+                "{} breaks its contract at point {}: visibility {}, half width {}, answer {}, {}", name, i, plane.s[i],
+                plane.half_width[i], static_cast<int>(plane.answer[i]), asked ? "asked for" : "not asked for"));
     }
 }
 
 }  // namespace
 
-Timing time_runs(const Repeats& repeats, const std::function<void()>& work) {
+Timing time_runs(const Repeats& repeats, const std::function<void()>& work, const std::function<void()>& before) {
     std::vector<double> times;
     double spent = 0;
     do {
+        if (before) before();
         const double start = now_ms();
         work();
         times.push_back(now_ms() - start);
@@ -57,33 +59,26 @@ double MethodRun::coverage(const PointBatch& points) const {
     std::size_t asked = 0, given = 0;
     for (std::size_t j = 0; j < planes.size(); ++j)
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (points.facing[j][i] == Facing::none || points.facing[j][i] == Facing::away) continue;
+            if (!points.asks(static_cast<LightId>(j), i)) continue;
             ++asked;
-            given += planes[j].defined[i] != kUndefined;
+            given += planes[j].defined(i);
         }
     return asked == 0 ? 1.0 : static_cast<double>(given) / static_cast<double>(asked);
 }
 
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
     run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
-    VisibilityPlane plane;
-    plane.s.resize(points.size());
-    plane.defined.resize(points.size());
-    run.visibility.push_back(time_runs(repeats, [&] {
-        std::fill(plane.s.begin(), plane.s.end(), 0.0f);
-        std::fill(plane.defined.begin(), plane.defined.end(), kDefined);
-        run.method->visibility(points, light, plane.s, plane.defined);
-    }));
-    check_contract(run.choice.info->name, plane, points.facing[light]);
+    VisibilityPlane plane(points.size());
+    run.visibility.push_back(time_runs(
+        repeats, [&] { run.method->visibility(points, light, plane.out()); }, [&] { plane.clear(); }));
+    check_contract(run.choice.info->name, plane, points, light);
     run.planes.push_back(std::move(plane));
-    const std::span<const float> doubt = run.method->half_widths();
-    run.half_widths.emplace_back(doubt.begin(), doubt.end());
 }
 
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
                      const Repeats& repeats) {
-    MethodRun run{choice, {}, {}, {}, {}, 0, {}, {}, {}};
-    run.method  = choice.info->make(choice.settings);
+    MethodRun run{choice};
+    run.method  = choice.make();
     run.service = run.method->serves(facts);
     if (!run.service) return run;
 

@@ -25,19 +25,26 @@ struct Repeats {
     double budget_ms = 300;
 };
 
-/// Calls `work` repeatedly and times each call.
-[[nodiscard]] Timing time_runs(const Repeats& repeats, const std::function<void()>& work);
+/// Calls `work` repeatedly and times each call; `before`, if given, runs ahead of each, outside the clock.
+[[nodiscard]] Timing time_runs(const Repeats& repeats, const std::function<void()>& work,
+                               const std::function<void()>& before = {});
 
 /// What one method made of one scene. Where it does not serve, only `choice` and `service` mean something.
 struct MethodRun {
     MethodChoice choice;
-    Service service;
-    Timing build;
-    std::vector<Timing> aim, visibility;          ///< [light]
-    std::size_t memory_bytes = 0;                 ///< after the last light was aimed at
-    std::vector<VisibilityPlane> planes;          ///< [light]
-    std::vector<std::vector<float>> half_widths;  ///< [light][point]: the method's own doubt; empty where it has none
-    std::shared_ptr<Method> method;               ///< built, and aimed at the last light: to be asked further
+    Service service{};
+    Timing build{};
+    std::vector<Timing> aim{}, visibility{};          ///< [light]
+    std::size_t memory_bytes = 0;                     ///< after the last light was aimed at
+    std::vector<VisibilityPlane> planes{};            ///< [light]
+    std::vector<std::vector<std::uint8_t>> judged{};  ///< [light][point] of a reference: 0 where its value only finds
+                                                      ///< edges and judges nothing; empty: every point judges
+    std::shared_ptr<Method> method{};                 ///< built, and aimed at the last light: to be asked further
+
+    /// judged[light], or empty.
+    [[nodiscard]] std::span<const std::uint8_t> judged_points(LightId light) const {
+        return judged.empty() ? std::span<const std::uint8_t>{} : judged[light];
+    }
 
     /// Share of the points that S_j is asked for (any light in front) that it is given for, [0, 1]; 1 where none is.
     [[nodiscard]] double coverage(const PointBatch& points) const;

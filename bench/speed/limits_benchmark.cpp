@@ -418,13 +418,13 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, const
     bench.prepare();
     const int samples         = light == 0 ? 1 : 16;
     const MethodChoice choice = parse_method(settings);
-    const auto method         = choice.info->make(choice.settings);
+    const auto method         = choice.make();
     method->build(bench.scene, find_facts(bench.scene));
     method->aim(light);
-    std::vector<float> s(bench.points.size());
-    std::vector<std::uint8_t> defined(bench.points.size(), 1);
-    const CameraFrame f = *bench.points.raster;
-    const auto shadows  = [&](const Bare& bare) {
+    VisibilityPlane plane(bench.points.size());
+    const std::vector<float>& s = plane.s;
+    const CameraFrame f         = *bench.points.raster;
+    const auto shadows          = [&](const Bare& bare) {
         return BareShadows{bare,
                            f,
                            bench.bare_points,
@@ -433,7 +433,7 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, const
                            std::vector<std::uint8_t>(bench.points.size())};
     };
     BareShadows fast = shadows(*bench.fast), robust = shadows(*bench.robust);
-    const auto ours = [&] { method->visibility(bench.points, light, s, defined); };
+    const auto ours = [&] { method->visibility(bench.points, light, plane.out()); };
 
     ours();
     fast.packets();

@@ -9,15 +9,10 @@ namespace {
 
 constexpr double kBand = 1.5;  // pixels
 
-/// Points whose S_j methods may differ in.
-bool is_open(const PointBatch& points, LightId light, std::size_t i) {
-    const Facing facing = points.facing[light][i];
-    return facing == Facing::partly || facing == Facing::front;
-}
-
 void require_raster(const PointBatch& points, const VisibilityPlane& plane) {
     if (!points.raster) throw std::logic_error("visibility error: the batch has no raster");
-    if (plane.s.size() != points.size() || plane.defined.size() != points.size())
+    if (plane.s.size() != points.size() || plane.answer.size() != points.size() ||
+        plane.half_width.size() != points.size())
         throw std::logic_error("visibility error: a plane is not of the batch's size");
 }
 
@@ -37,13 +32,13 @@ std::vector<std::uint8_t> edge_band(const PointBatch& points, LightId light, con
     require_raster(points, reference);
     const int width = points.raster->width, height = points.raster->height;
     std::vector<std::uint8_t> band(points.size(), 0);
-    const auto judged = [&](std::size_t i) { return is_open(points, light, i) && reference.defined[i] != 0; };
+    const auto drawn = [&](std::size_t i) { return points.asks(light, i) && reference.defined(i); };
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const auto i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (!judged(i)) continue;
+            if (!drawn(i)) continue;
             const auto boundary_before = [&](std::size_t j) {
-                return judged(j) && std::abs(reference.s[i] - reference.s[j]) > tolerance / kBand;
+                return drawn(j) && std::abs(reference.s[i] - reference.s[j]) > tolerance / kBand;
             };
             if (x + 1 < width && boundary_before(i + 1)) mark(band, width, height, x, y, false);
             if (y + 1 < height && boundary_before(i + static_cast<std::size_t>(width)))
@@ -53,22 +48,22 @@ std::vector<std::uint8_t> edge_band(const PointBatch& points, LightId light, con
 }
 
 ClassPlane error_classes(const PointBatch& points, LightId light, const VisibilityPlane& s,
-                         const VisibilityPlane& reference, float tolerance, std::span<const float> half_widths) {
+                         const VisibilityPlane& reference, float tolerance, std::span<const std::uint8_t> judged) {
     require_raster(points, s);
-    if (!half_widths.empty() && half_widths.size() != points.size())
-        throw std::logic_error("visibility error: the half widths are not of the batch's size");
+    if (!judged.empty() && judged.size() != points.size())
+        throw std::logic_error("visibility error: the mask of judged points is not of the batch's size");
     const auto band = edge_band(points, light, reference, tolerance);
 
     const auto class_of = [&](std::size_t i) {
         const Facing facing = points.facing[light][i];
         if (facing == Facing::none) return ErrorClass::no_surface;
         if (facing == Facing::away) return ErrorClass::away;
-        if (s.defined[i] != kUndefined && reference.defined[i] == kGuess) return ErrorClass::not_judged;
-        if (reference.defined[i] == kOnBoundary) return ErrorClass::on_boundary;
-        if (s.defined[i] == kUndefined || reference.defined[i] == kUndefined) return ErrorClass::undefined;
-        const double d     = static_cast<double>(s.s[i]) - static_cast<double>(reference.s[i]);
-        const double doubt = half_widths.empty() ? 0.0 : static_cast<double>(half_widths[i]);
-        if (std::abs(d) <= static_cast<double>(tolerance) + doubt) return ErrorClass::right;
+        if (s.defined(i) && !judged.empty() && judged[i] == 0) return ErrorClass::not_judged;
+        if (reference.answer[i] == Answer::on_boundary) return ErrorClass::on_boundary;
+        if (!s.defined(i) || !reference.defined(i)) return ErrorClass::undefined;
+        const double d       = static_cast<double>(s.s[i]) - static_cast<double>(reference.s[i]);
+        const double allowed = static_cast<double>(tolerance) + static_cast<double>(reference.half_width[i]);
+        if (std::abs(d) <= allowed) return ErrorClass::right;
         if (d < 0) return band[i] ? ErrorClass::false_shadow_edge : ErrorClass::false_shadow;
         return band[i] ? ErrorClass::false_light_edge : ErrorClass::false_light;
     };

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "umbra/core/render/points.h"
-#include "umbra/core/render/visibility_plane.h"
+#include "umbra/core/render/visibility.h"
 
 namespace umbra {
 
@@ -16,7 +16,7 @@ enum class ErrorClass : std::uint8_t {
     no_surface,        ///< the eye ray met nothing
     away,              ///< the whole light is behind the point's triangle: S_j = 0 for every method
     terminator_away,   ///< the same, where the shading normal faces the light: dark for the facet, bright for the sum
-    not_judged,        ///< the reference was asked for a sample of the points, and this one is not in it
+    not_judged,        ///< the reference was evaluated at a sample of the points, and this one is not in it
     undefined,         ///< either plane leaves the point open
     on_boundary,       ///< the reference says so: no method is wrong there
     right,             ///< within the tolerance
@@ -34,18 +34,18 @@ enum class ErrorClass : std::uint8_t {
 /// Do both planes define the point, so that it is right or wrong?
 [[nodiscard]] constexpr bool is_compared(ErrorClass c) { return c >= ErrorClass::right; }
 
-/// Does it say where boundaries are? A guess of the reference does, too.
+/// Does it say where boundaries are? A value that is not judged does, too.
 [[nodiscard]] constexpr bool is_drawn(ErrorClass c) { return is_compared(c) || c == ErrorClass::not_judged; }
 
 using ClassPlane = std::vector<ErrorClass>;  ///< one a point of a raster batch
 
-/// Compares two planes of one raster batch. A point is wrong where |s - reference| > `tolerance` + its half width: a
-/// false shadow where s is below the reference, a false light where it is above. `half_widths` are the reference's own
-/// doubt, one a point (Method::half_widths), or empty where it has none. Throws std::logic_error where the batch has no
-/// raster or a plane is of another size. `tolerance` > 0.
+/// Compares two planes of one raster batch. A point is wrong where |s - reference| > `tolerance` + the reference's half
+/// width: a false shadow where s is below the reference, a false light where it is above. `judged`, one entry a point,
+/// is 0 where the reference's value is only good enough to find edges; empty: every point is judged. Throws
+/// std::logic_error where the batch has no raster or a plane is of another size. `tolerance` > 0.
 [[nodiscard]] ClassPlane error_classes(const PointBatch& points, LightId light, const VisibilityPlane& s,
                                        const VisibilityPlane& reference, float tolerance,
-                                       std::span<const float> half_widths = {});
+                                       std::span<const std::uint8_t> judged = {});
 
 /// 1 in the edge band of the reference plane: where a shadow that lies up to 1.5 pixels off could be wrong by more than
 /// `tolerance`, so that a wrong value says something about sampling in the image and nothing about the method.

@@ -34,7 +34,7 @@ void count_wrong(ErrorClass c, std::uint64_t& level, VisibilityError& e) {
 }  // namespace
 
 VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes, const VisibilityPlane& s,
-                             const VisibilityPlane& reference, std::span<const float> half_widths) {
+                             const VisibilityPlane& reference) {
     if (classes.size() != points.size() || s.s.size() != points.size() || reference.s.size() != points.size())
         throw std::logic_error("visibility error: a plane is not of the batch's size");
     VisibilityError e;
@@ -61,8 +61,8 @@ VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes
         absolute += std::abs(d);
         squared += d * d;
         difference += d;
-        e.max = std::max(e.max, std::abs(d));
-        if (!half_widths.empty()) e.max_half_width = std::max(e.max_half_width, static_cast<double>(half_widths[i]));
+        e.max            = std::max(e.max, std::abs(d));
+        e.max_half_width = std::max(e.max_half_width, static_cast<double>(reference.half_width[i]));
     }
     if (e.points > 0) {
         const auto n = static_cast<double>(e.points);
@@ -75,9 +75,8 @@ VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes
 
 VisibilityError visibility_error(const PointBatch& points, LightId light, const VisibilityPlane& s,
                                  const VisibilityPlane& reference, float tolerance,
-                                 std::span<const float> half_widths) {
-    return count_errors(points, error_classes(points, light, s, reference, tolerance, half_widths), s, reference,
-                        half_widths);
+                                 std::span<const std::uint8_t> judged) {
+    return count_errors(points, error_classes(points, light, s, reference, tolerance, judged), s, reference);
 }
 
 }  // namespace umbra

@@ -1,11 +1,11 @@
-// Errors of S_j planes, split so that each number has one meaning (DESIGN section 1).
+// Errors of S_j planes, split so that each number has one meaning (docs/terms.md).
 #pragma once
 
 #include <span>
 
 #include "umbra/core/errors/error_classes.h"
 #include "umbra/core/render/points.h"
-#include "umbra/core/render/visibility_plane.h"
+#include "umbra/core/render/visibility.h"
 
 namespace umbra {
 
@@ -16,7 +16,7 @@ namespace umbra {
 struct VisibilityError {
     std::uint64_t points = 0, undefined = 0, away = 0;
     std::uint64_t on_boundary = 0;
-    std::uint64_t not_judged  = 0;  ///< the reference was not asked for them
+    std::uint64_t not_judged  = 0;  ///< the reference was not evaluated there
     struct Level {
         std::uint64_t lit = 0, umbra = 0, penumbra = 0;
     };
@@ -43,12 +43,11 @@ struct VisibilityError {
 /// `reference` and `s` are planes of the same raster batch and `classes` what they were sorted into. Throws
 /// std::logic_error where one is of another size.
 [[nodiscard]] VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes,
-                                           const VisibilityPlane& s, const VisibilityPlane& reference,
-                                           std::span<const float> half_widths = {});
+                                           const VisibilityPlane& s, const VisibilityPlane& reference);
 
 /// The same of two planes alone: edge and interior, but no causes and no terminator. Throws as `error_classes` does.
 [[nodiscard]] VisibilityError visibility_error(const PointBatch& points, LightId light, const VisibilityPlane& s,
                                                const VisibilityPlane& reference, float tolerance,
-                                               std::span<const float> half_widths = {});
+                                               std::span<const std::uint8_t> judged = {});
 
 }  // namespace umbra

@@ -54,6 +54,12 @@ void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId 
     batch.flipped[i]  = flip;
 }
 
+dvec3 exact_position(const Scene& scene, const PointBatch& points, std::size_t i) {
+    const TriangleId t = points.triangle[i];
+    const dvec3 a(scene.vertex(t, 0)), b(scene.vertex(t, 1)), c(scene.vertex(t, 2));
+    return a + static_cast<double>(points.u[i]) * (b - a) + static_cast<double>(points.v[i]) * (c - a);
+}
+
 PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which) {
     PointBatch to;
     to.eye = from.eye;

@@ -33,6 +33,9 @@ struct PointBatch {
     std::vector<std::vector<Facing>> facing;  ///< [light][point]; filled by face_lights
 
     [[nodiscard]] std::size_t size() const { return triangle.size(); }
+    /// Whether S_j is asked of point i: some of the light is in front of its plane. Elsewhere S_j is 0 for every
+    /// method.
+    [[nodiscard]] bool asks(LightId light, std::size_t i) const { return facing[light][i] >= Facing::partly; }
     [[nodiscard]] vec3 position(std::size_t i) const { return {px[i], py[i], pz[i]}; }
     [[nodiscard]] vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
     void resize(std::size_t n);
@@ -41,6 +44,10 @@ struct PointBatch {
 /// Writes point i from its name: position, normal (if two-sided towards `batch.eye`, or against the view direction of
 /// an orthographic raster). Clamps u, v into the triangle first. A degenerate triangle gives kNoTriangle.
 void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, float u, float v);
+
+/// Point i from its name in double, world space: rounded from the exact point a few times, where position() is rounded
+/// to float.
+[[nodiscard]] dvec3 exact_position(const Scene& scene, const PointBatch& points, std::size_t i);
 
 /// Some points of a batch, as they are, as a batch without a raster.
 [[nodiscard]] PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which);

@@ -11,16 +11,6 @@
 
 namespace umbra {
 
-/// How a shadow ray keeps from hitting the surface that it starts on.
-enum class OffsetPolicy : std::uint8_t {
-    skip_triangle,   ///< starts at the point; its own triangle, by id, is no hit, nor is what lies within the point's
-                     ///< rounding
-    integer_offset,  ///< moves the start along the normal by a few float steps
-                     ///< [Carsten Waechter, Nikolaus Binder, A Fast and Robust Method for Avoiding Self-Intersection,
-                     ///< 2019]
-    epsilon          ///< starts at a constant distance (a share of the scene's diagonal) along the normal
-};
-
 /// Where rays are traced: x' = (x - centre) * scale, so that scenes far from the origin, huge ones and tiny ones all
 /// meet Embree's floats near 1. For every vertex and surface point x' is exact: `scale` is a power of two, and an axis
 /// is moved only where its vertices lie within a factor of three of each other, so that their differences are floats.

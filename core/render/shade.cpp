@@ -104,7 +104,7 @@ Image shade(const Scene& scene, const PointBatch& points, std::span<const Visibi
     if (visibility.size() != scene.lights.size() || points.facing.size() != scene.lights.size())
         throw std::logic_error("shade: one plane of S_j and one of facings are needed for each light");
     for (const VisibilityPlane& plane : visibility)
-        if (plane.s.size() != points.size() || plane.defined.size() != points.size())
+        if (plane.s.size() != points.size() || plane.answer.size() != points.size())
             throw std::logic_error("shade: a plane of S_j has another size than the batch");
 
     const std::vector<Prepared> prepared = prepare(scene);
@@ -127,7 +127,7 @@ Image shade(const Scene& scene, const PointBatch& points, std::span<const Visibi
                 sum = terms.unshadowed;
                 for (std::size_t j = 0; j < scene.lights.size(); ++j) {
                     if (points.facing[j][i] == Facing::away) continue;  // S_j = 0
-                    const double s_j = visibility[j].defined[i] ? visibility[j].s[i] : 1.0f;
+                    const double s_j = visibility[j].defined(i) ? visibility[j].s[i] : 1.0f;
                     if (s_j > 0) sum += s_j * unblocked(scene.lights[j], material, terms, p, n, v);
                 }
             }

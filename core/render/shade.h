@@ -5,7 +5,7 @@
 
 #include "umbra/core/image/image.h"
 #include "umbra/core/render/points.h"
-#include "umbra/core/render/visibility_plane.h"
+#include "umbra/core/render/visibility.h"
 
 namespace umbra {
 

@@ -7,63 +7,57 @@
 #include <optional>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/render/sampling.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/exact/exact_area.h"
 #include "umbra/shadows/exact/exact_segment.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/shared/light_points.h"
 #include "umbra/shadows/shared/triangle_tree.h"
 
 namespace umbra {
 namespace {
 
-constexpr Parameter kParameters[] = {
-    {.name     = "arithmetic",
-     .type     = Parameter::Type::choice,
-     .fallback = "filtered",
-     .doc      = "area lights: filtered computes in floating point with a proven bound and in rationals where that is "
-                 "not small; rational in rationals throughout, for chosen points",
-     .choices  = "filtered|rational"},
+struct Options {
+    ExactArea::Arithmetic arithmetic = ExactArea::Arithmetic::filtered;
 };
 
-constexpr int kPlaces = 256;
+const std::vector<Parameter> kParameters{
+    parameter<&Options::arithmetic>(
+        {.name = "arithmetic",
+         .doc = "Area lights. filtered: floating point with a proven bound, and rationals where the bound is too wide; "
+                "rational: rationals throughout, for a few points.",
+         .phase   = Phase::build,
+         .choices = "filtered|rational"}),
+};
 
-/// A point light at place k of an area light, as p sees it; the places are spread evenly.
-Light place_of(const Light& lamp, const ExactPoint& p, int k) {
-    Light place    = lamp;
-    place.kind     = LightKind::point;
-    const double x = (k + 1) * 0.7548776662466927, y = (k + 1) * 0.5698402909980532;  // an additive recurrence
-    const double a = x - std::floor(x), b = y - std::floor(y);
-    const double radius = std::sqrt(a), angle = 2 * kPi * b;
-    dvec3 at(lamp.position);
-    TangentDisk disk;
-    if (lamp.kind == LightKind::rectangle) {
-        at += (a - 0.5) * dvec3(lamp.edge_u) + (b - 0.5) * dvec3(lamp.edge_v);
-    } else if (lamp.kind == LightKind::disk) {
-        const DiskAxes axes = disk_axes(lamp);
-        at += radius * (std::cos(angle) * axes.u + std::sin(angle) * axes.v);
-    } else if (tangent_disk(p.rounded(), at, lamp.radius, disk)) {
-        at = disk.centre + radius * (std::cos(angle) * disk.axis_u + std::sin(angle) * disk.axis_v);
-    }
-    place.position = vec3(at);
-    return place;
+constexpr int kPoints = 256;  ///< of an area light, tried in turn until one is hidden
+
+/// A point light at point k of an area light, as p sees it.
+Light point_of(const Light& light, const ExactPoint& p, int k) {
+    Light point    = light;
+    point.kind     = LightKind::point;
+    point.position = vec3(light_point(light, p.rounded(), k));
+    return point;
 }
 
-class Exact final : public Method {
+class Exact final : public MethodWith<Options> {
 public:
-    explicit Exact(const Settings& settings)
-        : area_(settings.choice("arithmetic") == "rational" ? ExactArea::Arithmetic::rational
-                                                            : ExactArea::Arithmetic::filtered) {}
+    void configure(const Settings& settings) override {
+        MethodWith::configure(settings);
+        area_ = ExactArea(options.arithmetic);
+    }
 
     Service serves(const SceneFacts& facts) const override {
         bool round = false;
         for (const LightFacts& light : facts.lights)
             round = round || light.kind == LightKind::disk || light.kind == LightKind::sphere;
-        if (facts.hard_lights_only) return {How::exactly, "Every sign is proven: no rounding in what is decided."};
+        if (facts.hard_lights_only)
+            return {How::exactly, "All geometric predicates are exact; the answer does not depend on rounding."};
         if (!round)
-            return {How::exactly, "Every sign is proven; visible areas are off by less than 1e-9 of the light."};
+            return {How::exactly,
+                    "All geometric predicates are exact; visible areas are off by less than 1e-9 of the light."};
         return {How::exactly,
-                "Every sign is proven; of round lights a proven bracket around the visible area, as wide as stated."};
+                "All geometric predicates are exact; round lights have a proven bracket around the visible area."};
     }
 
     void build(const Scene& scene, const SceneFacts& facts) override {
@@ -85,29 +79,24 @@ public:
         if (is_area(scene_->lights[light].kind)) area_.aim(scene_->lights[light]);
     }
 
-    void visibility(const PointBatch& points, LightId light, std::span<float> s,
-                    std::span<std::uint8_t> defined) override {
-        half_widths_.clear();
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         if (!is_area(scene_->lights[light].kind))
-            see_hard(points, light, s, defined);
+            see_hard(points, light, out);
         else
-            see_area(points, light, s, defined);
+            see_area(points, light, out);
     }
-
-    std::span<const float> half_widths() const override { return half_widths_; }
 
     /// The nearest of the triangles that the way to the light crosses. Of an area light the way to one of its places,
     /// the first of a fixed list that is hidden.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override {
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override {
         const Light& lamp = scene_->lights[light];
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                who[i]              = kNoTriangle;
-                const Facing facing = points.facing[light][i];
-                if (facing != Facing::front && facing != Facing::partly) continue;
+                who[i] = kNoTriangle;
+                if (!points.asks(light, i)) continue;
                 const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
-                for (int k = 0; k < (is_area(lamp.kind) ? kPlaces : 1) && who[i] == kNoTriangle; ++k)
-                    who[i] = nearest_crossed(Segment(point, is_area(lamp.kind) ? place_of(lamp, point, k) : lamp),
+                for (int k = 0; k < (is_area(lamp.kind) ? kPoints : 1) && who[i] == kNoTriangle; ++k)
+                    who[i] = nearest_crossed(Segment(point, is_area(lamp.kind) ? point_of(lamp, point, k) : lamp),
                                              points.triangle[i]);
             }
         });
@@ -118,7 +107,7 @@ public:
     }
 
 private:
-    void see_hard(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t> defined) const {
+    void see_hard(const PointBatch& points, LightId light, Visibility out) const {
         parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
             TriangleId last = kNoTriangle;  // what blocked a point often blocks its neighbour
             for (std::size_t i = begin; i < end; ++i) {
@@ -126,26 +115,24 @@ private:
                 const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
                 const Segment segment(point, scene_->lights[light]);
                 const Segment::Meeting met = first_meeting(segment, points.triangle[i], last);
-                s[i]                       = met == Segment::Meeting::crosses ? 0.0f : 1.0f;
-                defined[i]                 = met == Segment::Meeting::touches ? kOnBoundary : kDefined;
+                out.s[i]                   = met == Segment::Meeting::crosses ? 0.0f : 1.0f;
+                out.answer[i]              = met == Segment::Meeting::touches ? Answer::on_boundary : Answer::given;
             }
         });
     }
 
-    void see_area(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t> defined) {
-        const LightKind kind = scene_->lights[light].kind;
-        const bool bracket   = kind != LightKind::rectangle;
-        if (bracket) half_widths_.resize(points.size());
+    void see_area(const PointBatch& points, LightId light, Visibility out) const {
+        const bool bracket = scene_->lights[light].kind != LightKind::rectangle;
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             ExactArea::Workspace work;
             for (std::size_t i = begin; i < end; ++i) {
-                const Facing facing = points.facing[light][i];
-                if (facing != Facing::front && facing != Facing::partly) continue;
+                if (!points.asks(light, i)) continue;
+                const Facing facing            = points.facing[light][i];
                 const ExactArea::Answer answer = area_.seen(points.triangle[i], points.u[i], points.v[i],
                                                             facing == Facing::partly, points.flipped[i] ? -1 : 1, work);
-                s[i]                           = answer.visibility;
-                defined[i]                     = answer.edge_on ? kOnBoundary : kDefined;
-                if (bracket) half_widths_[i] = answer.half_width;
+                out.s[i]                       = answer.visibility;
+                out.answer[i]                  = answer.edge_on ? Answer::on_boundary : Answer::given;
+                if (bracket) out.half_width[i] = answer.half_width;
             }
         });
     }
@@ -189,8 +176,7 @@ private:
     std::optional<TriangleTree> tree_;
     std::vector<std::uint8_t> no_area_;  ///< one a triangle
     bool has_area_lights_ = false;
-    ExactArea area_;
-    std::vector<float> half_widths_;
+    ExactArea area_{ExactArea::Arithmetic::filtered};
 };
 
 }  // namespace
@@ -207,6 +193,7 @@ const MethodInfo exact{
         "that are proven in floating point or computed in rationals; of area lights the area that no triangle covers, "
         "by a sweep over silhouette edges with a proven bound. The reference of the others.",
     .parameters = kParameters,
-    .make       = make_method<Exact>};
+    .reference  = true,
+    .create     = create<Exact>};
 
 }  // namespace umbra

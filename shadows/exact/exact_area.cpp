@@ -566,13 +566,6 @@ std::optional<ExactArea::Answer> ExactArea::Share<Space>::find() {
     return answer(open, left_open, error);
 }
 
-DiskAxes disk_axes(const Light& disk) {
-    const dvec3 n     = glm::normalize(dvec3(disk.direction));
-    const dvec3 other = std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-    const dvec3 u     = glm::normalize(glm::cross(n, other)) * static_cast<double>(disk.radius);
-    return {u, glm::cross(n, u)};
-}
-
 /// False where p is within a sphere light.
 bool ExactArea::frame_of(const ExactPoint& p, LightPlane& frame) const {
     const dvec3 centre       = dvec3(light_.position) - dvec3(p.corner());

@@ -9,14 +9,9 @@
 #include "umbra/shadows/exact/exact_point.h"
 #include "umbra/shadows/exact/light_space.h"
 #include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/shared/light_points.h"
 
 namespace umbra {
-
-/// Perpendicular radii of a disk light.
-struct DiskAxes {
-    dvec3 u, v;
-};
-[[nodiscard]] DiskAxes disk_axes(const Light& disk);
 
 class ExactArea {
 public:

@@ -33,12 +33,25 @@
 namespace umbra {
 namespace {
 
-constexpr std::array kParameters = {
-    Parameter{"plane_share", Parameter::Type::real, "0.005",
-              "Smallest share of the scene's area, from 0 to 1, that makes a plane a receiver.", kPlanarShare, 1, ""},
-    Parameter{"light_samples", Parameter::Type::integer, "64",
-              "Points of a light with an area that occluders are projected from; no effect on other lights.", 1, 4096,
-              ""},
+struct Options {
+    double plane_share = kPlanarShare;
+    int light_samples  = 64;
+};
+
+const std::vector<Parameter> kParameters{
+    parameter<&Options::plane_share>({.name  = "plane_share",
+                                      .doc   = "Smallest share of the scene's area that makes a plane a receiver.",
+                                      .phase = Phase::build,
+                                      .min   = kPlanarShare,
+                                      .max   = 1}),
+    parameter<&Options::light_samples>({.name  = "light_samples",
+                                        .doc   = "Points of an area light that occluders are projected from; other "
+                                                 "lights have one.",
+                                        .unit  = "points a light",
+                                        .phase = Phase::aim,
+                                        .min   = 1,
+                                        .max   = 4096,
+                                        .sweep = "4|16|64|256"}),
 };
 
 /// A receiver's plane with coordinates of its own: x and y in the plane, z the height over it, from a local origin, so
@@ -522,11 +535,8 @@ std::vector<Source> sources_of(const Light& light, int samples) {
     return sources;
 }
 
-class PlanarProjection final : public Method {
+class PlanarProjection final : public MethodWith<Options> {
 public:
-    explicit PlanarProjection(const Settings& settings)
-        : plane_share_(settings.real("plane_share")), light_samples_(settings.integer("light_samples")) {}
-
     Service serves(const SceneFacts& facts) const override {
         double area = 0, served = 0;
         std::size_t planes = 0;
@@ -541,7 +551,7 @@ public:
         if (planes == 0)
             return {How::not_at_all,
                     fmt::format("the scene has no planar receiver: no plane holds {:.3g} % of its area",
-                                100 * plane_share_)};
+                                100 * options.plane_share)};
         const std::string where =
             fmt::format("on {} plane{}, which hold{} {:.3g} % of the scene's area; points elsewhere stay undefined",
                         planes, planes == 1 ? "" : "s", planes == 1 ? "s" : "", 100 * served / area);
@@ -550,9 +560,9 @@ public:
         if (facts.hard_lights_only && !flat)
             return {How::approximately,
                     fmt::format("some planes are flat up to the rounding of floats only; {}", where)};
-        if (facts.hard_lights_only) return {How::exactly, where};
+        if (facts.hard_lights_only) return {How::to_rounding, where};
         return {How::approximately,
-                fmt::format("lights with an area are taken at {} points; {}", light_samples_, where)};
+                fmt::format("lights with an area are taken at {} points; {}", options.light_samples, where)};
     }
 
     void build(const Scene& scene, const SceneFacts& facts) override {
@@ -573,7 +583,7 @@ public:
     }
 
     void aim(LightId light) override {
-        sources_ = sources_of(scene_->lights[light], light_samples_);
+        sources_ = sources_of(scene_->lights[light], options.light_samples);
         centre_  = scene_->lights[light].kind == LightKind::directional ? sources_[0]
                                                                         : Source{false, scene_->lights[light].position};
         chunks_.clear();
@@ -583,16 +593,15 @@ public:
                 chunks_.push_back(project(*scene_, occluders_, plane_of_, r, receivers_[r], side, sources_[0]));
     }
 
-    void visibility(const PointBatch& points, LightId light, std::span<float> s,
-                    std::span<std::uint8_t> defined) override {
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.facing[light][i] >= Facing::partly) defined[i] = 0;
+            if (points.asks(light, i)) out.answer[i] = Answer::undefined;
         for_each_group(points, light, [&](std::uint32_t group, const std::vector<std::uint32_t>& members) {
-            shade_group(points, group, members, s, defined);
+            shade_group(points, group, members, out);
         });
     }
 
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override {
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override {
         std::fill(who.begin(), who.end(), kNoTriangle);
         for_each_group(points, light, [&](std::uint32_t group, const std::vector<std::uint32_t>& members) {
             blame_group(points, group, members, who);
@@ -613,7 +622,7 @@ private:
     static constexpr std::uint32_t kNoPlane = 0xffffffffu;
 
     bool is_receiver(const PlanarReceiver& plane, double scene_area) const {
-        return plane.area >= plane_share_ * scene_area;
+        return plane.area >= options.plane_share * scene_area;
     }
 
     /// All its corners lie in it but for the arithmetic that found it, in double.
@@ -627,7 +636,7 @@ private:
     void for_each_group(const PointBatch& points, LightId light, const Body& body) const {
         std::vector<std::vector<std::uint32_t>> groups(2 * receivers_.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (points.facing[light][i] < Facing::partly) continue;
+            if (!points.asks(light, i)) continue;
             const std::uint32_t plane = plane_of_[points.triangle[i]];
             if (plane == kNoPlane) continue;
             const bool below = glm::dot(dvec3(points.normal(i)), receivers_[plane].normal) < 0;
@@ -658,7 +667,7 @@ private:
 
     /// The points of one side of one receiver: as many passes as the light has sources.
     void shade_group(const PointBatch& points, std::uint32_t group, const std::vector<std::uint32_t>& members,
-                     std::span<float> s, std::span<std::uint8_t> defined) const {
+                     Visibility out) const {
         const std::uint32_t plane = group / 2;
         const int side            = group % 2 == 0 ? 1 : -1;
         const Receiver& receiver  = receivers_[plane];
@@ -683,8 +692,8 @@ private:
             for (std::size_t i = 0; i < lit.size(); ++i) lit[i] += !tree.is_dark(i);
         }
         for (std::size_t i = 0; i < lit.size(); ++i) {
-            s[tree.points()[i]]       = static_cast<float>(lit[i]) / static_cast<float>(sources_.size());
-            defined[tree.points()[i]] = 1;
+            out.s[tree.points()[i]]      = static_cast<float>(lit[i]) / static_cast<float>(sources_.size());
+            out.answer[tree.points()[i]] = Answer::given;
         }
     }
 
@@ -709,8 +718,6 @@ private:
         return at;
     }
 
-    double plane_share_;
-    int light_samples_;
     const Scene* scene_ = nullptr;
     std::vector<Receiver> receivers_;
     std::vector<std::uint32_t> plane_of_;  ///< of each triangle: its receiver, or kNoPlane
@@ -723,7 +730,7 @@ private:
 }  // namespace
 
 extern const MethodInfo planar_projection;
-constinit const MethodInfo planar_projection{
+const MethodInfo planar_projection{
     .name  = "planar_projection",
     .title = "Planar projection",
     .paper = "James Blinn, Me and My (Fake) Shadow, 1988",
@@ -733,7 +740,10 @@ constinit const MethodInfo planar_projection{
         "than a million "
         "scene sizes from the origin float coordinates merge faces into planes that are none.",
     .parameters = kParameters,
-    .make       = make_method<PlanarProjection>,
+    .presets    = {{"textbook", "light_samples=16", "Sixteen points of an area light."},
+                   {"fast", "light_samples=16", "Sixteen points of an area light."},
+                   {"best", "light_samples=1024", "1024 points of an area light."}},
+    .create     = create<PlanarProjection>,
 };
 
 }  // namespace umbra

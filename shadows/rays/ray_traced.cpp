@@ -22,42 +22,53 @@
 namespace umbra {
 namespace {
 
-constexpr Parameter kParameters[] = {
-    {.name     = "offset",
-     .type     = Parameter::Type::choice,
-     .fallback = "skip_triangle",
-     .doc      = "how a ray keeps from hitting the surface that it starts on",
-     .choices  = "skip_triangle|integer_offset|epsilon"},
-    {.name     = "epsilon",
-     .type     = Parameter::Type::real,
-     .fallback = "1e-4",
-     .doc      = "offset=epsilon: start this far along the normal, as a share of the scene's diagonal",
-     .min      = 0,
-     .max      = 1},
-    {.name     = "samples",
-     .type     = Parameter::Type::integer,
-     .fallback = "16",
-     .doc      = "rays a point for an area light",
-     .min      = 1,
-     .max      = 65536},
-    {.name     = "sampler",
-     .type     = Parameter::Type::choice,
-     .fallback = "sobol",
-     .doc      = "how an area light's samples are spread; sobol is Owen-scrambled",
-     .choices  = kSamplers},
-    {.name     = "seed",
-     .type     = Parameter::Type::integer,
-     .fallback = "0",
-     .doc      = "picks the samples; equal seeds give equal bits",
-     .min      = 0,
-     .max      = 2147483647},
+/// How a shadow ray keeps from hitting the surface that it starts on.
+enum class OffsetPolicy : std::uint8_t {
+    skip_triangle,   ///< starts at the point; its own triangle, by id, is no hit, nor is what lies within the point's
+                     ///< rounding
+    integer_offset,  ///< moves the start along the normal by a few float steps
+                     ///< [Carsten Waechter, Nikolaus Binder, A Fast and Robust Method for Avoiding Self-Intersection,
+                     ///< 2019]
+    epsilon          ///< starts at a constant distance (a share of the scene's diagonal) along the normal
 };
 
-OffsetPolicy policy_named(const std::string& name) {
-    return name == "epsilon"          ? OffsetPolicy::epsilon
-           : name == "integer_offset" ? OffsetPolicy::integer_offset
-                                      : OffsetPolicy::skip_triangle;
-}
+struct Options {
+    OffsetPolicy offset = OffsetPolicy::skip_triangle;
+    double epsilon      = 1e-4;
+    int samples         = 16;
+    Sampler sampler     = Sampler::sobol;
+    int seed            = 0;
+};
+
+const std::vector<Parameter> kParameters{
+    parameter<&Options::offset>({.name    = "offset",
+                                 .doc     = "How a ray keeps from hitting the surface that it starts on.",
+                                 .phase   = Phase::visibility,
+                                 .choices = "skip_triangle|integer_offset|epsilon"}),
+    parameter<&Options::epsilon>({.name  = "epsilon",
+                                  .doc   = "offset=epsilon: distance along the normal at which a ray starts.",
+                                  .unit  = "scene diagonals",
+                                  .phase = Phase::visibility,
+                                  .min   = 0,
+                                  .max   = 1}),
+    parameter<&Options::samples>({.name  = "samples",
+                                  .doc   = "Rays from a point to an area light; other lights take one.",
+                                  .unit  = "rays a point",
+                                  .phase = Phase::aim,
+                                  .min   = 1,
+                                  .max   = 65536,
+                                  .sweep = "1|4|16|64|256"}),
+    parameter<&Options::sampler>({.name    = "sampler",
+                                  .doc     = "How the samples of an area light are spread; sobol is Owen-scrambled.",
+                                  .phase   = Phase::aim,
+                                  .choices = kSamplers,
+                                  .sweep   = "random|stratified|sobol"}),
+    parameter<&Options::seed>({.name  = "seed",
+                               .doc   = "Picks the samples; equal seeds give equal bits.",
+                               .phase = Phase::aim,
+                               .min   = 0,
+                               .max   = 2147483647}),
+};
 
 /// Rays end this share of their way before the light, so that a lamp's own triangles, on which the light lies, do not
 /// block it. 256 float steps: enough for incidence down to about a degree. What stands in that last stretch before a
@@ -162,19 +173,12 @@ vec3 integer_offset(vec3 p, vec3 n) {
     return p;
 }
 
-class RayTraced final : public Method {
+class RayTraced final : public MethodWith<Options> {
 public:
-    explicit RayTraced(const Settings& settings)
-        : policy_(policy_named(settings.choice("offset"))),
-          epsilon_(static_cast<float>(settings.real("epsilon"))),
-          sampler_(sampler_named(settings.choice("sampler"))),
-          samples_(settings.integer("samples")),
-          seed_(static_cast<std::uint32_t>(settings.integer("seed"))) {}
-
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only)
-            return {How::approximately, fmt::format("area lights are sampled, {} rays a point", samples_)};
-        if (policy_ != OffsetPolicy::skip_triangle)
+            return {How::approximately, fmt::format("area lights are sampled, {} rays a point", options.samples)};
+        if (options.offset != OffsetPolicy::skip_triangle)
             return {How::approximately, "rays start off the surface, so that contact shadows move"};
         // Held against `exact`, one point in a hundred thousand is wrong where two bodies pass through each other: its
         // ray starts, in float, on the wrong side of the other surface.
@@ -183,22 +187,23 @@ public:
     }
 
     void build(const Scene& scene, const SceneFacts&) override {
-        scene_ = &scene;
-        lift_  = epsilon_ * bounds(scene).diagonal();
+        scene_    = &scene;
+        diagonal_ = bounds(scene).diagonal();
         rays_.emplace(scene);
     }
 
     void aim(LightId light) override {
         target_     = make_target(scene_->lights[light], rays_->space());
         near_light_ = find_near_light(light);
-        set_.emplace(sampler_, is_area(target_.kind) ? samples_ : 1, seed_ + 0x9e3779b9u * light);
+        set_.emplace(options.sampler, is_area(target_.kind) ? options.samples : 1,
+                     static_cast<std::uint32_t>(options.seed) + 0x9e3779b9u * light);
     }
 
-    void visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) override;
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override;
 
     /// What the ray to the light meets first; of an area light, the first ray that meets anything. Samples go by the
     /// place of a point in its batch, so that these rays are not those that gave its S_j, and only as good as they.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override;
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override;
 
     [[nodiscard]] std::size_t memory_bytes() const override {
         return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0) +
@@ -216,14 +221,8 @@ private:
     [[nodiscard]] float seen_share(const Starts& starts, int lane, PointKey key) const;
     [[nodiscard]] TriangleId first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const;
 
-    OffsetPolicy policy_;
-    float epsilon_;
-    Sampler sampler_;
-    int samples_;
-    std::uint32_t seed_;
-
     const Scene* scene_ = nullptr;
-    float lift_         = 0;  ///< epsilon in world units
+    float diagonal_     = 0;  ///< of the scene
     std::optional<RayScene> rays_;
     Target target_;
     std::optional<SampleSet> set_;
@@ -276,10 +275,11 @@ void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t c
     load(points.px, starts.x), load(points.py, starts.y), load(points.pz, starts.z);
     load(points.nx, starts.nx), load(points.ny, starts.ny), load(points.nz, starts.nz);
     load(points.triangle, starts.id);
-    if (policy_ != OffsetPolicy::skip_triangle) {
+    if (options.offset != OffsetPolicy::skip_triangle) {
+        const float lift = static_cast<float>(options.epsilon) * diagonal_;
         for (int k = 0; k < 8; ++k) {
             const vec3 p(starts.x[k], starts.y[k], starts.z[k]), n(starts.nx[k], starts.ny[k], starts.nz[k]);
-            const vec3 q = policy_ == OffsetPolicy::epsilon ? p + lift_ * n : integer_offset(p, n);
+            const vec3 q = options.offset == OffsetPolicy::epsilon ? p + lift * n : integer_offset(p, n);
             starts.x[k] = q.x, starts.y[k] = q.y, starts.z[k] = q.z;
             starts.id[k] = kNoTriangle;
         }
@@ -289,7 +289,7 @@ void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t c
         starts.y[k] = (starts.y[k] - space.centre.y) * space.scale;
         starts.z[k] = (starts.z[k] - space.centre.z) * space.scale;
     }
-    if (policy_ != OffsetPolicy::skip_triangle) return;
+    if (options.offset != OffsetPolicy::skip_triangle) return;
     if (space.centre != vec3(0)) {
         for (std::size_t k = 0; k < count; ++k) {
             if (starts.id[k] == kNoTriangle) continue;
@@ -351,7 +351,7 @@ bool RayTraced::each_packet(const Starts& starts, int lane, PointKey key, const 
         packet.org_x[k] = o.x, packet.org_y[k] = o.y, packet.org_z[k] = o.z;
         packet.id[k] = starts.id[lane];
     }
-    for (int first = 0; first < samples_; first += 8) {
+    for (int first = 0; first < options.samples; first += 8) {
         Samples8 samples;
         set_->eight(key, first, samples);
         if (target_.kind == LightKind::rectangle)
@@ -366,7 +366,7 @@ bool RayTraced::each_packet(const Starts& starts, int lane, PointKey key, const 
             packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
             packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
             packet.tfar[k]  = kAlmostThere * target_.unit;
-            packet.valid[k] = rise > 0 && first + k < samples_ ? -1 : 0;
+            packet.valid[k] = rise > 0 && first + k < options.samples ? -1 : 0;
         }
         if (!body(packet)) return true;
     }
@@ -381,10 +381,11 @@ float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const 
         for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
         return true;
     });
-    return from_out ? static_cast<float>(seen) / static_cast<float>(samples_) : 1;
+    return from_out ? static_cast<float>(seen) / static_cast<float>(options.samples) : 1;
 }
 
-void RayTraced::visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) {
+void RayTraced::visibility(const PointBatch& points, LightId light, Visibility out) const {
+    const std::span<float> s = out.s;
     // Tiles of 16 x 8 pixels, so that neighbouring rays meet the same triangles; without a raster 128 points. Hard
     // lights: all rays of a tile are one list. Area lights: eight rays of one point are a packet.
     constexpr std::size_t tile_width = 16, tile_height = 8;
@@ -393,7 +394,7 @@ void RayTraced::visibility(const PointBatch& points, LightId light, std::span<fl
                       height = raster ? points.raster->height : (points.size() + tile_width - 1) / tile_width;
     const std::size_t across = (width + tile_width - 1) / tile_width, down = (height + tile_height - 1) / tile_height;
     const Facing* facing = points.facing[light].data();
-    const auto sees      = [&](std::size_t i) { return facing[i] >= Facing::partly; };
+    const auto sees      = [&](std::size_t i) { return points.asks(light, i); };
     parallel_ranges(across * down, 8, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         Starts starts;
@@ -459,7 +460,7 @@ TriangleId RayTraced::first_blocker(const Starts& starts, int lane, Facing facin
     return who;
 }
 
-void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) {
+void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const {
     const std::vector<Facing>& facing = points.facing[light];
     parallel_ranges((points.size() + 7) / 8, 8, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
@@ -481,7 +482,7 @@ void RayTraced::blame(const PointBatch& points, LightId light, std::span<Triangl
 }  // namespace
 
 extern const MethodInfo ray_traced;
-constinit const MethodInfo ray_traced{
+const MethodInfo ray_traced{
     .name  = "ray_traced",
     .title = "Ray-traced shadows",
     .paper =
@@ -493,6 +494,12 @@ constinit const MethodInfo ray_traced{
         "lies between. Errs by noise in penumbrae, and by the offset that keeps rays off their own surface. "
         "Limit: what is finer than a millionth of the scene, as gaps, slivers or relief under grazing light.",
     .parameters = kParameters,
-    .make       = make_method<RayTraced>};
+    .presets    = {{"textbook", "offset=epsilon,sampler=random",
+                    "Starts rays at an offset along the normal; independent samples."},
+                   {"fast", "samples=4", "Four rays a point to an area light."},
+                   {"best", "samples=256", "256 rays a point to an area light."}},
+    .seed       = "seed",
+    .stand_in   = "samples=256",
+    .create     = create<RayTraced>};
 
 }  // namespace umbra

@@ -211,35 +211,42 @@ private:
     double radius_ = 0;
 };
 
-constexpr Parameter kParameters[] = {
-    {.name     = "counting",
-     .type     = Parameter::Type::choice,
-     .fallback = "depth_pass",
-     .doc      = "Which faces a point counts: those between it and the viewpoint (depth_pass, starting from the "
-                 "viewpoint's own count) or those beyond it (depth_fail, with caps at infinity).",
-     .choices  = "depth_pass|depth_fail"},
-    {.name     = "edges",
-     .type     = Parameter::Type::choice,
-     .fallback = "weighted",
-     .doc      = "Which edges extrude a side: those where all triangles, turned to face the light, do not cancel "
-                 "(weighted); of closed meshes that are wound outwards and have the light outside, silhouettes of the "
-                 "triangles that face it alone, right unless such a mesh turns inside out where it crosses itself "
-                 "(silhouette); all three of every triangle (per_triangle).",
-     .choices  = "weighted|silhouette|per_triangle"},
+enum class Counting : std::uint8_t { depth_pass, depth_fail };
+enum class Edges : std::uint8_t { weighted, silhouette, per_triangle };
+
+struct Options {
+    Counting counting = Counting::depth_pass;
+    Edges edges       = Edges::weighted;
 };
 
-class ShadowVolumes final : public Method {
-public:
-    explicit ShadowVolumes(const Settings& settings)
-        : depth_fail_(settings.choice("counting") == "depth_fail"), edges_choice_(settings.choice("edges")) {}
+const std::vector<Parameter> kParameters{
+    parameter<&Options::counting>({.name = "counting",
+                                   .doc = "Which faces a point counts. depth_pass: those between it and the viewpoint, "
+                                          "starting from the viewpoint's own count; depth_fail: those beyond it, with "
+                                          "caps at infinity.",
+                                   .phase   = Phase::visibility,
+                                   .choices = "depth_pass|depth_fail",
+                                   .sweep   = "depth_pass|depth_fail"}),
+    parameter<&Options::edges>(
+        {.name = "edges",
+         .doc = "Which edges extrude a side. weighted: those whose triangles, turned to face the light, do not cancel; "
+                "silhouette: of closed meshes that are wound outwards and have the light outside, silhouettes of the "
+                "triangles that face it, right unless such a mesh turns inside out where it crosses itself; "
+                "per_triangle: all three edges of every triangle.",
+         .phase   = Phase::aim,
+         .choices = "weighted|silhouette|per_triangle",
+         .sweep   = "weighted|silhouette|per_triangle"}),
+};
 
+class ShadowVolumes final : public MethodWith<Options> {
+public:
     Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only)
             return {How::approximately, "area lights are taken as points at their centres: umbra only, no penumbra"};
-        if (edges_choice_ == "silhouette" && facts.closed_objects > 0)
+        if (options.edges == Edges::silhouette && facts.closed_objects > 0)
             return {How::approximately,
                     "silhouettes of closed meshes are right unless one turns inside out where it crosses itself"};
-        return {How::exactly,
+        return {How::to_rounding,
                 "counts volumes at the points themselves, with weighted edges for meshes that are open, "
                 "non-manifold or badly oriented"};
     }
@@ -252,7 +259,7 @@ public:
     void aim(LightId light) override {
         const Light& l = scene_->lights[light];
         turn_          = facing_triangles(*scene_, l);
-        if (edges_choice_ == "silhouette") {
+        if (options.edges == Edges::silhouette) {
             // From a solid that the light is outside of, a line to the light leaves as often as it enters, or once
             // more: the triangles that face the light are enough.
             for (std::size_t o = 0; o < scene_->objects.size(); ++o) {
@@ -265,40 +272,40 @@ public:
                     turn_[object.first_triangle + t] = std::max<std::int8_t>(turn_[object.first_triangle + t], 0);
             }
         }
-        edges_ = edges_choice_ == "per_triangle" ? all_edges() : meshes_->edges(turn_);
+        edges_ = options.edges == Edges::per_triangle ? all_edges() : meshes_->edges(turn_);
     }
 
-    void visibility(const PointBatch& points, LightId light, std::span<float> s, std::span<std::uint8_t>) override {
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
+        const bool depth_fail = options.counting == Counting::depth_fail;
         PointTree tree(*scene_, points, light);
         if (tree.size() == 0) return;
         const Light& l = scene_->lights[light];
         const SeenVolumes volumes(*meshes_, l, tree.view());
-        const std::int32_t origin = depth_fail_ ? 0 : volumes.count_at_origin(turn_);
+        const std::int32_t origin = depth_fail ? 0 : volumes.count_at_origin(turn_);
 
         parallel_ranges(turn_.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
                 if (turn_[t] == 0) continue;
-                volumes.add_near_cap(tree, static_cast<TriangleId>(t), turn_[t], depth_fail_);
-                if (depth_fail_ && l.kind != LightKind::directional)
+                volumes.add_near_cap(tree, static_cast<TriangleId>(t), turn_[t], depth_fail);
+                if (depth_fail && l.kind != LightKind::directional)
                     volumes.add_far_cap(tree, static_cast<TriangleId>(t), turn_[t]);
             }
         });
         parallel_ranges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t e = begin; e < end; ++e) volumes.add_side(tree, edges_[e], depth_fail_);
+            for (std::size_t e = begin; e < end; ++e) volumes.add_side(tree, edges_[e], depth_fail);
         });
         tree.for_each([&](std::uint32_t i, std::int32_t count) {
-            s[i] = origin + count > 0 || centre_is_behind(points, light, i) ? 0.0f : 1.0f;
+            out.s[i] = origin + count > 0 || centre_is_behind(points, light, i) ? 0.0f : 1.0f;
         });
     }
 
     /// A sum of crossings names no volume. So the volumes that hold the point are looked for anew, each by its own
     /// planes, in double: the triangle farthest off is named, which rounding at the point's own surface cannot be.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override {
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override {
         const TriangleTree tree(*scene_);
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                who[i] =
-                    points.facing[light][i] < Facing::partly ? kNoTriangle : farthest_volume(tree, points, i, light);
+                who[i] = points.asks(light, i) ? farthest_volume(tree, points, i, light) : kNoTriangle;
         });
     }
 
@@ -350,8 +357,6 @@ private:
         return points.flipped[i] ? side >= 0 : side <= 0;
     }
 
-    bool depth_fail_;
-    std::string edges_choice_;
     const Scene* scene_ = nullptr;
     std::unique_ptr<SilhouetteMeshes> meshes_;
     std::vector<std::int8_t> turn_;  // of each triangle: taken as wound, turned over, or not an occluder
@@ -370,7 +375,9 @@ const MethodInfo shadow_volumes{
         "Right to rounding for hard lights and any triangles; area lights have no penumbra. Limit: none was found on "
         "any ladder with hard lights, up to ten million scene sizes from the origin.",
     .parameters = kParameters,
-    .make       = make_method<ShadowVolumes>,
+    .presets    = {{"textbook", "edges=silhouette", "Silhouettes of closed meshes, counted from the viewpoint."},
+                   {"fast", "edges=silhouette", "Silhouettes of closed meshes, counted from the viewpoint."}},
+    .create     = create<ShadowVolumes>,
 };
 
 }  // namespace umbra

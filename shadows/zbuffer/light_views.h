@@ -39,6 +39,9 @@ public:
     LightViews(const Scene& scene, const SceneFacts& facts, const Options& options)
         : options_(options), casters_(scene, facts, options.fit_to_casters) {}
 
+    /// For the next aim. `fit_to_casters` stays as it was made.
+    void set_options(const Options& options) { options_ = options; }
+
     /// Draws the maps of `light`. Throws UsageError where they would not fit into memory.
     void aim(LightId light);
 

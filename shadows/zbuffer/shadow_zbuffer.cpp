@@ -24,111 +24,100 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 
-constexpr Parameter kParameters[] = {
-    {"resolution",
-     Parameter::Type::integer,
-     "2048",
-     "samples along each side of a map (a cube has six)",
-     16,
-     16384,
-     {}},
-    {"depth", Parameter::Type::choice, "float", "bits of a depth value; float is kept reversed", 0, 0,
-     "16|24|32|float"},
-    {"bias", Parameter::Type::choice, "auto",
-     "what a sample is compared with: manual: the point; receiver_plane: the point's plane at the sample, nearer by "
-     "what rounding costs; auto: the nearer of the two, nearer still by a sample's width and a quarter of the depth "
-     "gradient, but by no more than 16 widths from the plane",
-     0, 0, "auto|receiver_plane|manual"},
-    {"constant",
-     Parameter::Type::real,
-     "0",
-     "moves the point towards the light, in widths of a sample there",
-     0,
-     1e6,
-     {}},
-    {"slope",
-     Parameter::Type::real,
-     "0",
-     "moves the point towards the light, in times its plane's depth gradient a sample",
-     0,
-     1e6,
-     {}},
-    {"normal_offset",
-     Parameter::Type::real,
-     "0",
-     "moves the point along its normal, in widths of a sample times the sine of the light's angle",
-     0,
-     64,
-     {}},
-    {"filter", Parameter::Type::choice, "nearest", "nearest: one comparison; pcf: the mean of those about the point", 0,
-     0, "nearest|pcf"},
-    {"radius", Parameter::Type::integer, "1", "pcf: takes (2 radius + 1)^2 samples", 0, 16, {}},
-    {"bilinear",
-     Parameter::Type::boolean,
-     "true",
-     "pcf: weights samples by how much of them the moving kernel covers",
-     0,
-     0,
-     {}},
-    {"faces", Parameter::Type::choice, "all",
-     "which side of triangles casts; back (second depth) and front want closed, outward occluders", 0, 0,
-     "all|front|back"},
-    {"fit", Parameter::Type::choice, "casters",
-     "what maps are fitted to: scene: all of it; casters: what can block the light, without planes behind all else", 0,
-     0, "casters|scene"},
-    {"surround",
-     Parameter::Type::real,
-     "0.5",
-     "spot lights: resolution of the maps around the cone, in times the cone's own; 0: no maps, points undefined there",
-     0,
-     1,
-     {}},
+using Options = ZBufferOptions;
+
+const std::vector<Parameter> kParameters{
+    parameter<&Options::resolution>({.name  = "resolution",
+                                     .doc   = "Texels along each side of a map; a cube has six maps.",
+                                     .unit  = "texels",
+                                     .phase = Phase::aim,
+                                     .min   = 16,
+                                     .max   = 16384,
+                                     .sweep = "256|512|1024|2048|4096|8192"}),
+    parameter<&Options::depth>({.name    = "depth",
+                                .doc     = "Bits of a depth value; float stores reversed depth.",
+                                .phase   = Phase::aim,
+                                .choices = "16|24|32|float"}),
+    parameter<&Options::bias>(
+        {.name    = "bias",
+         .doc     = "Reference depth of the comparison. manual: the depth of the point plus constant and slope bias. "
+                    "receiver_plane: the receiver's plane at the texel, minus a rounding margin. auto: the smaller of the "
+                    "two, minus a texel width and a quarter of the depth gradient, at most 16 texel widths in front of "
+                    "the plane.",
+         .phase   = Phase::visibility,
+         .choices = "auto|receiver_plane|manual"}),
+    parameter<&Options::constant>({.name  = "constant",
+                                   .doc   = "Moves the point towards the light.",
+                                   .unit  = "texel widths at the point's depth",
+                                   .phase = Phase::aim,
+                                   .min   = 0,
+                                   .max   = 1e6}),
+    parameter<&Options::slope>({.name  = "slope",
+                                .doc   = "Moves the point towards the light.",
+                                .unit  = "depth gradients of the receiver's plane a texel",
+                                .phase = Phase::visibility,
+                                .min   = 0,
+                                .max   = 1e6}),
+    parameter<&Options::normal_offset>({.name = "normal_offset",
+                                        .doc = "Moves the point along its normal, times the sine of the light's angle.",
+                                        .unit  = "texel widths",
+                                        .phase = Phase::aim,
+                                        .min   = 0,
+                                        .max   = 64}),
+    parameter<&Options::filter>({.name    = "filter",
+                                 .doc     = "nearest: one comparison; pcf: the mean of several around the point.",
+                                 .phase   = Phase::aim,
+                                 .choices = "nearest|pcf",
+                                 .sweep   = "nearest|pcf"}),
+    parameter<&Options::radius>({.name  = "radius",
+                                 .doc   = "pcf: compares (2 radius + 1)^2 texels.",
+                                 .unit  = "texels",
+                                 .phase = Phase::aim,
+                                 .min   = 0,
+                                 .max   = 16}),
+    parameter<&Options::bilinear>(
+        {.name  = "bilinear",
+         .doc   = "pcf: bilinear weights, so that the kernel does not step from texel to texel.",
+         .phase = Phase::visibility}),
+    parameter<&Options::faces>({.name  = "faces",
+                                .doc   = "Which side of a triangle casts; back (second depth) and front expect closed "
+                                         "occluders whose normals point outwards.",
+                                .phase = Phase::aim,
+                                .choices = "all|front|back"}),
+    parameter<&Options::fit>({.name = "fit",
+                              .doc = "What a map covers. scene: everything; casters: what can block the light, without "
+                                     "planes that have everything else in front of them.",
+                              .phase   = Phase::build,
+                              .choices = "casters|scene"}),
+    parameter<&Options::surround>({.name = "surround",
+                                   .doc =
+                                       "Spot lights: resolution of the maps outside the cone, relative to the cone's "
+                                       "own map; 0: no such maps, points there are undefined.",
+                                   .phase = Phase::aim,
+                                   .min   = 0,
+                                   .max   = 1}),
 };
-
-DepthFormat read_format(const std::string& depth) {
-    return depth == "16"   ? DepthFormat::unorm16
-           : depth == "24" ? DepthFormat::unorm24
-           : depth == "32" ? DepthFormat::unorm32
-                           : DepthFormat::float32;
-}
-
-Bias read_bias(const Settings& s) {
-    const std::string& mode = s.choice("bias");
-    return {mode == "auto"     ? BiasMode::automatic
-            : mode == "manual" ? BiasMode::manual
-                               : BiasMode::receiver_plane,
-            s.real("constant"), s.real("slope"), s.real("normal_offset")};
-}
-
-Filter read_filter(const Settings& s) {
-    if (s.choice("filter") != "pcf") return {};
-    return {s.integer("radius"), s.boolean("bilinear")};
-}
-
-LightViews::Options read_map_options(const Settings& s, const Bias& bias, const Filter& filter) {
-    const std::string& faces = s.choice("faces");
-    return {.resolution     = s.integer("resolution"),
-            .format         = read_format(s.choice("depth")),
-            .faces          = faces == "front"  ? Faces::front
-                              : faces == "back" ? Faces::back
-                                                : Faces::all,
-            .fit_to_casters = s.choice("fit") == "casters",
-            .surround       = s.real("surround"),
-            // What the filter and the offset may ask for, and a rounding.
-            .border   = filter.radius + bias.normal_offset + 2,
-            .headroom = std::max(64.0, kMostAutomatic * (4 * filter.radius + 2)) + bias.constant};
-}
 
 }  // namespace
 
-ShadowZBuffer::ShadowZBuffer(const Settings& settings)
-    : bias_(read_bias(settings)),
-      filter_(read_filter(settings)),
-      map_options_(read_map_options(settings, bias_, filter_)) {
+void ShadowZBuffer::configure(const Settings& settings) {
+    const Options o = settings.as<Options>();
+    bias_           = {o.bias, o.constant, o.slope, o.normal_offset};
+    filter_         = o.filter == FilterKind::pcf ? Filter{o.radius, o.bilinear} : Filter{};
+    map_options_    = {.resolution     = o.resolution,
+                       .format         = o.depth,
+                       .faces          = o.faces,
+                       .fit_to_casters = o.fit == Fit::casters,
+                       .surround       = o.surround,
+                       // What the filter and the offset may ask for, and a rounding.
+                       .border   = filter_.radius + bias_.normal_offset + 2,
+                       .headroom = std::max(64.0, kMostAutomatic * (4 * filter_.radius + 2)) + bias_.constant};
+    if (views_) views_->set_options(map_options_);
     if (4 * map_options_.border > map_options_.resolution)
         throw UsageError(fmt::format(
-            "radius={} and normal_offset={} reach over a quarter of resolution={} "
-            "(choose a resolution of at least {})",
+            "shadow_zbuffer: radius={} and normal_offset={} reach over a quarter of resolution={}, expected a "
+            "resolution "
+            "of at least {}",
             filter_.radius, bias_.normal_offset, map_options_.resolution, std::ceil(4 * map_options_.border)));
 }
 
@@ -146,13 +135,12 @@ void ShadowZBuffer::aim(LightId light) { views_->aim(light); }
 
 template <class Body>
 void ShadowZBuffer::for_each_facet(const PointBatch& points, LightId light, const Body& body) const {
-    const std::vector<Facing>& facing = points.facing[light];
     parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
         Facet facet{};
         TriangleId facet_of = kNoTriangle;
         bool facet_flipped  = false;
         for (std::size_t i = begin; i < end; ++i) {
-            if (facing[i] == Facing::none || facing[i] == Facing::away) continue;
+            if (!points.asks(light, i)) continue;
             if (points.triangle[i] != facet_of || (points.flipped[i] != 0) != facet_flipped) {
                 facet_of      = points.triangle[i];
                 facet_flipped = points.flipped[i] != 0;
@@ -164,14 +152,14 @@ void ShadowZBuffer::for_each_facet(const PointBatch& points, LightId light, cons
     });
 }
 
-void ShadowZBuffer::visibility(const PointBatch& points, LightId light, std::span<float> s,
-                               std::span<std::uint8_t> defined) {
+void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibility out) const {
     for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        defined[i] = look_up(facet, p, points.facing[light][i], views_->scene().lights[light], s[i]);
+        if (!look_up(facet, p, points.facing[light][i], views_->scene().lights[light], out.s[i]))
+            out.answer[i] = Answer::undefined;
     });
 }
 
-void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) {
+void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const {
     struct Sample {
         std::size_t view = ~std::size_t{0};
         ivec2 at{0};
@@ -222,15 +210,19 @@ bool ShadowZBuffer::look_up(const Facet& facet, dvec3 p, Facing facing, const Li
 
 extern const MethodInfo shadow_zbuffer;
 const MethodInfo shadow_zbuffer{
-    "shadow_zbuffer",
-    "Shadow z-buffer",
-    "Lance Williams, Casting Curved Shadows on Curved Surfaces, 1978",
-    "Draws the depth of what the light sees into a map, then compares each surface point with it. Serves any geometry; "
-    "errs by the map's samples along shadow edges, loses gaps and occluders narrower than a sample, and moves contacts "
-    "by up to 16 samples' widths where light grazes. The automatic bias holds for light down to 1e-5 radians above an "
-    "even floor, 1e-3 above one that rounding has left uneven, and for lamps up to 1e12 scene sizes away.",
-    kParameters,
-    make_method<ShadowZBuffer>,
-};
+    .name  = "shadow_zbuffer",
+    .title = "Shadow z-buffer",
+    .paper = "Lance Williams, Casting Curved Shadows on Curved Surfaces, 1978",
+    .summary =
+        "Draws the depth of what the light sees into a map, then compares each surface point with it. Serves any "
+        "geometry; errs by the map's texels along shadow edges, loses gaps and occluders narrower than a texel, and "
+        "moves contacts by up to 16 texel widths at grazing light. The automatic bias holds for light down to 1e-5 "
+        "radians above an even floor, 1e-3 above one that rounding has left uneven, and for lights up to 1e12 scene "
+        "sizes away.",
+    .parameters = kParameters,
+    .presets    = {{"textbook", "bias=manual,constant=1,fit=scene", "One map of the whole scene and a constant bias."},
+                   {"fast", "resolution=512", "A map of 512 x 512 texels."},
+                   {"best", "resolution=8192,filter=pcf", "A map of 8192 x 8192 texels, 3 x 3 comparisons."}},
+    .create     = create<ShadowZBuffer>};
 
 }  // namespace umbra

@@ -1,4 +1,4 @@
-// The shadow z-buffer as a class, for those who want many biases from one map; all others ask methods.h's list for it.
+// The shadow z-buffer's class; shadow_zbuffer.cpp has the recipe.
 #pragma once
 
 #include <optional>
@@ -8,22 +8,35 @@
 
 namespace umbra {
 
+enum class FilterKind : std::uint8_t { nearest, pcf };
+enum class Fit : std::uint8_t { casters, scene };
+
+/// The parameters, as docs in shadow_zbuffer.cpp say.
+struct ZBufferOptions {
+    int resolution       = 2048;
+    DepthFormat depth    = DepthFormat::float32;
+    BiasMode bias        = BiasMode::automatic;
+    double constant      = 0;
+    double slope         = 0;
+    double normal_offset = 0;
+    FilterKind filter    = FilterKind::nearest;
+    int radius           = 1;
+    bool bilinear        = true;
+    Faces faces          = Faces::all;
+    Fit fit              = Fit::casters;
+    double surround      = 0.5;
+};
+
 class ShadowZBuffer final : public Method {
 public:
-    explicit ShadowZBuffer(const Settings& settings);
-
+    void configure(const Settings& settings) override;
     [[nodiscard]] Service serves(const SceneFacts& facts) const override;
     void build(const Scene& scene, const SceneFacts& facts) override;
     void aim(LightId light) override;
-    void visibility(const PointBatch& points, LightId light, std::span<float> s,
-                    std::span<std::uint8_t> defined) override;
-    /// Whose depth the map holds in the sample that blocks the point, the nearest of several. Draws the maps again.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) override;
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override;
+    /// Whose depth the map holds in the texel that blocks the point, the nearest of several. Draws the maps again.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override;
     [[nodiscard]] std::size_t memory_bytes() const override;
-
-    /// Another bias for the maps that there are. Its normal offset must not be larger than the one it was made with,
-    /// which the maps' borders were drawn for.
-    void set_bias(const Bias& bias) { bias_ = bias; }
 
 private:
     [[nodiscard]] Facet make_facet(TriangleId t, bool flipped) const;

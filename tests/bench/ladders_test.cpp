@@ -55,7 +55,7 @@ void expect_formula(const Ladder& l, const std::function<Says(const Scene&, dvec
         ASSERT_EQ(stage.truth.choice.text(), "exact");
         std::size_t compared = 0, wrong = 0;
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
-            if (!is_open(stage.points, 0, i) || stage.truth.planes[0].defined[i] != kDefined) continue;
+            if (!is_open(stage.points, 0, i) || stage.truth.planes[0].answer[i] != Answer::given) continue;
             const Says says = formula(stage.scene, place(stage.scene, stage.points, i));
             if (says == Says::nothing) continue;
             ++compared;
@@ -174,7 +174,7 @@ TEST(LadderTruth, SheetsHideWhatAnyOfThemHides) {
                 for (std::size_t k = 0; k < 4; ++k) out = std::max(out, beside(v[k], v[(k + 1) % 4], q));
                 says = both(says, lit_where(out));
             }
-            if (says == Says::nothing || stage.truth.planes[0].defined[i] != kDefined) continue;
+            if (says == Says::nothing || stage.truth.planes[0].answer[i] != Answer::given) continue;
             ++compared;
             wrong += (stage.truth.planes[0].s[i] == 1) != (says == Says::lit);
         }
@@ -191,7 +191,7 @@ TEST(LadderTruth, NoSunComesThroughWallsOfAnyThickness) {
         for (std::size_t i = 0; i < stage.points.size(); ++i) {
             if (!is_open(stage.points, 0, i)) continue;
             ++asked;
-            lit += stage.truth.planes[0].s[i] != 0 && stage.truth.planes[0].defined[i] == kDefined;
+            lit += stage.truth.planes[0].s[i] != 0 && stage.truth.planes[0].answer[i] == Answer::given;
         }
         EXPECT_EQ(lit, 0u) << rung;
         EXPECT_GT(asked, 5000u) << rung;
@@ -207,8 +207,8 @@ TEST(LadderTruth, NoLightComesThroughTheLatticeBesideItsVertices) {
             const dvec3 p = place(stage.scene, stage.points, i);
             if (std::max(std::abs(p.x), std::abs(p.z)) > 0.9) continue;  // the lattice reaches to 0.94
             ++within;
-            on_boundary += stage.truth.planes[0].defined[i] == kOnBoundary;
-            lit += stage.truth.planes[0].defined[i] == kDefined && stage.truth.planes[0].s[i] != 0;
+            on_boundary += stage.truth.planes[0].answer[i] == Answer::on_boundary;
+            lit += stage.truth.planes[0].answer[i] == Answer::given && stage.truth.planes[0].s[i] != 0;
         }
         EXPECT_EQ(lit, 0u) << rung;
         EXPECT_GT(within, 3000u) << rung;
@@ -223,7 +223,7 @@ void expect_same(const RungStage& a, const RungStage& b, double rung) {
     for (std::size_t i = 0; i < a.points.size(); ++i) {
         if (!is_open(a.points, 0, i) || !is_open(b.points, 0, i)) continue;
         if (a.points.position(i) != b.points.position(i)) continue;
-        if (a.truth.planes[0].defined[i] != kDefined || b.truth.planes[0].defined[i] != kDefined) continue;
+        if (a.truth.planes[0].answer[i] != Answer::given || b.truth.planes[0].answer[i] != Answer::given) continue;
         ++same_place;
         differ += a.truth.planes[0].s[i] != b.truth.planes[0].s[i];
     }
@@ -274,7 +274,8 @@ TEST(LadderTruth, IsWhatEveryTriangleTriedInDoublesSays) {
             const VisibilityPlane force = brute_force(stage.scene, stage.points, 0);
             std::size_t compared = 0, wrong = 0;
             for (std::size_t i = 0; i < stage.points.size(); ++i) {
-                if (!is_open(stage.points, 0, i) || !force.defined[i] || stage.truth.planes[0].defined[i] != kDefined)
+                if (!is_open(stage.points, 0, i) || !force.defined(i) ||
+                    stage.truth.planes[0].answer[i] != Answer::given)
                     continue;
                 ++compared;
                 wrong += stage.truth.planes[0].s[i] != force.s[i];

@@ -134,11 +134,9 @@ Same must_be(const Relation& relation, std::string_view method, LightKind kind, 
 
 // ---- asking --------------------------------------------------------------------------------------------------------
 
-struct Answer {
+struct Answers {
     VisibilityPlane plane;
-    std::vector<float> half_width;  ///< 0 where the method states none
-
-    [[nodiscard]] float width(std::size_t i) const { return half_width.empty() ? 0 : half_width[i]; }
+    [[nodiscard]] float width(std::size_t i) const { return plane.half_width[i]; }
 };
 
 /// A method, built for a scene, where it serves it.
@@ -146,21 +144,19 @@ class AskedMethod {
 public:
     AskedMethod(const std::string& choice, const Asked& asked, const SceneFacts& facts) : asked_(&asked) {
         const MethodChoice parsed = parse_method(choice);
-        method_                   = parsed.info->make(parsed.settings);
+        method_                   = parsed.make();
         serves_                   = bool(method_->serves(facts));
         if (serves_) method_->build(asked.scene, facts);
     }
     [[nodiscard]] bool serves() const { return serves_; }
     void aim(LightId j) { method_->aim(j); }
-    [[nodiscard]] Answer ask(const PointBatch& points, LightId j) const {
-        Answer answer{{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)}, {}};
-        method_->visibility(points, j, answer.plane.s, answer.plane.defined);
-        const auto widths = method_->half_widths();
-        answer.half_width.assign(widths.begin(), widths.end());
-        return answer;
+    [[nodiscard]] Answers ask(const PointBatch& points, LightId j) const {
+        Answers answers{VisibilityPlane(points.size())};
+        method_->visibility(points, j, answers.plane.out());
+        return answers;
     }
-    [[nodiscard]] std::vector<Answer> all() {
-        std::vector<Answer> answers;
+    [[nodiscard]] std::vector<Answers> all() {
+        std::vector<Answers> answers;
         for (LightId j = 0; serves_ && j < asked_->scene.lights.size(); ++j) {
             aim(j);
             answers.push_back(ask(asked_->points, j));
@@ -182,14 +178,14 @@ public:
     [[nodiscard]] const Asked& asked() const { return asked_; }
     [[nodiscard]] const SceneFacts& facts() const { return facts_; }
     /// Empty where the method does not serve the scene.
-    [[nodiscard]] const std::vector<Answer>& by(const std::string& choice) {
+    [[nodiscard]] const std::vector<Answers>& by(const std::string& choice) {
         const auto [found, fresh] = answers_.try_emplace(choice);
         if (fresh) found->second = AskedMethod(choice, asked_, facts_).all();
         return found->second;
     }
     [[nodiscard]] bool serves_exactly(const std::string& choice) const {
         const MethodChoice parsed = parse_method(choice);
-        return parsed.info->make(parsed.settings)->serves(facts_).how == How::exactly;
+        return parsed.make()->serves(facts_).how == How::exactly;
     }
     /// Does the way to the light (to an area light's centre) touch an edge or a vertex, and nothing more?
     [[nodiscard]] bool touches(LightId j, std::size_t i) {
@@ -197,14 +193,14 @@ public:
             const Asked hard = with_point_lights(asked_);
             touching_        = AskedMethod("exact", hard, find_facts(hard.scene)).all();
         }
-        return touching_[j].plane.defined[i] == kOnBoundary;
+        return touching_[j].plane.answer[i] == Answer::on_boundary;
     }
 
 private:
     Asked asked_;
     SceneFacts facts_;
-    std::map<std::string, std::vector<Answer>> answers_;
-    std::vector<Answer> touching_;
+    std::map<std::string, std::vector<Answers>> answers_;
+    std::vector<Answers> touching_;
 };
 
 // ---- holding one against the other ---------------------------------------------------------------------------------
@@ -242,7 +238,7 @@ std::vector<std::uint8_t> bands(Answered& before, Answered& after, const Changed
 Difference difference(Answered& before, Answered& after, const Changed& changed, LightId j, const std::string& choice,
                       Same same) {
     const PointBatch &points = before.asked().points, &later = after.asked().points;
-    const Answer& old        = before.by(choice)[j];
+    const Answers& old       = before.by(choice)[j];
     const auto& now          = after.by(choice);
     const auto band          = bands(before, after, changed, j, choice, same);
     const bool size_of_light = is_area(after.asked().scene.lights[changed.lights[j][0].light].kind) !=
@@ -256,9 +252,9 @@ Difference difference(Answered& before, Answered& after, const Changed& changed,
         for (const Changed::Part& part : changed.lights[j]) {
             open |= is_open(later, part.light, k);
             same_side &= later.facing[part.light][k] == points.facing[j][i];
-            const std::uint8_t defined = now[part.light].plane.defined[k];
-            same_defined &= defined == old.plane.defined[i];
-            undefined |= defined == kUndefined;
+            const Answer answer = now[part.light].plane.answer[k];
+            same_defined &= answer == old.plane.answer[i];
+            undefined |= answer == Answer::undefined;
             s += static_cast<double>(part.weight) * static_cast<double>(now[part.light].plane.s[k]);
             width += static_cast<double>(part.weight) * static_cast<double>(now[part.light].width(k));
         }
@@ -269,8 +265,8 @@ Difference difference(Answered& before, Answered& after, const Changed& changed,
         if (whole && !same_side && !changed.exact) continue;
         if (same == Same::away_from_edges && !same_side) continue;  // almost in the plane
         ++d.points;
-        if (old.plane.defined[i] == kUndefined && undefined) continue;
-        if (!same_defined && (old.plane.defined[i] == kUndefined || undefined) && same != bits) {
+        if (old.plane.answer[i] == Answer::undefined && undefined) continue;
+        if (!same_defined && (old.plane.answer[i] == Answer::undefined || undefined) && same != bits) {
             ++d.uncovered;
             continue;
         }
@@ -464,14 +460,14 @@ TEST_P(Metamorphic, RelationsHold) {
 TEST_P(Metamorphic, SameBitsForAnyNumberOfThreads) {
     const Answered scene(asked());
     for (const std::string& choice : kChoices) {
-        std::vector<std::vector<Answer>> answers;
+        std::vector<std::vector<Answers>> answers;
         for (const int threads : {1, 3}) {
             const ThreadLimit limit(threads);
             answers.push_back(AskedMethod(choice, scene.asked(), scene.facts()).all());
         }
         for (std::size_t j = 0; j < answers[0].size(); ++j) {
             EXPECT_EQ(answers[0][j].plane.s, answers[1][j].plane.s) << choice;
-            EXPECT_EQ(answers[0][j].plane.defined, answers[1][j].plane.defined) << choice;
+            EXPECT_EQ(answers[0][j].plane.answer, answers[1][j].plane.answer) << choice;
         }
     }
 }
@@ -501,7 +497,7 @@ TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
                 for (std::size_t i = 0; i < keep.size(); ++i) {
                     if (!keep[i] || (choice == "shadow_volumes" && scene.touches(j, i))) continue;
                     EXPECT_EQ(alone.s[i], all.s[i]) << choice << ", point " << i;
-                    EXPECT_EQ(alone.defined[i], all.defined[i]) << choice << ", point " << i;
+                    EXPECT_EQ(alone.answer[i], all.answer[i]) << choice << ", point " << i;
                 }
             }
         }

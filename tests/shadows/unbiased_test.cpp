@@ -33,7 +33,7 @@ struct HalfPlane {
     VisibilityPlane expected = by_formula(known, points, 0);
 
     BiasTest test(const std::function<VisibilityPlane(int)>& sample, int seeds = kSeeds) const {
-        return bias_test(expected, {}, seeds, sample);
+        return bias_test(expected, seeds, sample);
     }
     std::function<VisibilityPlane(int)> planes(const std::string& choice = "ray_traced") const {
         return seeded_planes(parse_method(choice), known.scene, facts, points, 0);
@@ -68,9 +68,9 @@ TEST_P(EveryAreaLight, IsSampledWithoutBias) {
         run_method(reference.choice, prepared.scene, prepared.facts, prepared.points, {.max_runs = 1, .budget_ms = 0});
     for (const MethodInfo* info : methods())
         for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
-            const MethodChoice choice{info, Settings(info->parameters)};
+            const MethodChoice choice(*info);
             if (!is_sampled(choice, prepared.scene.lights[j])) continue;
-            const BiasTest test = bias_test(exact.planes[j], exact.half_widths[j], kSeeds,
+            const BiasTest test = bias_test(exact.planes[j], kSeeds,
                                             seeded_planes(choice, prepared.scene, prepared.facts, prepared.points, j));
             EXPECT_GT(test.p, kFalseAlarm)
                 << info->name << ", " << prepared.scene.lights[j].name << ": " << described(test);
@@ -164,9 +164,9 @@ TEST(BiasTest, AllowsForTheReferencesDoubt) {
     const HalfPlane scene;
     VisibilityPlane off = scene.expected;
     for (float& s : off.s) s = std::clamp(s + 0.01f, 0.0f, 1.0f);
-    const std::vector<float> doubt(off.s.size(), 0.01f);
-    EXPECT_LT(bias_test(off, {}, kSeeds, scene.planes()).p, kFalseAlarm);
-    EXPECT_GT(bias_test(off, doubt, kSeeds, scene.planes()).p, kFalseAlarm);
+    EXPECT_LT(bias_test(off, kSeeds, scene.planes()).p, kFalseAlarm);
+    off.half_width.assign(off.size(), 0.01f);
+    EXPECT_GT(bias_test(off, kSeeds, scene.planes()).p, kFalseAlarm);
 }
 
 }  // namespace

@@ -435,7 +435,7 @@ VisibilityPlane brute_force(const Scene& scene, const PointBatch& points, LightI
     const Light& light = scene.lights[id];
     if (is_area(light.kind)) throw std::logic_error("brute force is for hard lights");
     const bool infinite = light.kind == LightKind::directional;
-    VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)};
+    VisibilityPlane plane(points.size());
     parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             if (points.facing[id][i] != Facing::front) continue;
@@ -449,21 +449,21 @@ VisibilityPlane brute_force(const Scene& scene, const PointBatch& points, LightI
                 blocked |= m == 1;
                 open |= m == -1;
             }
-            plane.s[i]       = blocked ? 0.0f : 1.0f;
-            plane.defined[i] = blocked || !open;
+            plane.s[i] = blocked ? 0.0f : 1.0f;
+            if (!blocked && open) plane.answer[i] = Answer::undefined;
         }
     });
     return plane;
 }
 
 VisibilityPlane by_formula(const KnownScene& known, const PointBatch& points, LightId light) {
-    VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)};
+    VisibilityPlane plane(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Facing facing = points.facing[light][i];
         if (facing == Facing::none || facing == Facing::away) continue;
         const std::optional<double> s = known.closed_form(place(known.scene, points, i), light);
         plane.s[i]                    = static_cast<float>(s.value_or(0));
-        plane.defined[i]              = s.has_value();
+        if (!s) plane.answer[i] = Answer::undefined;
     }
     return plane;
 }

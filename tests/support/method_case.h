@@ -17,10 +17,10 @@ struct MethodCase {
     SceneFacts facts = find_facts(scene);
     std::unique_ptr<Method> method;
 
-    MethodCase(const MethodInfo& info, const Scene& s) : scene(s), method(info.make(Settings(info.parameters))) {}
+    MethodCase(const MethodInfo& info, const Scene& s) : scene(s), method(info.make()) {}
     MethodCase(std::string_view choice, const Scene& s) : scene(s) {
         const MethodChoice parsed = parse_method(choice);
-        method                    = parsed.info->make(parsed.settings);
+        method                    = parsed.make();
     }
 
     [[nodiscard]] Service serves() const { return method->serves(facts); }
@@ -29,8 +29,8 @@ struct MethodCase {
         method->aim(light);
     }
     [[nodiscard]] VisibilityPlane visibility(const PointBatch& points, LightId light) const {
-        VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), 1)};
-        method->visibility(points, light, plane.s, plane.defined);
+        VisibilityPlane plane(points.size());
+        method->visibility(points, light, plane.out());
         return plane;
     }
 };

@@ -21,7 +21,7 @@ std::vector<Group> groups_of(const VisibilityPlane& expected) {
         const std::size_t first = groups.size();
         for (std::size_t i = 0; i < expected.s.size(); ++i) {
             const float s = expected.s[i];
-            if (expected.defined[i] != kDefined || s < kFewest || s > 1 - kFewest) continue;
+            if (expected.answer[i] != Answer::given || s < kFewest || s > 1 - kFewest) continue;
             if (static_cast<int>(s * kLevels) != level) continue;
             if (groups.size() == first || groups.back().size() == kGroupPoints) groups.emplace_back();
             groups.back().push_back(i);
@@ -44,8 +44,7 @@ double mean_over(const Group& group, const Value& value) {
 
 }  // namespace
 
-BiasTest bias_test(const VisibilityPlane& expected, std::span<const float> half_widths, int seeds,
-                   const std::function<VisibilityPlane(int seed)>& sample) {
+BiasTest bias_test(const VisibilityPlane& expected, int seeds, const std::function<VisibilityPlane(int seed)>& sample) {
     const std::vector<Group> groups = groups_of(expected);
     BiasTest test{.groups = static_cast<int>(groups.size())};
     if (groups.empty()) return test;
@@ -67,9 +66,8 @@ BiasTest bias_test(const VisibilityPlane& expected, std::span<const float> half_
         for (const double r : residuals[g]) mean += r / seeds;
         for (const double r : residuals[g]) squares += (r - mean) * (r - mean);
         const double error = std::sqrt(squares / (seeds - 1) / seeds);
-        const double doubt =
-            half_widths.empty() ? 0 : mean_over(groups[g], [&](std::size_t i) { return half_widths[i]; });
-        const double off = std::max(0.0, std::abs(mean) - doubt);
+        const double doubt = mean_over(groups[g], [&](std::size_t i) { return expected.half_width[i]; });
+        const double off   = std::max(0.0, std::abs(mean) - doubt);
         errors.push_back(error);
         // Equal runs, whatever the seed, and yet not as expected: no chance can explain that.
         const double p = off == 0 ? 1 : error == 0 ? 0 : 2 * cdf(complement(distribution, off / error));
@@ -89,12 +87,12 @@ std::function<VisibilityPlane(int seed)> seeded_planes(const MethodChoice& choic
                                                        LightId light) {
     return [&, choice, light](int seed) {
         Settings settings = choice.settings;
-        settings.set("seed", std::to_string(seed));
+        settings.set(choice.info->seed, seed);
         const std::unique_ptr<Method> method = choice.info->make(settings);
         method->build(scene, facts);
         method->aim(light);
-        VisibilityPlane plane{std::vector<float>(points.size(), 0), std::vector<std::uint8_t>(points.size(), kDefined)};
-        method->visibility(points, light, plane.s, plane.defined);
+        VisibilityPlane plane(points.size());
+        method->visibility(points, light, plane.out());
         return plane;
     };
 }

@@ -28,9 +28,8 @@ struct BiasTest {
 /// An unbiased method is refused once in a million tests.
 inline constexpr double kFalseAlarm = 1e-6;
 
-/// Asks for `seeds` planes. `half_widths` is by how much `expected` may be off, one a point, or empty. Undefined points
-/// are left out.
-[[nodiscard]] BiasTest bias_test(const VisibilityPlane& expected, std::span<const float> half_widths, int seeds,
+/// Asks for `seeds` planes. Undefined points are left out.
+[[nodiscard]] BiasTest bias_test(const VisibilityPlane& expected, int seeds,
                                  const std::function<VisibilityPlane(int seed)>& sample);
 
 /// The method's planes of one light by seed, for bias_test. The arguments must outlive the function.

@@ -65,7 +65,8 @@ TEST(Noise, BetterSamplersHaveLessOfItAndNoBiasEither) {
 TEST(Noise, EqualRunsHaveNone) {
     NoiseMeter meter(2);
     for (int run = 0; run < 3; ++run) meter.add({0.3f, 0.7f});
-    const VisibilityPlane truth{{0.2f, 0.5f}, {1, 1}};
+    VisibilityPlane truth(2);
+    truth.s         = {0.2f, 0.5f};
     const Noise one = meter.result({ErrorClass::right, ErrorClass::undefined}, truth);
     EXPECT_EQ(one.rms, 0);
     EXPECT_NEAR(one.bias, 0.1, 1e-7);

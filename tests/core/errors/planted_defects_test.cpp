@@ -168,7 +168,7 @@ TEST(PlantedDefects, ABoundaryMovedByThreePixelsIsThreePixelsOff) {
                 const std::size_t i = stage.pixel(x, y);
                 plane.s[i] =
                     stage.points.facing[0][i] == Facing::front && (x < left || x >= left + 60 || y < 120) ? 1.0f : 0.0f;
-                plane.defined[i] = kDefined;
+                plane.answer[i] = Answer::given;
             }
     };
     for (const int shift : {0, 1, 2, 3, 5}) {
@@ -260,7 +260,7 @@ TEST(PlantedDefects, TheTerminatorIsCountedApart) {
 TEST(PlantedDefects, WithinItsBracketNoPointIsWrong) {
     const Stage stage(wall_and_board());
     MethodRun truth = stage.truth, run = stage.truth;
-    truth.half_widths[0].assign(stage.points.size(), 0.25f);
+    truth.planes[0].half_width.assign(stage.points.size(), 0.25f);
     const std::size_t a = stage.pixel(50, 150), b = stage.pixel(60, 150);
     ASSERT_EQ(truth.planes[0].s[a] + truth.planes[0].s[b], 2);
     run.planes[0].s[a] = 0.26f;

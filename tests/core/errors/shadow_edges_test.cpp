@@ -30,7 +30,7 @@ PointBatch wall() {
 
 template <class S>
 VisibilityPlane plane(const S& s) {
-    VisibilityPlane p{std::vector<float>(kWidth * kHeight), std::vector<std::uint8_t>(kWidth * kHeight, kDefined)};
+    VisibilityPlane p(kWidth * kHeight);
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x)
             p.s[static_cast<std::size_t>(y * kWidth + x)] = static_cast<float>(std::clamp(s(x, y), 0.0, 1.0));
@@ -112,7 +112,7 @@ TEST(ShadowEdges, PointsThatOnePlaneLeavesOpenHaveNoBoundary) {
     const PointBatch points     = wall();
     const VisibilityPlane truth = ramp(0);
     VisibilityPlane s           = truth;
-    for (std::size_t i = 0; i < points.size() / 4; ++i) s.defined[i] = kUndefined;
+    for (std::size_t i = 0; i < points.size() / 4; ++i) s.answer[i] = Answer::undefined;
     const auto e = edge_displacement(points, classes(points, s, truth), s, truth);
     ASSERT_TRUE(e);
     EXPECT_EQ(e->pieces, 60u);

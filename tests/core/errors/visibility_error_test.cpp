@@ -22,8 +22,7 @@ struct Half {
         points.raster->height = kHeight;
         points.resize(kWidth * kHeight);
         points.facing = {std::vector<Facing>(points.size(), Facing::front)};
-        reference.s.resize(points.size());
-        reference.defined.assign(points.size(), 1);
+        reference     = VisibilityPlane(points.size());
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) reference.s[at(x, y)] = x < 20 ? 1.0f : 0.0f;
         s = reference;
@@ -114,9 +113,9 @@ TEST(VisibilityError, AwayNoneAndUndefinedPointsAreCountedApart) {
     set(0, Facing::none);
     set(1, Facing::away);
     set(2, Facing::partly);
-    for (int x = 0; x < kWidth; ++x) half.s.defined[Half::at(x, 3)] = 0;
-    for (int x = 0; x < 7; ++x) half.reference.defined[Half::at(x, 4)] = kUndefined;
-    for (int x = 0; x < 5; ++x) half.reference.defined[Half::at(x, 5)] = kOnBoundary;
+    for (int x = 0; x < kWidth; ++x) half.s.answer[Half::at(x, 3)] = Answer::undefined;
+    for (int x = 0; x < 7; ++x) half.reference.answer[Half::at(x, 4)] = Answer::undefined;
+    for (int x = 0; x < 5; ++x) half.reference.answer[Half::at(x, 5)] = Answer::on_boundary;
     const VisibilityError e = half.error();
     EXPECT_EQ(e.away, 40u);
     EXPECT_EQ(e.undefined, 47u);

@@ -49,7 +49,7 @@ struct Tally {
 Tally tally(const PointBatch& points, const VisibilityPlane& plane) {
     Tally t;
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (is_open(points, 0, i) && plane.defined[i])
+        if (is_open(points, 0, i) && plane.defined(i))
             ++(plane.s[i] == 1 ? t.lit : plane.s[i] == 0 ? t.umbra : t.penumbra);
     return t;
 }
@@ -93,7 +93,7 @@ TEST_P(Lecture, WhatLiesInShadowIsStillLitByTheAmbientTerm) {
     const Image image    = shade(scene, points, planes);
     std::size_t in_umbra = 0, lit = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!is_open(points, 0, i) || !planes[0].defined[i]) continue;
+        if (!is_open(points, 0, i) || !planes[0].defined(i)) continue;
         for (int c = 0; c < 3; ++c) {
             const float value = image.at(i, static_cast<std::size_t>(c));
             if (planes[0].s[i] == 0) {
@@ -128,7 +128,7 @@ TEST_P(Lecture, ADirectionalLightIsTheLimitOfAFarPointLight) {
         const VisibilityPlane plane = near.visibility(same, 0);
         std::size_t differing       = 0;
         for (std::size_t i = 0; i < points.size(); ++i)
-            differing += is_open(points, 0, i) && limit.defined[i] && plane.s[i] != limit.s[i];
+            differing += is_open(points, 0, i) && limit.defined(i) && plane.s[i] != limit.s[i];
         EXPECT_LE(differing, before) << "at " << distance;
         if (distance == 3.0f) {
             EXPECT_GT(differing, 100u) << "near by, the two are not alike";

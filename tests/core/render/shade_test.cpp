@@ -32,7 +32,8 @@ struct Table {
         planes.resize(scene.lights.size());
         for (VisibilityPlane& plane : planes) {
             plane.s.push_back(s);
-            plane.defined.push_back(1);
+            plane.answer.push_back(Answer::given);
+            plane.half_width.push_back(0);
         }
     }
     Image shaded() {
@@ -237,9 +238,9 @@ TEST(Shade, UndefinedPointsCountAsLitAndBackgroundStays) {
     table.scene.background = vec3(0.1f, 0.2f, 0.3f);
     table.add(1.0f / 3, 1.0f / 3, 0);
     table.add(1.0f / 3, 1.0f / 3, 0);
-    table.planes[0].defined[0] = 0;
-    table.points.triangle[1]   = kNoTriangle;
-    const Image image          = table.shaded();
+    table.planes[0].answer[0] = Answer::undefined;
+    table.points.triangle[1]  = kNoTriangle;
+    const Image image         = table.shaded();
     EXPECT_NEAR(image.at(0, 0), 1, 1e-6);
     EXPECT_EQ(rgb(image, 1), vec3(0.1f, 0.2f, 0.3f));
 }

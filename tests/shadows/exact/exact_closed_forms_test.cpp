@@ -152,7 +152,7 @@ Found expect_meets(const Scene& scene, const PointBatch& points, const Formula& 
                     worst = off, where = fmt::format("light {} at ({}, {}, {}): {} instead of {}", j, double(p.x),
                                                      double(p.y), double(p.z), got.s[i], double(right));
                 wrong += off > kSlack;
-                EXPECT_EQ(got.defined[i], kDefined);
+                EXPECT_EQ(got.answer[i], Answer::given);
                 found.lit += right == 1;
                 found.umbra += right == 0;
                 found.penumbra += right > 0 && right < 1;

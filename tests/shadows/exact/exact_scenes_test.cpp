@@ -188,7 +188,7 @@ TEST(ExactScenes, SamplingComesToTheSameShares) {
             std::size_t counted          = 0;
             double sum = 0, squares = 0, worst = 0, smooth_squares = 0, smooth_worst = 0, outside = 0;
             for (std::size_t i = 0; i < points.size(); ++i) {
-                if (!is_open(points, j, i) || right.defined[i] != kDefined) continue;
+                if (!is_open(points, j, i) || right.answer[i] != Answer::given) continue;
                 const double s = right.s[i], smooth_off = double(smooth.s[i]) - s;
                 smooth_worst = std::max(smooth_worst, std::abs(smooth_off));
                 if (s * (1 - s) * kSamples < 20) {  // too near 0 or 1 for a normal distribution

@@ -108,7 +108,7 @@ Counts compare_with_brute_force(unsigned seed) {
     }
     face_lights(batch, scene);
 
-    const std::unique_ptr<Method> method = parse_method("exact").info->make(parse_method("exact").settings);
+    const std::unique_ptr<Method> method = parse_method("exact").make();
     const SceneFacts facts               = find_facts(scene);
     EXPECT_EQ(method->serves(facts).how, How::exactly);
     method->build(scene, facts);
@@ -116,9 +116,9 @@ Counts compare_with_brute_force(unsigned seed) {
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const Light& light = scene.lights[j];
         method->aim(j);
-        std::vector<float> s(batch.size(), 0.0f);
-        std::vector<std::uint8_t> defined(batch.size(), 1);
-        method->visibility(batch, j, s, defined);
+        VisibilityPlane plane(batch.size());
+        const std::vector<float>& s = plane.s;
+        method->visibility(batch, j, plane.out());
         const bool infinite = light.kind == LightKind::directional;
         for (std::size_t i = 0; i < batch.size(); ++i) {
             if (batch.facing[j][i] != Facing::front) {
@@ -135,7 +135,7 @@ Counts compare_with_brute_force(unsigned seed) {
                     met = std::max(met, meeting(p, d, infinite, whole(dvec3(scene.vertex(t, 0))),
                                                 whole(dvec3(scene.vertex(t, 1))), whole(dvec3(scene.vertex(t, 2)))));
             EXPECT_EQ(s[i], met == 2 ? 0.0f : 1.0f) << "seed " << seed << " light " << j << " point " << i;
-            EXPECT_EQ(defined[i], met == 1 ? kOnBoundary : kDefined)
+            EXPECT_EQ(plane.answer[i], met == 1 ? Answer::on_boundary : Answer::given)
                 << "seed " << seed << " light " << j << " point " << i;
             ++counts.points;
             counts.blocked += met == 2;
@@ -187,12 +187,11 @@ TEST(Exact, MovesWithTheSceneByPowersOfTwo) {
             set_point(batch, i, scene, t, u(random), u(random));
         }
         face_lights(batch, scene);
-        const std::unique_ptr<Method> method = parse_method("exact").info->make(parse_method("exact").settings);
+        const std::unique_ptr<Method> method = parse_method("exact").make();
         method->build(scene, find_facts(scene));
-        std::vector<float> s(batch.size(), 0.0f);
-        std::vector<std::uint8_t> defined(batch.size(), 1);
-        method->visibility(batch, 0, s, defined);
-        return s;
+        VisibilityPlane answers(batch.size());
+        method->visibility(batch, 0, answers.out());
+        return answers.s;
     };
     const std::vector<float> here = plane(1, vec3(0));
     EXPECT_EQ(here, plane(0x1p-60f, vec3(0)));

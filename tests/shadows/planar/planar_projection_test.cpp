@@ -44,7 +44,7 @@ TEST(PlanarProjection, DefinesItsPlanesAndNothingElse) {
         const bool planar = std::any_of(facts.planes.begin(), facts.planes.end(), [&](const PlanarReceiver& p) {
             return std::binary_search(p.triangles.begin(), p.triangles.end(), points.triangle[i]);
         });
-        EXPECT_EQ(plane.defined[i], planar);
+        EXPECT_EQ(plane.defined(i), planar);
         ++(planar ? on : off);
     }
     EXPECT_GT(on, 1000u);
@@ -70,7 +70,7 @@ TEST(PlanarProjection, LeavesSmallerPlanesOpenWhereTheShareIsRaised) {
     const auto plane        = project(scene, points, "planar_projection:plane_share=0.5");
     for (std::size_t i = 0; i < points.size(); ++i)
         if (is_open(points, 0, i)) {
-            EXPECT_EQ(plane.defined[i], scene.triangle_object[points.triangle[i]] == 0) << "only the floor";
+            EXPECT_EQ(plane.defined(i), scene.triangle_object[points.triangle[i]] == 0) << "only the floor";
         }
 }
 
@@ -87,7 +87,7 @@ TEST(PlanarProjection, IsExactAtEveryScale) {
         const auto got = project(scene, points), right = brute_force(usual, points, 0);
         std::size_t compared = 0, wrong = 0;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (!is_open(points, 0, i) || !got.defined[i] || !right.defined[i]) continue;
+            if (!is_open(points, 0, i) || !got.defined(i) || !right.defined(i)) continue;
             ++compared;
             wrong += got.s[i] != right.s[i];
         }
@@ -110,7 +110,7 @@ TEST(PlanarProjection, HasNoPinholes) {
     const auto got = project(scene, points), right = project(scene, points, "exact");
     std::size_t umbra = 0, wrong = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!is_open(points, 0, i) || !got.defined[i] || !right.defined[i]) continue;
+        if (!is_open(points, 0, i) || !got.defined(i) || !right.defined(i)) continue;
         umbra += right.s[i] == 0;
         wrong += got.s[i] != right.s[i];
     }
@@ -138,7 +138,7 @@ TEST(PlanarProjection, SharedEdgesAreWatertight) {
         set_point(points, 0, scene, 0, 0.5f, 0.0f);
         face_lights(points, scene);
         const auto plane = project(scene, points);
-        asked += plane.defined[0];
+        asked += plane.defined(0);
         lit += plane.s[0] != 0;
     }
     EXPECT_EQ(asked, 500u);
@@ -166,8 +166,8 @@ TEST(PlanarProjection, RoughTiltedFloorUnderALowSun) {
     std::size_t umbra = 0, wrong = 0, undefined = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (!is_open(points, 0, i) || scene.triangle_object[points.triangle[i]] != 0) continue;
-        undefined += !got.defined[i];
-        if (!got.defined[i] || !right.defined[i]) continue;
+        undefined += !got.defined(i);
+        if (!got.defined(i) || !right.defined(i)) continue;
         umbra += right.s[i] == 0;
         wrong += got.s[i] != right.s[i];
     }
@@ -216,7 +216,7 @@ TEST(PlanarProjection, LightInOrUnderThePlaneLeavesItDark) {
         for (std::size_t i = 0; i < points.size(); ++i)
             if (points.triangle[i] != kNoTriangle && scene.triangle_object[points.triangle[i]] == 0) {
                 ASSERT_EQ(plane.s[i], 0);
-                ASSERT_EQ(plane.defined[i], 1);
+                ASSERT_TRUE(plane.defined(i));
             }
     }
 }

@@ -12,20 +12,16 @@
 namespace umbra {
 namespace {
 
-struct Answer {
-    std::vector<float> s;
-    std::vector<std::uint8_t> defined;
-};
-
-Answer trace(const Scene& scene, const PointBatch& points, const std::string& settings = "", LightId light = 0) {
+VisibilityPlane trace(const Scene& scene, const PointBatch& points, const std::string& settings = "",
+                      LightId light = 0) {
     const MethodChoice choice            = parse_method(settings.empty() ? "ray_traced" : "ray_traced:" + settings);
-    const std::unique_ptr<Method> method = choice.info->make(choice.settings);
+    const std::unique_ptr<Method> method = choice.make();
     SceneFacts facts;
     facts.hard_lights_only = !is_area(scene.lights[light].kind);
     method->build(scene, facts);
     method->aim(light);
-    Answer answer{std::vector<float>(points.size(), 0.0f), std::vector<std::uint8_t>(points.size(), 1)};
-    method->visibility(points, light, answer.s, answer.defined);
+    VisibilityPlane answer(points.size());
+    method->visibility(points, light, answer.out());
     EXPECT_GT(method->memory_bytes(), 0u);
     return answer;
 }
@@ -124,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(All, Penumbra, testing::Values(LightKind::rectangle, Li
 void expect_closed_form(const Scene& scene, vec3 shift, const std::string& settings, double allowed) {
     const std::vector<dvec2> places = sweep(2000);
     const PointBatch points         = points_on_quad(scene, places, shift + vec3(0, 100, 0));
-    const Answer answer             = trace(scene, points, settings);
+    const VisibilityPlane answer    = trace(scene, points, settings);
     double squares = 0, bias = 0;
     int penumbra = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -191,9 +187,9 @@ TEST(RayTraced, CoaxialDiskBlocker) {
     std::uniform_real_distribution<double> uniform(0.35, 0.65);
     std::vector<dvec2> places;
     for (int i = 0; i < 2000; ++i) places.emplace_back(uniform(random), uniform(random));
-    const PointBatch points = points_on_quad(scene, places);
-    const Answer answer     = trace(scene, points, "samples=256");
-    double squares          = 0;
+    const PointBatch points      = points_on_quad(scene, places);
+    const VisibilityPlane answer = trace(scene, points, "samples=256");
+    double squares               = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double d    = 16 * glm::length(places[i] - dvec2(0.5));
         const double want = 1 - lens(d * (H / h - 1), R, b * H / h) / (kPi * R * R);
@@ -250,8 +246,8 @@ TEST_P(HardLight, AgreesWithBruteForceInDouble) {
     scene.camera.eye          = vec3(0, 0.5f, 3);
     scene.camera.target       = vec3(0);
     const int width = 131, height = 77;
-    const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, width, height);
-    const Answer answer     = trace(scene, points);
+    const PointBatch points      = primary_points(RayScene(scene), scene, scene.camera, width, height);
+    const VisibilityPlane answer = trace(scene, points);
     int lit = 0, dark = 0, doubtful = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.facing[0][i] != Facing::front) {
@@ -313,7 +309,7 @@ TEST(RayTraced, WhatIsCloseToALampButDoesNotTouchItCasts) {
             scene.lights.push_back(light_of(LightKind::point, {0.25f, 4, 0.125f}));
             std::vector<dvec2> places;
             for (int i = 0; i < 400; ++i) places.emplace_back((i % 20 + 0.3) / 20, (i / 20 + 0.6) / 20);  // NOLINT
-            const Answer answer = trace(scene, points_on_quad(scene, places));
+            const VisibilityPlane answer = trace(scene, points_on_quad(scene, places));
             for (const float s : answer.s) ASSERT_EQ(s, beneath ? 0.0f : 1.0f) << gap;
         }
 }
@@ -326,11 +322,11 @@ TEST(RayTraced, APointLightVeryFarIsADirection) {
     scene.lights[0].direction = vec3(-0.25f, -1, -0.5f);
     for (float far : {1e7f, 1e12f, 1e18f})
         scene.lights.push_back(light_of(LightKind::point, vec3(0.25f, 1, 0.5f) * far));
-    const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 200, 150);
-    const Answer direction  = trace(scene, points);
+    const PointBatch points         = primary_points(RayScene(scene), scene, scene.camera, 200, 150);
+    const VisibilityPlane direction = trace(scene, points);
     for (LightId j = 1; j < scene.lights.size(); ++j) {
-        const Answer far = trace(scene, points, "", j);
-        int differ       = 0;
+        const VisibilityPlane far = trace(scene, points, "", j);
+        int differ                = 0;
         for (std::size_t i = 0; i < points.size(); ++i) differ += far.s[i] != direction.s[i];
         EXPECT_LT(differ, 4) << j;
     }
@@ -366,8 +362,8 @@ Scene convex_ball(int longitudes, int latitudes, vec3 centre, float radius) {
 
 /// Shadow where there can be none, among points that see the light at more than a tenth of a degree.
 int acne(const Scene& scene, const PointBatch& points, const std::string& settings) {
-    const Answer answer = trace(scene, points, settings);
-    int wrong           = 0;
+    const VisibilityPlane answer = trace(scene, points, settings);
+    int wrong                    = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.facing[0][i] != Facing::front) continue;
         const vec3 towards = to_light(scene.lights[0], points.position(i)).direction;
@@ -474,7 +470,7 @@ TEST(RayTraced, SaysHowItServes) {
     SceneFacts facts;
     const auto service = [&](const char* text) {
         const MethodChoice choice = parse_method(text);
-        return choice.info->make(choice.settings)->serves(facts);
+        return choice.make()->serves(facts);
     };
     const Service hard = service("ray_traced"), lifted = service("ray_traced:offset=epsilon");
     facts.hard_lights_only = false;

@@ -208,14 +208,15 @@ Checked check(const Scene& scene, const PointBatch& points, const std::string& w
         }
         for (const char* settings : kSettings) {
             const MethodChoice choice = parse_method(std::string("shadow_volumes:") + settings);
-            const auto method         = choice.info->make(choice.settings);
-            const bool proven         = choice.settings.choice("edges") != "silhouette" || facts.closed_objects == 0;
-            EXPECT_EQ(method->serves(facts).how, proven ? How::exactly : How::approximately);
+            const auto method         = choice.make();
+            const bool proven =
+                choice.text().find("edges=silhouette") == std::string::npos || facts.closed_objects == 0;
+            EXPECT_EQ(method->serves(facts).how, proven ? How::to_rounding : How::approximately);
             method->build(scene, facts);
             method->aim(j);
-            std::vector<float> s(points.size(), 0);
-            std::vector<std::uint8_t> defined(points.size(), 1);
-            method->visibility(points, j, s, defined);
+            VisibilityPlane plane(points.size());
+            const std::vector<float>& s = plane.s;
+            method->visibility(points, j, plane.out());
             std::size_t wrong = 0, first = 0;
             for (std::size_t i = points.size(); i-- > 0;) {
                 if (points.facing[j][i] != Facing::front) {
@@ -304,13 +305,12 @@ TEST(ShadowVolumes, TheSameForAnyNumberOfThreads) {
     const SceneFacts facts  = find_facts(scene);
     const auto visibility   = [&] {
         const MethodChoice choice = parse_method("shadow_volumes");
-        const auto method         = choice.info->make(choice.settings);
+        const auto method         = choice.make();
         method->build(scene, facts);
         method->aim(0);
-        std::vector<float> s(points.size(), 0);
-        std::vector<std::uint8_t> defined(points.size(), 1);
-        method->visibility(points, 0, s, defined);
-        return s;
+        VisibilityPlane plane(points.size());
+        method->visibility(points, 0, plane.out());
+        return plane.s;
     };
     const auto many = visibility();
     const ThreadLimit one(1);
@@ -325,15 +325,16 @@ TEST(ShadowVolumes, AreaLightsAreServedThroughTheirCentres) {
     scene.lights[1].radius    = 0.5f;
     const SceneFacts facts    = find_facts(scene);
     const MethodChoice choice = parse_method("shadow_volumes");
-    const auto method         = choice.info->make(choice.settings);
+    const auto method         = choice.make();
     EXPECT_EQ(method->serves(facts).how, How::approximately);
     const PointBatch points = scattered_points(scene, 2000, random, {3, 3, 3});
     std::vector<std::vector<float>> s(2, std::vector<float>(points.size(), 0));
-    std::vector<std::uint8_t> defined(points.size(), 1);
     method->build(scene, facts);
     for (LightId j = 0; j < 2; ++j) {
         method->aim(j);
-        method->visibility(points, j, s[j], defined);
+        VisibilityPlane plane(points.size());
+        method->visibility(points, j, plane.out());
+        s[j] = plane.s;
     }
     std::size_t both = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {

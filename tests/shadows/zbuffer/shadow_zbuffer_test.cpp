@@ -95,20 +95,17 @@ PointBatch points_on(const Scene& scene, std::uint32_t object, int n) {
     return batch;
 }
 
-struct Plane {
-    std::vector<float> s;
-    std::vector<std::uint8_t> defined;
-};
+using Plane = VisibilityPlane;
 
 Plane look_up(const Scene& scene, const PointBatch& batch, std::string_view choice) {
     const MethodChoice method = parse_method(choice);
-    const auto zbuffer        = method.info->make(method.settings);
+    const auto zbuffer        = method.make();
     const SceneFacts facts    = find_facts(scene);
     EXPECT_EQ(zbuffer->serves(facts).how, How::approximately);
     zbuffer->build(scene, facts);
     zbuffer->aim(0);
-    Plane plane{std::vector<float>(batch.size(), 0), std::vector<std::uint8_t>(batch.size(), 1)};
-    zbuffer->visibility(batch, 0, plane.s, plane.defined);
+    Plane plane(batch.size());
+    zbuffer->visibility(batch, 0, plane.out());
     return plane;
 }
 
@@ -124,7 +121,7 @@ Wrong against_closed_form(const Light& light, std::string_view choice, int n = 3
     const Plane plane      = look_up(scene, batch, choice);
     Wrong wrong;
     for (std::size_t i = 0; i < batch.size(); ++i) {
-        EXPECT_EQ(plane.defined[i], 1);
+        EXPECT_TRUE(plane.defined(i));
         EXPECT_TRUE(plane.s[i] == 0 || plane.s[i] == 1);
         const double depth = depth_in_shadow(light, dvec3(batch.position(i)));
         const bool shadow  = depth > 0;
@@ -355,7 +352,7 @@ TEST(ShadowZBuffer, NothingLeaksThroughACubesSeams) {
         EXPECT_EQ(std::ranges::count(outside.s, 0.0f), std::ssize(outside.s)) << choice;
         const Plane inside = look_up(scene, ball, choice);
         EXPECT_EQ(std::ranges::count(inside.s, 1.0f), std::ssize(inside.s)) << choice;
-        EXPECT_EQ(std::ranges::count(inside.defined, 1), std::ssize(inside.defined)) << choice;
+        EXPECT_EQ(std::ranges::count(inside.answer, Answer::given), std::ssize(inside.answer)) << choice;
     }
 }
 
@@ -444,13 +441,13 @@ TEST(ShadowZBuffer, SpotsAnswerOutsideTheirConesUnlessToldNotTo) {
     const PointBatch floor = points_on(scene, 0, 100);
     const Plane all        = look_up(scene, floor, "shadow_zbuffer:fit=scene");
     const Plane cone       = look_up(scene, floor, "shadow_zbuffer:fit=scene,surround=0");
-    EXPECT_EQ(std::ranges::count(all.defined, 1), std::ssize(all.defined));
+    EXPECT_EQ(std::ranges::count(all.answer, Answer::given), std::ssize(all.answer));
     for (std::size_t i = 0; i < floor.size(); ++i) {
         const float factor =
             spot_factor(light.spot, glm::dot(-to_light(light, floor.position(i)).direction, light.direction));
         const bool far_out = std::max(std::abs(floor.px[i]), std::abs(floor.pz[i])) > 1.2f;
-        EXPECT_TRUE(factor == 0 || cone.defined[i] == 1);
-        EXPECT_TRUE(!far_out || cone.defined[i] == 0);
+        EXPECT_TRUE(factor == 0 || cone.defined(i));
+        EXPECT_TRUE(!far_out || !cone.defined(i));
     }
 }
 

@@ -1,0 +1,134 @@
+// Brute force: every surface point against every triangle. No tree, no map, no cleverness: the cost is points times
+// triangles, which is what every other method saves. Short enough to be copied as the start of a new method.
+//
+// This work is based on:
+// Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
+// Tomas Moeller, Ben Trumbore. Fast, Minimum Storage Ray/Triangle Intersection. 1997
+#include <fmt/format.h>
+
+#include "umbra/core/base/parallel.h"
+#include "umbra/shadows/method.h"
+#include "umbra/shadows/shared/light_points.h"
+
+namespace umbra {
+namespace {
+
+struct Options {
+    int samples       = 16;
+    int max_triangles = 20000;
+};
+
+const std::vector<Parameter> kParameters{
+    parameter<&Options::samples>({.name  = "samples",
+                                  .doc   = "Segments from a point to an area light; other lights take one.",
+                                  .unit  = "segments a point",
+                                  .phase = Phase::visibility,
+                                  .min   = 1,
+                                  .max   = 4096,
+                                  .sweep = "4|16|64"}),
+    parameter<&Options::max_triangles>({.name  = "max_triangles",
+                                        .doc   = "Scenes of more triangles are not served: a picture would take hours.",
+                                        .phase = Phase::build,
+                                        .min   = 1,
+                                        .max   = 50000000}),
+};
+
+/// Whether the open segment p + t d, 0 < t < end, passes through the triangle.
+bool crosses(dvec3 p, dvec3 d, double end, dvec3 a, dvec3 b, dvec3 c) {
+    const dvec3 ab = b - a, ac = c - a, from_a = p - a;
+    const dvec3 n = glm::cross(ab, ac), q = glm::cross(d, from_a);
+    const double slope = -glm::dot(n, d);
+    if (slope == 0) return false;  // the segment runs along the triangle's plane
+    const double t = glm::dot(n, from_a) / slope, u = -glm::dot(ac, q) / slope, v = glm::dot(ab, q) / slope;
+    return t > 0 && t < end && u >= 0 && v >= 0 && u + v <= 1;
+}
+
+class BruteForce final : public MethodWith<Options> {
+public:
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        if (facts.triangles > static_cast<std::uint64_t>(options.max_triangles))
+            return {How::not_at_all, fmt::format("{} triangles, and each point would be tested against all of them; "
+                                                 "max_triangles={}",
+                                                 facts.triangles, options.max_triangles)};
+        if (facts.hard_lights_only) return {How::to_rounding, "Every point against every triangle, in double."};
+        return {How::approximately, fmt::format("Area lights are sampled at {} points.", options.samples)};
+    }
+
+    void build(const Scene& scene, const SceneFacts&) override { scene_ = &scene; }
+    void aim(LightId light) override { light_ = light; }
+
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!points.asks(light, i)) continue;
+                int lit = 0;
+                for (int k = 0; k < samples(); ++k) {
+                    const Segment s = segment(points, i, k);
+                    lit += !s.behind && first_blocker(points.triangle[i], s) == kNoTriangle;
+                }
+                out.s[i] = static_cast<float>(lit) / static_cast<float>(samples());
+            }
+        });
+    }
+
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                blockers[i] = kNoTriangle;
+                if (!points.asks(light, i)) continue;
+                for (int k = 0; k < samples() && blockers[i] == kNoTriangle; ++k)
+                    blockers[i] = first_blocker(points.triangle[i], segment(points, i, k));
+            }
+        });
+    }
+
+    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
+
+private:
+    /// The places p + t d, 0 < t < end.
+    struct Segment {
+        dvec3 p, d;
+        double end;
+        bool behind;  ///< runs behind the plane of the point's triangle: that part of the light is not seen
+    };
+
+    [[nodiscard]] const Light& light() const { return scene_->lights[light_]; }
+    [[nodiscard]] int samples() const { return is_area(light().kind) ? options.samples : 1; }
+
+    /// From point i to the light, or to its k-th sample.
+    [[nodiscard]] Segment segment(const PointBatch& points, std::size_t i, int k) const {
+        const dvec3 p = exact_position(*scene_, points, i);
+        if (light().kind == LightKind::directional) return {p, -dvec3(light().direction), double(kInfinity), false};
+        if (!is_area(light().kind)) return {p, dvec3(light().position) - p, 1, false};
+        const dvec3 d = light_point(light(), p, k) - p;
+        return {p, d, 1, points.facing[light_][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), d) <= 0};
+    }
+
+    [[nodiscard]] TriangleId first_blocker(TriangleId own, const Segment& s) const {
+        for (TriangleId t = 0; t < scene_->triangles.size(); ++t)
+            if (t != own && crosses(s.p, s.d, s.end, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
+                                    dvec3(scene_->vertex(t, 2))))
+                return t;
+        return kNoTriangle;
+    }
+
+    const Scene* scene_ = nullptr;
+    LightId light_      = 0;
+};
+
+}  // namespace
+
+extern const MethodInfo brute_force;
+const MethodInfo brute_force{
+    .name  = "brute_force",
+    .title = "Brute force",
+    .paper = "Arthur Appel, Some Techniques for Shading Machine Renderings of Solids, 1968",
+    .summary =
+        "Tests the segment from each point to the light against every triangle, in double. The baseline that "
+        "every other method saves time against. Errs by rounding at edges and where faces coincide, and by "
+        "its samples in penumbrae. Limit: time grows with points times triangles.",
+    .parameters = kParameters,
+    .by_default = false,
+    .create     = create<BruteForce>};
+
+}  // namespace umbra
