@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "umbra/core/io/arriving_light.h"
 #include "umbra/core/io/check_camera.h"
 #include "umbra/core/io/scene_readers.h"
 #include "umbra/core/scene/topology.h"
@@ -137,6 +138,7 @@ Scene complete_scene(SceneFile&& read, const std::filesystem::path& file) {
     for (Light& light : scene.lights) normalise_direction(light);
     if (scene.lights.empty() && !read.may_be_dark) assume_light(scene);
     name_lights(scene);
+    warn_of_invisible_lights(scene);
     return scene;
 }
 

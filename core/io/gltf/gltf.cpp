@@ -80,6 +80,7 @@ void read_scene_terms(const JsonText& json, Scene& scene) {
     if (const JsonValue* extras = find_scene_umbra(json)) given = apply_scene_extras(json, *extras, scene);
     if (!given.ambient) scene.warnings.emplace_back("glTF has no ambient light: I_a = 0.1 is assumed.");
     if (!given.exposure) set_exposure(scene);
+    warn_of_units(scene);
 }
 
 }  // namespace

@@ -326,6 +326,24 @@ TEST(Gltf, ExposureMakesLuxVisible) {
     EXPECT_EQ(said.exposure, 0.5f);
 }
 
+// 1000 W at 4 units and a sun of 5 W/m2, as Blender writes them by default and in the units of its other mode.
+std::string blender_lights(double candela) {
+    return with_nodes(R"({"mesh": 0},)" + shining(0, R"(, "translation": [0, 0, 4])") + "," + shining(1),
+                      punctual(fmt::format(R"({{"type": "point", "name": "lamp", "intensity": {}}},
+                                              {{"type": "directional", "name": "sun", "intensity": 5}})",
+                                           candela)));
+}
+
+TEST(Gltf, CandelaBesideLuxNamesTheUnitsOfBlender) {
+    const Scene standard = load(blender_lights(54351));
+    EXPECT_TRUE(warns(standard, "Lighting Mode \"Unitless\"")) << "3400 lux beside 5";
+    EXPECT_TRUE(warns(standard, "The ambient light of 0.1 cannot be seen"));
+    EXPECT_FALSE(warns(standard, "Light \"sun\" cannot be seen")) << "0.15 % can";
+    const Scene unitless = load(blender_lights(79.6));
+    EXPECT_FALSE(warns(unitless, "Blender"));
+    EXPECT_FALSE(warns(unitless, "cannot be seen"));
+}
+
 // ---- materials ----
 
 Material material(const std::string& json) {

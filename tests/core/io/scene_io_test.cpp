@@ -151,6 +151,42 @@ TEST(CheckScene, LightsThatCannotShineAreRefused) {
     EXPECT_EQ(with([](Light& l) { l.kind = LightKind::spot, l.spot.cutoff = float(kPi / 2); }), "accepted");
 }
 
+TEST(CompleteScene, LightsThatCannotBeSeenWarn) {
+    const auto warnings_of = [](auto change) {
+        SceneFile read            = with_box();  // of size 1, lit from 5 above by 1 of intensity, without attenuation
+        read.scene.ambient        = vec3(0);
+        Light other               = read.scene.lights[0];
+        read.scene.lights[0].name = "lamp";
+        other.name                = "other";
+        change(read.scene, other);
+        read.scene.lights.push_back(other);
+        return finish(std::move(read)).warnings;
+    };
+    const std::vector<std::string> faint = warnings_of([](Scene&, Light& l) { l.diffuse = vec3(0.0005f); });
+    ASSERT_EQ(faint.size(), 1u);
+    EXPECT_EQ(
+        faint[0],
+        "Light \"other\" cannot be seen: it adds at most 0.05 % of what light \"lamp\" gives at the middle of the "
+        "scene.");
+    const auto far = [](Scene&, Light& l) { l.attenuation = {0, 0, 1, false}, l.position = {0, 100, 0}; };
+    EXPECT_EQ(warnings_of(far).size(), 1u) << "1 / 99.5^2";
+    const auto out_of_range = [](Scene&, Light& l) { l.range = 4.4f; };
+    EXPECT_EQ(warnings_of(out_of_range).size(), 1u) << "the box begins at 4.5";
+    const auto ambient = [](Scene& s, Light&) { s.ambient = vec3(0.0005f); };
+    ASSERT_EQ(warnings_of(ambient).size(), 1u);
+    EXPECT_NE(warnings_of(ambient)[0].find("The ambient light of 0.0005"), std::string::npos);
+
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.diffuse = vec3(0.002f); }).empty());
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.range = 4.6f; }).empty()) << "reaches the lid";
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.diffuse = l.specular = vec3(0); }).empty()) << "switched off";
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.diffuse = vec3(1, 0, 0) * 0.0005f, l.ambient = vec3(1); }).empty())
+        << "seen by its ambient term";
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) {
+                    l.kind = LightKind::spot, l.spot.cutoff = 0.1f, l.direction = {1, 0, 0};
+                }).empty())
+        << "a narrow cone between the samples is not an error";
+}
+
 TEST(CompleteScene, DirectionsOfAnyLengthAreScaledWithoutRounding) {
     SceneFile read                 = with_box();
     read.scene.lights[0].kind      = LightKind::directional;
