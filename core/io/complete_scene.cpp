@@ -15,7 +15,7 @@ namespace {
 
 std::string text(vec3 v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
 
-// Of length 1; zero stays zero. What has that length but for rounding is left alone, so that a scene that is written
+// Of length 1; zero stays zero. A vector of that length up to rounding is left alone, so that a scene that is written
 // and read again keeps its bits.
 vec3 unit(vec3 v) {
     const double square = glm::dot(dvec3(v), dvec3(v));

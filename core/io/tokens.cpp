@@ -13,7 +13,7 @@ namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// from_chars knows no leading plus, which C's printf writes with "%+g".
+// from_chars accepts no leading plus, which C's printf writes with "%+g".
 std::string_view without_plus(std::string_view s) {
     return s.size() > 1 && s[0] == '+' && s[1] != '-' ? s.substr(1) : s;
 }

@@ -1,6 +1,6 @@
 // glTF 2.0 scenes, .gltf and .glb.
 //
-// The document is read as JSON that knows its places, and not by one of the glTF libraries: those at hand follow
+// The document is read as JSON with the offset of each value, not by one of the glTF libraries: those at hand follow
 // indices and lengths of the file unchecked, and can name no line. What is read here is a small part of the format.
 //
 //   glTF                            here
