@@ -7,13 +7,15 @@
 #include <fstream>
 #include <string_view>
 
+#include "umbra/core/base/bytes.h"
+
 namespace umbra {
 namespace {
 
 /// A file read in order, with its size known.
-class Bytes {
+class HeaderFile {
 public:
-    explicit Bytes(const std::filesystem::path& file)
+    explicit HeaderFile(const std::filesystem::path& file)
         : in_(file, std::ios::binary), left_(std::filesystem::file_size(file)) {}
 
     [[nodiscard]] std::uint64_t left() const { return left_; }
@@ -44,21 +46,13 @@ private:
     std::uint64_t left_;
 };
 
-std::uint32_t big_endian(const char* b) {
-    std::uint32_t value = 0;
-    for (int k = 0; k < 4; ++k) value = value << 8 | static_cast<unsigned char>(b[k]);
-    return value;
-}
-std::uint32_t little_endian(const char* b) {
-    std::uint32_t value = 0;
-    for (int k = 3; k >= 0; --k) value = value << 8 | static_cast<unsigned char>(b[k]);
-    return value;
-}
+std::uint32_t big_endian(const char* bytes) { return load_number<std::uint32_t>(bytes, std::endian::big); }
+std::uint32_t little_endian(const char* bytes) { return load_number<std::uint32_t>(bytes); }
 
 constexpr const char* kEndsInHeader = "the file ends in its header";
 
 /// After the signature: length, four letters, data, CRC; IHDR first.
-std::string check_png(Bytes& bytes) {
+std::string check_png(HeaderFile& bytes) {
     const std::uint64_t size = bytes.left();
     while (bytes.left() > 0) {
         std::array<char, 8> head{};
@@ -85,7 +79,7 @@ std::string check_png(Bytes& bytes) {
 }
 
 /// After the magic number: version and flags, then attributes (name 0, type 0, length, data) up to an empty name.
-std::string check_exr(Bytes& bytes) {
+std::string check_exr(HeaderFile& bytes) {
     if (!bytes.skip(4)) return kEndsInHeader;
     std::string name, type;
     for (;;) {
@@ -123,7 +117,7 @@ std::string check_exr(Bytes& bytes) {
 }  // namespace
 
 std::string find_false_claim(const std::filesystem::path& file) {
-    Bytes bytes(file);
+    HeaderFile bytes(file);
     std::array<char, 8> magic{};
     if (!bytes.read(magic.data(), 4)) return {};
     if (std::string_view(magic.data(), 4) == "\x76\x2f\x31\x01") return check_exr(bytes);

@@ -1,7 +1,7 @@
 // The grammar is nlohmann/json's: maintained, strict, checks UTF-8, and its event interface keeps its own stack, so
-// that deep nesting cannot exhaust ours. (RapidJSON tells the place of each event, but its last release is of 2016.) It
-// does not tell where a value stands; but its events come in the order of the text, one for each token, so a cursor
-// that skips one token an event knows.
+// that deep nesting cannot exhaust ours. (RapidJSON says the offset of each event, but its last release is of 2016.) It
+// does not say where a value is; but its events come in the order of the text, one for each token, so a cursor that
+// skips one token per event knows. Of its errors only the number of the byte and the kind are used, not the words.
 #include "umbra/core/io/json_text.h"
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/io/tokens.h"
 
 namespace umbra {
 namespace {
@@ -24,7 +25,8 @@ public:
     explicit TreeBuilder(const SourceText& source) : source_(source) {}
     JsonValue take() {
         skip(" \t\r\n");
-        if (cursor_ < source_.text.size()) source_.fail(cursor_, "not JSON: text after the end of the scene");
+        if (cursor_ < source_.text.size())
+            source_.fail(cursor_, "not JSON: found text after the end of the scene, expected the end of the file");
         return std::move(root_);
     }
 
@@ -40,6 +42,7 @@ public:
     bool end_array() { return close(); }
     bool key(std::string& k) {
         std::get<JsonObject>(stack_.back()->data).push_back({token(), std::move(k), {}});
+        last_ = Last::key;
         return true;
     }
     bool end_object() {
@@ -51,39 +54,89 @@ public:
         for (std::size_t i = 1; i < order.size(); ++i)
             if (members[order[i]].key == members[order[i - 1]].key)
                 source_.fail(members[order[i]].offset,
-                             fmt::format("the key \"{}\" is given twice (once would be right)", members[order[i]].key));
+                             fmt::format("the key \"{}\" is given twice, expected once", members[order[i]].key));
         return close();
     }
-    bool parse_error(std::size_t read, const std::string& last, const nlohmann::json::exception& e) {
-        skip(" \t\r\n,:");
-        std::string message = e.what();
-        if (message.find("number overflow") != std::string::npos)
-            source_.fail(cursor_, fmt::format("the number {} is too large (JSON has no infinity)", last));
-        // "[json.exception...] parse error at line 1, column 2: syntax error while parsing value - REASON; last read:
-        // ..."
-        if (const auto dash = message.find(" - "); dash != std::string::npos) message.erase(0, dash + 3);
-        if (const auto tail = message.find("; last read"); tail != std::string::npos) {
-            const auto expected = message.find("; expected", tail);
-            message = message.substr(0, tail) + (expected == std::string::npos ? "" : message.substr(expected));
-        }
-        const bool inside_string    = message.find("invalid string") != std::string::npos;
-        const std::size_t last_read = std::min(read > 0 ? read - 1 : 0, source_.text.size());
-        const std::size_t place     = inside_string ? last_read : std::min(cursor_, last_read);
-        source_.fail(place, fmt::format("not JSON: {}{}", message, hint(place)));
+    bool parse_error(std::size_t bytes_read, const std::string& last, const nlohmann::json::exception& e) {
+        constexpr int kNumberOverflow = 406;  // nlohmann's documented number of that exception
+        const Gap gap                 = skip_separators();
+        const std::string& t          = source_.text;
+        if (e.id == kNumberOverflow)
+            source_.fail(cursor_, fmt::format("the number {} is too large, expected at most 1.8e308", last));
+        if (cursor_ >= t.size())
+            source_.fail(cursor_, fmt::format("not JSON: the file is cut off, expected {}", gap.expected));
+        const bool in_string = t[cursor_] == '"' && gap.may_be_string;
+        if (in_string) fail_in_string(std::min(bytes_read > 0 ? bytes_read - 1 : 0, t.size()));
+        source_.fail(cursor_,
+                     fmt::format("not JSON: found {}, expected {}{}", found_at(cursor_), gap.expected, hint(cursor_)));
     }
 
 private:
-    std::string_view hint(std::size_t place) const {
-        const std::string_view rest = std::string_view(source_.text).substr(place);
-        if (rest.empty()) return " (the file is cut off)";
+    /// What the grammar allows at the cursor.
+    struct Gap {
+        std::string_view expected;
+        bool may_be_string = false;
+    };
+
+    /// Moves the cursor from the end of the last token that was accepted over the separators that may follow it.
+    Gap skip_separators() {
+        constexpr std::string_view kBlank = " \t\r\n";
+        const auto take                   = [&](char separator) {
+            skip(kBlank);
+            const bool there = cursor_ < source_.text.size() && source_.text[cursor_] == separator;
+            if (there) ++cursor_;
+            skip(kBlank);
+            return there;
+        };
+        if (stack_.empty()) {
+            skip(kBlank);
+            return last_ == Last::none ? Gap{"a value", true} : Gap{"the end of the file"};
+        }
+        const bool in_object = std::holds_alternative<JsonObject>(stack_.back()->data);
+        switch (last_) {
+            case Last::key: return take(':') ? Gap{"a value", true} : Gap{"\":\""};
+            case Last::open:
+                skip(kBlank);
+                return in_object ? Gap{"a key in quotes or \"}\"", true} : Gap{"a value or \"]\"", true};
+            default: break;
+        }
+        if (take(',')) return in_object ? Gap{"a key in quotes", true} : Gap{"a value", true};
+        return {in_object ? "\",\" or \"}\"" : "\",\" or \"]\""};
+    }
+
+    /// `at` is the byte that the parser could not accept within the string at the cursor.
+    [[noreturn]] void fail_in_string(std::size_t at) const {
+        const std::string& t = source_.text;
+        if (at >= t.size()) source_.fail(at, "not JSON: the file is cut off within a string, expected a closing quote");
+        const auto c = static_cast<unsigned char>(t[at]);
+        if (c == '\n' || c == '\r') source_.fail(at, "not JSON: a line ends within a string, expected a closing quote");
+        if (c < 0x20)
+            source_.fail(at,
+                         fmt::format("not JSON: the control character {} in a string, expected \"\\u{:04x}\"", c, c));
+        const auto is_ascii = [&](std::size_t k) { return static_cast<unsigned char>(t[k]) < 0x80; };
+        if (!is_ascii(at) || !is_ascii(at - 1)) source_.fail(at, "not JSON: this byte is not UTF-8");
+        source_.fail(at,
+                     "not JSON: this may not follow a backslash, expected one of \" \\ / b f n r t, or u and four "
+                     "hexadecimal digits");
+    }
+
+    /// What begins at `at`, as a message shows it.
+    [[nodiscard]] std::string found_at(std::size_t at) const {
+        const std::string& t = source_.text;
+        if (std::string_view("{}[],:").find(t[at]) != std::string_view::npos) return fmt::format("\"{}\"", t[at]);
+        if (t[at] == '"') return "a string";
+        return in_quotes(std::string_view(t).substr(at, std::min(t.find_first_of(" \t\r\n,:]}\"", at), t.size()) - at));
+    }
+
+    [[nodiscard]] std::string_view hint(std::size_t at) const {
+        const std::string_view rest = std::string_view(source_.text).substr(at);
         if (rest.starts_with('/') || rest.starts_with('#')) return " (JSON has no comments; a \"note\" key is allowed)";
         if (rest.starts_with('N') || rest.starts_with('I') || rest.starts_with("-I") || rest.starts_with("nan") ||
             rest.starts_with("inf"))
             return " (JSON has neither NaN nor infinity)";
-        const auto before = source_.text.find_last_not_of(" \t\r\n", place == 0 ? 0 : place - 1);
-        if ((rest[0] == '}' || rest[0] == ']') && before != std::string::npos && place > 0 &&
-            source_.text[before] == ',')
-            return " (the comma before it is one too many)";
+        const auto before = at == 0 ? std::string::npos : source_.text.find_last_not_of(" \t\r\n", at - 1);
+        if ((rest[0] == '}' || rest[0] == ']') && before != std::string::npos && source_.text[before] == ',')
+            return " (remove the comma before it)";
         return "";
     }
 
@@ -110,14 +163,15 @@ private:
         return begin;
     }
 
-    JsonValue& place() {
+    /// Where the next value belongs.
+    JsonValue& slot() {
         if (stack_.empty()) return root_;
         if (auto* array = std::get_if<JsonArray>(&stack_.back()->data)) return array->emplace_back();
         return std::get<JsonObject>(stack_.back()->data).back().value;
     }
     template <class T>
     JsonValue& put(T&& data) {
-        JsonValue& v = place();
+        JsonValue& v = slot();
         v.offset     = token();
         v.data       = std::forward<T>(data);
         return v;
@@ -125,24 +179,29 @@ private:
     template <class T>
     bool leaf(T&& data) {
         put(std::forward<T>(data));
+        last_ = Last::value;
         return true;
     }
     template <class T>
     bool open(T&& empty) {
         JsonValue& v = put(std::forward<T>(empty));
-        if (stack_.size() >= kMaxDepth)
-            source_.fail(v.offset, fmt::format("nested deeper than {} levels (no scene is)", kMaxDepth));
+        if (stack_.size() >= kMaxDepth) source_.fail(v.offset, fmt::format("nested deeper than {} levels", kMaxDepth));
         stack_.push_back(&v);  // stays where it is: what holds it grows only after it is closed
+        last_ = Last::open;
         return true;
     }
     bool close() {
         token();
         stack_.pop_back();
+        last_ = Last::value;
         return true;
     }
 
+    enum class Last : std::uint8_t { none, open, key, value };
+
     const SourceText& source_;
-    std::size_t cursor_ = 0;
+    std::size_t cursor_ = 0;           ///< after the last token that was accepted
+    Last last_          = Last::none;  ///< that token; closing brackets end a value
     JsonValue root_;
     std::vector<JsonValue*> stack_;
 };
@@ -150,7 +209,7 @@ private:
 JsonValue parse(const SourceText& source) {
     const std::string& t = source.text;
     if (t.starts_with("\xef\xbb\xbf") || t.starts_with("\xff\xfe") || t.starts_with("\xfe\xff"))
-        source.fail(0, "the file begins with a byte order mark (UTF-8 without one would be right)");
+        source.fail(0, "the file begins with a byte order mark, expected UTF-8 without one");
     TreeBuilder builder(source);
     nlohmann::json::sax_parse(t.begin(), t.end(), &builder);
     return builder.take();
@@ -195,17 +254,17 @@ std::string nearest(std::string_view found, const std::vector<std::string_view>&
 
 JsonText::JsonText(SourceText source) : source_(std::move(source)), root_(parse(source_)) {}
 
-void JsonText::wrong_type(const JsonValue& v, std::string_view what, std::string_view right) const {
-    fail(v, fmt::format("{} is {} ({} would be right)", what, describe(v), right));
+void JsonText::wrong_type(const JsonValue& v, std::string_view what, std::string_view expected) const {
+    fail(v, fmt::format("{} is {}, expected {}", what, describe(v), expected));
 }
 const JsonObject& JsonText::object(const JsonValue& v, std::string_view what) const {
     const auto* o = std::get_if<JsonObject>(&v.data);
     if (!o) wrong_type(v, what, "an object {...}");
     return *o;
 }
-const JsonArray& JsonText::array(const JsonValue& v, std::string_view what, std::string_view of) const {
+const JsonArray& JsonText::array(const JsonValue& v, std::string_view what, std::string_view expected) const {
     const auto* a = std::get_if<JsonArray>(&v.data);
-    if (!a) wrong_type(v, what, of);
+    if (!a) wrong_type(v, what, expected);
     return *a;
 }
 const std::string& JsonText::string(const JsonValue& v, std::string_view what) const {
@@ -221,14 +280,13 @@ bool JsonText::boolean(const JsonValue& v, std::string_view what) const {
 double JsonText::number(const JsonValue& v, std::string_view what, const Range& range) const {
     const auto* d = std::get_if<double>(&v.data);
     if (!d) wrong_type(v, what, range.words);
-    const bool inside = range.open ? *d > range.min && *d < range.max : *d >= range.min && *d <= range.max;
-    if (!inside) fail(v, fmt::format("{} is {:g} ({} would be right)", what, *d, range.words));
+    if (!range.holds(*d)) fail(v, fmt::format("{} is {:g}, expected {}", what, *d, range.words));
     return *d;
 }
 int JsonText::integer(const JsonValue& v, std::string_view what, int min, int max) const {
     const std::string words = fmt::format("a whole number from {} to {}", min, max);
-    const double d          = number(v, what, {double(min), double(max), false, words});
-    if (d != std::floor(d)) fail(v, fmt::format("{} is {:g} ({} would be right)", what, d, words));
+    const double d          = number(v, what, {double(min), double(max), words});
+    if (d != std::floor(d)) fail(v, fmt::format("{} is {:g}, expected {}", what, d, words));
     return static_cast<int>(d);
 }
 dvec3 JsonText::vector(const JsonValue& v, std::string_view what, const Range& range) const {
@@ -237,7 +295,7 @@ dvec3 JsonText::vector(const JsonValue& v, std::string_view what, const Range& r
     return {number((*a)[0], what, range), number((*a)[1], what, range), number((*a)[2], what, range)};
 }
 std::size_t JsonText::choice(const JsonValue& v, std::string_view what,
-                             std::initializer_list<std::string_view> choices) const {
+                             const std::vector<std::string_view>& choices) const {
     const std::string& s = string(v, what);
     const auto found     = std::find(choices.begin(), choices.end(), s);
     if (found == choices.end()) unknown(v.offset, what, s, choices);
@@ -262,7 +320,7 @@ const JsonValue* JsonFields::find(std::string_view key) const {
 }
 const JsonValue& JsonFields::require(std::string_view key) const {
     const JsonValue* v = find(key);
-    if (!v) text_.fail(value_, fmt::format("{} has no \"{}\" (it needs one)", what_, key));
+    if (!v) text_.fail(value_, fmt::format("{} has no \"{}\"", what_, key));
     return *v;
 }
 double JsonFields::number(std::string_view key, const Range& range, double fallback) const {
@@ -285,7 +343,7 @@ void JsonFields::exclude(std::string_view key, std::string_view other) const {
     const JsonValue *a = find(key), *b = find(other);
     if (a && b)
         text_.fail(a->offset > b->offset ? *a : *b,
-                   fmt::format("{} has both \"{}\" and \"{}\" (one of them would be right)", what_, key, other));
+                   fmt::format("{} has both \"{}\" and \"{}\", expected one of them", what_, key, other));
 }
 
 }  // namespace umbra

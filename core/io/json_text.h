@@ -1,15 +1,15 @@
-// JSON values that know where they stand in their file, so that any fault found later can point there. Internal to
-// core.
+// JSON values with their offsets in the file, so that a message about any of them can point there. Internal to core.
 #pragma once
 
-#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 #include "umbra/core/base/math.h"
+#include "umbra/core/io/limits.h"
 #include "umbra/core/io/source_text.h"
+#include "umbra/core/scene/names.h"
 
 namespace umbra {
 
@@ -28,14 +28,7 @@ struct JsonMember {
     JsonValue value;
 };
 
-/// A closed or open range of numbers and how a message puts it.
-struct Range {
-    double min = 0, max = 0;
-    bool open = false;       ///< min and max themselves are outside
-    std::string_view words;  ///< "a number from 0 to 1"
-};
-
-/// A file that was parsed, and checked access to its values. Every member throws InputError with the place.
+/// A file that was parsed, and checked access to its values. Every member throws InputError with line and column.
 class JsonText {
 public:
     explicit JsonText(SourceText source);
@@ -44,10 +37,10 @@ public:
     [[nodiscard]] const SourceText& source() const { return source_; }
     [[noreturn]] void fail(const JsonValue& at, std::string_view message) const { source_.fail(at.offset, message); }
 
-    /// `what` is the name of the value for messages; `right` what would be right.
-    [[noreturn]] void wrong_type(const JsonValue& v, std::string_view what, std::string_view right) const;
+    /// `what` is the name of the value in messages: "WHAT is FOUND, expected EXPECTED".
+    [[noreturn]] void wrong_type(const JsonValue& v, std::string_view what, std::string_view expected) const;
     [[nodiscard]] const JsonObject& object(const JsonValue& v, std::string_view what) const;
-    [[nodiscard]] const JsonArray& array(const JsonValue& v, std::string_view what, std::string_view of) const;
+    [[nodiscard]] const JsonArray& array(const JsonValue& v, std::string_view what, std::string_view expected) const;
     [[nodiscard]] const std::string& string(const JsonValue& v, std::string_view what) const;
     [[nodiscard]] bool boolean(const JsonValue& v, std::string_view what) const;
     [[nodiscard]] double number(const JsonValue& v, std::string_view what, const Range& range) const;
@@ -55,7 +48,15 @@ public:
     [[nodiscard]] dvec3 vector(const JsonValue& v, std::string_view what, const Range& range) const;  ///< [x, y, z]
     /// Index into `choices`.
     [[nodiscard]] std::size_t choice(const JsonValue& v, std::string_view what,
-                                     std::initializer_list<std::string_view> choices) const;
+                                     const std::vector<std::string_view>& choices) const;
+    /// The value of an enum by its name (scene/names.h).
+    template <class Enum>
+    [[nodiscard]] Enum choice(const JsonValue& v, std::string_view what,
+                              const std::vector<Enum>& choices = values_of<Enum>()) const {
+        std::vector<std::string_view> names;
+        for (const Enum choice : choices) names.push_back(name_of(choice));
+        return choices[choice(v, what, names)];
+    }
     /// "unknown WHAT "FOUND" (did you mean ...? known: ...)"
     [[noreturn]] void unknown(std::size_t offset, std::string_view what, std::string_view found,
                               const std::vector<std::string_view>& known) const;

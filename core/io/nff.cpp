@@ -1,5 +1,5 @@
 // NFF, the Neutral File Format of the Standard Procedural Databases, version 3.1: view, lights, fills, polygons,
-// patches, spheres, cones and cylinders. Read by words, not by lines, as its own programs write it.
+// patches, spheres, cones and cylinders. Read token by token, not by lines, as its own programs write it.
 //
 // Eric Haines. A Proposal for Standard Graphics Environments. 1987
 //
@@ -8,8 +8,9 @@
 //                         index_of_refraction i; lit from behind only where T > 0
 //   l x y z               a point light without attenuation. The format leaves intensity open: 1 / sqrt(lights) each
 //   (no ambient light)    I_a = 0.1
-//   s, c                  triangles with exact normals. Vertices lie on the surface, and so many go around that the
-//                         chord stays within an eighth of a pixel of the file's own view, but 8 to 96
+//   s, c                  triangles with exact normals. Vertices lie on the surface. Their number around the axis is 8
+//   to
+//                         96, as many as keep the chord within an eighth of a pixel of the file's own view
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,18 +20,17 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/io/file_normals.h"
+#include "umbra/core/io/limits.h"
 #include "umbra/core/io/polygon.h"
 #include "umbra/core/io/scene_readers.h"
-#include "umbra/core/io/text_words.h"
+#include "umbra/core/io/tokens.h"
 #include "umbra/core/scene/primitives.h"
 
 namespace umbra {
 namespace {
 
 constexpr int kFewest = 8, kMost = 96;
-// A few bytes of the file make thousands of triangles here, so the limit is lower than that for triangles that are all
-// in the file.
-constexpr std::uint64_t kMostTriangles = 20'000'000;
 
 // How wide a pixel is, seen from the eye: what tessellation aims at.
 struct View {
@@ -50,46 +50,49 @@ int segments_around(const View& view, dvec3 centre, double reach, double radius)
 
 struct Reader {
     const SourceText& source;
-    Words words;
+    Tokens tokens;
     SceneFile read;
     View view;
     std::vector<Mesh> meshes;  // one a material
     std::map<std::array<float, 8>, std::uint32_t> fills;
     std::uint32_t material    = 0xffffffffu;
     std::uint64_t triangles   = 0;
-    std::size_t crossing      = 0;
+    std::size_t self_crossing = 0;  // polygons
+    FileNormals normals;
     bool any_light_has_colour = false;
 
-    explicit Reader(const SourceText& text) : source(text), words(text) {}
+    explicit Reader(const SourceText& text) : source(text), tokens(text) {}
     Scene& scene() { return read.scene; }
 
     void expect(std::string_view name) {
-        const Word word = words.next();
-        if (word.text != name)
-            words.fail(word, fmt::format("{} where {} would be right", in_quotes(word.text), in_quotes(name)));
+        const Token token = tokens.next();
+        if (token.text != name)
+            tokens.fail(token, fmt::format("found {}, expected {}",
+                                           token ? in_quotes(token.text) : "the end of the file", in_quotes(name)));
     }
 
     void read_view() {
         Camera& camera = scene().camera;
         expect("from");
-        camera.eye = words.point("a coordinate of the eye");
+        camera.eye = tokens.point("a coordinate of the eye");
         expect("at");
-        camera.target = words.point("a coordinate of the target");
+        camera.target = tokens.point("a coordinate of the target");
         expect("up");
-        camera.up = words.point("a component of up");
+        camera.up = tokens.point("a component of up");
         expect("angle");
-        const std::size_t at_angle = words.offset();
-        camera.fov_y               = words.real("the angle of view");
-        if (!(camera.fov_y > 0 && camera.fov_y < 180))
-            source.fail(at_angle, "the angle of view is not between 0 and 180 degrees");
+        const std::size_t at_angle = tokens.offset();
+        camera.fov_y               = tokens.real("the angle of view");
+        if (!kFieldOfView.holds(camera.fov_y))
+            source.fail(at_angle,
+                        fmt::format("the angle of view is {:g}, expected {}", camera.fov_y, kFieldOfView.words));
         expect("hither");
-        (void)words.real("the hither distance");
+        (void)tokens.real("the hither distance");
         expect("resolution");
         const auto side = [&](std::string_view what) {
-            const Word word = words.next();
-            const auto n    = words.as_integer(word, what);
+            const Token token = tokens.next();
+            const auto n      = tokens.as_integer(token, what);
             if (n < 1 || n > kMaxPictureSide)
-                words.fail(word, fmt::format("{} is {} (1 to {} would be right)", what, n, kMaxPictureSide));
+                tokens.fail(token, fmt::format("{} is {}, expected 1 to {}", what, n, kMaxPictureSide));
             return int(n);
         };
         scene().width   = side("the resolution in x");
@@ -103,23 +106,23 @@ struct Reader {
         Light light;
         light.kind     = LightKind::point;
         light.name     = fmt::format("light_{}", scene().lights.size() + 1);
-        light.position = words.point("a coordinate of the light");
-        if (const Word red = words.next_on_line()) {
-            light.diffuse.r      = words.as_real(red, "the light's red");
-            light.diffuse.g      = words.real_on_line("the light's green");
-            light.diffuse.b      = words.real_on_line("the light's blue");
+        light.position = tokens.point("a coordinate of the light");
+        if (const Token red = tokens.next_on_line()) {
+            light.diffuse.r      = tokens.as_real(red, "the light's red");
+            light.diffuse.g      = tokens.real_on_line("the light's green");
+            light.diffuse.b      = tokens.real_on_line("the light's blue");
             light.specular       = light.diffuse;
             any_light_has_colour = true;
         }
         scene().lights.push_back(light);
     }
 
-    void read_fill(Word entity) {
+    void read_fill(Token entity) {
         std::array<float, 8> f;
         constexpr std::array kNames = {"red", "green", "blue", "Kd", "Ks", "Shine", "T", "the index of refraction"};
         for (std::size_t i = 0; i < f.size(); ++i) {
-            f[i] = words.real(kNames[i]);
-            if (f[i] < 0) words.fail(entity, fmt::format("{} of this fill is negative", kNames[i]));
+            f[i] = tokens.real(kNames[i]);
+            if (f[i] < 0) tokens.fail(entity, fmt::format("{} of this fill is negative", kNames[i]));
         }
         const auto [it, added] = fills.try_emplace(f, std::uint32_t(scene().materials.size()));
         material               = it->second;
@@ -135,15 +138,14 @@ struct Reader {
         m.reflect             = std::min(f[4], 1.0f);
         m.index_of_refraction = f[7] > 0 ? f[7] : 1;
         m.two_sided           = f[6] > 0;
-        if (m.transmit > 1) words.fail(entity, "T of this fill is above 1 (0 to 1 would be right)");
+        if (m.transmit > 1) tokens.fail(entity, "T of this fill is above 1, expected 0 to 1");
         scene().materials.push_back(m);
         meshes.emplace_back();
     }
 
     Mesh& mesh() {
         if (material == 0xffffffffu) {
-            scene().warnings.push_back(
-                fmt::format("{}: surfaces before any fill \"f\" are taken as grey.", source.file));
+            scene().warnings.push_back(fmt::format("{}: surfaces before any fill \"f\" are grey.", source.file));
             material = std::uint32_t(scene().materials.size());
             Material m;
             m.name      = "default";
@@ -164,27 +166,27 @@ struct Reader {
         triangles += part.triangles.size();
     }
 
-    void read_polygon(Word entity, bool patch) {
-        const Word count = words.next();
-        const auto n     = words.as_integer(count, "the number of corners");
-        if (n < 3) words.fail(count, fmt::format("a polygon of {} corners (at least 3 would be right)", n));
+    void read_polygon(Token entity, bool patch) {
+        const Token count = tokens.next();
+        const auto n      = tokens.as_integer(count, "the number of corners");
+        if (n < 3) tokens.fail(count, fmt::format("a polygon of {} corners, expected at least 3", n));
         Mesh part;
         std::vector<std::uint32_t> polygon;
         for (std::int64_t i = 0; i < n; ++i) {
-            if (words.at_end())
-                words.fail(entity, fmt::format("the file ends after {} of this polygon's {} corners", i, n));
-            part.positions.push_back(words.point("a corner's coordinate"));
-            part.normals.push_back(patch ? words.point("a component of a normal") : vec3(0));
+            if (tokens.at_end())
+                tokens.fail(entity, fmt::format("the file ends after {} of this polygon's {} corners", i, n));
+            part.positions.push_back(tokens.point("a corner's coordinate"));
+            part.normals.push_back(patch ? normals.usable(tokens.normal()) : vec3(0));
             polygon.push_back(std::uint32_t(i));
         }
-        if (!triangulate(part.positions, polygon, part.triangles)) ++crossing;
+        if (!triangulate(part.positions, polygon, part.triangles)) ++self_crossing;
         append(part);
     }
 
-    void read_sphere(Word entity) {
-        const vec3 centre  = words.point("a coordinate of the centre");
-        const float radius = words.real("the radius");
-        if (radius == 0) words.fail(entity, "a sphere of radius 0");
+    void read_sphere(Token entity) {
+        const vec3 centre  = tokens.point("a coordinate of the centre");
+        const float radius = tokens.real("the radius");
+        if (radius == 0) tokens.fail(entity, "a sphere of radius 0");
         const float size = std::abs(radius);
         const int around = segments_around(view, dvec3(centre), size, size);
         Mesh part        = make_sphere(size, around, around / 2);
@@ -199,16 +201,16 @@ struct Reader {
         for (uvec3& t : mesh.triangles) std::swap(t.y, t.z);
     }
 
-    void read_cone(Word entity) {
-        const dvec3 base(words.point("a coordinate of the base"));
-        const double r_base = words.real("the base radius");
-        const dvec3 apex(words.point("a coordinate of the apex"));
-        const double r_apex = words.real("the apex radius");
+    void read_cone(Token entity) {
+        const dvec3 base(tokens.point("a coordinate of the base"));
+        const double r_base = tokens.real("the base radius");
+        const dvec3 apex(tokens.point("a coordinate of the apex"));
+        const double r_apex = tokens.real("the apex radius");
         if (r_base * r_apex < 0)
-            words.fail(entity, "one radius of this cone is negative, one is not (both have one sign, or one is 0)");
-        if (r_base == 0 && r_apex == 0) words.fail(entity, "both radii of this cone are 0");
+            tokens.fail(entity, "one radius of this cone is negative, one is not (both have one sign, or one is 0)");
+        if (r_base == 0 && r_apex == 0) tokens.fail(entity, "both radii of this cone are 0");
         const double height = glm::length(apex - base);
-        if (height == 0 && r_base == r_apex) words.fail(entity, "base and apex of this cone are the same");
+        if (height == 0 && r_base == r_apex) tokens.fail(entity, "base and apex of this cone are the same");
 
         // Across the axis: any two unit vectors, right-handed with it. Coincident ends are a ring, facing +z.
         const dvec3 axis  = height > 0 ? (apex - base) / height : dvec3(0, 0, 1);
@@ -243,12 +245,12 @@ struct Reader {
     }
 
     void read_entities() {
-        while (const Word entity = words.next()) {
+        while (const Token entity = tokens.next()) {
             const std::string_view e = entity.text;
             if (e == "v")
                 read_view();
             else if (e == "b")
-                scene().background = words.point("a channel of the background");
+                scene().background = tokens.point("a channel of the background");
             else if (e == "l")
                 read_light();
             else if (e == "f")
@@ -260,9 +262,9 @@ struct Reader {
             else if (e == "c")
                 read_cone(entity);
             else
-                words.fail(entity, fmt::format("unknown entity {} (known: v b l f p pp s c)", in_quotes(e)));
-            if (triangles > kMostTriangles)
-                words.fail(entity, fmt::format("more than {} triangles with this one", kMostTriangles));
+                tokens.fail(entity, fmt::format("unknown entity {} (known: v b l f p pp s c)", in_quotes(e)));
+            if (triangles > kMaxTessellated)
+                tokens.fail(entity, fmt::format("more than {} triangles with this one", kMaxTessellated));
         }
     }
 };
@@ -275,8 +277,7 @@ SceneFile read_nff(const std::filesystem::path& file) {
     reader.read_entities();
     Scene& scene = reader.scene();
     if (reader.triangles == 0)
-        throw InputError(
-            fmt::format("{}: holds no surfaces (\"p\", \"pp\", \"s\" or \"c\" would be right)", source.file));
+        throw InputError(fmt::format("{}: holds no surfaces, expected \"p\", \"pp\", \"s\" or \"c\"", source.file));
 
     for (std::size_t m = 0; m < reader.meshes.size(); ++m) {
         const Mesh& mesh = reader.meshes[m];
@@ -287,9 +288,11 @@ SceneFile read_nff(const std::filesystem::path& file) {
         for (Light& light : scene.lights)
             light.diffuse = light.specular = vec3(1 / std::sqrt(float(scene.lights.size())));
     scene.ambient = vec3(0.1f);
-    scene.warnings.push_back("NFF knows no ambient light: I_a = 0.1 is assumed.");
-    if (reader.crossing > 0)
-        scene.warnings.push_back(fmt::format("{} polygons cross themselves: they were cut as fans.", reader.crossing));
+    scene.warnings.push_back("NFF has no ambient light: I_a = 0.1 is assumed.");
+    reader.normals.warn(scene.warnings);
+    if (reader.self_crossing > 0)
+        scene.warnings.push_back(
+            fmt::format("{} polygons cross themselves: they were triangulated as fans.", reader.self_crossing));
     return std::move(reader.read);
 }
 

@@ -9,10 +9,12 @@
 #include <set>
 #include <vector>
 
+#include "umbra/core/scene/names.h"
+
 namespace umbra {
 namespace {
 
-std::string quoted(const std::string& s) {
+std::string json_string(std::string_view s) {
     return nlohmann::json(s).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
@@ -65,7 +67,7 @@ std::string material_text(const Material& material) {
     m.differing("O_s", material.O_s, fallback.O_s);
     m.differing("emission", material.emission, fallback.emission);
     m.differing("shininess", material.shininess, fallback.shininess);
-    if (material.lobe == Lobe::blinn_phong) m.add("lobe", "\"blinn_phong\"");
+    if (material.lobe != fallback.lobe) m.add("lobe", json_string(name_of(material.lobe)));
     if (!material.two_sided) m.add("two_sided", "false");
     m.differing("opacity", material.opacity, fallback.opacity);
     m.differing("reflect", material.reflect, fallback.reflect);
@@ -77,8 +79,7 @@ std::string material_text(const Material& material) {
 void add_spot(Members& m, const Spot& spot) {
     // Degrees in double: the way back rounds to the same float of radians.
     const auto degrees = [](float radians) { return fmt::format("{}", glm::degrees(static_cast<double>(radians))); };
-    constexpr std::string_view falloffs[] = {"\"cosine\"", "\"zachmann\"", "\"smooth\""};
-    m.add("falloff", std::string(falloffs[static_cast<std::size_t>(spot.falloff)]));
+    m.add("falloff", json_string(name_of(spot.falloff)));
     m.add("cutoff", degrees(spot.cutoff));
     m.add("inner", degrees(spot.inner));
     m.add("exponent", number(spot.exponent));
@@ -86,8 +87,8 @@ void add_spot(Members& m, const Spot& spot) {
 
 std::string light_text(const Light& light) {
     Members m;
-    m.add("type", fmt::format("\"{}\"", to_string(light.kind)));
-    m.add("name", quoted(light.name));
+    m.add("type", json_string(name_of(light.kind)));
+    m.add("name", json_string(light.name));
     if (light.kind != LightKind::directional) m.add("position", vector(light.position));
     if (light.kind == LightKind::directional || light.kind == LightKind::spot || light.kind == LightKind::disk)
         m.add("direction", vector(light.direction));
@@ -129,7 +130,7 @@ std::string object_text(const Scene& scene, const Object& object, const std::str
     return fmt::format(
         "{{\"type\": \"triangles\", \"name\": {}, \"material\": {},\n     \"positions\": [{}],\n{}     \"triangles\": "
         "[{}]}}",
-        quoted(object.name), quoted(material), positions,
+        json_string(object.name), json_string(material), positions,
         smooth ? fmt::format("     \"normals\": [{}],\n", normals) : "", triangles);
 }
 
@@ -158,21 +159,20 @@ std::string lines(const Items& items, const Text& text) {
 
 std::string native_text(const Scene& scene) {
     const std::vector<std::string> names = material_names(scene);
-    constexpr std::string_view tones[]   = {"clamp", "divide", "hue"};
     std::vector<std::size_t> material_list(names.size());
     for (std::size_t i = 0; i < names.size(); ++i) material_list[i] = i;
 
     std::string text = "{\n";
-    if (!scene.title.empty()) text += fmt::format("  \"title\": {},\n", quoted(scene.title));
-    if (!scene.shows.empty()) text += fmt::format("  \"shows\": {},\n", quoted(scene.shows));
+    if (!scene.title.empty()) text += fmt::format("  \"title\": {},\n", json_string(scene.title));
+    if (!scene.shows.empty()) text += fmt::format("  \"shows\": {},\n", json_string(scene.shows));
     text +=
         fmt::format("  \"size\": [{}, {}],\n  \"camera\": {},\n", scene.width, scene.height, camera_text(scene.camera));
     text +=
         fmt::format("  \"ambient\": {}, \"background\": {}, \"tone\": \"{}\", \"exposure\": {}, \"viewer\": \"{}\",\n",
-                    vector(scene.ambient), vector(scene.background), tones[static_cast<std::size_t>(scene.tone)],
-                    number(scene.exposure), scene.local_viewer ? "local" : "infinite");
+                    vector(scene.ambient), vector(scene.background), name_of(scene.tone), number(scene.exposure),
+                    name_of(Viewer{scene.local_viewer}));
     text += fmt::format("  \"materials\": {{{}\n  }},\n", lines(material_list, [&](std::size_t i) {
-                            return fmt::format("{}: {}", quoted(names[i]), material_text(scene.materials[i]));
+                            return fmt::format("{}: {}", json_string(names[i]), material_text(scene.materials[i]));
                         }));
     text += fmt::format("  \"lights\": [{}\n  ],\n", lines(scene.lights, light_text));
     text += fmt::format("  \"objects\": [{}\n  ]\n}}\n", lines(scene.objects, [&](const Object& object) {

@@ -55,7 +55,7 @@ SourceText read_text(const std::filesystem::path& file, std::size_t max_bytes) {
     if (!std::filesystem::exists(status))
         throw InputError(fmt::format("{}: no such file{}", file.string(), hint_for_missing(file)));
     if (std::filesystem::is_directory(status))
-        throw InputError(fmt::format("{}: is a folder (a file would be right)", file.string()));
+        throw InputError(fmt::format("{}: is a folder, expected a file", file.string()));
 
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: cannot open: {}", file.string(), std::strerror(errno)));

@@ -3,19 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/scene/names.h"
+
 namespace umbra {
 
-std::string_view to_string(LightKind kind) {
-    switch (kind) {
-        case LightKind::directional: return "directional";
-        case LightKind::point: return "point";
-        case LightKind::spot: return "spot";
-        case LightKind::rectangle: return "rectangle";
-        case LightKind::disk: return "disk";
-        case LightKind::sphere: return "sphere";
-    }
-    return "";
-}
+std::string_view to_string(LightKind kind) { return name_of(kind); }
 
 ToLight to_light(const Light& light, vec3 p) {
     // In double: a light far away must not lose its direction, nor a tiny scene its distances.

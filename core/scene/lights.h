@@ -14,7 +14,7 @@ enum class LightKind : std::uint8_t { directional, point, spot, rectangle, disk,
 [[nodiscard]] std::string_view to_string(LightKind kind);
 [[nodiscard]] constexpr bool is_area(LightKind k) { return k >= LightKind::rectangle; }
 
-/// f_att = 1 / (c1 + c2 d + c3 d^2), limited to at most 1 where `clamp` is set (REQUIREMENTS A9).
+/// f_att = 1 / (c1 + c2 d + c3 d^2), limited to at most 1 where `clamp` is set.
 /// All three zero is refused where scenes are read.
 struct Attenuation {
     float c1   = 1;
@@ -47,7 +47,7 @@ struct Light {
     vec3 edge_v{0, 0, 1};      ///< rectangle
     float radius = 0;          ///< disk, sphere; > 0
     float range  = 0;          ///< beyond this distance it gives nothing; 0: no limit
-    vec3 ambient{0};           ///< adds to the scene's global ambient (A8); never shadowed, never attenuated
+    vec3 ambient{0};           ///< adds to the scene's global ambient; never shadowed, never attenuated
     vec3 diffuse{1};           ///< I_j for the diffuse term
     vec3 specular{1};          ///< I_j for the specular term
     Attenuation attenuation;

@@ -1,4 +1,4 @@
-// Phong materials, per channel (REQUIREMENTS B1-B8).
+// Phong materials, per channel.
 #pragma once
 
 #include <string>

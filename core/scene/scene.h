@@ -53,7 +53,7 @@ struct Scene {
     vec3 background{0};  ///< where the eye ray meets nothing
     ToneMap tone      = ToneMap::clamp;
     float exposure    = 1;     ///< factor before the tone map
-    bool local_viewer = true;  ///< false: V is constant, against the view direction (B9)
+    bool local_viewer = true;  ///< false: V is constant, against the view direction
 
     std::vector<std::string> warnings;  ///< what loading assumed, a sentence each
 

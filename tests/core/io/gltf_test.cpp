@@ -57,6 +57,8 @@ std::string with_nodes(const std::string& nodes, const std::string& more = "") {
     return document("\"nodes\": [" + nodes + "], " + (more.empty() ? "" : more + ", ") + kMesh);
 }
 
+const std::string kGood = with_nodes(R"({"mesh": 0})");
+
 Scene load(const std::string& text) {
     const TemporaryFolder folder;
     Scene scene = load_scene(folder.write("t.gltf", text));
@@ -147,7 +149,7 @@ TEST(Gltf, PointsLinesAndTheIncompleteAreLeftOutWithAWarning) {
     EXPECT_EQ(scene.triangles.size(), 1u);
     EXPECT_TRUE(warns(scene, "2 primitives of points or lines"));
     EXPECT_TRUE(warns(scene, "without positions"));
-    EXPECT_TRUE(warns(scene, "has 4 corners, which leave some over"));
+    EXPECT_TRUE(warns(scene, "has 4 corners, which do not divide into triangles"));
     EXPECT_TRUE(warns(scene, "Colours of vertices"));
     EXPECT_TRUE(warns(scene, "Morph targets"));
     EXPECT_TRUE(warns(scene, "Skins"));
@@ -196,6 +198,44 @@ TEST(Gltf, AnEmptyDocumentIsAnEmptyScene) {
     const Scene scene = load(R"({"asset": {"version": "2.0"}})");
     EXPECT_TRUE(scene.triangles.empty());
     EXPECT_TRUE(warns(scene, "no triangles"));
+}
+
+std::string normals_of(const std::string& four) {
+    return kGood.substr(0, kGood.find("\"buffers\"")) + buffers(kSquare.substr(0, 48) + four + kSquare.substr(96)) +
+           "}";
+}
+
+TEST(Gltf, NormalsThatAreNotFiniteOrHaveNoLengthBecomeTheFaces) {
+    const float nan   = std::nanf("");
+    const Scene scene = load(normals_of(bytes_of<float>({nan, 0, 2, 0, 0, 2, 0, -kInfinity, 0, 0, 0, 0})));
+    ASSERT_EQ(scene.normals.size(), 4u);
+    int kept = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+        if (scene.positions[i] == vec3(1, 0, 0)) {
+            ++kept;
+            EXPECT_EQ(scene.normals[i], vec3(0, 0, 1)) << "the sound one stays";
+        } else {
+            EXPECT_EQ(scene.normals[i], vec3(0)) << "zero stands for the face's normal";
+        }
+    EXPECT_EQ(kept, 1);
+    const auto counts = [](const std::string& w) { return w.find("3 of 4 vertex normals") != std::string::npos; };
+    EXPECT_EQ(std::count_if(scene.warnings.begin(), scene.warnings.end(), counts), 1);
+    EXPECT_FALSE(warns(load(kGood), "vertex normals"));
+}
+
+TEST(Gltf, AnAccessorThatIsNotOnlyANormalStaysChecked) {
+    const std::string bad      = normals_of(bytes_of<float>({std::nanf(""), 0, 2, 0, 0, 2, 0, 0, 2, 0, 0, 2}));
+    const std::string as_both  = R"({"POSITION": 1, "NORMAL": 1})";
+    const std::string as_other = R"({"POSITION": 0, "TEXCOORD_0": 1})";
+    for (const std::string& attributes : {as_both, as_other}) {
+        std::string text           = bad;
+        const std::string original = R"({"POSITION": 0, "NORMAL": 1})";
+        text.replace(text.find(original), original.size(), attributes);
+        const TemporaryFolder folder;
+        EXPECT_NE(refusal(folder.write("a.gltf", text)).find("accessors[1]: component 0 of element 0 is nan"),
+                  std::string::npos)
+            << attributes;
+    }
 }
 
 // ---- cameras ----
@@ -284,6 +324,24 @@ TEST(Gltf, ExposureMakesLuxVisible) {
         load(with_nodes(R"({"mesh": 0},)" + shining(0),
                         punctual(sun) + R"(, "scenes": [{"nodes": [0, 1], "extras": {"umbra": {"exposure": 0.5}}}])"));
     EXPECT_EQ(said.exposure, 0.5f);
+}
+
+// 1000 W at 4 units and a sun of 5 W/m2, as Blender writes them by default and in the units of its other mode.
+std::string blender_lights(double candela) {
+    return with_nodes(R"({"mesh": 0},)" + shining(0, R"(, "translation": [0, 0, 4])") + "," + shining(1),
+                      punctual(fmt::format(R"({{"type": "point", "name": "lamp", "intensity": {}}},
+                                              {{"type": "directional", "name": "sun", "intensity": 5}})",
+                                           candela)));
+}
+
+TEST(Gltf, CandelaBesideLuxNamesTheUnitsOfBlender) {
+    const Scene standard = load(blender_lights(54351));
+    EXPECT_TRUE(warns(standard, "Lighting Mode \"Unitless\"")) << "3400 lux beside 5";
+    EXPECT_TRUE(warns(standard, "The ambient light of 0.1 cannot be seen"));
+    EXPECT_FALSE(warns(standard, "Light \"sun\" cannot be seen")) << "0.15 % can";
+    const Scene unitless = load(blender_lights(79.6));
+    EXPECT_FALSE(warns(unitless, "Blender"));
+    EXPECT_FALSE(warns(unitless, "cannot be seen"));
 }
 
 // ---- materials ----
@@ -464,7 +522,6 @@ TEST_P(BadGltf, IsRefusedWithPlaceAndReason) {
 std::string with(std::string s, const std::string& from, const std::string& to) {
     return s.replace(s.find(from), from.size(), to);
 }
-const std::string kGood = with_nodes(R"({"mesh": 0})");
 std::string node(const std::string& members) { return with_nodes("{" + members + "}"); }
 std::string light(const std::string& json) { return with_nodes(R"({"mesh": 0})", punctual(json)); }
 std::string camera(const std::string& json) { return with_nodes(R"({"mesh": 0})", R"("cameras": [)" + json + "]"); }
@@ -479,12 +536,12 @@ std::string accessor(const std::string& json) {
 INSTANTIATE_TEST_SUITE_P(
     Document, BadGltf,
     ::testing::ValuesIn(std::vector<Bad>{
-        {"empty", "", "empty (a glTF 2.0 file"},
+        {"empty", "", "empty, expected a glTF 2.0 file"},
         {"not_json", "{]", ":1:2: not JSON"},
         {"cut_off", kGood.substr(0, kGood.size() - 40), "not JSON"},
         {"number_beyond", with(kGood, R"("mesh": 0)", R"("mesh": 1e999)"), "too large"},
         {"nan", with(kGood, R"("mesh": 0)", R"("mesh": NaN)"), "not JSON"},
-        {"a_list", "[]", "(an object"},
+        {"a_list", "[]", "expected an object"},
         {"no_asset", "{}", "no \"asset\""},
         {"version_1", R"({"asset": {"version": "1.0"}})", ":1:23: version \"1.0\""},
         {"version_number", R"({"asset": {"version": 2}})", "version is the number 2"},
@@ -512,10 +569,10 @@ INSTANTIATE_TEST_SUITE_P(
          kGood.substr(0, kGood.find("\"buffers\"")) + buffers(kSquare.substr(0, 96) + "\x04" + kSquare.substr(97)) +
              "}",
          "index 0 of meshes[0].primitives[0] is 4, but there are 4 positions"},
-        {"no_buffer", with(kGood, R"("buffer": 0)", R"("buffer": 1)"), "buffer 1 is not there (the file has 1"},
+        {"no_buffer", with(kGood, R"("buffer": 0)", R"("buffer": 1)"), "buffer 1 does not exist (the file has 1"},
         {"negative_buffer", with(kGood, R"("buffer": 0)", R"("buffer": -1)"), "buffer is -1"},
         {"half_a_buffer", with(kGood, R"("buffer": 0)", R"("buffer": 0.5)"), "buffer is 0.5"},
-        {"no_view", with(kGood, R"("bufferView": 0)", R"("bufferView": 9)"), "bufferView 9 is not there"},
+        {"no_view", with(kGood, R"("bufferView": 0)", R"("bufferView": 9)"), "bufferView 9 does not exist"},
         {"view_too_long", with(kGood, R"("byteLength": 116})", R"("byteLength": 117})"),
          "bufferViews[0] is bytes 0 to 117 of a buffer of 116"},
         {"view_beyond", with(kGood, R"({"buffer": 0, )", R"({"buffer": 0, "byteOffset": 9007199254740992, )"),
@@ -543,11 +600,12 @@ INSTANTIATE_TEST_SUITE_P(
         {"unequal_counts", with(kGood, R"("NORMAL": 1)", R"("NORMAL": 2)"),
          "NORMAL has 6 elements, another attribute 4"},
         {"position_scalar", with(kGood, R"({"POSITION": 0, "NORMAL": 1})", R"({"POSITION": 2})"),
-         "POSITION is no accessor of type VEC3"},
-        {"indices_float", with(kGood, R"("indices": 2)", R"("indices": 0)"), "indices are no accessor of type SCALAR"},
+         "POSITION is not an accessor of type VEC3"},
+        {"indices_float", with(kGood, R"("indices": 2)", R"("indices": 0)"),
+         "indices are not an accessor of type SCALAR"},
         {"no_attributes", with(kGood, R"("attributes")", R"("attribs")"), "has no attributes"},
         {"mode", with(kGood, R"("indices": 2)", R"("mode": 7)"), "mode is 7"},
-        {"material", with(kGood, R"("indices": 2)", R"("material": 0)"), "material 0 is not there (the file has 0"},
+        {"material", with(kGood, R"("indices": 2)", R"("material": 0)"), "material 0 does not exist (the file has 0"},
         {"length_beyond", with(kGood, R"("byteLength": 116,)", R"("byteLength": 117,)"),
          "buffers[0] says 117 bytes, but 116 are there"},
         {"length_huge", with(kGood, R"("byteLength": 116,)", R"("byteLength": 9007199254740991,)"),
@@ -557,9 +615,9 @@ INSTANTIATE_TEST_SUITE_P(
         {"two_semicolons", with(kGood, ";base64,", ";;base64,"), "the data URI is malformed"},
         {"missing_file", with(kGood, "data:application/octet-stream;base64,", "no/such/"), "there is no file"},
         {"the_web", with(kGood, "data:application/octet-stream;base64,", "https://example.org/"),
-         "is not read (a file beside this one"},
+         "is not read, expected a file beside this one"},
         {"absolute", with(kGood, "data:application/octet-stream;base64,", "/dev/"),
-         "is not read (a file beside this one"},
+         "is not read, expected a file beside this one"},
         {"no_uri", R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4}]})", "buffers[0] has no uri"},
     }),
     [](const auto& test) { return test.param.name; });
@@ -567,21 +625,21 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Things, BadGltf,
     ::testing::ValuesIn(std::vector<Bad>{
-        {"mesh", node(R"("mesh": 1)"), "mesh 1 is not there (the file has 1, counted from 0)"},
-        {"camera", node(R"("camera": 0)"), "camera 0 is not there (the file has 0"},
-        {"light", with_nodes(shining(0)), "light 0 is not there"},
-        {"child", node(R"("children": [7])"), "node 7 is not there"},
+        {"mesh", node(R"("mesh": 1)"), "mesh 1 does not exist (the file has 1, counted from 0)"},
+        {"camera", node(R"("camera": 0)"), "camera 0 does not exist (the file has 0"},
+        {"light", with_nodes(shining(0)), "light 0 does not exist"},
+        {"child", node(R"("children": [7])"), "node 7 does not exist"},
         {"own_child", node(R"("children": [0])"), "nodes[0] is its own ancestor"},
         {"loop", with_nodes(R"({"children": [1]}, {"children": [2]}, {"children": [0]})"),
-         "is its own ancestor (a tree would be right)"},
+         "is its own ancestor, expected a tree"},
         {"two_parents", with_nodes(R"({"children": [2]}, {"children": [2]}, {})"),
          "node 2 is a child of node 0 already"},
-        {"scene", with_nodes(R"({"mesh": 0})", R"("scene": 3, "scenes": [{}])"), "scene 3 is not there"},
-        {"scene_node", with_nodes(R"({"mesh": 0})", R"("scenes": [{"nodes": [1]}])"), "node 1 is not there"},
+        {"scene", with_nodes(R"({"mesh": 0})", R"("scene": 3, "scenes": [{}])"), "scene 3 does not exist"},
+        {"scene_node", with_nodes(R"({"mesh": 0})", R"("scenes": [{"nodes": [1]}])"), "node 1 does not exist"},
         {"scene_twice", with_nodes(R"({"mesh": 0})", R"("scenes": [{"nodes": [0, 0]}])"), "node 0 is named twice"},
         {"scene_of_children", with_nodes(R"({"children": [1]}, {})", R"("scenes": [{"nodes": [1]}])"),
          "node 1 is the child of another"},
-        {"matrix_short", node(R"("matrix": [1, 0, 0])"), "(16 numbers"},
+        {"matrix_short", node(R"("matrix": [1, 0, 0])"), "expected 16 numbers"},
         {"matrix_projective", node(R"("matrix": [1,0,0,1, 0,1,0,0, 0,0,1,0, 0,0,0,1])"),
          "the last row of matrix is (1, 0, 0, 1)"},
         {"matrix_and_scale", node(R"("matrix": [1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1], "scale": [1, 1, 1])"),
@@ -595,7 +653,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"light_angles_same", light(R"({"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.25}})"),
          "is not less"},
         {"light_wide", light(R"({"type": "spot", "spot": {"outerConeAngle": 1.57079644}})"),
-         "(an angle above 0, at most pi/2"},
+         "expected an angle in radians, from 1.75e-5 to pi/2"},
         {"light_inner", light(R"({"type": "spot", "spot": {"innerConeAngle": -0.01}})"), "innerConeAngle is -0.01"},
         {"light_no_spot", light(R"({"type": "spot"})"), "without \"spot\""},
         {"light_no_type", light(R"({})"), "lights[0] has no type"},
@@ -608,7 +666,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"camera_far", camera(R"({"type": "perspective", "perspective": {"yfov": 1, "znear": 10, "zfar": 1}})"),
          "zfar 1 is not beyond znear 10"},
         {"camera_angle", camera(R"({"type": "perspective", "perspective": {"yfov": 3.2, "znear": 1}})"),
-         "yfov is 3.2 (an angle between 0 and pi"},
+         "yfov is 3.2, expected an angle in radians"},
         {"camera_no_angle", camera(R"({"type": "perspective", "perspective": {"znear": 1}})"),
          "cameras[0] has no yfov"},
         {"camera_type", camera(R"({"type": "fisheye"})"), "fisheye"},
@@ -618,11 +676,11 @@ INSTANTIATE_TEST_SUITE_P(
         {"camera_in_a_flat_node",
          with_nodes(R"({"camera": 0, "scale": [0, 0, 0]})",
                     R"("cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}])"),
-         "a transform without direction"},
+         "leaves no direction"},
         {"material_metallic", document(R"("materials": [{"pbrMetallicRoughness": {"metallicFactor": 1.5}}])"),
-         "metallicFactor is 1.5 (a number from 0 to 1"},
+         "metallicFactor is 1.5, expected a number from 0 to 1"},
         {"material_base", document(R"("materials": [{"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1]}}])"),
-         "baseColorFactor is a list of 3 values (4 numbers"},
+         "baseColorFactor is a list of 3 values, expected 4 numbers"},
         {"material_alpha", document(R"("materials": [{"alphaMode": "GLASS"}])"), "GLASS"},
         {"material_texture", document(R"("materials": [{"normalTexture": {"index": 0, "scale": "big"}}])"),
          "scale is the string \"big\""},

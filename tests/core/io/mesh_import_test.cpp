@@ -60,6 +60,10 @@ std::string binary_ply(bool big) {
     return s;
 }
 
+std::string with(std::string s, const std::string& from, const std::string& to) {
+    return s.replace(s.find(from), from.size(), to);
+}
+
 TEST(Off, Pyramid) {
     const TemporaryFolder folder;
     const Scene scene = load_scene(folder.write("p.off", kOff));
@@ -112,6 +116,38 @@ TEST(Ply, NormalsAndStrips) {
     EXPECT_EQ(scene.normals[0], vec3(0, 0, 1));
 }
 
+TEST(MeshNormals, WhatIsNotFiniteBecomesTheFaces) {
+    const TemporaryFolder folder;
+    const std::string head =
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float "
+        "ny\nproperty float nz\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    const std::string text = "0 0 0 nan 0 1\n1 0 0 0 0 2\n0 1 0 0 -inf 1\n3 0 1 2\n";
+    std::string binary;
+    for (const float x :
+         {0.f, 0.f, 0.f, std::nanf(""), 0.f, 1.f, 1.f, 0.f, 0.f, 0.f, 0.f, 2.f, 0.f, 1.f, 0.f, 0.f, -kInfinity, 1.f})
+        binary += bytes_of(x);
+    binary += '\3' + bytes_of(0u) + bytes_of(1u) + bytes_of(2u);
+    for (const auto& file : {folder.write("a.ply", "ply\nformat ascii 1.0\n" + head + text),
+                             folder.write("b.ply", "ply\nformat binary_little_endian 1.0\n" + head + binary),
+                             folder.write("c.off", "NOFF\n3 1 0\n" + text)}) {
+        const Scene scene = load_scene(file);
+        EXPECT_EQ(scene.normals, (std::vector<vec3>{vec3(0), vec3(0, 0, 1), vec3(0)})) << file;
+        EXPECT_TRUE(warns(scene, "2 of 3 vertex normals")) << file;
+    }
+}
+
+TEST(Stl, NormalsAreIgnoredWhateverTheyAre) {
+    const TemporaryFolder folder;
+    std::string binary = binary_stl(1, 1);
+    binary.replace(84, 4, bytes_of(std::nanf("")));
+    for (const auto& file :
+         {folder.write("a.stl", with(kStl, "normal 0 0 1", "normal nan nan nan")), folder.write("b.stl", binary)}) {
+        const Scene scene = load_scene(file);
+        EXPECT_EQ(scene.triangles.size(), 1u);
+        EXPECT_FALSE(warns(scene, "normals"));
+    }
+}
+
 TEST(Stl, TextAndSeveralSolids) {
     const TemporaryFolder folder;
     const Scene scene = load_scene(folder.write("a.stl", kStl + kStl));
@@ -143,14 +179,10 @@ TEST_P(BadMesh, IsRefusedWithPlaceAndReason) {
     EXPECT_NE(message.find(GetParam().expected), std::string::npos) << message;
 }
 
-std::string with(std::string s, const std::string& from, const std::string& to) {
-    return s.replace(s.find(from), from.size(), to);
-}
-
 INSTANTIATE_TEST_SUITE_P(
     All, BadMesh,
     ::testing::ValuesIn(std::vector<Bad>{
-        {"off_empty", "a.off", "", "(OFF, or with any of"},
+        {"off_empty", "a.off", "", ", expected OFF, or OFF with any of"},
         {"off_other", "a.off", "solid x\n", ":1:1: the file begins with \"solid\""},
         {"off_binary", "a.off", "OFF BINARY\n", "binary OFF is not read"},
         {"off_no_edges", "a.off", "OFF\n3 4\n0 0 0\n", ":2:4: the number of edges is missing"},
@@ -167,7 +199,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"off_cut_off", "a.off", kOff.substr(0, kOff.size() - 9), "the file ends after 4 of 5 faces"},
         {"off_face_huge", "a.off", with(kOff, "4 3 2 1 0", "999999999 3 2 1 0"), ":"},
         {"off_no_faces", "a.off", "OFF\n1 0 0\n0 0 0\n", "holds no faces"},
-        {"ply_empty", "a.ply", "", "(ply would be right)"},
+        {"ply_empty", "a.ply", "", ", expected ply"},
         {"ply_cut_header", "a.ply", kPly.substr(0, kPly.find("element")), "the file ends within the header"},
         {"ply_format", "a.ply", with(kPly, "ascii", "morse"), ":2:8: unknown format \"morse\""},
         {"ply_no_format", "a.ply", with(kPly, "format ascii 1.0\n", ""), "names no format"},
@@ -194,8 +226,8 @@ INSTANTIATE_TEST_SUITE_P(
          "faces before their vertices"},
         {"ply_binary_cut_off", "a.ply", binary_ply(false).substr(0, binary_ply(false).size() - 10),
          "the file ends within"},
-        {"stl_empty", "a.stl", "", "0 bytes; at least 84"},
-        {"stl_short", "a.stl", "solidity", "neither text"},
+        {"stl_empty", "a.stl", "", "at least 84 bytes (0 found)"},
+        {"stl_short", "a.stl", "solidity", "neither text STL nor binary STL"},
         {"stl_counts", "a.stl", with(binary_stl(2, 1), "solid", "heavy"),
          "byte 80: 2 facets take 184 bytes, but the file has 134"},
         {"stl_nan", "a.stl", binary_stl(1, 1, std::nanf("")), "byte 108: a coordinate of a facet is nan"},
@@ -203,10 +235,11 @@ INSTANTIATE_TEST_SUITE_P(
         {"stl_text_nan", "a.stl", with(kStl, "vertex 1 0 0", "vertex 1 nan 0"),
          ":5:10: a vertex coordinate is \"nan\""},
         {"stl_text_two_vertices", "a.stl", with(kStl, "vertex 1 0 0\n", ""),
-         ":6:1: \"endloop\" where \"vertex\" would be right"},
-        {"stl_text_cut_off", "a.stl", kStl.substr(0, kStl.find("endfacet")), "the end of the file where \"endfacet\""},
+         ":6:1: found \"endloop\", expected \"vertex\""},
+        {"stl_text_cut_off", "a.stl", kStl.substr(0, kStl.find("endfacet")),
+         "found the end of the file, expected \"endfacet\""},
         {"stl_text_no_end", "a.stl", kStl.substr(0, kStl.find("endsolid")),
-         "the end of the file where \"facet\" or \"endsolid\""},
+         "found the end of the file, expected \"facet\" or \"endsolid\""},
         {"stl_no_facets", "a.stl", "solid x\nendsolid x\n", "holds no faces"},
     }),
     [](const auto& test) { return test.param.name; });

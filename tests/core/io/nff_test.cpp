@@ -165,8 +165,9 @@ INSTANTIATE_TEST_SUITE_P(
         {"empty", "", "holds no surfaces"},
         {"no_surfaces", kView + kFill, "holds no surfaces"},
         {"unknown", kFill + "q 1 2 3\n", ":2:1: unknown entity \"q\" (known: v b l f p pp s c)"},
-        {"view_without_at", "v\nfrom 0 0 1\nup 0 1 0\n", ":3:1: \"up\" where \"at\" would be right"},
-        {"angle", "v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 180\n", "not between 0 and 180"},
+        {"view_without_at", "v\nfrom 0 0 1\nup 0 1 0\n", ":3:1: found \"up\", expected \"at\""},
+        {"angle", "v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 180\n",
+         "the angle of view is 180, expected an angle in degrees"},
         {"resolution", "v\nfrom 0 0 1\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresolution 0 99999999\n",
          ":7:12: the resolution in x is 0"},
         {"view_cut_off", "v\nfrom 0 0 1\nat 0 0", ":3:7: a coordinate of the target is missing"},
@@ -186,6 +187,15 @@ INSTANTIATE_TEST_SUITE_P(
         {"no_axis", kFill + "c 0 0 0 1 0 0 0 1\n", "base and apex of this cone are the same"},
     }),
     [](const auto& test) { return test.param.name; });
+
+TEST(Nff, NormalsOfPatchesThatAreNotFiniteBecomeTheFaces) {
+    const TemporaryFolder folder;
+    const Scene scene = load_scene(
+        folder.write("a.nff", kFill + "pp 3\n0 0 0 nan 0 1\n1 0 0 0 0 2\n0 1 0 0 0 1\np 3\n0 0 0\n1 0 0\n0 1 0\n"));
+    EXPECT_EQ(scene.normals[0], vec3(0));
+    EXPECT_EQ(scene.normals[1], vec3(0, 0, 1));
+    EXPECT_TRUE(warns(scene, "1 of 3 vertex normals")) << "polygons without normals are not counted";
+}
 
 TEST(Nff, SurfacesBeforeAnyFillAreGrey) {
     const TemporaryFolder folder;

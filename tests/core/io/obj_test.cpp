@@ -112,6 +112,18 @@ TEST(Obj, GroupsBecomeObjectsAndComeBack) {
     EXPECT_EQ(scene.materials[scene.objects[3].material].name, "red");
 }
 
+TEST(Obj, NormalsThatAreNotFiniteOrHaveNoLengthBecomeTheFaces) {
+    const TemporaryFolder folder;
+    const Scene scene =
+        load_scene(folder.write("n.obj",
+                                "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn nan 0 0\nvn 0 0 0\nvn 0 1e999 0\nvn 0 0 2\n"
+                                "f 1//1 2//2 3//3\nf 1//4 2//4 3//4\n"));
+    expect_sound(scene);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(scene.normals[scene.triangles[0][k]], vec3(0));
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(scene.normals[scene.triangles[1][k]], vec3(0, 0, 1));
+    EXPECT_TRUE(warns(scene, "3 of 4 vertex normals are not finite or have no length"));
+}
+
 TEST(Obj, MaterialsOfTheMtlFile) {
     const TemporaryFolder folder;
     (void)folder.write(
@@ -159,7 +171,7 @@ TEST(Obj, SeveralMtlFilesOnOneLineAndMissingOnes) {
     EXPECT_EQ(both.materials[0].k_d, vec3(1, 0, 0));
     EXPECT_EQ(both.materials[1].k_d, vec3(0, 1, 0));
     const Scene none = load_scene(folder.write("none.obj", "mtllib c.mtl\n" + faces));
-    EXPECT_TRUE(warns(none, "\"c.mtl\" is not there"));
+    EXPECT_TRUE(warns(none, "\"c.mtl\" does not exist"));
     EXPECT_EQ(none.materials[0].name, "a") << "names are kept";
     const Scene windows = load_scene(folder.write("windows.obj", "mtllib C:\\art\\a.mtl\n" + faces));
     EXPECT_EQ(windows.materials[0].k_d, vec3(1, 0, 0)) << "looked for beside the OBJ too";
@@ -206,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"beyond_double", "v 0 1e999 0\n", "is \"1e999\""},
         {"beyond_double_spelt_out", "v 0 1" + std::string(400, '0') + " 0\n", ":1:5: a vertex coordinate is"},
         {"beyond_float", "v 0 1e30 0\n", "is \"1e30\""},
-        {"nan_normal", kThree + "vn nan 0 0\nf 1 2 3\n", ":4:4: a component of a normal"},
+        {"normal_word", kThree + "vn one 0 0\nf 1 2 3\n", ":4:4: a component of a normal"},
         {"nan_texture", kThree + "vt nan 0\nf 1 2 3\n", ":4:4: a texture coordinate"},
         {"index_zero", kThree + "f 1 0 3\n", ":4:5: the vertex index is 0"},
         {"index_beyond", kThree + "f 1 2 4\n", ":4:1: corner 3 of the face names vertex 4, but the file has 3"},
@@ -220,7 +232,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"four_parts", kThree + "f 1/1/1/1 2 3\n", ":4:3: the face corner is \"1/1/1/1\""},
         {"normal_beyond", kThree + "vn 0 0 1\nf 1//1 2//1 3//2\n", ":5:1: corner 3 of the face names normal 2"},
         {"normal_zero", kThree + "vn 0 0 1\nf 1//0 2//1 3//1\n", "the normal index is 0"},
-        {"one_corner", kThree + "f 1\n", ":4:1: a face with 1 corner (at least 3 would be right)"},
+        {"one_corner", kThree + "f 1\n", ":4:1: a face with 1 corner, expected at least 3"},
         {"two_corners", kThree + "f 1 2\n", "a face with 2 corners"},
         {"no_corners", kThree + "f\n", "a face with 0 corners"},
         {"bytes", std::string("\0\x01\x02v 1\xff\n", 8), "holds no faces"},
@@ -244,8 +256,8 @@ INSTANTIATE_TEST_SUITE_P(All, BadMtl,
                              {"negative", "newmtl a\nKd 1 -1 1\n", ":2:4: Kd is negative"},
                              {"two_channels", "newmtl a\nKd 1 1\n", "Kd is missing"},
                              {"nan", "newmtl a\nNs nan\n", ":2:4: Ns is \"nan\""},
-                             {"opacity", "newmtl a\nd 1.5\n", ":2:3: d is \"1.5\" (a number from 0 to 1"},
-                             {"illum", "newmtl a\nillum 99\n", "illum is an unknown model"},
+                             {"opacity", "newmtl a\nd 1.5\n", ":2:3: d is \"1.5\", expected a number from 0 to 1"},
+                             {"illum", "newmtl a\nillum 99\n", "illum is not a known model"},
                          }),
                          [](const auto& test) { return test.param.name; });
 

@@ -35,9 +35,14 @@ SceneFile with_box() {
     return read;
 }
 
+Scene finish(SceneFile read, const std::filesystem::path& file = "x.obj") {
+    check_scene(read, file);
+    return complete_scene(std::move(read), file);
+}
+
 std::string refusal(SceneFile read) {
     try {
-        (void)finish_scene(std::move(read), "folder/made.obj");
+        (void)finish(std::move(read), "folder/made.obj");
     } catch (const InputError& e) {
         return e.what();
     }
@@ -65,15 +70,15 @@ TEST(LoadScene, FilesThatCannotBeReadSayWhy) {
     EXPECT_NE(message_of(folder.path() / "endless.json").find("larger than"), std::string::npos);
 }
 
-TEST(FinishScene, NamesAndSource) {
-    const Scene s = finish_scene(with_box(), "folder/made.obj");
+TEST(CompleteScene, NamesAndSource) {
+    const Scene s = finish(with_box(), "folder/made.obj");
     EXPECT_EQ(s.name, "made");
     EXPECT_EQ(s.title, "made");
     EXPECT_EQ(s.source, "folder/made.obj");
     EXPECT_TRUE(s.warnings.empty());
 }
 
-TEST(FinishScene, NumbersThatAreNoneAreRefused) {
+TEST(CheckScene, NumbersThatAreNoneAreRefused) {
     for (const float bad : {kInfinity, -kInfinity, std::nanf(""), 1.5e18f}) {
         SceneFile read            = with_box();
         read.scene.positions[3].y = bad;
@@ -93,22 +98,22 @@ TEST(FinishScene, NumbersThatAreNoneAreRefused) {
     EXPECT_NE(refusal(read).find("a vertex normal"), std::string::npos);
 }
 
-TEST(FinishScene, IndicesOutOfRangeAreRefused) {
+TEST(CheckScene, IndicesOutOfRangeAreRefused) {
     SceneFile read            = with_box();
     read.scene.triangles[2].z = 8;
     EXPECT_NE(refusal(read).find("there are 8, counted from 0"), std::string::npos) << refusal(read);
 }
 
-TEST(FinishScene, NormalsBecomeUnit) {
+TEST(CompleteScene, NormalsBecomeUnit) {
     SceneFile read        = with_box();
     read.scene.normals[0] = {0, 3e-30f, 4e-30f};
     read.scene.normals[1] = {0, 0, 0};
-    const Scene s         = finish_scene(std::move(read), "x.obj");
+    const Scene s         = finish(std::move(read));
     EXPECT_NEAR(s.normals[0].y, 0.6, 1e-6);
     EXPECT_EQ(s.normals[1], vec3(0)) << "zero stands for the face normal";
 }
 
-TEST(FinishScene, CamerasThatCannotSeeAreRefused) {
+TEST(CheckScene, CamerasThatCannotSeeAreRefused) {
     SceneFile read           = with_box();
     read.scene.camera.target = read.scene.camera.eye;
     EXPECT_NE(refusal(read).find("eye and target are the same point"), std::string::npos);
@@ -123,7 +128,7 @@ TEST(FinishScene, CamerasThatCannotSeeAreRefused) {
     EXPECT_NE(refusal(read).find("the picture is 1048576 x 360"), std::string::npos);
 }
 
-TEST(FinishScene, LightsThatCannotShineAreRefused) {
+TEST(CheckScene, LightsThatCannotShineAreRefused) {
     const auto with = [](auto change) {
         SceneFile read = with_box();
         change(read.scene.lights[0]);
@@ -146,22 +151,58 @@ TEST(FinishScene, LightsThatCannotShineAreRefused) {
     EXPECT_EQ(with([](Light& l) { l.kind = LightKind::spot, l.spot.cutoff = float(kPi / 2); }), "accepted");
 }
 
-TEST(FinishScene, DirectionsOfAnyLengthAreScaledWithoutRounding) {
+TEST(CompleteScene, LightsThatCannotBeSeenWarn) {
+    const auto warnings_of = [](auto change) {
+        SceneFile read            = with_box();  // of size 1, lit from 5 above by 1 of intensity, without attenuation
+        read.scene.ambient        = vec3(0);
+        Light other               = read.scene.lights[0];
+        read.scene.lights[0].name = "lamp";
+        other.name                = "other";
+        change(read.scene, other);
+        read.scene.lights.push_back(other);
+        return finish(std::move(read)).warnings;
+    };
+    const std::vector<std::string> faint = warnings_of([](Scene&, Light& l) { l.diffuse = vec3(0.0005f); });
+    ASSERT_EQ(faint.size(), 1u);
+    EXPECT_EQ(
+        faint[0],
+        "Light \"other\" cannot be seen: it adds at most 0.05 % of what light \"lamp\" gives at the middle of the "
+        "scene.");
+    const auto far = [](Scene&, Light& l) { l.attenuation = {0, 0, 1, false}, l.position = {0, 100, 0}; };
+    EXPECT_EQ(warnings_of(far).size(), 1u) << "1 / 99.5^2";
+    const auto out_of_range = [](Scene&, Light& l) { l.range = 4.4f; };
+    EXPECT_EQ(warnings_of(out_of_range).size(), 1u) << "the box begins at 4.5";
+    const auto ambient = [](Scene& s, Light&) { s.ambient = vec3(0.0005f); };
+    ASSERT_EQ(warnings_of(ambient).size(), 1u);
+    EXPECT_NE(warnings_of(ambient)[0].find("The ambient light of 0.0005"), std::string::npos);
+
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.diffuse = vec3(0.002f); }).empty());
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.range = 4.6f; }).empty()) << "reaches the lid";
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.diffuse = l.specular = vec3(0); }).empty()) << "switched off";
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) { l.diffuse = vec3(1, 0, 0) * 0.0005f, l.ambient = vec3(1); }).empty())
+        << "seen by its ambient term";
+    EXPECT_TRUE(warnings_of([](Scene&, Light& l) {
+                    l.kind = LightKind::spot, l.spot.cutoff = 0.1f, l.direction = {1, 0, 0};
+                }).empty())
+        << "a narrow cone between the samples is not an error";
+}
+
+TEST(CompleteScene, DirectionsOfAnyLengthAreScaledWithoutRounding) {
     SceneFile read                 = with_box();
     read.scene.lights[0].kind      = LightKind::directional;
     read.scene.lights[0].direction = {3e-38f, -7e-38f, 1e-38f};
-    const Scene s                  = finish_scene(std::move(read), "x.obj");
+    const Scene s                  = finish(std::move(read));
     const vec3 d                   = s.lights[0].direction;
     EXPECT_EQ(d.x / d.y, 3e-38f / -7e-38f);
     EXPECT_TRUE(std::abs(d.y) >= 0.5f && std::abs(d.y) < 1);
 }
 
-TEST(FinishScene, DefaultCameraFramesTinyHugeAndFlatScenes) {
+TEST(CompleteScene, DefaultCameraFramesTinyHugeAndFlatScenes) {
     for (const vec3 scale : {vec3(1e-12f), vec3(1e15f), vec3(1, 0, 1), vec3(1, 100, 1), vec3(100, 1, 1)}) {
         SceneFile read  = with_box();
         read.has_camera = false;
         for (vec3& p : read.scene.positions) p *= scale;
-        const Scene s       = finish_scene(std::move(read), "x.obj");
+        const Scene s       = finish(std::move(read));
         const CameraFrame f = frame(s.camera, s.width, s.height);
         double widest       = 0;
         for (const vec3 p : s.positions) {

@@ -1,23 +1,21 @@
 // This work is based on:
 // Khronos Group. glTF 2.0 Specification, sections 3.6 (Binary Data Storage) and 4 (GLB). 2021
-#include "umbra/core/io/gltf/gltf_data.h"
+#include "umbra/core/io/gltf/data.h"
 
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstring>
-#include <limits>
+#include <set>
+#include <span>
 
 #include <fmt/format.h>
+
+#include "umbra/core/base/bytes.h"
+#include "umbra/core/io/gltf/members.h"
 
 namespace umbra {
 namespace {
 
 using std::filesystem::path;
-
-static_assert(std::endian::native == std::endian::little, "glTF's numbers are little-endian, and so is all we run on");
-
-constexpr double kMaxWhole = 9007199254740992.0;  // 2^53: beyond it JSON's numbers skip some
 
 // Accessors without bytes stand for zeros: their length is a mere number in the file. Beyond this many (and as many
 // as the file has bytes) they are refused.
@@ -25,26 +23,23 @@ constexpr std::uint64_t kFreeZeros = 4096;
 
 std::size_t component_size(int type) { return type == 5120 || type == 5121 ? 1 : type == 5122 || type == 5123 ? 2 : 4; }
 
-template <class T>
-T load(const char* p) {
-    T x;
-    std::memcpy(&x, p, sizeof(T));
-    return x;
-}
-
 double component(const char* p, int type, bool normalized) {
     switch (type) {
-        case 5120: return normalized ? std::max(load<std::int8_t>(p) / 127.0, -1.0) : load<std::int8_t>(p);
-        case 5121: return normalized ? load<std::uint8_t>(p) / 255.0 : load<std::uint8_t>(p);
-        case 5122: return normalized ? std::max(load<std::int16_t>(p) / 32767.0, -1.0) : load<std::int16_t>(p);
-        case 5123: return normalized ? load<std::uint16_t>(p) / 65535.0 : load<std::uint16_t>(p);
-        case 5125: return load<std::uint32_t>(p);
-        default: return double(load<float>(p));
+        case 5120:
+            return normalized ? std::max(load_number<std::int8_t>(p) / 127.0, -1.0) : load_number<std::int8_t>(p);
+        case 5121: return normalized ? load_number<std::uint8_t>(p) / 255.0 : load_number<std::uint8_t>(p);
+        case 5122:
+            return normalized ? std::max(load_number<std::int16_t>(p) / 32767.0, -1.0) : load_number<std::int16_t>(p);
+        case 5123: return normalized ? load_number<std::uint16_t>(p) / 65535.0 : load_number<std::uint16_t>(p);
+        case 5125: return load_number<std::uint32_t>(p);
+        default: return double(load_number<float>(p));
     }
 }
 
 std::uint32_t index_at(const char* p, int type) {
-    return type == 5121 ? load<std::uint8_t>(p) : type == 5123 ? load<std::uint16_t>(p) : load<std::uint32_t>(p);
+    return type == 5121   ? load_number<std::uint8_t>(p)
+           : type == 5123 ? load_number<std::uint16_t>(p)
+                          : load_number<std::uint32_t>(p);
 }
 
 std::optional<std::string> decode_base64(std::string_view text) {
@@ -97,34 +92,44 @@ std::string decode_percent(std::string_view uri) {
     return out;
 }
 
+/// The first component that is NaN or infinite, as a message; empty where there is none.
+std::string find_not_finite(const GltfAccessor& accessor, std::string_view what) {
+    if (accessor.component_type != 5126) return {};
+    const auto find = [&](std::string_view bytes, std::uint64_t count, std::size_t stride, std::string_view which) {
+        for (std::uint64_t i = 0; i < count; ++i)
+            for (int c = 0; c < accessor.components; ++c)
+                if (const auto x = load_number<float>(bytes.data() + i * stride + std::size_t(c) * 4);
+                    !std::isfinite(x))
+                    return fmt::format("{}: component {} of {} {} is {}, expected a finite number", what, c, which, i,
+                                       x);
+        return std::string();
+    };
+    std::string found;
+    if (!accessor.bytes.empty()) found = find(accessor.bytes, accessor.count, accessor.stride, "element");
+    if (found.empty())
+        found =
+            find(accessor.sparse.values, accessor.sparse.count, std::size_t(accessor.components) * 4, "sparse value");
+    return found;
+}
+
+/// The accessors that some primitive names as its NORMAL. What is malformed here is refused where it is read.
+std::set<std::size_t> find_normal_accessors(const JsonText& json) {
+    std::set<std::size_t> normals;
+    const auto elements = [](const JsonValue* list) {
+        const auto* array = list ? std::get_if<JsonArray>(&list->data) : nullptr;
+        return array ? std::span<const JsonValue>(*array) : std::span<const JsonValue>();
+    };
+    for (const JsonValue& mesh : elements(find_member(json.root(), "meshes")))
+        for (const JsonValue& primitive : elements(find_member(mesh, "primitives"))) {
+            const JsonValue* attributes = find_member(primitive, "attributes");
+            const JsonValue* normal     = attributes ? find_member(*attributes, "NORMAL") : nullptr;
+            const double* index         = normal ? std::get_if<double>(&normal->data) : nullptr;
+            if (index && *index >= 0 && *index <= kMaxWhole) normals.insert(static_cast<std::size_t>(*index));
+        }
+    return normals;
+}
+
 }  // namespace
-
-const JsonValue* find_member(const JsonValue& object, std::string_view key) {
-    const auto* members = std::get_if<JsonObject>(&object.data);
-    if (!members) return nullptr;
-    for (const JsonMember& m : *members)
-        if (m.key == key) return &m.value;
-    return nullptr;
-}
-
-const JsonArray& list_of(const JsonText& json, const JsonValue& object, std::string_view key) {
-    static const JsonArray kEmpty;
-    const JsonValue* v = find_member(object, key);
-    return v ? json.array(*v, key, "a list [...]") : kEmpty;
-}
-
-std::uint64_t whole(const JsonText& json, const JsonValue& v, std::string_view what, double min, double max) {
-    const std::string words = fmt::format("a whole number from {:.0f} to {:.0f}", min, max);
-    const double d          = json.number(v, what, {min, max, false, words});
-    if (d != std::floor(d)) json.fail(v, fmt::format("{} is {:g} ({} would be right)", what, d, words));
-    return static_cast<std::uint64_t>(d);
-}
-
-std::size_t index_into(const JsonText& json, const JsonValue& v, std::string_view what, std::size_t size) {
-    const auto i = whole(json, v, what, 0, kMaxWhole);
-    if (i >= size) json.fail(v, fmt::format("{} {} is not there (the file has {}, counted from 0)", what, i, size));
-    return std::size_t(i);
-}
 
 GltfData::GltfData(const JsonText& json, const path& file, std::optional<std::string_view> bin) : json_(json) {
     read_buffers(file, bin);
@@ -140,7 +145,7 @@ std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& ur
         const std::size_t comma     = uri.find(',');
         const std::string_view head = std::string_view(uri).substr(5, comma == uri.npos ? 0 : comma - 5);
         if (comma == uri.npos || !head.ends_with(";base64") || head.find(";;") != head.npos)
-            json_.fail(at, "the data URI is malformed (\"data:application/octet-stream;base64,...\" would be right)");
+            json_.fail(at, "the data URI is malformed, expected \"data:application/octet-stream;base64,...\"");
         auto decoded = decode_base64(std::string_view(uri).substr(comma + 1));
         if (!decoded) json_.fail(at, "the data URI holds what is not base64");
         bytes = std::move(*decoded);
@@ -148,10 +153,8 @@ std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& ur
         const std::string name = decode_percent(uri);
         const path relative(name);
         if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos || relative.is_absolute())
-            json_.fail(at,
-                       fmt::format("the URI \"{:.60}\" is not read (a file beside this one, or a data URI, would be "
-                                   "right)",
-                                   uri));
+            json_.fail(
+                at, fmt::format("the URI \"{:.60}\" is not read, expected a file beside this one or a data URI", uri));
         const path target = folder / relative;
         std::error_code error;
         if (!std::filesystem::is_regular_file(target, error))
@@ -216,7 +219,10 @@ std::string_view GltfData::view(const JsonValue& index, std::string_view what) c
 void GltfData::read_accessors() {
     static constexpr std::array<std::pair<std::string_view, int>, 7> kTypes{
         {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
-    const JsonArray& list = list_of(json_, json_.root(), "accessors");
+    const JsonArray& list               = list_of(json_, json_.root(), "accessors");
+    const std::set<std::size_t> normals = find_normal_accessors(json_);
+    std::vector<std::string_view> type_names;
+    for (const auto& [name, components] : kTypes) type_names.push_back(name);
     for (std::size_t i = 0; i < list.size(); ++i) {
         const JsonValue& a = list[i];
         const auto what    = fmt::format("accessors[{}]", i);
@@ -229,7 +235,7 @@ void GltfData::read_accessors() {
         const auto component_type = [&](const JsonValue& v, bool index) {
             const auto type = int(whole(json_, v, "componentType", 5120, 5126));
             if (type == 5124 || (index && type != 5121 && type != 5123 && type != 5125))
-                json_.fail(v, fmt::format("componentType is {} ({} would be right)", type,
+                json_.fail(v, fmt::format("componentType is {}, expected {}", type,
                                           index ? "5121, 5123 or 5125" : "5120, 5121, 5122, 5123, 5125 or 5126"));
             return type;
         };
@@ -240,8 +246,7 @@ void GltfData::read_accessors() {
         accessor.count          = whole(json_, count, "count", 1, kMaxWhole);
         accessor.component_type = component_type(need(a, "componentType"), false);
         const JsonValue& type   = need(a, "type");
-        accessor.components =
-            kTypes[json_.choice(type, "type", {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})].second;
+        accessor.components     = kTypes[json_.choice(type, "type", type_names)].second;
         if (const JsonValue* n = find_member(a, "normalized")) accessor.normalized = json_.boolean(*n, "normalized");
 
         const std::size_t size = component_size(accessor.component_type) * std::size_t(accessor.components);
@@ -291,29 +296,15 @@ void GltfData::read_accessors() {
             for (std::uint64_t k = 0; k < s.count; ++k) {
                 const std::uint64_t at = index_at(s.indices.data() + k * component_size(s.index_type), s.index_type);
                 if (at >= accessor.count || (k > 0 && at <= previous))
-                    json_.fail(indices,
-                               fmt::format("sparse index {} of element {} (rising ones below {} would be right)", at, k,
-                                           accessor.count));
+                    json_.fail(indices, fmt::format("sparse index {} of element {}, expected rising ones below {}", at,
+                                                    k, accessor.count));
                 previous = at;
             }
         }
-        check_floats(accessor, what);
-        accessors_.push_back(accessor);
+        accessor.not_finite = find_not_finite(accessor, what);
+        if (!accessor.not_finite.empty() && !normals.contains(i)) json_.fail(a, accessor.not_finite);
+        accessors_.push_back(std::move(accessor));
     }
-}
-
-void GltfData::check_floats(const GltfAccessor& accessor, std::string_view what) const {
-    if (accessor.component_type != 5126) return;
-    const auto check = [&](std::string_view bytes, std::uint64_t count, std::size_t stride, std::string_view which) {
-        for (std::uint64_t i = 0; i < count; ++i)
-            for (int c = 0; c < accessor.components; ++c)
-                if (const float x = load<float>(bytes.data() + i * stride + std::size_t(c) * 4); !std::isfinite(x))
-                    json_.fail(*accessor.json, fmt::format("{}: component {} of {} {} is {} (a finite number would be "
-                                                           "right)",
-                                                           what, c, which, i, x));
-    };
-    if (!accessor.bytes.empty()) check(accessor.bytes, accessor.count, accessor.stride, "element");
-    check(accessor.sparse.values, accessor.sparse.count, std::size_t(accessor.components) * 4, "sparse value");
 }
 
 std::vector<vec3> GltfData::vectors(const GltfAccessor& accessor) const {

@@ -1,4 +1,4 @@
-#include "umbra/core/io/text_words.h"
+#include "umbra/core/io/tokens.h"
 
 #include <algorithm>
 #include <charconv>
@@ -6,36 +6,36 @@
 
 #include <fmt/format.h>
 
-#include "umbra/core/scene/scene.h"
+#include "umbra/core/io/limits.h"
 
 namespace umbra {
 namespace {
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
 
-// from_chars knows no leading plus, which C's printf writes with "%+g".
+// from_chars accepts no leading plus, which C's printf writes with "%+g".
 std::string_view without_plus(std::string_view s) {
     return s.size() > 1 && s[0] == '+' && s[1] != '-' ? s.substr(1) : s;
 }
 
 }  // namespace
 
-std::string in_quotes(std::string_view word) {
+std::string in_quotes(std::string_view token) {
     constexpr std::size_t kShown = 40;
-    std::string shown(word.substr(0, kShown));
+    std::string shown(token.substr(0, kShown));
     for (char& c : shown)
         if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) >= 0x7f) c = '?';
-    return fmt::format("\"{}{}\"", shown, word.size() > kShown ? "..." : "");
+    return fmt::format("\"{}{}\"", shown, token.size() > kShown ? "..." : "");
 }
 
-Word Words::read(bool across_lines) {
+Token Tokens::read(bool across_lines) {
     const std::string& text = source_.text;
     while (at_ < text.size()) {
         const char c = text[at_];
         if (c == '\\') {
             std::size_t after = at_ + 1;
             if (after < text.size() && text[after] == '\r') ++after;
-            if (after >= text.size() || text[after] != '\n') break;  // a backslash within a word, as in a path
+            if (after >= text.size() || text[after] != '\n') break;  // a backslash within a token, as in a path
             at_ = after + 1;
         } else if (c == '#') {
             at_ = std::min(text.find('\n', at_), text.size());
@@ -53,11 +53,11 @@ Word Words::read(bool across_lines) {
     return {std::string_view(text).substr(begin, at_ - begin), begin};
 }
 
-Word Words::next() { return read(true); }
-Word Words::next_on_line() { return read(false); }
+Token Tokens::next() { return read(true); }
+Token Tokens::next_on_line() { return read(false); }
 
-Word Words::rest_of_line() {
-    const Word first        = read(false);
+Token Tokens::rest_of_line() {
+    const Token first       = read(false);
     const std::string& text = source_.text;
     at_                     = std::min({text.find('\n', first.offset), text.find('#', first.offset), text.size()});
     std::size_t end         = at_;
@@ -65,20 +65,20 @@ Word Words::rest_of_line() {
     return {std::string_view(text).substr(first.offset, end - first.offset), first.offset};
 }
 
-void Words::skip_line() {
+void Tokens::skip_line() {
     while (read(false)) {
     }
     if (at_ < source_.text.size()) ++at_;
 }
 
-bool Words::at_end() {
+bool Tokens::at_end() {
     const std::size_t before = at_;
     const bool none          = !read(true);
     at_                      = before;
     return none;
 }
 
-std::size_t Words::line() {
+std::size_t Tokens::line() {
     const auto begin = source_.text.begin();
     if (counted_to_ > at_) counted_to_ = 0, line_ = 1;
     line_ += std::size_t(std::count(begin + std::ptrdiff_t(counted_to_), begin + std::ptrdiff_t(at_), '\n'));
@@ -86,9 +86,9 @@ std::size_t Words::line() {
     return line_;
 }
 
-float Words::as_real(Word word, std::string_view what) const {
-    if (!word) fail(word, fmt::format("{} is missing (a number would be right)", what));
-    const std::string_view s = without_plus(word.text);
+double Tokens::as_double(Token token, std::string_view what) const {
+    if (!token) fail(token, fmt::format("{} is missing, expected a number", what));
+    const std::string_view s = without_plus(token.text);
     double value             = 0;
     const auto [end, error]  = std::from_chars(s.data(), s.data() + s.size(), value);
     const bool whole         = end == s.data() + s.size();
@@ -98,37 +98,56 @@ float Words::as_real(Word word, std::string_view what) const {
         const std::size_t exponent = s.find_first_of("eE");
         const bool tiny =
             exponent != s.npos ? s.substr(exponent + 1).starts_with('-') : s[digit] == '0' || s[digit] == '.';
-        value = tiny ? 0.0 : HUGE_VAL;
-    } else if (!whole || error != std::errc()) {
-        fail(word, fmt::format("{} is {} (a number would be right)", what, in_quotes(word.text)));
+        return tiny ? 0.0 : HUGE_VAL;
     }
-    if (!std::isfinite(value) || std::abs(value) > kMaxCoordinate)
-        fail(word, fmt::format("{} is {} (a finite number of magnitude up to {:g} would be right)", what,
-                               in_quotes(word.text), kMaxCoordinate));
-    return static_cast<float>(value);
-}
-
-std::int64_t Words::as_integer(Word word, std::string_view what) const {
-    if (!word) fail(word, fmt::format("{} is missing (a whole number would be right)", what));
-    const std::string_view s = without_plus(word.text);
-    std::int64_t value       = 0;
-    const auto [end, error]  = std::from_chars(s.data(), s.data() + s.size(), value);
-    if (end != s.data() + s.size() || error != std::errc())
-        fail(word, fmt::format("{} is {} (a whole number would be right)", what, in_quotes(word.text)));
+    if (!whole || error != std::errc())
+        fail(token, fmt::format("{} is {}, expected a number", what, in_quotes(token.text)));
     return value;
 }
 
-float Words::real(std::string_view what) { return as_real(next(), what); }
-float Words::real_on_line(std::string_view what) { return as_real(next_on_line(), what); }
-std::int64_t Words::integer(std::string_view what) { return as_integer(next(), what); }
+float Tokens::as_real(Token token, std::string_view what) const {
+    const double value = as_double(token, what);
+    if (!kAnyNumber.holds(value))
+        fail(token, fmt::format("{} is {}, expected {}", what, in_quotes(token.text), kAnyNumber.words));
+    return static_cast<float>(value);
+}
 
-vec3 Words::point(std::string_view what) {
+std::int64_t Tokens::as_integer(Token token, std::string_view what) const {
+    if (!token) fail(token, fmt::format("{} is missing, expected a whole number", what));
+    const std::string_view s = without_plus(token.text);
+    std::int64_t value       = 0;
+    const auto [end, error]  = std::from_chars(s.data(), s.data() + s.size(), value);
+    if (end != s.data() + s.size() || error != std::errc())
+        fail(token, fmt::format("{} is {}, expected a whole number", what, in_quotes(token.text)));
+    return value;
+}
+
+float Tokens::real(std::string_view what) { return as_real(next(), what); }
+float Tokens::real_on_line(std::string_view what) { return as_real(next_on_line(), what); }
+std::int64_t Tokens::integer(std::string_view what) { return as_integer(next(), what); }
+
+vec3 Tokens::point(std::string_view what) {
     const float x = real(what), y = real(what), z = real(what);
     return {x, y, z};
 }
 
-vec3 Words::point_on_line(std::string_view what) {
+vec3 Tokens::point_on_line(std::string_view what) {
     const float x = real_on_line(what), y = real_on_line(what), z = real_on_line(what);
+    return {x, y, z};
+}
+
+float Tokens::any_real(std::string_view what) { return static_cast<float>(as_double(next(), what)); }
+
+vec3 Tokens::normal() {
+    constexpr std::string_view what = "a component of a normal";
+    const float x = any_real(what), y = any_real(what), z = any_real(what);
+    return {x, y, z};
+}
+
+vec3 Tokens::normal_on_line() {
+    constexpr std::string_view what = "a component of a normal";
+    const auto component            = [&] { return static_cast<float>(as_double(next_on_line(), what)); };
+    const float x = component(), y = component(), z = component();
     return {x, y, z};
 }
 

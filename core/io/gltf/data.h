@@ -30,12 +30,14 @@ struct GltfAccessor {
         std::string_view indices;
         std::string_view values;
     } sparse;
+    std::string not_finite;  ///< where a component is NaN or infinite: the message that says so
 };
 
 class GltfData {
 public:
     /// Reads and checks "buffers", "bufferViews" and "accessors" of the document, used or not: ranges, types, and that
-    /// no float is NaN or infinite. `bin` is the binary chunk of a .glb. Throws InputError.
+    /// no float is NaN or infinite, but in accessors that a primitive names as its NORMAL. `bin` is the binary chunk of
+    /// a .glb. Throws InputError.
     GltfData(const JsonText& json, const std::filesystem::path& file, std::optional<std::string_view> bin);
 
     [[nodiscard]] const std::vector<GltfAccessor>& accessors() const { return accessors_; }
@@ -50,7 +52,6 @@ private:
     void read_buffers(const std::filesystem::path& file, std::optional<std::string_view> bin);
     void read_views();
     void read_accessors();
-    void check_floats(const GltfAccessor& accessor, std::string_view what) const;
 
     const JsonText& json_;
     std::map<std::string, std::string> owned_;  // by URI: many buffers may share one file
@@ -60,15 +61,5 @@ private:
     std::vector<GltfAccessor> accessors_;
     std::uint64_t total_bytes_ = 0;
 };
-
-/// The member of an object by its name; null where there is none (or `object` is not an object).
-[[nodiscard]] const JsonValue* find_member(const JsonValue& object, std::string_view key);
-/// The elements of a top-level list, or an empty one.
-[[nodiscard]] const JsonArray& list_of(const JsonText& json, const JsonValue& object, std::string_view key);
-/// An index into a list of `size` things.
-[[nodiscard]] std::size_t index_into(const JsonText& json, const JsonValue& v, std::string_view what, std::size_t size);
-/// A whole number from `min` to `max` <= 2^53.
-[[nodiscard]] std::uint64_t whole(const JsonText& json, const JsonValue& v, std::string_view what, double min,
-                                  double max);
 
 }  // namespace umbra

@@ -1,0 +1,101 @@
+#include "umbra/core/io/gltf/materials.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "umbra/core/io/gltf/extras.h"
+#include "umbra/core/io/gltf/members.h"
+#include "umbra/core/io/limits.h"
+
+namespace umbra {
+namespace {
+
+void set_lobe(Material& m, dvec3 f0, double roughness) {
+    const double a2 = std::pow(std::max(roughness, 1e-3), 4);
+    m.k_s           = vec3(f0 * std::min(1.0, 1 / (4 * a2)));
+    m.shininess     = static_cast<float>(std::clamp(1 / (2 * a2) - 0.5, 1.0, 10000.0));
+}
+
+}  // namespace
+
+Material default_gltf_material() {
+    Material m;
+    m.name = "default";
+    m.k_d = m.k_a = vec3(0);
+    m.two_sided   = false;
+    set_lobe(m, dvec3(1), 1);
+    return m;
+}
+
+namespace {
+
+// Textures are not read, but a fault in what refers to them may be a fault of the whole.
+void check_textures(const JsonText& json, const JsonValue& object, std::initializer_list<std::string_view> keys,
+                    GltfNotes& notes) {
+    for (const auto key : keys)
+        if (const JsonValue* t = find_member(object, key)) {
+            (void)json.object(*t, key);
+            notes.textures = true;
+            for (const auto factor : {"scale", "strength"}) (void)number_or(json, t, factor, kAnyNumber, 1);
+            if (const JsonValue* index = find_member(*t, "index"))
+                (void)index_into(json, *index, "texture", list_of(json, json.root(), "textures").size());
+        }
+}
+
+}  // namespace
+
+Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_t index, GltfNotes& notes) {
+    const auto what = fmt::format("materials[{}]", index);
+    (void)json.object(v, what);
+    Material m             = default_gltf_material();
+    m.name                 = name_or(json, v, fmt::format("material_{}", index));
+    const JsonValue* pbr   = find_member(v, "pbrMetallicRoughness");
+    const JsonValue* gloss = extension(json, v, "KHR_materials_pbrSpecularGlossiness");
+    if (pbr) (void)json.object(*pbr, "pbrMetallicRoughness");
+
+    std::vector<double> base{1, 1, 1, 1};
+    const JsonValue* colour = gloss ? find_member(*gloss, "diffuseFactor")
+                              : pbr ? find_member(*pbr, "baseColorFactor")
+                                    : nullptr;
+    if (colour) base = numbers(json, *colour, gloss ? "diffuseFactor" : "baseColorFactor", 4, kShare);
+    const dvec3 c(base[0], base[1], base[2]);
+    m.O_d = vec3(c);
+    if (gloss) {
+        const dvec3 f0 = vector_or(json, gloss, "specularFactor", kShare, dvec3(1));
+        m.k_d          = vec3(static_cast<float>(1 - std::max({f0.x, f0.y, f0.z})));
+        set_lobe(m, f0, 1 - number_or(json, gloss, "glossinessFactor", kShare, 1));
+    } else {
+        const double metallic  = number_or(json, pbr, "metallicFactor", kShare, 1);
+        const double roughness = number_or(json, pbr, "roughnessFactor", kShare, 1);
+        m.k_d                  = vec3(static_cast<float>(0.96 * (1 - metallic)));
+        set_lobe(m, 0.04 * (1 - metallic) + c * metallic, roughness);
+    }
+    m.k_a = m.k_d;
+
+    const dvec3 emissive = vector_or(json, &v, "emissiveFactor", kNotNegative, dvec3(0));
+    if (std::max({emissive.x, emissive.y, emissive.z}) > 1) notes.emissive_above_one = true;
+    m.emission = vec3(emissive * number_or(json, extension(json, v, "KHR_materials_emissive_strength"),
+                                           "emissiveStrength", kNotNegative, 1));
+    if (extension(json, v, "KHR_materials_unlit")) {
+        m.emission = vec3(c);
+        m.k_a = m.k_d = m.k_s = vec3(0);
+    }
+    m.transmit = static_cast<float>(
+        number_or(json, extension(json, v, "KHR_materials_transmission"), "transmissionFactor", kShare, 0));
+    const double ior = number_or(json, extension(json, v, "KHR_materials_ior"), "ior", kNotNegative, 1.5);
+    if (m.transmit > 0 && ior > 0) m.index_of_refraction = static_cast<float>(ior);
+
+    if (const JsonValue* mode = find_member(v, "alphaMode");
+        mode && json.choice(*mode, "alphaMode", {"OPAQUE", "MASK", "BLEND"}) > 0)
+        m.opacity = static_cast<float>(base[3]);
+    if (const JsonValue* sides = find_member(v, "doubleSided")) m.two_sided = json.boolean(*sides, "doubleSided");
+
+    check_textures(json, v, {"normalTexture", "occlusionTexture", "emissiveTexture"}, notes);
+    if (pbr) check_textures(json, *pbr, {"baseColorTexture", "metallicRoughnessTexture"}, notes);
+    if (const JsonValue* extras = find_umbra(v)) apply_material_extras(json, *extras, m);
+    return m;
+}
+
+}  // namespace umbra

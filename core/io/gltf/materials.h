@@ -1,0 +1,17 @@
+// glTF's materials as Phong's; the mapping is described in gltf.cpp. Internal to core.
+#pragma once
+
+#include "umbra/core/io/gltf/notes.h"
+#include "umbra/core/io/json_text.h"
+#include "umbra/core/scene/materials.h"
+
+namespace umbra {
+
+/// The format's default: a rough white metal.
+[[nodiscard]] Material default_gltf_material();
+
+/// materials[index]. Notes textures and what the format forbids.
+[[nodiscard]] Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_t index,
+                                          GltfNotes& notes);
+
+}  // namespace umbra

@@ -1,0 +1,108 @@
+#include "umbra/core/io/gltf/nodes.h"
+
+#include <fmt/format.h>
+#include <glm/gtc/quaternion.hpp>
+
+#include "umbra/core/io/gltf/members.h"
+#include "umbra/core/io/limits.h"
+
+namespace umbra {
+namespace {
+
+dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::string& what) {
+    const JsonValue* matrix = find_member(v, "matrix");
+    if (!matrix) {
+        const dvec3 t = vector_or(json, &v, "translation", kAnyNumber, dvec3(0));
+        const dvec3 s = vector_or(json, &v, "scale", kAnyNumber, dvec3(1));
+        glm::dquat q(1, 0, 0, 0);
+        if (const JsonValue* r = find_member(v, "rotation")) {
+            const auto x = numbers(json, *r, "rotation", 4, kAnyNumber);
+            q            = glm::dquat(x[3], x[0], x[1], x[2]);
+            if (const double length = glm::length(q); std::abs(length - 1) > 0.01)
+                json.fail(*r, fmt::format("rotation has length {:g}, expected a unit quaternion", length));
+            q = glm::normalize(q);
+        }
+        dmat4 m(glm::mat3_cast(q));
+        for (int k = 0; k < 3; ++k) m[k] *= s[k];
+        m[3] = dvec4(t, 1);
+        return m;
+    }
+    for (const auto key : {"translation", "rotation", "scale"})
+        if (find_member(v, key))
+            json.fail(v, fmt::format("{} has both matrix and {}, expected one of them", what, key));
+    const auto x = numbers(json, *matrix, "matrix", 16, kAnyNumber);
+    dmat4 m;
+    for (int i = 0; i < 16; ++i) m[i / 4][i % 4] = x[std::size_t(i)];
+    if (m[0][3] != 0 || m[1][3] != 0 || m[2][3] != 0 || m[3][3] != 1)
+        json.fail(*matrix, fmt::format("the last row of matrix is ({:g}, {:g}, {:g}, {:g}), expected (0, 0, 0, 1)",
+                                       m[0][3], m[1][3], m[2][3], m[3][3]));
+    return m;
+}
+
+}  // namespace
+
+std::vector<Node> read_nodes(const JsonText& json) {
+    const JsonArray& list = list_of(json, json.root(), "nodes");
+    std::vector<Node> nodes(list.size());
+    constexpr auto kRoot = std::size_t(-1);
+    std::vector<std::size_t> parent(list.size(), kRoot);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const auto what = fmt::format("nodes[{}]", i);
+        (void)json.object(list[i], what);
+        nodes[i].json  = &list[i];
+        nodes[i].local = local_transform(json, list[i], what);
+        for (const JsonValue& c : list_of(json, list[i], "children")) {
+            const std::size_t child = index_into(json, c, "node", list.size());
+            if (parent[child] != kRoot)
+                json.fail(
+                    c, fmt::format("node {} is a child of node {} already, expected one parent", child, parent[child]));
+            parent[child] = i;
+            nodes[i].children.push_back(child);
+        }
+    }
+    // Each node has at most one parent, so a path upwards of more steps than there are nodes is a cycle. Nodes whose
+    // path is known to end at a root are not followed again.
+    std::vector<bool> ends(list.size(), false);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        std::vector<std::size_t> path;
+        for (std::size_t n = i; n != kRoot && !ends[n]; n = parent[n]) {
+            if (path.size() > list.size())
+                json.fail(list[i], fmt::format("nodes[{}] is its own ancestor, expected a tree", i));
+            path.push_back(n);
+        }
+        for (const std::size_t n : path) ends[n] = true;
+    }
+    return nodes;
+}
+
+std::vector<std::size_t> read_roots(const JsonText& json, const std::vector<Node>& nodes,
+                                    std::vector<std::string>& warnings) {
+    const JsonArray& scenes = list_of(json, json.root(), "scenes");
+    std::vector<bool> is_child(nodes.size(), false);
+    for (const Node& n : nodes)
+        for (const std::size_t c : n.children) is_child[c] = true;
+    std::vector<std::size_t> roots;
+    if (scenes.empty()) {
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            if (!is_child[i]) roots.push_back(i);
+        if (!nodes.empty()) warnings.emplace_back("The file has no scenes: all its nodes are shown.");
+        return roots;
+    }
+    if (scenes.size() > 1 && !find_member(json.root(), "scene"))
+        warnings.push_back(
+            fmt::format("The file names none of its {} scenes as the one to show: the first is shown.", scenes.size()));
+    const JsonValue& s = *shown_scene(json);
+    (void)json.object(s, "scene");
+    std::vector<bool> taken(nodes.size(), false);
+    for (const JsonValue& v : list_of(json, s, "nodes")) {
+        const std::size_t n = index_into(json, v, "node", nodes.size());
+        if (taken[n] || is_child[n])
+            json.fail(v, fmt::format("node {} is {} (a scene's nodes are roots, each once)", n,
+                                     taken[n] ? "named twice" : "the child of another"));
+        taken[n] = true;
+        roots.push_back(n);
+    }
+    return roots;
+}
+
+}  // namespace umbra

@@ -1,0 +1,24 @@
+// The hierarchy of a glTF file's nodes, checked: a forest. Internal to core.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "umbra/core/io/json_text.h"
+
+namespace umbra {
+
+struct Node {
+    const JsonValue* json = nullptr;
+    dmat4 local{1};  ///< from the node's space to its parent's
+    std::vector<std::size_t> children;
+};
+
+/// All nodes of the file, those of no scene included. Refuses cycles and nodes with several parents.
+[[nodiscard]] std::vector<Node> read_nodes(const JsonText& json);
+
+/// The roots of the scene that the file shows, or all nodes without parent where it has no scenes.
+[[nodiscard]] std::vector<std::size_t> read_roots(const JsonText& json, const std::vector<Node>& nodes,
+                                                  std::vector<std::string>& warnings);
+
+}  // namespace umbra

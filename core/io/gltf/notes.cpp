@@ -1,0 +1,20 @@
+#include "umbra/core/io/gltf/notes.h"
+
+#include <fmt/format.h>
+
+namespace umbra {
+
+void GltfNotes::warn(std::vector<std::string>& warnings) const {
+    if (textures) warnings.emplace_back("Textures are ignored: surfaces have their factors' colours.");
+    if (vertex_colours) warnings.emplace_back("Colours of vertices are ignored.");
+    if (emissive_above_one)
+        warnings.emplace_back("An emissiveFactor is above 1, which the format forbids: its value is used as given.");
+    if (skins) warnings.emplace_back("Skins are not applied: meshes stay where their nodes place them.");
+    if (morph_targets) warnings.emplace_back("Morph targets are ignored.");
+    if (no_position) warnings.emplace_back("A primitive without positions is left out.");
+    if (points_and_lines > 0)
+        warnings.push_back(fmt::format("{} primitives of points or lines are left out.", points_and_lines));
+    normals.warn(warnings);
+}
+
+}  // namespace umbra

@@ -1,0 +1,22 @@
+// What a glTF file holds that is not read or not allowed: one warning per kind, however often it occurs. Internal to
+// core.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "umbra/core/io/file_normals.h"
+
+namespace umbra {
+
+struct GltfNotes {
+    bool textures = false, vertex_colours = false, skins = false, morph_targets = false, no_position = false;
+    bool emissive_above_one      = false;
+    std::size_t points_and_lines = 0;  ///< primitives
+    FileNormals normals;               ///< of the vertices that triangles use
+
+    void warn(std::vector<std::string>& warnings) const;
+};
+
+}  // namespace umbra

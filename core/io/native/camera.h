@@ -1,0 +1,11 @@
+// The camera of a native scene file. Internal to core.
+#pragma once
+
+#include "umbra/core/io/json_text.h"
+#include "umbra/core/scene/camera.h"
+
+namespace umbra {
+
+[[nodiscard]] Camera read_native_camera(const JsonText& json, const JsonValue& v);
+
+}  // namespace umbra

@@ -1,0 +1,29 @@
+// The objects of a native scene file. Internal to core.
+#pragma once
+
+#include "umbra/core/io/native/materials.h"
+#include "umbra/core/io/native/mesh_files.h"
+
+namespace umbra {
+
+class NativeObjects {
+public:
+    /// All arguments must outlive this object; objects are added to the scene.
+    NativeObjects(const JsonText& json, MeshFiles& files, NativeMaterials& materials, Scene& scene)
+        : json_(json), files_(files), materials_(materials), scene_(scene) {}
+
+    void read(const JsonValue& v);
+
+private:
+    [[nodiscard]] std::vector<NativePart> read_parts(const JsonFields& f, const std::string& type,
+                                                     const std::string& name);
+    void apply_shading(const JsonFields& f, std::vector<NativePart>& parts) const;
+    void apply_transform(const JsonFields& f, const dmat4& m, std::vector<NativePart>& parts) const;
+
+    const JsonText& json_;
+    MeshFiles& files_;
+    NativeMaterials& materials_;
+    Scene& scene_;
+};
+
+}  // namespace umbra

@@ -1,0 +1,18 @@
+// Bodies of a native scene file under construction. Internal to core.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "umbra/core/scene/primitives.h"
+
+namespace umbra {
+
+/// What becomes one object of the scene.
+struct NativePart {
+    std::string name;
+    Mesh mesh;
+    std::uint32_t material = 0;  ///< index into Scene::materials
+};
+
+}  // namespace umbra

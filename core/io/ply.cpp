@@ -1,0 +1,321 @@
+// PLY, the Stanford polygon format, as text and as binary of both byte orders.
+//
+// Greg Turk. The PLY Polygon File Format. 1994
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include "umbra/core/io/binary_reader.h"
+#include "umbra/core/io/mesh_parts.h"
+#include "umbra/core/io/tokens.h"
+
+namespace umbra {
+namespace {
+
+enum class Type : std::uint8_t { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+struct Property {
+    std::string name;
+    Type type     = Type::float32;
+    bool is_list  = false;
+    Type counting = Type::uint8;
+};
+
+struct Element {
+    std::string name;
+    std::uint64_t count = 0;
+    std::vector<Property> properties;
+};
+
+enum class Format : std::uint8_t { ascii, little, big };
+
+Type read_type(const Tokens& tokens, Token token) {
+    static constexpr std::array<std::pair<std::string_view, Type>, 16> kTypes{{{"char", Type::int8},
+                                                                               {"int8", Type::int8},
+                                                                               {"uchar", Type::uint8},
+                                                                               {"uint8", Type::uint8},
+                                                                               {"short", Type::int16},
+                                                                               {"int16", Type::int16},
+                                                                               {"ushort", Type::uint16},
+                                                                               {"uint16", Type::uint16},
+                                                                               {"int", Type::int32},
+                                                                               {"int32", Type::int32},
+                                                                               {"uint", Type::uint32},
+                                                                               {"uint32", Type::uint32},
+                                                                               {"float", Type::float32},
+                                                                               {"float32", Type::float32},
+                                                                               {"double", Type::float64},
+                                                                               {"float64", Type::float64}}};
+    for (const auto& [name, type] : kTypes)
+        if (token.text == name) return type;
+    tokens.fail(token, fmt::format("unknown type {} (known: char uchar short ushort int uint float double)",
+                                   in_quotes(token.text)));
+}
+
+std::size_t size_of(Type type) {
+    static constexpr std::array<std::size_t, 8> kSizes{1, 1, 2, 2, 4, 4, 4, 8};
+    return kSizes[std::size_t(type)];
+}
+
+bool is_whole(Type type) { return type < Type::float32; }
+
+struct Header {
+    Format format = Format::ascii;
+    std::vector<Element> elements;
+    std::size_t end = 0;  ///< where the data begins
+};
+
+Header read_header(const SourceText& source) {
+    Tokens tokens(source);
+    Header header;
+    const Token magic = tokens.next();
+    if (magic.text != "ply")
+        tokens.fail(magic, fmt::format("the file begins with {}, expected ply", in_quotes(magic.text)));
+    tokens.skip_line();
+    bool has_format = false;
+    for (;; tokens.skip_line()) {
+        const Token keyword        = tokens.next();
+        const std::string_view key = keyword.text;
+        if (!keyword) tokens.fail(keyword, "the file ends within the header, expected \"end_header\"");
+        if (key == "end_header") {
+            tokens.skip_line();
+            break;
+        }
+        if (key == "comment" || key == "obj_info") continue;
+        if (key == "format") {
+            const Token token = tokens.next_on_line();
+            if (token.text == "ascii")
+                header.format = Format::ascii;
+            else if (token.text == "binary_little_endian")
+                header.format = Format::little;
+            else if (token.text == "binary_big_endian")
+                header.format = Format::big;
+            else
+                tokens.fail(token,
+                            fmt::format("unknown format {} (known: ascii binary_little_endian binary_big_endian)",
+                                        in_quotes(token.text)));
+            has_format = true;
+        } else if (key == "element") {
+            Element element;
+            const Token name = tokens.next_on_line();
+            if (!name) tokens.fail(name, "an element without a name");
+            element.name      = name.text;
+            const Token count = tokens.next_on_line();
+            const auto n      = tokens.as_integer(count, "the number of elements");
+            if (n < 0 || std::uint64_t(n) > kMaxVertices)
+                tokens.fail(count, fmt::format("the number of elements is {}, expected 0 to {}", n, kMaxVertices));
+            element.count = std::uint64_t(n);
+            header.elements.push_back(std::move(element));
+        } else if (key == "property") {
+            if (header.elements.empty()) tokens.fail(keyword, "a property before any element");
+            Property property;
+            Token type = tokens.next_on_line();
+            if (type.text == "list") {
+                const Token counting = tokens.next_on_line();
+                property.is_list     = true;
+                property.counting    = read_type(tokens, counting);
+                if (!is_whole(property.counting)) tokens.fail(counting, "a list counted by fractions");
+                type = tokens.next_on_line();
+            }
+            property.type    = read_type(tokens, type);
+            const Token name = tokens.next_on_line();
+            if (!name) tokens.fail(name, "a property without a name");
+            property.name = name.text;
+            header.elements.back().properties.push_back(std::move(property));
+        } else {
+            tokens.fail(keyword, fmt::format("unknown header line {} (known: format element property comment obj_info "
+                                             "end_header)",
+                                             in_quotes(key)));
+        }
+    }
+    if (!has_format) tokens.fail({{}, 0}, "the header names no format, expected \"format ascii 1.0\"");
+    header.end = tokens.offset();
+    return header;
+}
+
+// The numbers behind the header, as text or as bytes.
+class Body {
+public:
+    Body(const SourceText& source, const Header& header)
+        : ascii_(header.format == Format::ascii),
+          tokens_(source, header.end),
+          bytes_(source, header.end, header.format == Format::big ? std::endian::big : std::endian::little) {}
+
+    float real(Type type, std::string_view what) {
+        if (ascii_) return tokens_.real(what);
+        const std::size_t at = bytes_.offset();
+        return bytes_.coordinate(at, number(type, what), what);
+    }
+    /// NaN and infinity included, for what may be wrong.
+    float any_real(Type type, std::string_view what) {
+        return ascii_ ? tokens_.any_real(what) : static_cast<float>(number(type, what));
+    }
+    std::int64_t whole(Type type, std::string_view what) {
+        last_ = ascii_ ? tokens_.offset() : bytes_.offset();
+        if (!ascii_) return std::int64_t(number(type, what));
+        const Token token = tokens_.next();
+        last_             = token.offset;
+        return tokens_.as_integer(token, what);
+    }
+    /// Blames the number that whole() read last.
+    [[noreturn]] void fail(std::string_view message) const {
+        if (ascii_) tokens_.fail({{}, last_}, message);
+        bytes_.fail(last_, message);
+    }
+
+private:
+    double number(Type type, std::string_view what) {
+        switch (type) {
+            case Type::int8: return bytes_.take<std::int8_t>(what);
+            case Type::uint8: return bytes_.take<std::uint8_t>(what);
+            case Type::int16: return bytes_.take<std::int16_t>(what);
+            case Type::uint16: return bytes_.take<std::uint16_t>(what);
+            case Type::int32: return bytes_.take<std::int32_t>(what);
+            case Type::uint32: return bytes_.take<std::uint32_t>(what);
+            case Type::float32: return double(bytes_.take<float>(what));
+            case Type::float64: break;
+        }
+        return bytes_.take<double>(what);
+    }
+
+    bool ascii_;
+    Tokens tokens_;
+    BinaryReader bytes_;
+    std::size_t last_ = 0;
+};
+
+// Stanford's strips: -1 begins the next one.
+void add_strips(MeshPart& part, const std::vector<std::int64_t>& strip) {
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < strip.size(); ++i) {
+        if (strip[i] < 0) begin = i + 1;
+        if (i < begin + 2) continue;
+        const std::array<std::uint32_t, 3> t{std::uint32_t(strip[i - 2]), std::uint32_t(strip[i - 1]),
+                                             std::uint32_t(strip[i])};
+        const bool odd = (i - begin) % 2 != 0;
+        part.mesh.triangles.emplace_back(t[odd ? 1 : 0], t[odd ? 0 : 1], t[2]);
+    }
+}
+
+// What the properties of an element mean here: for "vertex" the place of each coordinate in x y z nx ny nz, for faces
+// and strips 0 for the list of vertices; kUnused elsewhere.
+constexpr int kUnused = -1;
+struct Roles {
+    std::vector<int> of;  ///< one a property
+    bool is_vertex = false, is_face = false, is_strips = false;
+    bool has_normals = false;
+};
+
+Roles find_roles(const Body& body, const Element& element) {
+    static constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "nx", "ny", "nz"};
+    Roles roles;
+    roles.of.assign(element.properties.size(), kUnused);
+    roles.is_vertex = element.name == "vertex";
+    roles.is_strips = element.name == "tristrips";
+    roles.is_face   = element.name == "face" || roles.is_strips;
+    std::array<bool, 6> found{};
+    bool has_indices = false;
+    for (std::size_t p = 0; p < roles.of.size(); ++p) {
+        const Property& property = element.properties[p];
+        for (std::size_t k = 0; roles.is_vertex && k < 6; ++k)
+            if (!property.is_list && property.name == kCoordinates[k]) roles.of[p] = int(k), found[k] = true;
+        if (roles.is_face && property.is_list && is_whole(property.type) && !has_indices &&
+            (property.name == "vertex_indices" || property.name == "vertex_index"))
+            roles.of[p] = 0, has_indices = true;
+    }
+    if (roles.is_vertex && !(found[0] && found[1] && found[2]))
+        body.fail("the element vertex has no properties x, y and z");
+    if (roles.is_face && element.count > 0 && !has_indices)
+        body.fail(fmt::format("the element {} has no list vertex_indices of whole numbers", element.name));
+    roles.has_normals = found[3] && found[4] && found[5];
+    return roles;
+}
+
+// The vertex indices of one face or of strips, each checked.
+void read_indices(Body& body, const Property& property, std::int64_t n, bool is_strips, std::uint64_t vertices,
+                  std::vector<std::int64_t>& list) {
+    if (!is_strips && n < 3) body.fail(fmt::format("a face of {} corners, expected at least 3", n));
+    list.clear();
+    for (std::int64_t k = 0; k < n; ++k) {
+        const std::int64_t v = body.whole(property.type, "the vertex index");
+        if ((v < 0 && !(is_strips && v == -1)) || (v >= 0 && std::uint64_t(v) >= vertices))
+            body.fail(fmt::format("vertex index {} (there are {}, counted from 0)", v, vertices));
+        list.push_back(v);
+    }
+}
+
+void read_element(Body& body, const Element& element, MeshPart& part, std::uint64_t vertices) {
+    const Roles roles = find_roles(body, element);
+    if (roles.of.empty()) return;  // any number of nothing
+
+    std::vector<std::uint32_t> polygon;
+    std::vector<std::int64_t> list;
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        std::array<float, 6> c{};  // x y z nx ny nz
+        for (std::size_t p = 0; p < roles.of.size(); ++p) {
+            const Property& property = element.properties[p];
+            const int role           = roles.of[p];
+            if (!property.is_list) {
+                const bool is_normal = roles.is_vertex && role >= 3;
+                const float x =
+                    is_normal ? body.any_real(property.type, property.name) : body.real(property.type, property.name);
+                if (roles.is_vertex && role != kUnused) c[std::size_t(role)] = x;
+                continue;
+            }
+            const std::int64_t n = body.whole(property.counting, "the length of a list");
+            if (n < 0) body.fail(fmt::format("a list of length {}, expected at least 0", n));
+            if (role == kUnused) {
+                for (std::int64_t k = 0; k < n; ++k) (void)body.real(property.type, property.name);
+                continue;
+            }
+            read_indices(body, property, n, roles.is_strips, vertices, list);
+            if (roles.is_strips) {
+                add_strips(part, list);
+            } else {
+                polygon.assign(list.begin(), list.end());
+                part.add_polygon(polygon);
+            }
+        }
+        if (roles.is_vertex) {
+            part.mesh.positions.emplace_back(c[0], c[1], c[2]);
+            if (roles.has_normals) part.mesh.normals.push_back(part.normals.usable({c[3], c[4], c[5]}));
+        }
+    }
+}
+
+MeshPart read_part(const SourceText& source) {
+    const Header header = read_header(source);
+    const auto named    = [](std::string_view name) { return [name](const Element& e) { return e.name == name; }; };
+    const auto vertex   = std::find_if(header.elements.begin(), header.elements.end(), named("vertex"));
+    const auto again =
+        vertex == header.elements.end() ? vertex : std::find_if(vertex + 1, header.elements.end(), named("vertex"));
+    const std::size_t before = header.end;
+    if (vertex == header.elements.end() || again != header.elements.end())
+        source.fail(0, "the header has not exactly one element vertex");
+    // Faces are checked against the vertices, which come first in all files that anyone writes.
+    for (auto e = header.elements.begin(); e != vertex; ++e)
+        if (e->name == "face" || e->name == "tristrips") source.fail(0, "faces before their vertices");
+    for (const Element& e : header.elements) {
+        std::uint64_t least = 0;  // bytes of one element
+        for (const Property& p : e.properties)
+            least += header.format == Format::ascii ? 2 : size_of(p.is_list ? p.counting : p.type);
+        const std::uint64_t left = source.text.size() - before + 1;
+        if (least > 0 && e.count > left / least)
+            source.fail(0, fmt::format("the header says {} of element {}, but only {} bytes follow it", e.count, e.name,
+                                       left - 1));
+    }
+    MeshPart part;
+    Body body(source, header);
+    for (const Element& e : header.elements) read_element(body, e, part, vertex->count);
+    return part;
+}
+
+}  // namespace
+
+SceneFile read_ply(const std::filesystem::path& file) {
+    const SourceText source = read_text(file);
+    return scene_of({read_part(source)}, file);
+}
+
+}  // namespace umbra

@@ -1,0 +1,91 @@
+#include "umbra/core/io/scene_terms.h"
+
+#include <string>
+
+#include "umbra/core/image/image.h"
+#include "umbra/core/io/limits.h"
+#include "umbra/core/scene/names.h"
+
+namespace umbra {
+namespace {
+
+float number_or(const JsonFields& fields, std::string_view key, const Range& range, float fallback) {
+    return static_cast<float>(fields.number(key, range, static_cast<double>(fallback)));
+}
+
+}  // namespace
+
+vec3 read_colour(const JsonText& json, const JsonValue& v, std::string_view what) {
+    if (std::holds_alternative<double>(v.data)) return vec3(static_cast<float>(json.number(v, what, kNotNegative)));
+    if (const auto* s = std::get_if<std::string>(&v.data)) {
+        const bool hex =
+            s->size() == 7 && (*s)[0] == '#' && s->find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
+        if (hex) {
+            vec3 c;
+            for (int k = 0; k < 3; ++k) {
+                const int byte = std::stoi(s->substr(static_cast<std::size_t>(1 + 2 * k), 2), nullptr, 16);
+                c[k]           = linear_from_srgb(static_cast<float>(byte) / 255);
+            }
+            return c;
+        }
+    }
+    if (!std::holds_alternative<JsonArray>(v.data)) json.wrong_type(v, what, "a number, [r, g, b] or \"#rrggbb\"");
+    return vec3(json.vector(v, what, kNotNegative));
+}
+
+vec3 colour_or(const JsonText& json, const JsonFields& fields, std::string_view key, vec3 fallback) {
+    const JsonValue* v = fields.find(key);
+    return v ? read_colour(json, *v, key) : fallback;
+}
+
+Attenuation read_attenuation(const JsonText& json, const JsonValue& v) {
+    const vec3 c(json.vector(v, "attenuation", kNotNegative));
+    if (c == vec3(0))
+        json.fail(
+            v,
+            "attenuation is [0, 0, 0], so that f = 1 / (c1 + c2 d + c3 d^2) divides by zero, expected at least one "
+            "number above 0");
+    return {c.x, c.y, c.z, true};
+}
+
+void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene) {
+    constexpr std::string_view expected = "two whole numbers [width, height]";
+    const JsonArray& sides              = json.array(v, "size", expected);
+    if (sides.size() != 2) json.wrong_type(v, "size", expected);
+    scene.width  = json.integer(sides[0], "width", 1, kMaxPictureSide);
+    scene.height = json.integer(sides[1], "height", 1, kMaxPictureSide);
+}
+
+const std::vector<std::string_view>& material_keys() {
+    static const std::vector<std::string_view> keys{
+        "k_a",  "k_d",       "k_s",     "O_d",     "O_s",      "emission",           "shininess",
+        "lobe", "two_sided", "opacity", "reflect", "transmit", "index_of_refraction"};
+    return keys;
+}
+
+void apply_material_terms(const JsonText& json, const JsonFields& fields, Material& m) {
+    m.k_a      = colour_or(json, fields, "k_a", m.k_a);
+    m.k_d      = colour_or(json, fields, "k_d", m.k_d);
+    m.k_s      = colour_or(json, fields, "k_s", m.k_s);
+    m.O_d      = colour_or(json, fields, "O_d", m.O_d);
+    m.O_s      = colour_or(json, fields, "O_s", m.O_s);
+    m.emission = colour_or(json, fields, "emission", m.emission);
+    if (const JsonValue* lobe = fields.find("lobe")) m.lobe = json.choice<Lobe>(*lobe, "lobe");
+    m.shininess           = number_or(fields, "shininess", kNotNegative, m.shininess);
+    m.two_sided           = fields.boolean("two_sided", m.two_sided);
+    m.opacity             = number_or(fields, "opacity", kShare, m.opacity);
+    m.reflect             = number_or(fields, "reflect", kShare, m.reflect);
+    m.transmit            = number_or(fields, "transmit", kShare, m.transmit);
+    m.index_of_refraction = number_or(fields, "index_of_refraction", kPositive, m.index_of_refraction);
+}
+
+void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& scene) {
+    scene.ambient    = colour_or(json, fields, "ambient", scene.ambient);
+    scene.background = colour_or(json, fields, "background", scene.background);
+    if (const JsonValue* tone = fields.find("tone")) scene.tone = json.choice<ToneMap>(*tone, "tone");
+    scene.exposure = number_or(fields, "exposure", kPositive, scene.exposure);
+    if (const JsonValue* viewer = fields.find("viewer"))
+        scene.local_viewer = json.choice<Viewer>(*viewer, "viewer") == Viewer::local;
+}
+
+}  // namespace umbra
