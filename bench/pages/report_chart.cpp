@@ -19,7 +19,7 @@ constexpr double kWidth = 440, kLeft = 64, kRight = 430, kTop = 14, kLane = 32;
 
 std::string coordinate(double x) { return fmt::format("{:.1f}", x); }
 
-/// 0.01, 0.1, 1, 10, 100; beyond that 10⁻⁵: short enough to stand beside the axis.
+/// 0.01, 0.1, 1, 10, 100; beyond that 10⁻⁵: short enough to fit beside the axis.
 std::string decade(double exponent) {
     return std::abs(exponent) <= 2 ? fmt::format("{:g}", std::pow(10, exponent))
                                    : "10" + superscript(static_cast<int>(exponent));
@@ -60,6 +60,7 @@ std::string mark(std::size_t style, double x, double y) {
 /// A point of the error-time chart in coordinates.
 struct PlacedMark {
     double camera_x, x, y;
+    double line_from;  ///< where the line that leads to the mark begins: at the axis, or at the mark itself
 };
 
 /// Where the label of each mark begins (x) and its baseline (y): right, left, above or below its own mark, where it
@@ -69,11 +70,11 @@ public:
     LabelPlaces(const std::vector<PlacedMark>& marks, double bottom) : bottom_(bottom) {
         for (const PlacedMark& m : marks) {
             for (const double x : {m.camera_x, m.x}) taken_.push_back({x - 8, m.y - 8, x + 8, m.y + 8});
-            taken_.push_back({m.camera_x, m.y - 2, m.x, m.y + 2});
+            taken_.push_back({m.line_from, m.y - 2, m.x, m.y + 2});
         }
     }
     std::optional<std::pair<double, double>> place(const PlacedMark& m, const std::string& label) {
-        constexpr double character = 6.8, rise = 9, fall = 3;  // of text 12 high
+        constexpr double character = 6.1, rise = 9, fall = 3;  // of text 12 high
         double length = 0;
         for (const char c : label) length += (c & 0xc0) == 0x80 ? 0 : character;  // bytes that continue UTF-8
         const double middle = m.x - length / 2;
@@ -127,28 +128,30 @@ json error_time_chart(const std::vector<ChartPoint>& points) {
     std::vector<PlacedMark> places;
     std::vector<double> lanes;
     for (const ChartPoint& p : points) {
-        if (!(p.error > 0)) lanes.push_back(axis_end + 8 + kLane * (double(lanes.size()) + 0.5));
-        places.push_back({x(std::max(p.camera_ms, least_ms)), x(std::max(p.object_ms, least_ms)),
-                          p.error > 0 ? y(p.error) : lanes.back()});
+        const bool right = !(p.error > 0);
+        if (right) lanes.push_back(axis_end + 8 + kLane * (double(lanes.size()) + 0.5));
+        const double camera_x = x(std::max(p.camera_ms, least_ms));
+        places.push_back({camera_x, x(std::max(p.object_ms, least_ms)), right ? lanes.back() : y(p.error),
+                          right ? kLeft : camera_x});
     }
     const double bottom = lanes.empty() ? axis_end + 12 : lanes.back() + kLane / 2;
 
     LabelPlaces labels(places, bottom);
     json marks = json::array(), lines = json::array();
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const ChartPoint& p                      = points[i];
-        const auto& [camera_x, object_x, height] = places[i];
-        json view                                = {{"y", coordinate(height)},
-                                                    {"x", coordinate(object_x)},
-                                                    {"camera_x", coordinate(camera_x)},
-                                                    {"shape", mark(p.style, object_x, height)},
-                                                    {"camera_shape", mark(p.style, camera_x, height)},
-                                                    {"key", mark(p.style, 14, 9)},
-                                                    {"colour", std::to_string(mark_style(p.style).colour)},
-                                                    {"label", p.label}};
-        const auto label                         = labels.place(places[i], p.label);
-        view["label_x"]                          = label ? coordinate(label->first) : "";
-        view["label_y"]                          = label ? coordinate(label->second) : "";
+        const ChartPoint& p = points[i];
+        const PlacedMark& m = places[i];
+        json view           = {{"y", coordinate(m.y)},
+                               {"x", coordinate(m.x)},
+                               {"camera_x", coordinate(m.camera_x)},
+                               {"shape", mark(p.style, m.x, m.y)},
+                               {"camera_shape", mark(p.style, m.camera_x, m.y)},
+                               {"key", mark(p.style, 14, 9)},
+                               {"colour", std::to_string(mark_style(p.style).colour)},
+                               {"label", p.label}};
+        const auto label    = labels.place(m, p.label);
+        view["label_x"]     = label ? coordinate(label->first) : "";
+        view["label_y"]     = label ? coordinate(label->second) : "";
         marks.push_back(std::move(view));
     }
     // A lane's line leads from the axis to the mark and ends there, so that nothing runs through the label behind it.

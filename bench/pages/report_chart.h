@@ -23,7 +23,7 @@ struct ChartPoint {
 };
 
 /// Ticks, marks and labels. Both axes are logarithmic. Methods without error have no logarithm: each gets a lane of its
-/// own below the axis. A label stands beside its mark where it covers nothing else, and is left out where it cannot:
+/// own below the axis. A label lies beside its mark where it covers nothing else, and is left out where it cannot:
 /// the legend below the chart names every mark.
 [[nodiscard]] nlohmann::json error_time_chart(const std::vector<ChartPoint>& points);
 

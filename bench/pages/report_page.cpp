@@ -202,7 +202,9 @@ json run_view(const Field& root) {
         parts.push_back(fmt::format("{:.0f} GiB", *n / (1024.0 * 1024 * 1024)));
     if (const auto s = machine["system"].text(); !s.empty()) parts.push_back(s);
     if (const auto s = machine["compiler"].text(); !s.empty()) parts.push_back(s);
-    return {{"command", without_folders(root["command"].text())},
+    const std::string command = without_folders(root["command"].text());
+    return {{"has_commands", !command.empty()},
+            {"commands", json::array({command})},
             {"machine", fmt::format("{}", fmt::join(parts, ", "))},
             {"version", root["version"].text()}};
 }

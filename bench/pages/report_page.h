@@ -91,8 +91,8 @@ struct Totals {
 [[nodiscard]] nlohmann::json slider_view(const SceneFiles& files, const std::optional<Field>& method,
                                          const std::filesystem::path& from = {});
 
-/// Command, machine and version; title, text, exact and note of the reference. Of absolute paths the command shows only
-/// the last part.
+/// Commands (one here), machine and version; title, text, exact and note of the reference. Of absolute paths the
+/// command shows only the last part.
 [[nodiscard]] nlohmann::json run_view(const Field& root);
 [[nodiscard]] nlohmann::json reference_view(const Field& root);
 

@@ -1,4 +1,4 @@
-// Numbers and words as people read them. Units stand in the tables' heads.
+// Numbers and words as people read them. Units are in the heads of the tables.
 #pragma once
 
 #include <filesystem>
@@ -39,7 +39,7 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// A command line without the folders of the machine that it ran on: "/home/x/scenes/a.json" as "a.json".
 [[nodiscard]] std::string without_folders(const std::string& command);
 
-/// A relative path as it may stand in an attribute: every byte with a meaning in a URL is encoded.
+/// A relative path for an attribute: every byte with a meaning in a URL is encoded.
 [[nodiscard]] std::string url(const std::filesystem::path& path);
 
 }  // namespace umbra

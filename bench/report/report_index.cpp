@@ -107,8 +107,16 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                                {"name", method_id(*method)}});
             break;
         }
-    const auto add_once = [](json& list, json view) {
-        if (std::find(list.begin(), list.end(), view) == list.end()) list.push_back(std::move(view));
+    // Scenes that one machine and version compared share an entry, which lists their commands.
+    const auto add_run = [](json& list, json view) {
+        for (json& known : list) {
+            if (known["machine"] != view["machine"] || known["version"] != view["version"]) continue;
+            json& commands = known["commands"];
+            if (std::find(commands.begin(), commands.end(), view["commands"][0]) == commands.end())
+                commands.push_back(view["commands"][0]);
+            return;
+        }
+        list.push_back(std::move(view));
     };
     // Notes on one scene are shown on its own page only.
     const auto add_reference = [](json& list, json view) {
@@ -138,7 +146,7 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
         for (const std::string& id : ids) cells.push_back(cell_view(scene, id, href));
         rows.push_back({{"title", scene.title}, {"href", href}, {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
-        add_once(runs, run_view(scene.root));
+        add_run(runs, run_view(scene.root));
         add_reference(references, reference_view(scene.root));
     }
     return {{"title", title},

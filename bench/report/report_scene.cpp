@@ -84,7 +84,7 @@ json light_views(const SceneFiles& scene, const std::vector<Field>& methods) {
                     files["classes"], label, "errors of " + name,
                     fmt::format("Classes of the wrong points of {} by {}, in the colours of the legend; {}", name,
                                 label, wrong.text));
-                // Rings stand on both pictures; the caption explains them once.
+                // Both pictures show the rings; the caption explains them once.
                 if (json rings = scene.rings(files["classes"]); rings.is_object()) {
                     column["rings_words"] = rings["words"];
                     for (const char* picture : {"difference", "classes"})

@@ -57,7 +57,7 @@ struct Box {
 };
 Box label_box(const json& mark) {
     const double x = number(mark, "label_x"), y = number(mark, "label_y");
-    return {x, y - 9, x + 6.5 * double(mark["label"].get<std::string>().size()), y + 3};
+    return {x, y - 9, x + 6 * double(mark["label"].get<std::string>().size()), y + 3};
 }
 
 TEST(ErrorTimeChart, LabelsCoverNoLabelNoMarkAndNoLineAndStandBesideTheirOwn) {
@@ -65,6 +65,7 @@ TEST(ErrorTimeChart, LabelsCoverNoLabelNoMarkAndNoLineAndStandBesideTheirOwn) {
     for (std::size_t k = 0; k < 13; ++k)
         points.push_back({"method " + std::to_string(k), 1 + double(k % 4), 2 + 3 * double(k % 5),
                           k % 3 ? 0.001 * double(k) : 0, k});
+    points.push_back({"a method with a long name", 1, 90, 0, 13});  // its label has room on the left only
     const json chart   = error_time_chart(points);
     std::size_t labels = 0;
     for (const json& mark : chart["marks"]) {

@@ -1,4 +1,4 @@
-// Which method the finder of the report's first page marks. Run by node --test; needs nothing else.
+// Which method the finder of the report's first page marks. Run by node; needs nothing else.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
