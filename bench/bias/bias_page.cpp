@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::json;
 
-// Of the heat map, in units of its viewBox.
+// The heat map, in units of its viewBox.
 constexpr double kCell = 22, kLeft = 46, kTop = 10;
 constexpr std::array kErrors{"false_shadow", "false_light"};
 constexpr int kDecades = 5;  // 1 to 9, 10 to 99, ..., from 10,000 on
@@ -23,13 +23,13 @@ int decade(std::uint64_t wrong) {
     return wrong == 0 ? 0 : std::min(kDecades, 1 + static_cast<int>(std::log10(static_cast<double>(wrong))));
 }
 
-/// Half a cell: the upper left one says false shadow, the lower right one false light.
+/// Half a cell: false shadow on the upper left, false light on the lower right.
 std::string half_cell(double x, double y, std::size_t kind, double cell) {
     return kind == 0 ? fmt::format("M{:g} {:g}h{:g}l{:g} {:g}z", x, y, cell, -cell, cell)
                      : fmt::format("M{:g} {:g}v{:g}h{:g}z", x + cell, y, cell, -cell);
 }
 
-/// One path a colour, which holds all half cells of it: thousands of elements would make a slow page.
+/// One path per colour with all its half cells: thousands of elements would make a slow page.
 class Paths {
 public:
     void add(double x, double y, const Json& errors) {
@@ -78,7 +78,7 @@ json slice_view(const Json& record, const Json& study, const Json& slice) {
                 best["constant"] == constants[column])
                 marks.push_back({{"x", fmt::format("{:g}", x + kCell / 2)}, {"y", fmt::format("{:g}", y + kCell / 2)}});
         }
-    // Beside the grid, since neither is a place in it.
+    // Beside the grid: neither has a position in it.
     paths.add(side, kTop + kCell, study["automatic"]);
     paths.add(side, kTop + 4 * kCell, study["receiver_plane"]);
     const auto text = [](double v) { return fmt::format("{:g}", v); };
@@ -151,7 +151,7 @@ json study_view(const Json& record, const Json& study) {
                   fmt::format("constant={:g}, slope={:g}, normal_offset={:g}", best["constant"].get<double>(),
                               best["slope"].get<double>(), best["normal_offset"].get<double>()),
                   best),
-              row("receiver_plane", "nothing but rounding", study["receiver_plane"])}}};
+              row("receiver_plane", "no bias beyond a rounding margin", study["receiver_plane"])}}};
 }
 
 json legend() {
@@ -174,15 +174,16 @@ json legend() {
 void write_bias_page(const Json& record, const std::filesystem::path& out, StagedFiles& staged) {
     json studies = json::array();
     for (const Json& study : record["bias"]) studies.push_back(study_view(record, study));
-    const json view = {{"command", record["command"]},
-                       {"version", record["version"]},
-                       {"width", fmt::format("{}", record["size"]["width"].get<int>())},
-                       {"height", fmt::format("{}", record["size"]["height"].get<int>())},
-                       {"map", record["map"]},
-                       {"legend", legend()},
-                       {"studies", std::move(studies)}};
-    staged.write(out / "index.html", render_page(assets::bias_html, view));
-    staged.write(out / "report.css", assets::report_css);
+    const json view     = {{"command", without_folders(record["command"].get<std::string>())},
+                           {"version", record["version"]},
+                           {"width", fmt::format("{}", record["size"]["width"].get<int>())},
+                           {"height", fmt::format("{}", record["size"]["height"].get<int>())},
+                           {"map", record["map"]},
+                           {"legend", legend()},
+                           {"studies", std::move(studies)}};
+    const PageHead head = {"The shadow z-buffer’s bias: acne against detachment", "", {}};
+    staged.write(out / "index.html", render_page(assets::bias_html, head, view));
+    write_page_assets(out, head.scripts, staged);
 }
 
 }  // namespace umbra

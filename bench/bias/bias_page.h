@@ -1,4 +1,4 @@
-// The page of a bias study: a heat map a scene, and what the settings worth a name cost.
+// The page of a bias study: a heat map per scene, and the errors of notable settings.
 #pragma once
 
 #include "umbra/bench/out/staged_files.h"

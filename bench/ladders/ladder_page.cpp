@@ -60,12 +60,11 @@ json fared(const Field& ladder, const Field& method) {
     const auto from = [&](const char* key, const char* words) {
         if (const auto r = rung_of(ladder, method[key])) {
             if (!note.empty()) note += ", ";
-            note +=
-                *r == 0 ? std::string(words) : fmt::format("{} from {} on", words, rung_value(*method[key].number()));
+            note += *r == 0 ? std::string(words) : fmt::format("{} from {}", words, rung_value(*method[key].number()));
         }
     };
     from("not_served_from", "not served");
-    from("silent_from", "mostly silent");
+    from("silent_from", "mostly undefined");
     const bool breaks = method["breaks_at"].present();
     std::string words = breaks ? rung_value(*method["breaks_at"].number()) : note.empty() ? "holds" : "";
     return {{"words", words},   {"kind", method["kind"].text()},   {"note", note}, {"why", method["why"].text()},
@@ -109,27 +108,26 @@ json break_view(const Field& ladder, const Field& method) {
             {"href", url(fs::path("breaks") / name)},
             {"command", fmt::format("umbra compare breaks/{} --methods {} -o again", name, method["text"].text())},
             {"pictures",
-             {picture("truth", "truth", fmt::format("S of {} in truth", b["light"].text())),
+             {picture("truth", "reference", fmt::format("S of {} by the reference", b["light"].text())),
               picture("visibility", "method", fmt::format("S of {} by {}", b["light"].text(), label)),
-              picture("classes", "errors", "Wrong points in the colours of their classes")}}};
+              picture("classes", "errors", "Classes of the wrong points")}}};
 }
 
-/// Breaks that show something of their method, and what. Sentences stand apart from the run: they are shown only where
-/// the run has that break.
+/// Breaks that show a property of their method, and the property. These sentences do not come from the run: they are
+/// shown only where the run has that break.
 struct Telling {
     const char *ladder, *method, *sees;
 };
 constexpr Telling kTelling[] = {
     {"beside_edges", "ray_traced",
-     "Rays that pass an edge or a corner by less than the rounding of the ray-triangle test slip between the two "
+     "Rays that pass an edge or a corner within the rounding error of the ray-triangle test slip between the two "
      "triangles that share it: light leaks through a closed sheet."},
     {"needles", "shadow_zbuffer",
-     "Occluders thinner than a sample of the map: their shadow is cut into pieces as long as the samples are, and "
-     "where "
-     "it is thinner still, a sample catches it by chance."},
+     "The occluders are thinner than a texel of the map: their shadow breaks into pieces, and the thinnest occluders "
+     "are hit by chance only."},
     {"growing_lamp", "shadow_volumes",
-     "The light has grown, and the method takes it in its centre: where the truth is one wide penumbra it has an umbra "
-     "with a sharp edge."},
+     "The light grows, and the method treats it as a point at its centre: it draws an umbra with a sharp edge where "
+     "the reference has a wide penumbra."},
 };
 
 json ladder_view(const Field& ladder, double limit) {
@@ -147,16 +145,16 @@ json ladder_view(const Field& ladder, double limit) {
         if (const std::string by = rung["truth"].text(); truth.find(by) == std::string::npos)
             truth += (truth.empty() ? "" : ", then ") + by;
         if (rung["unjudged"].present())
-            end = fmt::format("From {} on nothing is judged: {}.", rung_value(rung["value"].number().value_or(0)),
+            end = fmt::format("Nothing is compared from {}: {}.", rung_value(rung["value"].number().value_or(0)),
                               rung["unjudged"].text());
     }
     view["truth"] = truth;
     view["end"]   = end;
     for (const Field& method : ladder["methods"].items()) {
-        json row     = fared(ladder, method);
-        row["label"] = label_of(method);
-        row["key"]   = sum ? "" : view["chart"]["lines"][view["rows"].size()]["key"].get<std::string>();
-        row["style"] = sum ? "" : view["chart"]["lines"][view["rows"].size()]["style"].get<std::string>();
+        json row      = fared(ladder, method);
+        row["label"]  = label_of(method);
+        row["key"]    = sum ? "" : view["chart"]["lines"][view["rows"].size()]["key"].get<std::string>();
+        row["colour"] = sum ? "" : view["chart"]["lines"][view["rows"].size()]["colour"].get<std::string>();
         view["rows"].push_back(std::move(row));
         if (method["break"].present()) view["breaks"].push_back(break_view(ladder, method));
     }
@@ -214,27 +212,27 @@ json ladder_showcase_view(const Field& root, const std::string& page) {
     return all;
 }
 
-void write_ladder_page(const fs::path& folder) {
-    const Field root   = read_results(folder / "results.json");
+void write_ladder_page(const Field& root, const fs::path& folder, const std::string& report, StagedFiles& staged) {
     const double limit = root["breaking_share"].number().value_or(0);
-    json view          = {{"root", ""},
-                          {"table", ladder_table_view(root, "")},
-                          {"run", run_view(root)},
-                          {"share", fmt::format("{:g}", 100 * limit)},
-                          {"legend", class_legend()},
-                          {"ladders", json::array()}};
+    json view          = {{"report", report},         {"table", ladder_table_view(root, "")},
+                          {"run", run_view(root)},    {"share", fmt::format("{:g}", 100 * limit)},
+                          {"legend", class_legend()}, {"ladders", json::array()}};
     int broken         = 0;
     for (const Field& ladder : root["ladders"].items()) {
         view["ladders"].push_back(ladder_view(ladder, limit));
         for (const Field& method : ladder["methods"].items()) broken += method["breaks_at"].present();
     }
-    view["ladder_count"] = std::to_string(root["ladders"].items().size());
-    view["break_count"]  = std::to_string(broken);
+    view["ladder_count"] = counted(double(root["ladders"].items().size()), "ladder");
+    view["break_count"]  = counted(broken, "break");
 
+    const PageHead head = {"Stability: where each method breaks", "", {"pictures.js"}};
+    staged.write(folder / "index.html", render_page(assets::ladders_html, head, std::move(view)));
+    write_page_assets(folder, head.scripts, staged);
+}
+
+void write_ladder_page(const fs::path& folder) {
     StagedFiles staged;
-    staged.write(folder / "index.html", render_page(assets::ladders_html, view));
-    staged.write(folder / "report.css", assets::report_css);
-    staged.write(folder / "report.js", assets::report_js);
+    write_ladder_page(read_results(folder / "results.json"), folder, "", staged);
     staged.commit();
 }
 

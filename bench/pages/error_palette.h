@@ -1,8 +1,9 @@
-// The colours of the class pictures, one a class of errors: for the pictures and for their legends.
+// The classes of wrong points, one row a class: what results.json, the legends, the tables and the class pictures call
+// and colour them.
 //
-// Three hues that colour-blind eyes keep apart, on grounds both dark and light: shadows that should not be are blue,
-// light that should not be is orange to red, the terminator is green; within a hue the rarer and graver class is the
-// stronger colour. What is right is grey, and shows the reference's S_j, so that one sees where on the scene one is.
+// Three hues that colour-blind eyes keep apart, on light and on dark ground: false shadow is blue, false light orange
+// to red, the terminator green. Within a hue the rarer and graver class has the stronger colour. Right points are grey
+// and show the reference's S_j, so that a reader recognises the scene.
 // After Masataka Okabe, Kei Ito, Color Universal Design, 2008 (orange, sky blue, bluish green, vermillion, blue).
 #pragma once
 
@@ -15,22 +16,36 @@ namespace umbra {
 
 struct ErrorColour {
     ErrorClass error_class;
-    std::string_view key;   ///< as in results.json: "acne"
-    std::string_view name;  ///< for people: "acne"
-    std::string_view srgb;  ///< "#rrggbb"
+    std::string_view key;       ///< "acne"
+    std::string_view name;      ///< in a legend: "false shadow: acne"
+    std::string_view srgb;      ///< "#rrggbb"
+    std::string_view group;     ///< the object of an `errors` entry of results.json that counts it, with members
+                                ///< `interior` and `edge`; empty where no table has columns for the class
+    std::string_view member;    ///< its own count in that object; empty where it has none
+    bool interior;              ///< outside the edge band and not at the terminator: a mistake of the method
+    std::string_view sentence;  ///< what the class means
 };
 
-/// What the legend shows, in its order.
+/// In the order of the legends. A new class is one more row: legends, tables and sums follow.
 inline constexpr std::array kErrorPalette = {
-    ErrorColour{ErrorClass::acne, "acne", "false shadow: acne", "#0a2a9c"},
-    ErrorColour{ErrorClass::false_shadow, "false_shadow", "false shadow: other", "#0072b2"},
-    ErrorColour{ErrorClass::false_shadow_edge, "false_shadow_edge", "false shadow: in the edge band", "#7cc4ee"},
-    ErrorColour{ErrorClass::detachment, "detachment", "false light: detachment", "#e69f00"},
-    ErrorColour{ErrorClass::leak, "leak", "false light: leak", "#c40000"},
-    ErrorColour{ErrorClass::false_light, "false_light", "false light: of unknown occluder", "#d55e00"},
-    ErrorColour{ErrorClass::false_light_edge, "false_light_edge", "false light: in the edge band", "#ffc861"},
-    ErrorColour{ErrorClass::terminator_wrong, "terminator_wrong", "wrong at the terminator", "#009e73"},
-    ErrorColour{ErrorClass::on_boundary, "on_boundary", "on the boundary: never wrong", "#cc79a7"},
+    ErrorColour{ErrorClass::acne, "acne", "false shadow: acne", "#0a2a9c", "false_shadow", "acne", true,
+                "Too dark: the surface shades itself, or the method names no occluder."},
+    ErrorColour{ErrorClass::false_shadow, "false_shadow", "false shadow: other", "#0072b2", "false_shadow", "", true,
+                "Too dark: the method blames another surface."},
+    ErrorColour{ErrorClass::false_shadow_edge, "false_shadow_edge", "false shadow: edge band", "#7cc4ee",
+                "false_shadow", "", false, "Too dark within 1.5 pixels of a shadow boundary."},
+    ErrorColour{ErrorClass::detachment, "detachment", "false light: detachment", "#e69f00", "false_light", "detachment",
+                true, "Too bright next to a contact: the shadow is detached from its occluder (“peter-panning”)."},
+    ErrorColour{ErrorClass::leak, "leak", "false light: leak", "#c40000", "false_light", "leak", true,
+                "Too bright away from any contact: light leaks through an occluder."},
+    ErrorColour{ErrorClass::false_light, "false_light", "false light: unknown occluder", "#d55e00", "false_light", "",
+                true, "Too bright: no occluder is known, so detachment and leak cannot be told apart."},
+    ErrorColour{ErrorClass::false_light_edge, "false_light_edge", "false light: edge band", "#ffc861", "false_light",
+                "", false, "Too bright within 1.5 pixels of a shadow boundary."},
+    ErrorColour{ErrorClass::terminator_wrong, "terminator_wrong", "wrong at the terminator", "#009e73", "", "", false,
+                "Wrong where the smooth normal faces away from the light: the sum multiplies S by 0 there."},
+    ErrorColour{ErrorClass::on_boundary, "on_boundary", "on the boundary: never wrong", "#cc79a7", "", "", false,
+                "The segment to the light only touches an edge or a corner: no answer is wrong."},
 };
 
 }  // namespace umbra

@@ -3,6 +3,7 @@
 #include <kainjow/mustache.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "report_assets.h"
 
@@ -30,13 +31,19 @@ kainjow::mustache::data template_data(const json& view) {
 
 }  // namespace
 
-std::string render_page(std::string_view page, const json& view) {
+std::string render_page(std::string_view page, const PageHead& head, json view) {
+    view["head_title"]           = head.title;
+    view["root"]                 = head.root;
+    view["scripts"]              = head.scripts;
     kainjow::mustache::data data = template_data(view);
     for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
                                         {"bias_map", assets::bias_map_html},
                                         {"picture", assets::picture_html},
+                                        {"slider", assets::slider_html},
                                         {"classes", assets::classes_html},
                                         {"ladder_table", assets::ladder_table_html},
+                                        {"break_pictures", assets::break_pictures_html},
+                                        {"setup", assets::setup_html},
                                         {"scales", assets::scales_html},
                                         {"scale_colours", assets::scale_colours_html}})
         data.set(name, std::string(partial));
@@ -44,6 +51,16 @@ std::string render_page(std::string_view page, const json& view) {
     std::string html = text.render(data);
     if (!text.is_valid()) throw std::logic_error("report template: " + text.error_message());
     return html;
+}
+
+void write_page_assets(const std::filesystem::path& folder, const std::vector<std::string>& scripts,
+                       StagedFiles& staged) {
+    staged.write(folder / "report.css", assets::report_css);
+    for (const auto& [name, content] : {std::pair{"slider.js", assets::slider_js},
+                                        {"finder.js", assets::finder_js},
+                                        {"pictures.js", assets::pictures_js}})
+        for (const std::string& script : scripts)
+            if (script == name) staged.write(folder / name, content);
 }
 
 }  // namespace umbra

@@ -1,17 +1,32 @@
-// Pages from templates (bench/report/*.html) and the views that fill them.
+// Pages from templates (bench/pages/assets/*.html) and the views that fill them.
 //
-// The template engine is Mustache (kainjow's header, packaged by Debian): it escapes by default, and every name,
-// sentence and warning on a page comes out of a file. No template uses its unescaped form.
+// The template engine is Mustache (kainjow's header, packaged by Debian). It escapes by default, and every name,
+// sentence and warning on a page comes from a file. No template uses the unescaped form.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "umbra/bench/out/staged_files.h"
 
 namespace umbra {
 
-/// A page from its template; the parts that pages share are partials, named as their files. Of a view's values, only
-/// strings, lists, objects and true and false mean something.
-[[nodiscard]] std::string render_page(std::string_view page, const nlohmann::json& view);
+/// What the head of a page holds.
+struct PageHead {
+    std::string title;                 ///< of the browser's tab
+    std::string root;                  ///< address of the folder of style and scripts, seen from the page; "" or "x/"
+    std::vector<std::string> scripts;  ///< "slider.js", ...: files of bench/pages/assets
+};
+
+/// A page from its template. Parts that pages share are partials, named as their files. Of a view's values, strings,
+/// lists, objects, true and false have a meaning; an empty string or list is false.
+[[nodiscard]] std::string render_page(std::string_view page, const PageHead& head, nlohmann::json view);
+
+/// Style and scripts of pages with these heads, written to `folder`. Throws InputError.
+void write_page_assets(const std::filesystem::path& folder, const std::vector<std::string>& scripts,
+                       StagedFiles& staged);
 
 }  // namespace umbra

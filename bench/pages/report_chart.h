@@ -1,5 +1,5 @@
-// Small charts, as numbers for the pages' templates to draw: error against time, and wrong points against a ladder's
-// rungs.
+// Small charts, as coordinates for the pages' templates to draw: error against time, and wrong points against the
+// rungs of a ladder. Both are 440 wide; their heights follow from what they show.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,27 +9,34 @@
 
 namespace umbra {
 
-/// One method: what a new camera costs, what everything anew costs (ms), and its error; `style` picks colour and mark.
+/// Marks differ in shape and colour; the first 36 styles are distinct, then they repeat.
+struct MarkStyle {
+    std::size_t colour, shape;  ///< of 6 each
+};
+[[nodiscard]] MarkStyle mark_style(std::size_t style);
+
+/// One method: the time of a new camera and of a full rebuild (ms), and its mean absolute error.
 struct ChartPoint {
     std::string label;
     double camera_ms = 0, object_ms = 0, error = 0;
     std::size_t style = 0;
 };
 
-/// Coordinates in a 440 x 340 box: ticks, marks, and labels placed where they cover neither marks nor one another.
-/// An error of 0 has no logarithm: it lies on a line of its own beneath the axis.
+/// Ticks, marks and labels. Both axes are logarithmic. Methods without error have no logarithm: each gets a lane of its
+/// own below the axis. A label lies beside its mark where it covers nothing else, and is left out where it cannot:
+/// the legend below the chart names every mark.
 [[nodiscard]] nlohmann::json error_time_chart(const std::vector<ChartPoint>& points);
 
 /// One method on the rungs of a ladder: its share of wrong interior points, absent where it has no answer.
 struct RungSeries {
     std::string label;
-    std::vector<std::optional<double>> shares;  ///< one a rung
+    std::vector<std::optional<double>> shares;  ///< one per rung
     std::optional<std::size_t> breaks_at;
     std::size_t style = 0;
 };
 
-/// Coordinates in a box 440 wide: the share is logarithmic, rungs are evenly spaced, since they are geometric. Methods
-/// of which no point is wrong have a lane each beneath the axis; `limit` is the share above which a method breaks.
+/// The share is logarithmic; rungs are geometric and so evenly spaced. Rungs without a wrong point lie in the lane of
+/// their method below the axis; `limit` is the share above which a method breaks.
 [[nodiscard]] nlohmann::json rung_chart(const std::vector<std::string>& rungs, const std::vector<RungSeries>& series,
                                         double limit);
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 
 #include "umbra/bench/pages/error_palette.h"
+#include "umbra/bench/pages/error_rings.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/core/image/image_io.h"
 
 namespace umbra {
 
@@ -32,15 +34,48 @@ std::string SceneFiles::link(const Field& file, const fs::path& from) const {
     return url((scene_.page / name).lexically_normal().lexically_relative(from));
 }
 
-json SceneFiles::figure(const Field& file, const std::string& who, const std::string& what,
-                        const std::string& alt) const {
+json SceneFiles::figure(const Field& file, const std::string& who, const std::string& what, const std::string& alt,
+                        const fs::path& from) const {
     if (!file.present()) return false;
     json view    = size_;
-    view["src"]  = link(file, scene_.page);
+    view["src"]  = link(file, from.empty() ? scene_.page : from);
     view["who"]  = who;
     view["what"] = what;
     view["alt"]  = alt;
     return view;
+}
+
+Image SceneFiles::picture(const Field& file) const {
+    (void)link(file, scene_.page);  // refuses a file that lies elsewhere
+    return read_image(scene_.data / file.text()).image;
+}
+
+json SceneFiles::legend(const Field& classes) const {
+    json all = json::array();
+    for (const ErrorColour* entry : classes_on(picture(classes)))
+        all.push_back({{"name", std::string(entry->name)}, {"colour", std::string(entry->srgb)}});
+    return all;
+}
+
+json SceneFiles::rings(const Field& classes) const {
+    if (!classes.present()) return false;
+    const Image drawn      = picture(classes);
+    const ErrorRings found = error_rings(drawn);
+    if (found.rings.empty()) return false;
+    json shapes        = json::array();
+    const auto rounded = [](double v) { return fmt::format("{:.0f}", v); };
+    for (const Ring& ring : found.rings)
+        shapes.push_back({{"x", rounded(ring.x)},
+                          {"y", rounded(ring.y)},
+                          {"w", rounded(ring.width)},
+                          {"h", rounded(ring.height)},
+                          {"r", rounded(std::min(ring.width, ring.height) / 2)}});
+    return {{"width", std::to_string(drawn.width)},
+            {"height", std::to_string(drawn.height)},
+            {"words", fmt::format("{} around {} of wrong interior points.",
+                                  found.rings.size() == 1 ? "1 ring" : fmt::format("{} rings", found.rings.size()),
+                                  found.rings.size() == 1 ? "a small group" : "small groups")},
+            {"shapes", std::move(shapes)}};
 }
 
 json SceneFiles::exr(const Field& files) const {
@@ -92,9 +127,9 @@ Totals totals(const Field& method) {
     Totals t;
     double points = 0, absolute = 0;
     for (const Field& error : method["errors"].items()) {
-        for (const char* kind : {"false_shadow", "false_light"}) {
-            t.interior += error[kind]["interior"].number().value_or(0);
-            t.edge += error[kind]["edge"].number().value_or(0);
+        for (const std::string& group : error_groups()) {
+            t.interior += error[group]["interior"].number().value_or(0);
+            t.edge += error[group]["edge"].number().value_or(0);
         }
         if (const auto mae = error["mae"].number()) {
             const double n = error["points"].number().value_or(1);
@@ -110,6 +145,24 @@ Totals totals(const Field& method) {
     return t;
 }
 
+std::vector<std::string> error_groups() {
+    std::vector<std::string> groups;
+    for (const ErrorColour& entry : kErrorPalette)
+        if (!entry.group.empty() && std::find(groups.begin(), groups.end(), entry.group) == groups.end())
+            groups.emplace_back(entry.group);
+    return groups;
+}
+
+std::optional<Field> worst_method(const Field& root) {
+    std::optional<Field> worst;
+    double most = -1;
+    for (const Field& method : root["methods"].items()) {
+        if (!serves(method) || is_reference(root, method) || !method["files"]["png"].present()) continue;
+        if (const double wrong = totals(method).interior; wrong > most) worst = method, most = wrong;
+    }
+    return worst;
+}
+
 bool is_reference(const Field& root, const Field& method) {
     const std::string text = method["text"].text();
     return !text.empty() && text == root["reference"]["text"].text();
@@ -118,8 +171,25 @@ bool is_reference(const Field& root, const Field& method) {
 json class_legend() {
     json all = json::array();
     for (const ErrorColour& entry : kErrorPalette)
-        all.push_back({{"name", std::string(entry.name)}, {"colour", std::string(entry.srgb)}});
+        all.push_back({{"name", std::string(entry.name)},
+                       {"colour", std::string(entry.srgb)},
+                       {"sentence", std::string(entry.sentence)}});
     return all;
+}
+
+json slider_view(const SceneFiles& files, const std::optional<Field>& method, const fs::path& from) {
+    const ScenePage& scene = files.scene();
+    const Field reference  = scene.root["reference"]["files"]["png"];
+    if (!method || !reference.present()) return false;
+    const std::string label = method_label(*method, scene.root["methods"].items());
+    json left               = files.figure((*method)["files"]["png"], label, "picture",
+                                           fmt::format("{}: shadows by {}", scene.title, label), from);
+    json right =
+        files.figure(reference, "Reference", "picture", fmt::format("{}: shadows by the reference", scene.title), from);
+    json view     = {{"width", left.value("width", "")}, {"height", left.value("height", "")}};
+    view["left"]  = std::move(left);
+    view["right"] = std::move(right);
+    return view;
 }
 
 json run_view(const Field& root) {
@@ -132,7 +202,9 @@ json run_view(const Field& root) {
         parts.push_back(fmt::format("{:.0f} GiB", *n / (1024.0 * 1024 * 1024)));
     if (const auto s = machine["system"].text(); !s.empty()) parts.push_back(s);
     if (const auto s = machine["compiler"].text(); !s.empty()) parts.push_back(s);
-    return {{"command", root["command"].text()},
+    const std::string command = without_folders(root["command"].text());
+    return {{"has_commands", !command.empty()},
+            {"commands", json::array({command})},
             {"machine", fmt::format("{}", fmt::join(parts, ", "))},
             {"version", root["version"].text()}};
 }

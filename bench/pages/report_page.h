@@ -1,4 +1,4 @@
-// What the pages of a report share: a scene's results and where they lie, what methods are called, and their totals.
+// What the pages of a report share: a scene's results and where they lie, names of methods, and their totals.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/results_file.h"
+#include "umbra/core/image/image.h"
 
 namespace umbra {
 
@@ -29,9 +30,17 @@ public:
     /// The address of a file seen from the folder `from`.
     [[nodiscard]] std::string link(const Field& file, const std::filesystem::path& from) const;
 
-    /// A picture with what it is of, what it shows, and what is seen on it; false where there is none.
+    /// A picture: whose it is, what it shows, and its description; false where there is none. `from` is the folder
+    /// of the page that shows it, by default the scene's own.
     [[nodiscard]] nlohmann::json figure(const Field& file, const std::string& who, const std::string& what,
-                                        const std::string& alt) const;
+                                        const std::string& alt, const std::filesystem::path& from = {}) const;
+
+    /// Rings around wrong interior points that are hard to see on a small class picture, for the template of a picture
+    /// (`shapes`) and in words; false where there are none. Throws InputError where the picture cannot be read.
+    [[nodiscard]] nlohmann::json rings(const Field& classes) const;
+
+    /// The entries of the legend that a class picture needs: the classes with a point on it. Throws InputError.
+    [[nodiscard]] nlohmann::json legend(const Field& classes) const;
 
     /// The address of `files/exr`; false where it is not there. EXRs are large and may have been left out of a folder
     /// that is handed out.
@@ -40,6 +49,8 @@ public:
     [[nodiscard]] const ScenePage& scene() const { return scene_; }
 
 private:
+    [[nodiscard]] Image picture(const Field& file) const;
+
     const ScenePage& scene_;
     StagedFiles& staged_;
     nlohmann::json size_ = nlohmann::json::object();  ///< width, height, where the results say them
@@ -54,21 +65,34 @@ private:
 /// The methods of all scenes in the order in which they first appear, by their ids.
 [[nodiscard]] std::vector<std::string> method_ids(const std::vector<ScenePage>& scenes);
 
-/// Sums over the lights of one method on one scene. Interior and edge are never added up.
+/// Sums over the lights of one method on one scene. Interior and edge are never summed.
 struct Totals {
     double interior = 0, edge = 0;
     std::optional<double> mae;                             ///< mean over all points of all lights
-    std::optional<double> object_ms, light_ms, camera_ms;  ///< what it costs when an object, a light, the camera moves
+    std::optional<double> object_ms, light_ms, camera_ms;  ///< time when an object, a light, the camera moves
 };
 [[nodiscard]] Totals totals(const Field& method);
 
-/// The reference of a comparison may be among its methods, too; it is not held against itself.
+/// The objects of an `errors` entry that count wrong points, {interior, edge, and special classes}, each once, in the
+/// order of the class table: false_shadow, false_light.
+[[nodiscard]] std::vector<std::string> error_groups();
+
+/// The method with the most wrong interior points, of those with a picture that are not the reference; the first of
+/// equals. Nothing where there is none.
+[[nodiscard]] std::optional<Field> worst_method(const Field& root);
+
+/// A reference may be among the methods of its comparison; it is not compared with itself.
 [[nodiscard]] bool is_reference(const Field& root, const Field& method);
 
-/// Name and colour of every class of errors, as the class pictures have them.
+/// Name, colour and meaning of every class of wrong points, as the class pictures have them.
 [[nodiscard]] nlohmann::json class_legend();
 
-/// Command, machine and version; title, text, exact and note of the reference.
+/// The slider's first pair: a method's picture on the left, the reference's on the right; false where one is missing.
+[[nodiscard]] nlohmann::json slider_view(const SceneFiles& files, const std::optional<Field>& method,
+                                         const std::filesystem::path& from = {});
+
+/// Commands (one here), machine and version; title, text, exact and note of the reference. Of absolute paths the
+/// command shows only the last part.
 [[nodiscard]] nlohmann::json run_view(const Field& root);
 [[nodiscard]] nlohmann::json reference_view(const Field& root);
 

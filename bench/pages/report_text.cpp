@@ -64,6 +64,23 @@ std::string place_in_words(const std::string& place) {
     return in_words(place);
 }
 
+std::string counted(double n, const std::string& noun) {
+    return fmt::format("{} {}{}", count(n), noun, n == 1 ? "" : "s");
+}
+
+std::string without_folders(const std::string& command) {
+    std::string shown;
+    for (std::size_t at = 0; at < command.size();) {
+        const std::size_t end  = std::min(command.find(' ', at), command.size());
+        const std::string word = command.substr(at, end - at);
+        const std::filesystem::path path(word.ends_with('/') ? word.substr(0, word.size() - 1) : word);
+        shown += path.is_absolute() ? path.filename().string() : word;
+        if (end < command.size()) shown += ' ';
+        at = end + 1;
+    }
+    return shown;
+}
+
 std::string url(const std::filesystem::path& path) {
     std::string encoded;
     for (const char c : path.generic_string()) {

@@ -1,4 +1,4 @@
-// Numbers and words as people read them. Units stand in the tables' heads.
+// Numbers and words as people read them. Units are in the heads of the tables.
 #pragma once
 
 #include <filesystem>
@@ -9,16 +9,16 @@ namespace umbra {
 
 inline constexpr const char* kNone = "–";  ///< where there is no number
 
-/// Three significant digits, as 1.2·10⁻⁵ where they would stand behind too many zeros, and a minus that is one.
+/// Three significant digits, as 1.2·10⁻⁵ where more than four zeros would lead, with a true minus sign.
 [[nodiscard]] std::string score(std::optional<double> value);
 
 /// A whole number as an exponent: ⁻⁵.
 [[nodiscard]] std::string superscript(int value);
 
-/// The same as `score`, but nothing below a microsecond: a clock does not tell such times apart.
+/// The same as `score`, but nothing below a microsecond, which clocks do not resolve.
 [[nodiscard]] std::string milliseconds(std::optional<double> ms);
 
-/// Whole numbers in groups of three, parted by a narrow no-break space.
+/// Whole numbers in groups of three with a narrow no-break space between.
 [[nodiscard]] std::string count(std::optional<double> value);
 
 /// A share in per cent, rounded down so that 100 means all of it.
@@ -33,7 +33,13 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 [[nodiscard]] std::string kind_in_words(const std::string& kind);
 [[nodiscard]] std::string place_in_words(const std::string& place);
 
-/// A relative path as it may stand in an attribute: every byte that means something in a URL is encoded.
+/// "1 point", "2 points": `count` and the noun, which takes an s.
+[[nodiscard]] std::string counted(double n, const std::string& noun);
+
+/// A command line without the folders of the machine that it ran on: "/home/x/scenes/a.json" as "a.json".
+[[nodiscard]] std::string without_folders(const std::string& command);
+
+/// A relative path for an attribute: every byte with a meaning in a URL is encoded.
 [[nodiscard]] std::string url(const std::filesystem::path& path);
 
 }  // namespace umbra

@@ -1,6 +1,7 @@
 // The report: results.json files -> numbers and sentences in the shape of the page templates -> pages.
 //
-// The templates (bench/report/*.html) hold the words and the markup; the views (report_index, report_scene) fill them.
+// The templates (bench/pages/assets/*.html) hold the words and the markup; the views (report_index, report_scene) fill
+// them.
 #include "umbra/bench/report/report.h"
 
 #include <fmt/format.h>
@@ -26,6 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+const std::vector<std::string> kSceneScripts = {"slider.js", "pictures.js"};
+const std::vector<std::string> kIndexScripts = {"slider.js", "finder.js", "pictures.js"};  // with all of a scene's
+
 std::vector<fs::path> results_files(const fs::path& dir) {
     std::vector<fs::path> files;
     std::error_code error;
@@ -34,12 +38,12 @@ std::vector<fs::path> results_files(const fs::path& dir) {
             files.push_back(entry.path() / "results.json");
     if (error)
         throw InputError(
-            fmt::format("{}: {} (a folder that umbra compare wrote would be right)", dir.string(), error.message()));
+            fmt::format("{}: {}, expected a folder that umbra compare wrote", dir.string(), error.message()));
     std::sort(files.begin(), files.end());
     if (files.empty() && fs::exists(dir / "results.json")) files.push_back(dir / "results.json");
     if (files.empty())
         throw InputError(fmt::format(
-            "{}: holds no results.json, nor does any folder in it (a folder that umbra compare wrote would be right)",
+            "{}: holds no results.json, nor does any folder in it, expected a folder that umbra compare wrote",
             dir.string()));
     return files;
 }
@@ -51,7 +55,7 @@ std::string folder_name(const std::string& scene) {
     return name;
 }
 
-/// What lies in the folders: scenes that were compared, and at most one climb of ladders.
+/// The contents of the folders: compared scenes, and at most one run of ladders.
 struct Found {
     std::vector<ScenePage> scenes;
     std::optional<fs::path> ladders;
@@ -82,7 +86,7 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
                 std::any_of(all.begin(), all.end(), [&](const ScenePage& other) { return other.data == scene.data; });
             if (!seen) all.push_back(std::move(scene));
         }
-        // From the simple to the large, which is also the order of a lecture.
+        // From simple to large, the order of a lecture.
         std::stable_sort(all.begin() + first, all.end(),
                          [](const ScenePage& a, const ScenePage& b) { return a.triangles < b.triangles; });
     }
@@ -103,8 +107,8 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     return {std::move(all), std::move(ladders)};
 }
 
-/// The ladders' table for the first page, and their own page with all that belongs to it where it can be handed out
-/// with the report. Returns what the template shows; false where no ladders were climbed.
+/// The table of ladders for the first page, and the page of ladders with its files where it can be handed out with the
+/// report. Returns what the template shows; false where there are no ladders.
 json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, StagedFiles& staged) {
     if (!folder) return false;
     fs::path place          = *folder;
@@ -116,16 +120,17 @@ json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, 
     }
     const Field root       = read_results(*folder / "results.json");
     const std::string page = url((place / "index.html").lexically_relative(out));
+    write_ladder_page(root, place, url((out / "index.html").lexically_relative(place)), staged);
     return {{"page", page},
             {"table", ladder_table_view(root, page)},
             {"showcase", ladder_showcase_view(root, page)},
-            {"count", std::to_string(root["ladders"].items().size())}};
+            {"count", counted(double(root["ladders"].items().size()), "ladder")}};
 }
 
 }  // namespace
 
 void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const ReportOptions& options) {
-    if (dirs.empty()) throw UsageError("report: no folder given (one that umbra compare wrote would be right)");
+    if (dirs.empty()) throw UsageError("report: no folder given, expected one that umbra compare wrote");
     const fs::path root                  = fs::weakly_canonical(fs::absolute(out));
     const Found found                    = find_results(dirs, root);
     const std::vector<ScenePage>& scenes = found.scenes;
@@ -143,19 +148,18 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
                         {"href", url((scenes[k].page / "index.html").lexically_relative(page))}};
         };
         json view        = scene_view(files[i], order);
-        view["root"]     = url(root.lexically_relative(page) / "");
-        view["report"]   = options.title;
         view["previous"] = i > 0 ? neighbour(i - 1) : json(false);
         view["next"]     = i + 1 < scenes.size() ? neighbour(i + 1) : json(false);
         if (page != scenes[i].data) staged.copy(scenes[i].data / "results.json", page / "results.json");
-        staged.write(page / "index.html", render_page(assets::scene_html, view));
+        const PageHead head = {fmt::format("{} – {}", scenes[i].title, options.title),
+                               url(root.lexically_relative(page) / ""), kSceneScripts};
+        staged.write(page / "index.html", render_page(assets::scene_html, head, std::move(view)));
     }
     json index         = index_view(scenes, files, root, options.title);
-    index["root"]      = "";
     index["stability"] = ladder_section(found.ladders, root, staged);
-    staged.write(root / "index.html", render_page(assets::index_html, index));
-    staged.write(root / "report.css", assets::report_css);
-    staged.write(root / "report.js", assets::report_js);
+    staged.write(root / "index.html",
+                 render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
+    write_page_assets(root, kIndexScripts, staged);
     staged.commit();
 }
 

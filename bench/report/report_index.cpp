@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/finding.h"
 
 namespace umbra {
 
@@ -38,7 +39,50 @@ json cell_view(const ScenePage& scene, const std::string& id, const std::string&
                           {"ms", milliseconds(t.object_ms)},
                           {"raw_mae", t.mae ? fmt::format("{}", *t.mae) : ""},
                           {"raw_ms", t.object_ms ? fmt::format("{}", *t.object_ms) : ""},
+                          {"raw_interior", fmt::format("{:.0f}", t.interior)},
                           {"raw_coverage", coverage ? fmt::format("{}", *coverage) : ""}};
+    return view;
+}
+
+/// The class picture of the light under which a method has the most wrong interior points; false where there is none.
+json front_classes(const SceneFiles& files, const Field& method, const std::string& label, const fs::path& out) {
+    std::optional<Field> worst;
+    double most = -1;
+    for (const Field& error : method["errors"].items()) {
+        double wrong = 0;
+        for (const std::string& group : error_groups()) wrong += error[group]["interior"].number().value_or(0);
+        const std::string light = error["light"].required_text();
+        if (wrong > most && method["files"]["lights"][light]["classes"].present()) worst = error, most = wrong;
+    }
+    if (!worst) return false;
+    const std::string light = (*worst)["light"].text();
+    const Field picture     = method["files"]["lights"][light]["classes"];
+    json view               = files.figure(picture, label, "errors of " + light,
+                                           fmt::format("Classes of the wrong points of {} by {}", light, label), out);
+    view["caption"]         = fmt::format("Wrong points of {}, light “{}”. Right points are grey.", label, light);
+    view["rings"]           = files.rings(picture);
+    view["legend"]          = files.legend(picture);
+    return view;
+}
+
+/// The first screen: the scene on which a method has the most wrong interior points, that method beside the reference,
+/// and what the figures of the scene say. The first scene where nothing is wrong; false where none has both pictures.
+json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out) {
+    std::optional<std::size_t> shown;
+    double most = -1;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        const auto method = worst_method(scenes[i].root);
+        if (!method || !scenes[i].root["reference"]["files"]["png"].present()) continue;
+        if (const double wrong = totals(*method).interior; wrong > most) shown = i, most = wrong;
+    }
+    if (!shown) return false;
+    const ScenePage& scene = scenes[*shown];
+    const auto method      = worst_method(scene.root);
+    json view              = slider_view(files[*shown], method, out);
+    view["href"]           = url((scene.page / "index.html").lexically_relative(out));
+    view["title"]          = scene.title;
+    view["finding"]        = finding(scene.root);
+    view["classes"] = front_classes(files[*shown], *method, method_label(*method, scene.root["methods"].items()), out);
     return view;
 }
 
@@ -63,14 +107,22 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                                {"name", method_id(*method)}});
             break;
         }
-    const auto add_once = [](json& list, json view) {
-        if (std::find(list.begin(), list.end(), view) == list.end()) list.push_back(std::move(view));
+    // Scenes that one machine and version compared share an entry, which lists their commands.
+    const auto add_run = [](json& list, json view) {
+        for (json& known : list) {
+            if (known["machine"] != view["machine"] || known["version"] != view["version"]) continue;
+            json& commands = known["commands"];
+            if (std::find(commands.begin(), commands.end(), view["commands"][0]) == commands.end())
+                commands.push_back(view["commands"][0]);
+            return;
+        }
+        list.push_back(std::move(view));
     };
-    // Notes that speak of one scene stand on its page alone.
+    // Notes on one scene are shown on its own page only.
     const auto add_reference = [](json& list, json view) {
         for (json& known : list)
             if (known["title"] == view["title"] && known["text"] == view["text"] && known["exact"] == view["exact"]) {
-                if (known["note"] != view["note"]) known["note"] = "Why, each scene's page says.";
+                if (known["note"] != view["note"]) known["note"] = "The page of each scene says why.";
                 return;
             }
         list.push_back(std::move(view));
@@ -89,20 +141,19 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                              {"shows", scene.root["scene"]["shows"].text()},
                              {"lights", fmt::format("{}", fmt::join(lights, "; "))},
                              {"triangles", count(scene.triangles)}};
-        card["thumbnail"] = files[i].figure(scene.root["reference"]["files"]["png"], "Reference", "picture", "");
-        if (card["thumbnail"].is_object())
-            card["thumbnail"]["src"] = files[i].link(scene.root["reference"]["files"]["png"], out);
-        json cells = json::array();
+        card["thumbnail"] = files[i].figure(scene.root["reference"]["files"]["png"], "Reference", "picture", "", out);
+        json cells        = json::array();
         for (const std::string& id : ids) cells.push_back(cell_view(scene, id, href));
         rows.push_back({{"title", scene.title}, {"href", href}, {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
-        add_once(runs, run_view(scene.root));
+        add_run(runs, run_view(scene.root));
         add_reference(references, reference_view(scene.root));
     }
     return {{"title", title},
             {"legend", class_legend()},
-            {"scene_count", std::to_string(scenes.size())},
-            {"method_count", std::to_string(ids.size())},
+            {"front", front_view(scenes, files, out)},
+            {"scene_count", counted(double(scenes.size()), "scene")},
+            {"method_count", counted(double(ids.size()), "shadow method")},
             {"scenes", std::move(cards)},
             {"columns", std::move(columns)},
             {"rows", std::move(rows)},

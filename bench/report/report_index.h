@@ -10,7 +10,7 @@
 
 namespace umbra {
 
-/// Everything that report/index.html shows; `files` one a scene, in the same order; `out` the folder of the page.
+/// Everything that index.html shows; `files` one per scene, in the same order; `out` the folder of the page.
 [[nodiscard]] nlohmann::json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files,
                                         const std::filesystem::path& out, const std::string& title);
 

@@ -1,0 +1,94 @@
+#include "umbra/bench/report/finding.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "umbra/bench/pages/error_palette.h"
+#include "umbra/bench/pages/report_page.h"
+#include "umbra/bench/pages/report_text.h"
+
+namespace umbra {
+namespace {
+
+struct Compared {
+    Field method;
+    std::string label;
+    double wrong = 0;  ///< interior points, over all lights
+    bool partial = false;
+};
+
+/// A count of one object of the `errors` entries, over all lights.
+double sum_of(const Field& method, std::string_view group, std::string_view member) {
+    double sum = 0;
+    for (const Field& error : method["errors"].items()) sum += error[group][member].number().value_or(0);
+    return sum;
+}
+
+/// The classes of a method's wrong interior points: "6 acne, 3 other false shadow".
+std::string classes_in_words(const Field& method) {
+    std::vector<std::string> parts;
+    for (const std::string& group : error_groups()) {
+        double rest = sum_of(method, group, "interior");
+        bool any    = false;
+        for (const ErrorColour& entry : kErrorPalette) {
+            if (entry.group != group || entry.member.empty()) continue;
+            const double n = sum_of(method, group, entry.member);
+            if (n > 0) parts.push_back(fmt::format("{} {}", count(n), in_words(std::string(entry.key))));
+            any |= n > 0;
+            rest -= n;
+        }
+        if (rest > 0) parts.push_back(fmt::format("{}{} {}", count(rest), any ? " other" : "", in_words(group)));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
+/// Who is right everywhere: "all 3 other methods: none", "Planar projection: none where it answers".
+std::string right_in_words(const std::vector<Compared>& right) {
+    const bool partial = std::any_of(right.begin(), right.end(), [](const Compared& c) { return c.partial; });
+    if (right.size() == 1) return fmt::format("{}: none{}", right[0].label, partial ? " where it answers" : "");
+    return fmt::format("all {} other methods: none{}", right.size(), partial ? " where they answer" : "");
+}
+
+}  // namespace
+
+std::string finding(const Field& root) {
+    const std::vector<Field> methods = root["methods"].items();
+    std::vector<Compared> wrong, right;
+    for (const Field& method : methods) {
+        if (!serves(method) || is_reference(root, method) || method["errors"].items().empty()) continue;
+        Compared c{method, method_label(method, methods), totals(method).interior,
+                   method["coverage"].number().value_or(1) < 1};
+        (c.wrong > 0 ? wrong : right).push_back(std::move(c));
+    }
+    if (wrong.empty() && right.empty()) return {};
+    const std::string against =
+        fmt::format("against the {} reference", root["reference"]["exact"].flag() ? "exact" : "sampled");
+    if (wrong.empty()) {
+        const bool partial = std::any_of(right.begin(), right.end(), [](const Compared& c) { return c.partial; });
+        return fmt::format("{}: no wrong interior point {}{}.",
+                           right.size() == 1 ? right[0].label : fmt::format("All {} methods", right.size()), against,
+                           !partial            ? ""
+                           : right.size() == 1 ? ", where it answers"
+                                               : ", where they answer");
+    }
+
+    std::stable_sort(wrong.begin(), wrong.end(),
+                     [](const Compared& a, const Compared& b) { return a.wrong > b.wrong; });
+    std::string text = fmt::format("{}: {} {} ({})", wrong[0].label, counted(wrong[0].wrong, "wrong interior point"),
+                                   against, classes_in_words(wrong[0].method));
+    constexpr std::size_t named = 4;  // more names than that are a table
+    for (std::size_t i = 1; i < wrong.size(); ++i) {
+        if (wrong.size() > named && i + 1 >= named) {
+            text += fmt::format("; {} more methods: at most {} each", wrong.size() - i, count(wrong[i].wrong));
+            break;
+        }
+        text += fmt::format("; {}: {}", wrong[i].label, count(wrong[i].wrong));
+    }
+    if (!right.empty()) text += "; " + right_in_words(right);
+    return text + ".";
+}
+
+}  // namespace umbra
