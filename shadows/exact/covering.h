@@ -23,7 +23,7 @@
 #include <utility>
 #include <vector>
 
-namespace umbra {
+namespace umbra::exact_detail {
 
 /// A corner of the light, anticlockwise. `cap`: the number of the chord that runs from here to the next corner, or -1.
 template <class T>
@@ -31,6 +31,9 @@ struct LightCorner {
     T x, y;
     int cap = -1;
 };
+
+/// What is known of the light just within a chord.
+enum class ChordState : std::uint8_t { absent, hidden, visible };
 
 /// Sums of areas. Doubles are added up; rationals are cut after 160 binary digits, since the denominators of an exact
 /// sum would grow beyond measure.
@@ -94,13 +97,13 @@ public:
         for (const Edge& e : edges_) body(e.low, e.high);
     }
 
-    /// The area of the light where D is 0, given D at the far left of the lowest row. `cap_lit[k]` becomes 1 or 0 where
-    /// the light just within chord k is uncovered or covered, and stays where the chord is not there. The second value
+    /// The area of the light where D is 0, given D at the far left of the lowest row. `chords[k]` becomes what the
+    /// light just within chord k is, and stays where the chord is not there. The second value
     /// is the sum of the rows' heights times the edges and crossings in each: doubles are off by less than 16 roundings
     /// of it. (An edge's x in a row is off by a few roundings. A crossing whose height is off by e leaves two edges in
     /// the wrong order where they are that close, an area of e times their roundings.)
     [[nodiscard]] std::pair<double, double> uncovered(const std::vector<LightCorner<T>>& light, int layers,
-                                                      std::span<std::uint8_t> cap_lit);
+                                                      std::span<ChordState> chords);
 
 private:
     struct Edge {
@@ -125,7 +128,7 @@ private:
 
     [[nodiscard]] bool find_crossings(const T& lo, const T& hi);
     template <class X>
-    T open_width(int layers, const X& x, std::span<std::uint8_t> cap_lit) const;
+    T open_width(int layers, const X& x, std::span<ChordState> chords) const;
 
     std::vector<Edge> edges_, all_;
     std::vector<Entry> entries_;
@@ -166,7 +169,7 @@ bool Covering<T>::find_crossings(const T& lo, const T& hi) {
 /// Of a row, the width of the light where D is 0. `x` gives the place of an edge; edges are in order.
 template <class T>
 template <class X>
-T Covering<T>::open_width(int layers, const X& x, std::span<std::uint8_t> cap_lit) const {
+T Covering<T>::open_width(int layers, const X& x, std::span<ChordState> chords) const {
     T width     = 0;
     bool inside = false;
     for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -174,7 +177,8 @@ T Covering<T>::open_width(int layers, const X& x, std::span<std::uint8_t> cap_li
         if (inside && layers == 0) width += x(active_[k]) - x(active_[k - 1]);
         if (edge.of_light) {
             inside = !inside;
-            if (edge.cap >= 0) cap_lit[static_cast<std::size_t>(edge.cap)] = layers == 0;
+            if (edge.cap >= 0)
+                chords[static_cast<std::size_t>(edge.cap)] = layers == 0 ? ChordState::visible : ChordState::hidden;
         } else {
             layers += edge.step;
         }
@@ -184,7 +188,7 @@ T Covering<T>::open_width(int layers, const X& x, std::span<std::uint8_t> cap_li
 
 template <class T>
 std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T>>& light, int layers,
-                                                 std::span<std::uint8_t> cap_lit) {
+                                                 std::span<ChordState> chords) {
     all_ = edges_;
     for (std::size_t k = 0; k < light.size(); ++k) {
         const LightCorner<T>&a = light[k], &b = light[(k + 1) % light.size()];
@@ -230,7 +234,7 @@ std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T
         rounded += as_double(T(hi - lo)) * static_cast<double>(active_.size() + crossings_.size());
         if (!crossed) {
             const T twice = open_width(
-                layers, [](const Active& a) { return T(a.bottom + a.top); }, cap_lit);
+                layers, [](const Active& a) { return T(a.bottom + a.top); }, chords);
             area.add(T((hi - lo) * twice / T(2)));
             continue;
         }
@@ -243,11 +247,11 @@ std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T
                 active_, [](const Active& a, const Active& b) { return a.middle < b.middle; },
                 [](const Active&, const Active&) {});
             area.add(T((to - from) * open_width(
-                                         layers, [](const Active& a) { return a.middle; }, cap_lit)));
+                                         layers, [](const Active& a) { return a.middle; }, chords)));
             from = to;
         }
     }
     return {area.value(), rounded};
 }
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

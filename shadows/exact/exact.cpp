@@ -17,6 +17,8 @@
 namespace umbra {
 namespace {
 
+using namespace exact_detail;
+
 constexpr Parameter kParameters[] = {
     {.name     = "arithmetic",
      .type     = Parameter::Type::choice,
