@@ -88,12 +88,12 @@ bool CoveringEdges<Space>::add_chord(TriangleId t, Displacement& displacement) {
 template <class Space>
 bool CoveringEdges<Space>::add_clipped(const Numerators<T>& a, const Numerators<T>& b, int change,
                                        Displacement& displacement) {
-    const Filtered<ClippedEdge<T>> edge = clip_around_light(a, b);
+    const Filtered<ClippedEdge<T>> edge = clip_around_light(a, b, kCutReach);
     if (!edge) return false;
     if (edge->empty) return true;
     const double px = as_double(edge->from.x), py = as_double(edge->from.y), qx = as_double(edge->to.x),
                  qy = as_double(edge->to.y);
-    displacement.move_edge(2 * projection_.sight().plane.rounding + edge->off, std::hypot(qx - px, qy - py));
+    displacement.move_edge(edge->off, 2 * projection_.sight().plane.rounding, std::hypot(qx - px, qy - py));
     if (projection_.sight().light.round()) caps_.touch(px, py, qx, qy);
     covering_.add(edge->from, edge->to, change, edge->from_left, edge->to_left);
     return true;

@@ -16,11 +16,14 @@ namespace umbra::exact_detail {
 
 struct Displacement {
     double swept  = 0;  ///< area that the edges pass over
-    double widest = 0;  ///< the most that an end moves
+    double widest = 0;  ///< the most that an end moves by itself
 
-    void move_edge(double delta, double length) {
+    /// The ends move by `own` each by itself, and by `frame` since the light's plane itself is rounded. The layers are
+    /// counted and the edges projected in that one plane, so that the two agree whatever `frame` is.
+    void move_edge(double own, double frame, double length) {
+        const double delta = own + frame;
         swept += 3 * delta * length + 8 * delta * delta;
-        widest = std::max(widest, delta);
+        widest = std::max(widest, own);
     }
 };
 

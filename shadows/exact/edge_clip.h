@@ -27,10 +27,10 @@ struct ClippedEdge {
     double off = 0;                           ///< how far rounding may have moved an end in x and in y
 };
 
-/// For the edge from a to b, which both lie before or in the light's plane.
+/// For the edge from a to b, and the square |x|, |y| <= around.
 template <class T>
-Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerators<T>& b) {
-    const T reach(kCutReach);
+Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerators<T>& b, double around) {
+    const T reach(around);
     const T inside_a[] = {a.x + reach * a.w, reach * a.w - a.x, a.y + reach * a.w, reach * a.w - a.y};
     const T inside_b[] = {b.x + reach * b.w, reach * b.w - b.x, b.y + reach * b.w, reach * b.w - b.y};
     T from(0), to(1);
@@ -48,8 +48,8 @@ Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerat
     const Numerators<T> high = cut_to < 0 ? b : between(a, b, to);
     double off               = 0;
     if constexpr (std::is_same_v<T, double>) {
-        // |x|, |y| <= kCutReach: a quotient is off by less than 3 errors over w; an end that is cut, by its cut, too.
-        // That w exceeds 16 errors makes such first-order bounds hold with a factor to spare.
+        // |x|, |y| <= kCutReach, say: a quotient is off by less than 3 errors over w; an end that is cut, by its cut,
+        // too. That w exceeds 16 errors makes such first-order bounds hold with a factor to spare.
         const double size =
             std::max({std::abs(a.x), std::abs(a.y), std::abs(a.w), std::abs(b.x), std::abs(b.y), std::abs(b.w)});
         const double error = std::max(a.error, b.error) + 8 * kUnit * size, w = std::min(low.w, high.w);

@@ -5,12 +5,18 @@ namespace {
 
 using Answer = ExactArea::Answer;
 
+constexpr Answer kNothingKnown{.visibility = 0.5f, .half_width = 0.5f};
+
+/// Of LightPlane::rounding. Edges move by twice that: half of the distance between the light and the reach within which
+/// edges are kept. Where the plane is rougher, an edge that was left out might lie over the light.
+constexpr double kRoughest = (kCutReach - 1) / 4;
+
 /// Of rectangles the area alone is stated, which is off by less than kTrusted.
 Answer answer(const VisibleArea& area, bool round) {
     const double low  = std::max(0.0, (area.visible - area.error) / area.whole);
     const double high = std::min(1.0, (area.visible + area.open + area.error) / area.whole);
     // What differs from 0 or 1 by no more than rounding may be 0 or 1.
-    const double unsure = 2 * area.error / area.whole;
+    const double unsure = area.error <= kTrusted ? 2 * area.error / area.whole : 0;
     if (high <= unsure) return {0, round ? static_cast<float>(high) : 0};
     if (low >= 1 - unsure) return {1, round ? static_cast<float>(1 - low) : 0};
     // Half an ulp of the answer belongs to what it may be off.
@@ -20,11 +26,41 @@ Answer answer(const VisibleArea& area, bool round) {
 
 }  // namespace
 
+/// For a plane of any roughness: whether the light is wholly visible or hidden, where no edge comes near it.
+ExactArea::Answer ExactArea::seen_in_rough_plane(const Sight& sight, Workspace& work) const {
+    const FloatSpace space(sight.viewpoint.point(), sight.plane);
+    if (!std::isfinite(sight.plane.rounding) || sight.partly || !space.orientation()) return kNothingKnown;
+    const double reach = kGatherReach + 8 * sight.plane.rounding;
+    edges_.gather(sight.viewpoint, space, reach, work.silhouette);
+    bool clear = true;
+    for (const auto& [edge, change] : work.silhouette) {
+        const CandidateEdge& e = edges_.candidate(edge);
+        const auto clipped =
+            clip_around_light(space.project(occluders_.position(e.a)), space.project(occluders_.position(e.b)), reach);
+        clear = clear && clipped && clipped->empty;
+    }
+    // Nor may a triangle pass through the plane there.
+    const dvec3 to_light = space.to_centre().value;
+    const double around  = 2 * reach * std::max(glm::length(sight.plane.u), glm::length(sight.plane.v)) +
+                          space.to_centre().error + 2 * sight.viewpoint.point().slack();
+    occluders_.triangles->visit(BoxTree::Piece{sight.viewpoint.point().rounded() + to_light, dvec3(0), 0, around},
+                                [&](TriangleId t) {
+                                    clear = clear && t == sight.viewpoint.own();
+                                    return clear;
+                                });
+    if (!clear) return kNothingKnown;
+    const Projection<FloatSpace> projection(sight, space);
+    TriangleId blocker = kNoTriangle;
+    const auto layers  = LayerCount<FloatSpace>(projection).at(0, 0, blocker);
+    return !layers ? kNothingKnown : *layers > 0 ? Answer{} : Answer{.visibility = 1};
+}
+
 ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const {
     const Viewpoint viewpoint(*occluders_.scene, own, u, v, work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
     if (!plane) return {1, 0};
     const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn};
+    if (!(plane->rounding <= kRoughest)) return seen_in_rough_plane(sight, work);
 
     const FloatSpace space(viewpoint.point(), *plane);
     if (arithmetic_ == Arithmetic::filtered && space.orientation()) {
@@ -41,7 +77,8 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
     if (exact_space.orientation() == 0) return {.edge_on = true};
     ++work.rational_points;
     const VisiblePart<RationalSpace> part(sight, exact_space, work.in_rationals);
-    return answer(part.find(work.silhouette, work.blocker).value(), light_.round());
+    const Filtered<VisibleArea> area = part.find(work.silhouette, work.blocker);
+    return area ? answer(*area, light_.round()) : kNothingKnown;
 }
 
 void ExactArea::build(const Scene& scene, const BoxTree& triangles) {

@@ -11,9 +11,11 @@ public:
     enum class Arithmetic : std::uint8_t { filtered, rational };
 
     struct Answer {
-        float visibility = 0;      ///< visible area of the light over its area, in [0, 1]
-        float half_width = 0;      ///< of what is proven: the truth lies within visibility -+ half_width
-        bool edge_on     = false;  ///< the point lies in the light's plane: nothing to take a fraction of
+        float visibility = 0;  ///< visible area of the light over its area, in [0, 1]
+        float half_width = 0;  ///< of what is proven: the truth lies within visibility -+ half_width. 0.5 -+ 0.5
+                               ///< where nothing is known: a sphere light so near, or so far and small, that
+                               ///< rounding hides which part of it the point sees
+        bool edge_on = false;  ///< the point lies in the light's plane: nothing to take a fraction of
     };
 
     /// What one thread needs for itself, from point to point. `rational_points` counts those that doubles could not
@@ -40,6 +42,8 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
+    [[nodiscard]] Answer seen_in_rough_plane(const Sight& sight, Workspace& work) const;
+
     Arithmetic arithmetic_;
     Occluders occluders_;
     SilhouetteEdges edges_;

@@ -35,12 +35,15 @@ LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const Exac
 std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoint& p) {
     const Entries centre = centre_from_corner(sphere, p);
     const double r       = sphere.radius;
+    const Entries to     = p.to(centre);
+    const double d = glm::length(to.value), off = 2 * to.error + 16 * kUnit * (d + r);
+    if (d + off < r) return std::nullopt;
     TangentDisk disk;
-    if (!tangent_disk(p.from_corner().value, centre.value, r, disk)) return std::nullopt;
+    // What follows is of first order in off.
+    if (!(d - 4 * off > r) || !tangent_disk(p.from_corner().value, centre.value, r, disk))
+        return LightPlane{.rounding = double(kInfinity)};
     // The disk's place depends on d, from p to the sphere's centre. What d is off moves its centre, and its radius
     // r sqrt(d^2 - r^2) / d, whose derivative is below r d / (d^2 - r^2) times the radius over d.
-    const Entries to = p.to(centre);
-    const double d = glm::length(to.value), off = 2 * to.error + 16 * kUnit * (d + r);
     const double rounding = off * (1 + r * d / ((d - r) * (d + r))) / glm::length(disk.axis_u);
     return LightPlane{disk.axis_u, disk.axis_v, {disk.centre, 0}, std::nullopt, rounding};
 }

@@ -120,7 +120,7 @@ std::vector<LightCorner<typename Space::Number>> VisiblePart<Space>::light_befor
     const Horizon<T> horizon = horizon_of<T>(sight_);
     if (round()) touch_caps(horizon, covering_.caps);
     // On the light no line is longer than 3.
-    displacement.move_edge(horizon.off() + 2 * sight_.plane.rounding, 3);
+    displacement.move_edge(horizon.off(), 2 * sight_.plane.rounding, 3);
     return before_horizon(whole, horizon);
 }
 
