@@ -45,8 +45,13 @@ void DiskCaps::touch(double x0, double y0, double x1, double y1) {
     }
 }
 
+double DiskCaps::cap_area() {
+    static const double area = (kPi - kChords / 2.0 * std::sin(kStep)) / kChords;
+    return area;
+}
+
 DiskCaps::Area DiskCaps::with_caps(double polygon) const {
-    static const double cap = (kPi - kChords / 2.0 * std::sin(kStep)) / kChords;
+    const double cap = cap_area();
     Area area{polygon, 0};
     for (std::size_t k = 0; k < kChords; ++k) {
         // Where the plane of the point's triangle takes a chord away, it takes the cap or has left it open.

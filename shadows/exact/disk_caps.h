@@ -31,6 +31,14 @@ public:
     /// What the sweep finds of the light just within each chord; `absent` where it does not meet the chord.
     [[nodiscard]] std::span<ChordState> within_chords() { return state_; }
 
+    /// Of one cap, in a unit disk.
+    [[nodiscard]] static double cap_area();
+    [[nodiscard]] bool is_open(int k) const { return open_[static_cast<std::size_t>(k)] != 0; }
+    /// Visible in whole.
+    [[nodiscard]] bool is_visible(int k) const {
+        return !is_open(k) && state_[static_cast<std::size_t>(k)] == ChordState::visible;
+    }
+
     struct Area {
         double visible, open;
     };

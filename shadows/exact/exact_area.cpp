@@ -5,23 +5,32 @@ namespace {
 
 using Answer = ExactArea::Answer;
 
-constexpr Answer kNothingKnown{.visibility = 0.5f, .half_width = 0.5f};
+constexpr Answer kNothingKnown{
+    .visibility = 0.5f, .half_width = 0.5f, .irradiance = 0.5f, .irradiance_half_width = 0.5f};
+constexpr Answer kAllVisible{.visibility = 1, .irradiance = 1};
 
 /// Of LightPlane::rounding. Edges move by twice that: half of the distance between the light and the reach within which
 /// edges are kept. Where the plane is rougher, an edge that was left out might lie over the light.
 constexpr double kRoughest = (kCutReach - 1) / 4;
 
-/// Of rectangles the area alone is stated, which is off by less than kTrusted.
-Answer answer(const VisibleArea& area, bool round) {
-    const double low  = std::max(0.0, (area.visible - area.error) / area.whole);
-    const double high = std::min(1.0, (area.visible + area.open + area.error) / area.whole);
-    // What differs from 0 or 1 by no more than rounding may be 0 or 1.
-    const double unsure = area.error <= kTrusted ? 2 * area.error / area.whole : 0;
-    if (high <= unsure) return {0, round ? static_cast<float>(high) : 0};
-    if (low >= 1 - unsure) return {1, round ? static_cast<float>(1 - low) : 0};
+/// A value and its half width. What differs from 0 or 1 by no more than `unsure`, rounding, may be 0 or 1.
+std::pair<float, float> value_of(const Bracket& bracket, double unsure) {
+    const auto [low, high] = bracket;
+    if (high <= unsure) return {0.0f, static_cast<float>(high)};
+    if (low >= 1 - unsure) return {1.0f, static_cast<float>(1 - low)};
     // Half an ulp of the answer belongs to what it may be off.
     const auto half = static_cast<float>((high - low) / 2 * (1 + 0x1p-22) + 0x1p-25);
-    return {static_cast<float>((low + high) / 2), round ? half : 0};
+    return {static_cast<float>((low + high) / 2), half};
+}
+
+/// Of rectangles the area alone is stated, which is off by less than kTrusted.
+Answer answer(const VisibleArea& area, bool round) {
+    const Bracket share{std::max(0.0, (area.visible - area.error) / area.whole),
+                        std::min(1.0, (area.visible + area.open + area.error) / area.whole)};
+    const double unsure                 = area.error <= kTrusted ? 2 * area.error / area.whole : 0;
+    const auto [visibility, half]       = value_of(share, unsure);
+    const auto [irradiance, light_half] = value_of(area.irradiance, kTrusted / 4);
+    return {visibility, round ? half : 0, irradiance, light_half};
 }
 
 }  // namespace
@@ -52,19 +61,19 @@ ExactArea::Answer ExactArea::seen_in_rough_plane(const Sight& sight, Workspace& 
     const Projection<FloatSpace> projection(sight, space);
     TriangleId blocker = kNoTriangle;
     const auto layers  = LayerCount<FloatSpace>(projection).at(0, 0, blocker);
-    return !layers ? kNothingKnown : *layers > 0 ? Answer{} : Answer{.visibility = 1};
+    return !layers ? kNothingKnown : *layers > 0 ? Answer{} : kAllVisible;
 }
 
 ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const {
     const Viewpoint viewpoint(*occluders_.scene, own, u, v, work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
-    if (!plane) return {1, 0};
+    if (!plane) return kAllVisible;
     const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn};
     if (!(plane->rounding <= kRoughest)) return seen_in_rough_plane(sight, work);
 
     const FloatSpace space(viewpoint.point(), *plane);
     if (arithmetic_ == Arithmetic::filtered && space.orientation()) {
-        const VisiblePart<FloatSpace> part(sight, space, work.in_double);
+        const VisiblePart<FloatSpace> part(sight, space, measure_, work.in_double);
         // What hid the whole light of the point before often hides it from this one.
         if (work.blocker != kNoTriangle && work.blocker != own && part.is_hidden_by(work.blocker)) return {};
         edges_.gather(viewpoint, space, kGatherReach, work.silhouette);
@@ -76,7 +85,7 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
     const RationalSpace exact_space(viewpoint.point(), *plane);
     if (exact_space.orientation() == 0) return {.edge_on = true};
     ++work.rational_points;
-    const VisiblePart<RationalSpace> part(sight, exact_space, work.in_rationals);
+    const VisiblePart<RationalSpace> part(sight, exact_space, measure_, work.in_rationals);
     const Filtered<VisibleArea> area = part.find(work.silhouette, work.blocker);
     return area ? answer(*area, light_.round()) : kNothingKnown;
 }

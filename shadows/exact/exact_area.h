@@ -15,7 +15,11 @@ public:
         float half_width = 0;  ///< of what is proven: the truth lies within visibility -+ half_width. 0.5 -+ 0.5
                                ///< where nothing is known: a sphere light so near, or so far and small, that
                                ///< rounding hides which part of it the point sees
-        bool edge_on = false;  ///< the point lies in the light's plane: nothing to take a fraction of
+        float irradiance = 0;  ///< with Measure::irradiance: what arrives from the visible part of the light
+                               ///< over what arrives from all of it that is before the plane of the point's
+                               ///< triangle, in [0, 1]; else it means nothing
+        float irradiance_half_width = 0;      ///< the truth lies within irradiance -+ this
+        bool edge_on                = false;  ///< the point lies in the light's plane: nothing to take a fraction of
     };
 
     /// What one thread needs for itself, from point to point. `rational_points` counts those that doubles could not
@@ -29,7 +33,8 @@ public:
         std::uint64_t rational_points = 0;
     };
 
-    explicit ExactArea(Arithmetic arithmetic) : arithmetic_(arithmetic) {}
+    explicit ExactArea(Arithmetic arithmetic, Measure measure = Measure::area)
+        : arithmetic_(arithmetic), measure_(measure) {}
 
     /// `scene` and `triangles`, the tree of the boxes of its triangles, must outlive this object.
     void build(const Scene& scene, const BoxTree& triangles);
@@ -45,6 +50,7 @@ private:
     [[nodiscard]] Answer seen_in_rough_plane(const Sight& sight, Workspace& work) const;
 
     Arithmetic arithmetic_;
+    Measure measure_;
     Occluders occluders_;
     SilhouetteEdges edges_;
     AimedLight light_;

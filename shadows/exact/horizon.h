@@ -11,7 +11,8 @@ namespace umbra::exact_detail {
 template <class T>
 struct Horizon {
     T lx, ly, l;
-    double error = 0;  ///< of a height where |x|, |y| <= 1; 0 in rationals
+    double error  = 0;  ///< of a height where |x|, |y| <= 1; 0 in rationals
+    double normal = 0;  ///< height of a place one unit of length before the plane
 
     [[nodiscard]] T height(const T& x, const T& y) const { return T(lx * x + ly * y + l); }
     [[nodiscard]] double slope() const { return std::hypot(as_double(lx), as_double(ly)); }
@@ -21,6 +22,12 @@ struct Horizon {
         return slope() > 0 ? 4 * error / slope() : double(kInfinity);
     }
 };
+
+inline Horizon<double> rounded(const Horizon<double>& horizon) { return horizon; }
+inline Horizon<double> rounded(const Horizon<Rational>& h) {
+    const double lx = as_double(h.lx), ly = as_double(h.ly), l = as_double(h.l);
+    return {lx, ly, l, 4 * kUnit * (std::abs(lx) + std::abs(ly) + std::abs(l)), h.normal};
+}
 
 template <class T>
 Horizon<T> horizon_of(const Sight& sight);

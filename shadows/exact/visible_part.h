@@ -28,6 +28,7 @@
 #include "umbra/shadows/exact/covering_edges.h"
 #include "umbra/shadows/exact/horizon.h"
 #include "umbra/shadows/exact/layer_count.h"
+#include "umbra/shadows/exact/received_light.h"
 
 namespace umbra::exact_detail {
 
@@ -41,12 +42,16 @@ struct PartialCovering {
     DiskCaps caps;
 };
 
+/// What is asked of the visible part: its area; or that, and which fraction of the light's irradiance comes from it.
+enum class Measure : std::uint8_t { area, irradiance };
+
 /// Areas in the light's plane, in half axes.
 struct VisibleArea {
     double whole   = 4;  ///< of the light
     double visible = 0;
-    double open    = 0;  ///< may be visible, too
-    double error   = 0;  ///< by which both sums may be off
+    double open    = 0;    ///< of what may be visible, too
+    double error   = 0;    ///< by which both sums may be off
+    Bracket irradiance{};  ///< where it was asked for: a fraction
 };
 
 template <class Space>
@@ -54,8 +59,8 @@ class VisiblePart {
 public:
     using T = typename Space::Number;
 
-    VisiblePart(const Sight& sight, const Space& space, PartialCovering<T>& covering)
-        : sight_(sight), projection_(sight, space), covering_(covering) {}
+    VisiblePart(const Sight& sight, const Space& space, Measure measure, PartialCovering<T>& covering)
+        : sight_(sight), projection_(sight, space), measure_(measure), covering_(covering) {}
 
     /// Whether triangle t surely hides the whole light.
     [[nodiscard]] bool is_hidden_by(TriangleId t) const { return LayerCount<Space>(projection_).covers_all(t); }
@@ -66,11 +71,16 @@ public:
 private:
     [[nodiscard]] bool is_clear(double x, double y, double widest) const;
     [[nodiscard]] Filtered<int> base_layers(double widest, TriangleId& blocker) const;
-    [[nodiscard]] std::vector<LightCorner<T>> light_before_horizon(Displacement& displacement) const;
+    using Light = std::vector<LightCorner<T>>;
+    [[nodiscard]] Light light_before_horizon(const Horizon<T>& horizon) const;
+    [[nodiscard]] Filtered<Bracket> irradiance(const ReceivedLight& received, const Light& light, double visible,
+                                               double error) const;
+    [[nodiscard]] static double whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps);
     [[nodiscard]] bool round() const { return sight_.light.round(); }
 
     const Sight& sight_;
     Projection<Space> projection_;
+    Measure measure_;
     PartialCovering<T>& covering_;
 };
 
@@ -111,17 +121,44 @@ Filtered<int> VisiblePart<Space>::base_layers(double widest, TriangleId& blocker
 }
 
 template <class Space>
-std::vector<LightCorner<typename Space::Number>> VisiblePart<Space>::light_before_horizon(
-    Displacement& displacement) const {
-    static const std::vector<LightCorner<T>> square{{T(-1), T(-1)}, {T(1), T(-1)}, {T(1), T(1)}, {T(-1), T(1)}};
-    static const std::vector<LightCorner<T>> polygon = DiskCaps::polygon<T>();
-    const std::vector<LightCorner<T>>& whole         = round() ? polygon : square;
-    if (!sight_.partly) return whole;
-    const Horizon<T> horizon = horizon_of<T>(sight_);
-    if (round()) touch_caps(horizon, covering_.caps);
-    // On the light no line is longer than 3.
-    displacement.move_edge(horizon.off(), 2 * sight_.plane.rounding, 3);
-    return before_horizon(whole, horizon);
+typename VisiblePart<Space>::Light VisiblePart<Space>::light_before_horizon(const Horizon<T>& horizon) const {
+    static const Light square{{T(-1), T(-1)}, {T(1), T(-1)}, {T(1), T(1)}, {T(-1), T(1)}};
+    static const Light polygon = DiskCaps::polygon<T>();
+    const Light& whole         = round() ? polygon : square;
+    return sight_.partly ? before_horizon(whole, horizon) : whole;
+}
+
+/// What arrives from the whole polygon before the horizon; `caps` is filled.
+template <class Space>
+double VisiblePart<Space>::whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps) {
+    std::vector<LightCorner<double>> corners;
+    for (const LightCorner<T>& c : light) corners.push_back({as_double(c.x), as_double(c.y), c.cap});
+    Covering<double> nothing;
+    double sum = 0;
+    const auto area =
+        nothing.uncovered(corners, 0, caps.within_chords(), [&](const Trapezoid& piece) { sum += received.of(piece); });
+    return area.first > 0 ? sum : 0;
+}
+
+/// `visible` arrives from the polygon's trapezoids, whose areas are off by `error`.
+template <class Space>
+Filtered<Bracket> VisiblePart<Space>::irradiance(const ReceivedLight& received, const Light& light, double visible,
+                                                 double error) const {
+    if (!received.usable()) return Bracket{0, 1};
+    DiskCaps caps;
+    if (round() && sight_.partly) touch_caps(horizon_of<double>(sight_), caps);
+    const double whole = whole_irradiance(received, light, caps);
+    const double moved = error * received.most();
+    if (std::is_same_v<T, double> && !(moved <= kTrusted / 4 * whole)) return kUnsure;
+    const double relative = received.weight_error() + ReceivedLight::kQuadrature;
+    const double absolute = received.height_error() * (round() ? kPi : 4);
+    const auto widened    = [&](double sum, Bracket of_caps, double by) {
+        return Bracket{(sum + of_caps.low) * (1 - relative) - absolute - by,
+                       (sum + of_caps.high) * (1 + relative) + absolute + by};
+    };
+    const Bracket none;
+    return fraction(widened(visible, round() ? received.of(covering_.caps) : none, moved),
+                    widened(whole, round() ? received.of(caps) : none, 0));
 }
 
 template <class Space>
@@ -138,22 +175,46 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     if (!base) return kUnsure;
     const bool no_edges = covering_.edges.empty();
     if (blocker != kNoTriangle || (no_edges && *base > 0)) return result;
+    if (no_edges) result.irradiance = {1, 1};
     if (no_edges && !sight_.partly) {
         result.visible = result.whole;
         return result;
     }
 
-    const std::vector<LightCorner<T>> light = light_before_horizon(displacement);
-    const auto [area, rounded]              = light.size() < 3
-                                                  ? std::pair(0.0, 0.0)
-                                                  : covering_.edges.uncovered(light, *base, covering_.caps.within_chords());
-    result.visible                          = area;
-    result.error                            = displacement.swept + 16 * kUnit * (rounded + 4);
+    const bool weighted = measure_ == Measure::irradiance && !no_edges;
+    Horizon<T> horizon{};
+    if (sight_.partly || weighted) horizon = horizon_of<T>(sight_);
+    if (sight_.partly) {
+        if (round()) touch_caps(horizon, covering_.caps);
+        // On the light no line is longer than 3.
+        displacement.move_edge(horizon.off(), 2 * sight_.plane.rounding, 3);
+    }
+    const Light light = light_before_horizon(horizon);
+    const auto chords = covering_.caps.within_chords();
+    std::pair<double, double> area_and_rows(0, 0);
+    std::optional<ReceivedLight> received;
+    double arrives = 0;
+    if (weighted) received.emplace(sight_, rounded(horizon));
+    if (light.size() >= 3) {
+        if (weighted)
+            area_and_rows = covering_.edges.uncovered(light, *base, chords,
+                                                      [&](const Trapezoid& piece) { arrives += received->of(piece); });
+        else
+            area_and_rows = covering_.edges.uncovered(light, *base, chords, NoPieces{});
+    }
+    const auto [area, rows] = area_and_rows;
+    result.visible          = area;
+    result.error            = displacement.swept + 16 * kUnit * (rows + 4);
     if (std::is_same_v<T, double> && !(result.error <= kTrusted)) return kUnsure;
     if (round()) {
         const DiskCaps::Area with_caps = covering_.caps.with_caps(area);
         result.visible                 = with_caps.visible;
         result.open                    = with_caps.open;
+    }
+    if (weighted) {
+        const Filtered<Bracket> bracket = irradiance(*received, light, arrives, result.error);
+        if (!bracket) return kUnsure;
+        result.irradiance = *bracket;
     }
     return result;
 }
