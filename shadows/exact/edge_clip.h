@@ -33,16 +33,35 @@ Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerat
     const T reach(around);
     const T inside_a[] = {a.x + reach * a.w, reach * a.w - a.x, a.y + reach * a.w, reach * a.w - a.y};
     const T inside_b[] = {b.x + reach * b.w, reach * b.w - b.x, b.y + reach * b.w, reach * b.w - b.y};
+    double error       = 0;
+    if constexpr (std::is_same_v<T, double>) {
+        const double size =
+            std::max({std::abs(a.x), std::abs(a.y), std::abs(a.w), std::abs(b.x), std::abs(b.y), std::abs(b.w)});
+        error = std::max(a.error, b.error) + 8 * kUnit * size;
+        // Next to the point itself an end's side of the square may be noise, far from the point it does not matter.
+        const auto lost = [&](const T(&inside)[4], double w) {
+            if (w > 16 * error) return false;
+            for (const T& d : inside)
+                if (std::abs(d) <= (around + 2) * error) return true;
+            return false;
+        };
+        if (lost(inside_a, a.w) || lost(inside_b, b.w)) return kUnsure;
+    }
     T from(0), to(1);
+    double doubt = 0;                // of from and to
     int cut_from = -1, cut_to = -1;  // side of the square; 0: left
     for (int k = 0; k < 4; ++k) {
         const bool out_a = inside_a[k] <= 0, out_b = inside_b[k] <= 0;
         if (out_a && out_b) return ClippedEdge<T>{};
         if (!out_a && !out_b) continue;
         const T t = inside_a[k] / (inside_a[k] - inside_b[k]);
+        if constexpr (std::is_same_v<T, double>)
+            doubt = std::max(doubt, 4 * (around + 2) * error / std::abs(inside_a[k] - inside_b[k]));
         if (out_a && t >= from) from = t, cut_from = k;
         if (out_b && t <= to) to = t, cut_to = k;
     }
+    if constexpr (std::is_same_v<T, double>)
+        if (std::abs(from - to) <= doubt) return kUnsure;
     if (from >= to) return ClippedEdge<T>{};
     const Numerators<T> low  = cut_from < 0 ? a : between(a, b, from);
     const Numerators<T> high = cut_to < 0 ? b : between(a, b, to);
@@ -50,9 +69,7 @@ Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerat
     if constexpr (std::is_same_v<T, double>) {
         // |x|, |y| <= kCutReach, say: a quotient is off by less than 3 errors over w; an end that is cut, by its cut,
         // too. That w exceeds 16 errors makes such first-order bounds hold with a factor to spare.
-        const double size =
-            std::max({std::abs(a.x), std::abs(a.y), std::abs(a.w), std::abs(b.x), std::abs(b.y), std::abs(b.w)});
-        const double error = std::max(a.error, b.error) + 8 * kUnit * size, w = std::min(low.w, high.w);
+        const double w = std::min(low.w, high.w);
         if (!(w > 16 * error)) return kUnsure;
         off = 8 * error / w + 2 * kUnit;
     } else {

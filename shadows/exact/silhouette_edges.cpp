@@ -17,10 +17,21 @@ constexpr double kNormalError = 0x1p-20;  ///< a rounded unit normal is off by l
 bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const {
     const auto corner    = [&](TriangleId t, int k) { return occluders_->scene->vertex(t, k); };
     const EdgeUse &first = uses_[edge.first], &second = uses_[edge.first + 1];
-    const bool even = glm::dot(normal[0], normal[1]) > 0;
-    return even == (first.forward != second.forward) &&
-           side_of_plane(corner(first.triangle, 0), corner(first.triangle, 1), corner(first.triangle, 2),
-                         corner(second.triangle, (second.side + 2) % 3)) == 0;
+    const auto in_one_plane = [&] {
+        return side_of_plane(corner(first.triangle, 0), corner(first.triangle, 1), corner(first.triangle, 2),
+                             corner(second.triangle, (second.side + 2) % 3)) == 0;
+    };
+    const bool alike  = first.forward != second.forward;
+    const double even = glm::dot(normal[0], normal[1]);
+    if ((even > 0) != alike && edge.normal[0] != vec3(0) && edge.normal[1] != vec3(0)) return false;
+    if (!in_one_plane()) return false;
+    if (edge.normal[0] != vec3(0) && edge.normal[1] != vec3(0)) return true;
+    // Thin triangles: their normals' directions may be noise.
+    const auto exact_normal = [&](TriangleId t) {
+        const Rational3 a = rational(corner(t, 0));
+        return cross(rational(corner(t, 1)) - a, rational(corner(t, 2)) - a);
+    };
+    return (dot(exact_normal(first.triangle), exact_normal(second.triangle)) > 0) == alike;
 }
 
 void SilhouetteEdges::add(const Edge& e) {
