@@ -23,13 +23,26 @@
 #include <utility>
 #include <vector>
 
-namespace umbra {
+namespace umbra::exact_detail {
 
 /// A corner of the light, anticlockwise. `cap`: the number of the chord that runs from here to the next corner, or -1.
 template <class T>
 struct LightCorner {
     T x, y;
     int cap = -1;
+};
+
+/// What is known of the light just within a chord.
+enum class ChordState : std::uint8_t { absent, hidden, visible };
+
+/// A piece of the light between two heights; x on the left and on the right of it, below and above.
+struct Trapezoid {
+    double low, high;
+    double low_left, low_right, high_left, high_right;
+};
+/// For areas alone.
+struct NoPieces {
+    void operator()(const Trapezoid& /*piece*/) const {}
 };
 
 /// Sums of areas. Doubles are added up; rationals are cut after 160 binary digits, since the denominators of an exact
@@ -94,13 +107,15 @@ public:
         for (const Edge& e : edges_) body(e.low, e.high);
     }
 
-    /// The area of the light where D is 0, given D at the far left of the lowest row. `cap_lit[k]` becomes 1 or 0 where
-    /// the light just within chord k is uncovered or covered, and stays where the chord is not there. The second value
+    /// The area of the light where D is 0, given D at the far left of the lowest row. `chords[k]` becomes what the
+    /// light just within chord k is, and stays where the chord is not there. The second value
     /// is the sum of the rows' heights times the edges and crossings in each: doubles are off by less than 16 roundings
     /// of it. (An edge's x in a row is off by a few roundings. A crossing whose height is off by e leaves two edges in
     /// the wrong order where they are that close, an area of e times their roundings.)
+    /// Each uncovered part of a row goes to piece(Trapezoid), rounded.
+    template <class Piece>
     [[nodiscard]] std::pair<double, double> uncovered(const std::vector<LightCorner<T>>& light, int layers,
-                                                      std::span<std::uint8_t> cap_lit);
+                                                      std::span<ChordState> chords, const Piece& piece);
 
 private:
     struct Edge {
@@ -124,8 +139,8 @@ private:
     };
 
     [[nodiscard]] bool find_crossings(const T& lo, const T& hi);
-    template <class X>
-    T open_width(int layers, const X& x, std::span<std::uint8_t> cap_lit) const;
+    template <class X, class Gap>
+    T open_width(int layers, const X& x, std::span<ChordState> chords, const Gap& gap) const;
 
     std::vector<Edge> edges_, all_;
     std::vector<Entry> entries_;
@@ -163,18 +178,23 @@ bool Covering<T>::find_crossings(const T& lo, const T& hi) {
     return any;
 }
 
-/// Of a row, the width of the light where D is 0. `x` gives the place of an edge; edges are in order.
+/// Width of the light in a row where D is 0. `x` gives the place of an edge; edges are in order. Calls gap(left, right)
+/// for each pair of edges between which that is.
 template <class T>
-template <class X>
-T Covering<T>::open_width(int layers, const X& x, std::span<std::uint8_t> cap_lit) const {
+template <class X, class Gap>
+T Covering<T>::open_width(int layers, const X& x, std::span<ChordState> chords, const Gap& gap) const {
     T width     = 0;
     bool inside = false;
     for (std::size_t k = 0; k < active_.size(); ++k) {
         const Edge& edge = *active_[k].edge;
-        if (inside && layers == 0) width += x(active_[k]) - x(active_[k - 1]);
+        if (inside && layers == 0) {
+            width += x(active_[k]) - x(active_[k - 1]);
+            gap(active_[k - 1], active_[k]);
+        }
         if (edge.of_light) {
             inside = !inside;
-            if (edge.cap >= 0) cap_lit[static_cast<std::size_t>(edge.cap)] = layers == 0;
+            if (edge.cap >= 0)
+                chords[static_cast<std::size_t>(edge.cap)] = layers == 0 ? ChordState::visible : ChordState::hidden;
         } else {
             layers += edge.step;
         }
@@ -183,8 +203,9 @@ T Covering<T>::open_width(int layers, const X& x, std::span<std::uint8_t> cap_li
 }
 
 template <class T>
+template <class Piece>
 std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T>>& light, int layers,
-                                                 std::span<std::uint8_t> cap_lit) {
+                                                 std::span<ChordState> chords, const Piece& piece) {
     all_ = edges_;
     for (std::size_t k = 0; k < light.size(); ++k) {
         const LightCorner<T>&a = light[k], &b = light[(k + 1) % light.size()];
@@ -230,7 +251,12 @@ std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T
         rounded += as_double(T(hi - lo)) * static_cast<double>(active_.size() + crossings_.size());
         if (!crossed) {
             const T twice = open_width(
-                layers, [](const Active& a) { return T(a.bottom + a.top); }, cap_lit);
+                layers, [](const Active& a) { return T(a.bottom + a.top); }, chords,
+                [&](const Active& left, const Active& right) {
+                    if constexpr (!std::is_same_v<Piece, NoPieces>)
+                        piece(Trapezoid{as_double(lo), as_double(hi), as_double(left.bottom), as_double(right.bottom),
+                                        as_double(left.top), as_double(right.top)});
+                });
             area.add(T((hi - lo) * twice / T(2)));
             continue;
         }
@@ -242,12 +268,20 @@ std::pair<double, double> Covering<T>::uncovered(const std::vector<LightCorner<T
             insertion_sort(
                 active_, [](const Active& a, const Active& b) { return a.middle < b.middle; },
                 [](const Active&, const Active&) {});
+            const auto x_at = [&](const Active& a, const T& y) {
+                return as_double(T(a.bottom + (a.top - a.bottom) * ((y - lo) / (hi - lo))));
+            };
             area.add(T((to - from) * open_width(
-                                         layers, [](const Active& a) { return a.middle; }, cap_lit)));
+                                         layers, [](const Active& a) { return a.middle; }, chords,
+                                         [&](const Active& left, const Active& right) {
+                                             if constexpr (!std::is_same_v<Piece, NoPieces>)
+                                                 piece(Trapezoid{as_double(from), as_double(to), x_at(left, from),
+                                                                 x_at(right, from), x_at(left, to), x_at(right, to)});
+                                         })));
             from = to;
         }
     }
     return {area.value(), rounded};
 }
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

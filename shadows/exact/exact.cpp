@@ -17,8 +17,11 @@
 namespace umbra {
 namespace {
 
+using namespace exact_detail;
+
 struct Options {
     ExactArea::Arithmetic arithmetic = ExactArea::Arithmetic::filtered;
+    Measure measure                  = Measure::area;
 };
 
 const std::vector<Parameter> kParameters{
@@ -28,6 +31,12 @@ const std::vector<Parameter> kParameters{
                 "rational: rationals throughout, for a few points.",
          .phase   = Phase::build,
          .choices = "filtered|rational"}),
+    parameter<&Options::measure>(
+        {.name    = "measure",
+         .doc     = "Which fraction of an area light S_j is. area: visible area over the light's area; irradiance: "
+                    "irradiance that arrives over irradiance without occluders, as radiosity and most renderers have it.",
+         .phase   = Phase::build,
+         .choices = "area|irradiance"}),
 };
 
 constexpr int kPoints = 256;  ///< of an area light, tried in turn until one is hidden
@@ -44,8 +53,10 @@ class Exact final : public MethodWith<Options> {
 public:
     void configure(const Settings& settings) override {
         MethodWith::configure(settings);
-        area_ = ExactArea(options.arithmetic);
+        area_ = ExactArea(options.arithmetic, options.measure);
     }
+
+    [[nodiscard]] Measure measures() const override { return options.measure; }
 
     Service serves(const SceneFacts& facts) const override {
         bool round = false;
@@ -122,7 +133,8 @@ private:
     }
 
     void see_area(const PointBatch& points, LightId light, Visibility out) const {
-        const bool bracket = scene_->lights[light].kind != LightKind::rectangle;
+        const bool irradiance = options.measure == Measure::irradiance;
+        const bool bracket    = irradiance || scene_->lights[light].kind != LightKind::rectangle;
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             ExactArea::Workspace work;
             for (std::size_t i = begin; i < end; ++i) {
@@ -130,9 +142,9 @@ private:
                 const Facing facing            = points.facing[light][i];
                 const ExactArea::Answer answer = area_.seen(points.triangle[i], points.u[i], points.v[i],
                                                             facing == Facing::partly, points.flipped[i] ? -1 : 1, work);
-                out.s[i]                       = answer.visibility;
+                out.s[i]                       = irradiance ? answer.irradiance : answer.visibility;
                 out.answer[i]                  = answer.edge_on ? Answer::on_boundary : Answer::given;
-                if (bracket) out.half_width[i] = answer.half_width;
+                if (bracket) out.half_width[i] = irradiance ? answer.irradiance_half_width : answer.half_width;
             }
         });
     }
@@ -176,7 +188,7 @@ private:
     std::optional<TriangleTree> tree_;
     std::vector<std::uint8_t> no_area_;  ///< one a triangle
     bool has_area_lights_ = false;
-    ExactArea area_{ExactArea::Arithmetic::filtered};
+    ExactArea area_{ExactArea::Arithmetic::filtered, Measure::area};
 };
 
 }  // namespace

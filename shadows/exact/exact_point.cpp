@@ -1,6 +1,6 @@
 #include "umbra/shadows/exact/exact_point.h"
 
-namespace umbra {
+namespace umbra::exact_detail {
 
 Rational dot(const Rational3& a, const Rational3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
@@ -14,7 +14,7 @@ int sign_of_determinant(const Rational3& a, const Rational3& b, const Rational3&
 
 /// With P, Q, R the largest magnitudes and e, f, g the errors, each of the six products is off by at most
 /// (P+e)(Q+f)(R+g) - PQR from its entries, and the evaluation by less than 8 roundings of it.
-int sign_of_determinant(const Entries& p, const Entries& q, const Entries& r) {
+Filtered<int> sign_of_determinant(const Entries& p, const Entries& q, const Entries& r) {
     const dvec3 &a = p.value, &b = q.value, &c = r.value;
     const double det = a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
     const double P = largest(a), Q = largest(b), R = largest(c);
@@ -40,4 +40,4 @@ int ExactPoint::exact_side(vec3 x, vec3 y, vec3 z) const {
     return sign_of_determinant(rational(x) - exact(), rational(y) - exact(), rational(z) - exact());
 }
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

@@ -14,13 +14,17 @@
 
 #include "umbra/core/scene/scene.h"
 
-namespace umbra {
+namespace umbra::exact_detail {
 
 using Rational  = CGAL::Gmpq;
 using Rational3 = std::array<Rational, 3>;
 
 inline constexpr double kUnit = 0x1p-53;  ///< half an ulp of 1 in double
-inline constexpr int kUnsure  = 2;        ///< a sign that doubles cannot tell
+
+/// A value, or kUnsure: the one answer here for "this arithmetic cannot tell".
+template <class T>
+using Filtered                          = std::optional<T>;
+inline constexpr std::nullopt_t kUnsure = std::nullopt;
 
 inline Rational3 rational(vec3 v) { return {Rational(double(v.x)), Rational(double(v.y)), Rational(double(v.z))}; }
 inline Rational3 rational(dvec3 v) { return {Rational(v.x), Rational(v.y), Rational(v.z)}; }
@@ -38,8 +42,8 @@ struct Entries {
     double error = 0;
 };
 
-/// Sign of the determinant of three vectors, or kUnsure.
-[[nodiscard]] int sign_of_determinant(const Entries& p, const Entries& q, const Entries& r);
+/// Sign of the determinant of three vectors: -1, 0 or 1.
+[[nodiscard]] Filtered<int> sign_of_determinant(const Entries& p, const Entries& q, const Entries& r);
 
 /// (1-u-v) a + u b + v c of a triangle's corners: as it is named, not as it is rounded.
 class ExactPoint {
@@ -67,8 +71,8 @@ public:
 
     /// Sign of the volume that the point and (x, y, z) span, which is the sign of det(x - p, y - p, z - p).
     [[nodiscard]] int side(vec3 x, vec3 y, vec3 z) const {
-        const int s = sign_of_determinant(to(x), to(y), to(z));
-        return s != kUnsure ? s : exact_side(x, y, z);
+        const Filtered<int> s = sign_of_determinant(to(x), to(y), to(z));
+        return s ? *s : exact_side(x, y, z);
     }
     [[nodiscard]] int exact_side(vec3 x, vec3 y, vec3 z) const;
 
@@ -89,4 +93,4 @@ private:
     mutable std::optional<Rational3> exact_;
 };
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

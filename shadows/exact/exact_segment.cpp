@@ -5,7 +5,7 @@
 // Rafael Segura, Francisco Feito. Algorithms to Test Ray-Triangle Intersection. Comparative Study. 2001
 #include "umbra/shadows/exact/exact_segment.h"
 
-namespace umbra {
+namespace umbra::exact_detail {
 
 Segment::Segment(const ExactPoint& start, const Light& light)
     : start_(start),
@@ -23,17 +23,19 @@ BoxTree::Piece Segment::piece() const {
 int Segment::end_side(vec3 x, vec3 y, vec3 z) const {
     const dvec3 p = dvec3(y) - dvec3(x), q = dvec3(z) - dvec3(x);
     const dvec3 r      = infinite_ ? dvec3(end_) : dvec3(end_) - dvec3(x);
-    const int s        = sign_of_determinant(Entries{p, kUnit * largest(p)}, Entries{q, kUnit * largest(q)},
+    const auto s       = sign_of_determinant(Entries{p, kUnit * largest(p)}, Entries{q, kUnit * largest(q)},
                                              Entries{r, infinite_ ? 0 : kUnit * largest(r)});
-    const int positive = s != kUnsure ? s
-                                      : sign_of_determinant(rational(y) - rational(x), rational(z) - rational(x),
-                                                            infinite_ ? rational(end_) : rational(end_) - rational(x));
+    const int positive = s ? *s
+                           : sign_of_determinant(rational(y) - rational(x), rational(z) - rational(x),
+                                                 infinite_ ? rational(end_) : rational(end_) - rational(x));
     // det(x - q, y - q, z - q) = -det(y - x, z - x, q - x): the sign that ExactPoint::side would give for q.
     return -positive;
 }
 
 /// On which side the line through start and end passes the edge from x to y; kUnsure where doubles cannot tell.
-int Segment::quick_edge_side(vec3 x, vec3 y) const { return sign_of_determinant(start_.to(x), start_.to(y), to_); }
+Filtered<int> Segment::quick_edge_side(vec3 x, vec3 y) const {
+    return sign_of_determinant(start_.to(x), start_.to(y), to_);
+}
 
 int Segment::edge_side(vec3 x, vec3 y) const {
     return sign_of_determinant(rational(x) - start_.exact(), rational(y) - start_.exact(),
@@ -74,7 +76,7 @@ Segment::Meeting Segment::meeting_in_plane(vec3 x, vec3 y, vec3 z) const {
 Segment::Meeting Segment::meeting(vec3 x, vec3 y, vec3 z) const {
     // Most lines pass the triangle by, and doubles see it. Asked first, since a neighbour in the plane of the point's
     // own triangle (a floor of two triangles) would otherwise cost rationals at every point.
-    const int q0 = quick_edge_side(x, y), q1 = quick_edge_side(y, z), q2 = quick_edge_side(z, x);
+    const Filtered<int> q0 = quick_edge_side(x, y), q1 = quick_edge_side(y, z), q2 = quick_edge_side(z, x);
     const bool surely_left = q0 == 1 || q1 == 1 || q2 == 1, surely_right = q0 == -1 || q1 == -1 || q2 == -1;
     if (surely_left && surely_right) return Meeting::none;
 
@@ -83,12 +85,12 @@ Segment::Meeting Segment::meeting(vec3 x, vec3 y, vec3 z) const {
     // A segment that begins or ends on the triangle's plane does not pass through it: nothing lies on both of its
     // sides.
     if (start == 0 || end == 0 || start == end) return Meeting::none;
-    const int e0         = q0 != kUnsure ? q0 : edge_side(x, y);
-    const int e1         = q1 != kUnsure ? q1 : edge_side(y, z);
-    const int e2         = q2 != kUnsure ? q2 : edge_side(z, x);
+    const int e0         = q0 ? *q0 : edge_side(x, y);
+    const int e1         = q1 ? *q1 : edge_side(y, z);
+    const int e2         = q2 ? *q2 : edge_side(z, x);
     const bool some_left = e0 > 0 || e1 > 0 || e2 > 0, some_right = e0 < 0 || e1 < 0 || e2 < 0;
     if (some_left && some_right) return Meeting::none;
     return e0 != 0 && e1 != 0 && e2 != 0 ? Meeting::crosses : Meeting::touches;
 }
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

@@ -5,7 +5,7 @@
 #include "umbra/shadows/exact/exact_point.h"
 #include "umbra/shadows/shared/box_tree.h"
 
-namespace umbra {
+namespace umbra::exact_detail {
 
 /// The segment from a named surface point to a hard light. The end is a position, or a direction at infinity.
 class Segment {
@@ -20,7 +20,7 @@ public:
 
 private:
     [[nodiscard]] int end_side(vec3 x, vec3 y, vec3 z) const;
-    [[nodiscard]] int quick_edge_side(vec3 x, vec3 y) const;
+    [[nodiscard]] Filtered<int> quick_edge_side(vec3 x, vec3 y) const;
     [[nodiscard]] int edge_side(vec3 x, vec3 y) const;
     [[nodiscard]] Meeting meeting_in_plane(vec3 x, vec3 y, vec3 z) const;
 
@@ -30,4 +30,4 @@ private:
     Entries to_;
 };
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

@@ -8,25 +8,10 @@
 // In double each numerator comes with a bound on its error; in rationals there is none.
 #pragma once
 
-#include "umbra/shadows/exact/exact_point.h"
+#include "umbra/shadows/exact/light_plane.h"
+#include "umbra/shadows/exact/numerators.h"
 
-namespace umbra {
-
-/// The light's plane: centre and half axes. For a sphere it moves with the point and is rounded to double once.
-struct LightPlane {
-    dvec3 u{1, 0, 0}, v{0, 0, 1};
-    Entries centre_from_corner;             ///< centre less the first corner of the point's triangle
-    std::optional<Rational3> exact_centre;  ///< in rationals; without, the corner and centre_from_corner as they stand
-    double rounding = 0;                    ///< how far the light's rim may lie from where it is meant to be, in units
-                                            ///< of the half axes
-};
-
-/// A point in numerators: (X, Y, W) times a positive number, the same for all points.
-template <class T>
-struct Numerators {
-    T x, y, w;
-    double error = 0;  ///< of each
-};
+namespace umbra::exact_detail {
 
 class FloatSpace {
 public:
@@ -46,14 +31,15 @@ public:
         height_ = glm::dot(gw_, r.value);
         height_error_ =
             3 * (gw_size * r.error + gw_error * (largest(r.value) + r.error)) + 12 * kUnit * gw_size * largest(r.value);
-        orientation_ = std::abs(height_) > height_error_ && height_error_ > 1e-290 ? (height_ > 0 ? 1 : -1) : kUnsure;
+        // Products that underflow where scenes are tiny make the bound no bound.
+        if (std::abs(height_) > height_error_ && height_error_ > 1e-290) orientation_ = height_ > 0 ? 1 : -1;
         if (orientation_ == -1) gx_ = -gx_, gy_ = -gy_, gw_ = -gw_, height_ = -height_;
         to_centre_ = r;
     }
 
     /// +1 where (u, v, c - p) is right-handed, so that orientations in the light's plane are those of the world seen
-    /// from p; -1 where it is not; kUnsure.
-    [[nodiscard]] int orientation() const { return orientation_; }
+    /// from p; -1 where it is not.
+    [[nodiscard]] Filtered<int> orientation() const { return orientation_; }
     /// W's numerator on the light's plane.
     [[nodiscard]] double height() const { return height_; }
 
@@ -65,10 +51,15 @@ public:
                 3 * (size * g_error_ + d.error * (g_size_ + g_error_)) + 15 * kUnit * size * g_size_};
     }
 
-    /// Whether q stands in or beyond the light's plane: 1, 0 or kUnsure.
-    [[nodiscard]] int beyond(const Numerators<double>& q) const {
+    /// Whether q is in or beyond the light's plane, not before it.
+    [[nodiscard]] Filtered<bool> beyond(const Numerators<double>& q) const {
         const double over = q.w - height_, error = q.error + height_error_;
-        return over > error ? 1 : over < -error ? 0 : kUnsure;
+        if (!(std::abs(over) > error)) return kUnsure;
+        return over > 0;
+    }
+    /// The place (x, y) of the light itself.
+    [[nodiscard]] Numerators<double> on_light(double x, double y) const {
+        return {x * height_, y * height_, height_, height_error_ + 2 * kUnit * height_};
     }
 
     [[nodiscard]] const Entries& to_centre() const { return to_centre_; }
@@ -83,7 +74,7 @@ private:
     Entries to_centre_;
     dvec3 gx_{0}, gy_{0}, gw_{0};
     double g_error_ = 0, g_size_ = 0, height_ = 0, height_error_ = 0;
-    int orientation_ = kUnsure;
+    Filtered<int> orientation_;
 };
 
 class RationalSpace {
@@ -107,13 +98,16 @@ public:
         }
     }
 
-    [[nodiscard]] int orientation() const { return orientation_; }  ///< 0 where p lies in the light's plane
+    [[nodiscard]] Filtered<int> orientation() const { return orientation_; }  ///< 0 where p lies in the light's plane
     [[nodiscard]] const Rational& height() const { return height_; }
     [[nodiscard]] Numerators<Rational> project(vec3 q) const {
         const Rational3 d = rational(q) - p_;
         return {dot(d, gx_), dot(d, gy_), dot(d, gw_), 0};
     }
-    [[nodiscard]] int beyond(const Numerators<Rational>& q) const { return q.w >= height_ ? 1 : 0; }
+    [[nodiscard]] Filtered<bool> beyond(const Numerators<Rational>& q) const { return q.w >= height_; }
+    [[nodiscard]] Numerators<Rational> on_light(double x, double y) const {
+        return {Rational(x) * height_, Rational(y) * height_, height_, 0};
+    }
 
 private:
     Rational3 p_, gx_, gy_, gw_;
@@ -121,4 +115,4 @@ private:
     int orientation_ = 0;
 };
 
-}  // namespace umbra
+}  // namespace umbra::exact_detail

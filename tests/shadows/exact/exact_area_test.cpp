@@ -213,6 +213,59 @@ TEST(ExactArea, AgreesWithBruteForceInRationals) {
     EXPECT_GT(penumbra, 300u);
 }
 
+/// A triangle and a sliver folded back over its long side, both in y = 1, one corner off by 1e-17 as rotations leave
+/// it: in double the direction of the sliver's normal is noise.
+TEST(ExactArea, OfASliverThatIsFoldedOverATriangle) {
+    Scene scene;
+    add(scene, Mesh{{{0, 1, 1e-17f}, {1, 1, 0.5f}, {1, 1, 0}, {0.5f, 1, 0.25f}}, {}, {{0, 1, 2}, {0, 1, 3}}});
+    add(scene, make_plane(6, 6));
+    scene.lights.push_back(rectangle(vec3(0.5f, 2, 0.25f), vec3(0.5f, 0, 0), vec3(0, 0, 0.5f)));
+    const PointBatch points = random_points(scene, 400, 2, vec3(0.5f, 6, 0.3f));
+    const MethodCase run("exact", scene);
+    run.method->build(scene, run.facts);
+    run.method->aim(0);
+    const VisibilityPlane got = run.visibility(points, 0);
+    std::size_t penumbra      = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!is_open(points, 0, i) || got.answer[i] != Answer::given) continue;
+        const double right = brute_force(scene, scene.lights[0], points, i);
+        EXPECT_NEAR(got.s[i], right, 6e-8) << i;
+        penumbra += right > 0 && right < 1;
+    }
+    EXPECT_GT(penumbra, 5u);
+}
+
+/// Points within 1e-20 of an edge of another triangle: whether it passes over the light is lost in rounding.
+TEST(ExactArea, BesideAnEdge) {
+    Scene scene;
+    add(scene,
+        Mesh{{{3, 0, 4}, {4, 4, -4}, {0, 2, 2}, {3, 0, 4}, {1, -4, -4}, {4, 4, -4}}, {}, {{0, 1, 2}, {3, 4, 5}}});
+    Light light     = rectangle(vec3(4, 0.5f, 4), vec3(1, 0, 0), vec3(0, 1, 0));
+    light.kind      = LightKind::disk;
+    light.direction = glm::normalize(vec3(2, 2, 1));
+    light.radius    = 2;
+    scene.lights    = {light};
+    PointBatch points;
+    points.eye = vec3(3.3f, 4.7f, 9.1f);
+    points.resize(600);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> unit(0, 1);
+    set_point(points, 0, scene, 1, 0x1p-67f, 0x1.80ef7ap-1f);
+    for (std::size_t i = 1; i < points.size(); ++i)
+        set_point(points, i, scene, 1, std::ldexp(1.0f, -50 - static_cast<int>(i % 30)), unit(random));
+    face_lights(points, scene);
+    MethodCase fast("exact", scene), slow("exact:arithmetic=rational", scene);
+    fast.prepare(0), slow.prepare(0);
+    const VisibilityPlane quick = fast.visibility(points, 0), right = slow.visibility(points, 0);
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (!is_open(points, 0, i)) continue;
+        ++open;
+        EXPECT_NEAR(quick.s[i], right.s[i], double(quick.half_width[i]) + double(right.half_width[i]) + 1e-8) << i;
+    }
+    EXPECT_GT(open, 300u);
+}
+
 /// A half-plane x >= 0 at height 2 under a light at height 4: the floor point x sees what of the light is left of
 /// X* = -x (4 - 2) / 2. All in eighths, so that the formula is exact.
 Scene half_plane_scene() {

@@ -18,6 +18,8 @@
 namespace umbra {
 namespace {
 
+using exact_detail::ExactArea;
+
 /// Half an ulp of a float, and twice what each arithmetic may be off.
 constexpr double kAgree = 0x1p-24 + 4e-9;
 

@@ -1,0 +1,65 @@
+#include "umbra/shadows/exact/aimed_light.h"
+
+#include "umbra/core/base/parallel.h"
+
+namespace umbra::exact_detail {
+namespace {
+
+/// How far a place that lies within the reach of edges (kCutReach, 1.0625) may be from the light's centre along an
+/// axis: of a flat light, in half axes, that much; of a sphere sqrt(2) times that, 1.503 radii, since the tangent disk
+/// with its rim lies within the sphere. Rounded up.
+constexpr double kFlatReach = 1.2, kSphereReach = 1.6;
+
+constexpr double kBoxRounding = 1e-12;  ///< relative: more than the rounding of a comparison in double
+
+}  // namespace
+
+std::optional<LightPlane> AimedLight::plane_from(const ExactPoint& p) const {
+    return light_.kind == LightKind::sphere ? sphere_light_plane(light_, p) : flat_light_plane(light_, half_, p);
+}
+
+void AimedLight::find_sides(const Occluders& occluders) {
+    side_.resize(occluders.topology.position.size());
+    const dvec3 centre(light_.position);
+    const Entries u{half_.u, 0}, v{half_.v, 0};
+    parallel_ranges(side_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const vec3 q          = occluders.position(static_cast<std::uint32_t>(k));
+            const dvec3 d         = dvec3(q) - centre;
+            const Filtered<int> s = sign_of_determinant(u, v, Entries{d, kUnit * largest(d)});
+            side_[k]              = static_cast<std::int8_t>(
+                s ? *s
+                               : sign_of_determinant(rational(half_.u), rational(half_.v), rational(q) - rational(light_.position)));
+        }
+    });
+}
+
+dvec3 AimedLight::reach() const {
+    if (light_.kind == LightKind::sphere) return dvec3(kSphereReach * static_cast<double>(light_.radius));
+    return kFlatReach * (glm::abs(half_.u) + glm::abs(half_.v));
+}
+
+void AimedLight::aim(const Light& light, const Occluders& occluders) {
+    light_ = light;
+    half_  = half_axes(light);
+    side_.clear();
+    across_.clear();
+    if (light.kind != LightKind::sphere) find_sides(occluders);
+    const dvec3 centre(light.position), wide = reach();
+    const Topology& topology = occluders.topology;
+    for (TriangleId t = 0; t < topology.triangles.size(); ++t) {
+        const uvec3 v = topology.triangles[t];
+        if (topology.degenerate[t]) continue;
+        if (!side_.empty() && side_[v[0]] == side_[v[1]] && side_[v[1]] == side_[v[2]]) continue;
+        const vec3 a = occluders.position(v[0]), b = occluders.position(v[1]), c = occluders.position(v[2]);
+        bool apart = false;
+        for (int k = 0; k < 3; ++k) {
+            const auto [lo, hi] = std::minmax({a[k], b[k], c[k]});
+            const double around = wide[k] + kBoxRounding * (std::abs(centre[k]) + wide[k]);
+            apart               = apart || hi < centre[k] - around || lo > centre[k] + around;
+        }
+        if (!apart) across_.push_back(t);
+    }
+}
+
+}  // namespace umbra::exact_detail

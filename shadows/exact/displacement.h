@@ -1,0 +1,30 @@
+// How wrong the visible area is where the corners of edges are rounded.
+//
+//        b'----b         Move the ends of an edge from where they belong, a and b, to where they came to lie, a' and
+//        b'.
+//       /     /          The number of layers over a place changes only while an edge passes over the place, so the
+//       area
+//      /     /           is wrong by no more than what all edges pass over. An edge whose ends move by at most delta in
+//      x
+//     a'----a            and in y passes over less than 3 delta length + 8 delta^2. (Ends that are cut off around the
+//                        light move along their edge, too, but out there.)
+#pragma once
+
+#include <algorithm>
+
+namespace umbra::exact_detail {
+
+struct Displacement {
+    double swept  = 0;  ///< area that the edges pass over
+    double widest = 0;  ///< the most that an end moves by itself
+
+    /// The ends move by `own` each by itself, and by `frame` since the light's plane itself is rounded. The layers are
+    /// counted and the edges projected in that one plane, so that the two agree whatever `frame` is.
+    void move_edge(double own, double frame, double length) {
+        const double delta = own + frame;
+        swept += 3 * delta * length + 8 * delta * delta;
+        widest = std::max(widest, own);
+    }
+};
+
+}  // namespace umbra::exact_detail

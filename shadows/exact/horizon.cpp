@@ -1,0 +1,34 @@
+#include "umbra/shadows/exact/horizon.h"
+
+namespace umbra::exact_detail {
+
+template <>
+Horizon<double> horizon_of(const Sight& sight) {
+    const Scene& scene   = sight.viewpoint.scene();
+    const TriangleId own = sight.viewpoint.own();
+    const dvec3 a(scene.vertex(own, 0)), ab = dvec3(scene.vertex(own, 1)) - a, ac = dvec3(scene.vertex(own, 2)) - a;
+    const dvec3 m = glm::cross(ab, ac) * static_cast<double>(sight.turn);
+    const dvec3 u = sight.plane.u, v = sight.plane.v;
+    const Entries& centre = sight.plane.centre_from_corner;
+    // m's components are off by their products' entries and roundings; a height is a sum of nine products with m.
+    const double m_size = largest(m), m_error = 10 * kUnit * largest(ab) * largest(ac);
+    const double reach = largest(u) + largest(v) + largest(centre.value);
+    const double error = 3 * (m_error * reach + m_size * centre.error) + 15 * kUnit * m_size * reach;
+    return {glm::dot(m, u), glm::dot(m, v), glm::dot(m, centre.value), error, glm::length(m)};
+}
+
+template <>
+Horizon<Rational> horizon_of(const Sight& sight) {
+    const Scene& scene   = sight.viewpoint.scene();
+    const TriangleId own = sight.viewpoint.own();
+    const Rational3 a    = rational(scene.vertex(own, 0));
+    const Rational3 centre =
+        sight.plane.exact_centre ? *sight.plane.exact_centre - a : rational(sight.plane.centre_from_corner.value);
+    const Rational3 m = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
+    const Rational turn(sight.turn);
+    const double length = glm::length(dvec3(CGAL::to_double(m[0]), CGAL::to_double(m[1]), CGAL::to_double(m[2])));
+    return {turn * dot(m, rational(sight.plane.u)), turn * dot(m, rational(sight.plane.v)), turn * dot(m, centre), 0,
+            length};
+}
+
+}  // namespace umbra::exact_detail

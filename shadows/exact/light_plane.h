@@ -1,0 +1,31 @@
+// The plane of an area light, as one surface point sees the light. A rectangle and a disk lie in a plane of their own;
+// of a sphere a point sees the disk whose rim is where the cone of its tangents touches the sphere.
+#pragma once
+
+#include "umbra/core/scene/lights.h"
+#include "umbra/shadows/exact/exact_point.h"
+#include "umbra/shadows/shared/light_points.h"
+
+namespace umbra::exact_detail {
+
+/// Half axes of a rectangle, perpendicular radii of a disk; of a sphere nothing, since its disk differs from point to
+/// point.
+[[nodiscard]] DiskAxes half_axes(const Light& light);
+
+/// Centre and half axes. For a sphere they are rounded to double once.
+struct LightPlane {
+    dvec3 u{1, 0, 0}, v{0, 0, 1};
+    Entries centre_from_corner{};  ///< centre less the first corner of the point's triangle
+    std::optional<Rational3>
+        exact_centre{};   ///< in rationals; without, the corner and centre_from_corner as they stand
+    double rounding = 0;  ///< how far the light's rim may lie from where it is meant to be, in units
+                          ///< of the half axes
+};
+
+/// Of a rectangle or a disk with these half axes.
+[[nodiscard]] LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactPoint& p);
+
+/// Of a sphere. Nothing where p is surely within it; a plane of infinite `rounding` where rounding hides whether it is.
+[[nodiscard]] std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoint& p);
+
+}  // namespace umbra::exact_detail

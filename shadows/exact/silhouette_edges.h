@@ -1,0 +1,60 @@
+// The edges of a scene at which the number of triangles over a light can change, and, for one point, those at which it
+// does: the silhouette edges of everything between the point and the light.
+//
+// An edge is one where its triangles, each with the sign of its orientation as the point sees it, do not cancel. These
+// signs are exact.
+//
+// This work is based on:
+// Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
+#pragma once
+
+#include <vector>
+
+#include "umbra/shadows/exact/light_space.h"
+#include "umbra/shadows/exact/normal_cone.h"
+#include "umbra/shadows/exact/occluders.h"
+#include "umbra/shadows/exact/viewpoint.h"
+
+namespace umbra::exact_detail {
+
+/// An edge that may be a silhouette edge.
+struct CandidateEdge {
+    std::uint32_t a = 0, b = 0;          ///< welded vertices, a < b
+    std::uint32_t first = 0, count = 0;  ///< its triangles: a run of uses
+    vec3 normal[2]{vec3(0), vec3(0)};    ///< where it has two: their unit normals, rounded; 0 where they are thin
+};
+
+/// By how much more triangles lie to the left of the edge from a to b than to its right, as the point sees it with the
+/// world's orientation. Not 0.
+struct SilhouetteEdge {
+    std::uint32_t candidate;
+    int change;
+};
+
+class SilhouetteEdges {
+public:
+    /// `occluders` must outlive this object.
+    void build(const Occluders& occluders);
+
+    /// All silhouette edges that may lie before the light and within |x|, |y| <= `reach` of its plane, for one point.
+    void gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
+                std::vector<SilhouetteEdge>& found) const;
+
+    [[nodiscard]] const CandidateEdge& candidate(std::uint32_t k) const { return edges_[k]; }
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    void add(const Edge& edge);
+    [[nodiscard]] bool continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const;
+    [[nodiscard]] NormalCone cone_of(const CandidateEdge& edge) const;
+    [[nodiscard]] int change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const;
+
+    const Occluders* occluders_ = nullptr;
+    std::vector<EdgeUse> uses_;
+    std::vector<CandidateEdge> edges_;
+    std::optional<BoxTree> tree_;    ///< of the edges
+    std::vector<NormalCone> cones_;  ///< one a node of it: the normals of the triangles there, so turned that an edge
+                                     ///< whose two triangles see the point from one side is no silhouette edge
+};
+
+}  // namespace umbra::exact_detail
