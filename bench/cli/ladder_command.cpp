@@ -8,6 +8,7 @@
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
+#include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"

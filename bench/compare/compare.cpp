@@ -8,6 +8,7 @@
 #include <set>
 
 #include "umbra/bench/compare/pictures.h"
+#include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
