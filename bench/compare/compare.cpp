@@ -252,7 +252,7 @@ Size parse_size(const std::string& text) {
     };
     if (cross == std::string::npos || !read(0, cross, size.width) || !read(cross + 1, text.size(), size.height) ||
         static_cast<long>(size.width) * size.height > kMaxArea)
-        throw UsageError(fmt::format("--size {}: not a size (write WIDTHxHEIGHT, each 1 to {}, at most {} pixels)",
+        throw UsageError(fmt::format("--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels",
                                      text, kMaxPictureSide, kMaxArea));
     return size;
 }
@@ -354,8 +354,8 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
     for (const fs::path& file : files)
         if (!stems.insert(file.stem().string()).second)
             throw UsageError(
-                fmt::format("two scenes are called \"{}\": their results would share a folder (compare them with "
-                            "different -o)",
+                fmt::format("two scenes are named \"{}\" and would write to one folder, expected a run with its own -o "
+                            "for each",
                             file.stem().string()));
     for (const std::string& text : options.methods) static_cast<void>(parse_method(text));
     if (options.reference) static_cast<void>(parse_method(*options.reference));

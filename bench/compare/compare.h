@@ -1,4 +1,4 @@
-// `umbra compare` and `umbra render`: a scene under several methods, held against a reference, into files.
+// `umbra compare` and `umbra render`: runs methods on a scene, compares them with a reference and writes files.
 #pragma once
 
 #include <filesystem>
@@ -32,7 +32,7 @@ struct Size {
 struct CompareOptions {
     std::vector<std::string> methods;      ///< as typed; empty: all with their defaults
     std::optional<std::string> reference;  ///< as typed; none: `default_reference`
-    std::optional<std::uint64_t> points;   ///< to judge area lights on; none: as many as are not too dear
+    std::optional<std::uint64_t> points;   ///< at which area lights are scored; none: all, if affordable
     Size size;
     std::filesystem::path out;
     std::string command;  ///< for the records
