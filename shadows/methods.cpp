@@ -5,6 +5,7 @@
 #include <set>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/suggest.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -42,12 +43,13 @@ void apply(std::string_view list, Settings& settings) {
 const Preset* find_preset(const MethodInfo& info, std::string_view name) {
     static constexpr Preset kDefault{"default", "", "All parameters at their defaults."};
     if (name == kDefault.name) return &kDefault;
-    std::vector<std::string_view> known{kDefault.name};
+    std::vector<std::string> known{std::string(kDefault.name)};
     for (const Preset& p : info.presets) {
         if (p.name == name) return &p;
-        known.push_back(p.name);
+        known.emplace_back(p.name);
     }
-    throw UsageError(fmt::format("unknown preset \"{}\" (known: {})", name, fmt::join(known, ", ")));
+    throw UsageError(
+        fmt::format("unknown preset \"{}\" (known: {}){}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 }  // namespace
@@ -65,12 +67,13 @@ std::string_view to_string(How how) {
 std::span<const MethodInfo* const> methods() { return kMethods; }
 
 const MethodInfo& find_method(std::string_view name) {
-    std::vector<std::string_view> known;
+    std::vector<std::string> known;
     for (const MethodInfo* m : kMethods) {
         if (m->name == name) return *m;
-        known.push_back(m->name);
+        known.emplace_back(m->name);
     }
-    throw UsageError(fmt::format("unknown method \"{}\" (known: {})", name, fmt::join(known, ", ")));
+    throw UsageError(
+        fmt::format("unknown method \"{}\" (known: {}){}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
 std::unique_ptr<Method> MethodInfo::make(const Settings& settings) const {

@@ -2,12 +2,14 @@
 #include "umbra/shadows/settings.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/suggest.h"
 
 namespace umbra {
 namespace {
@@ -85,12 +87,14 @@ Settings::Settings(std::span<const Parameter> parameters) : parameters_(paramete
 }
 
 std::size_t Settings::index(std::string_view name) const {
-    std::string known;
+    std::vector<std::string> known;
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
         if (parameters_[k].name == name) return k;
-        known += fmt::format("{}{}", known.empty() ? "" : ", ", parameters_[k].name);
+        known.emplace_back(parameters_[k].name);
     }
-    throw UsageError(fmt::format("unknown setting \"{}\" (known: {})", name, known.empty() ? "none" : known));
+    throw UsageError(fmt::format("unknown setting \"{}\" (known: {}){}", name,
+                                 known.empty() ? "none" : fmt::format("{}", fmt::join(known, ", ")),
+                                 did_you_mean(name, known)));
 }
 
 void Settings::set(std::string_view name, std::string_view value) {

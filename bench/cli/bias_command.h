@@ -1,4 +1,4 @@
-// `umbra bias`: studies the shadow z-buffer's bias on scenes and writes what it found, as data and as heat maps.
+// `umbra bias`: studies the bias of the shadow z-buffer on scenes and writes the results as data and heat maps.
 #pragma once
 
 #include "umbra/bench/bias/bias_study.h"
@@ -11,11 +11,12 @@ struct BiasOptions {
     std::filesystem::path out;
     std::string command;  ///< for the record
     int threads = 0;
-    std::function<void(const std::string&)> progress;  ///< told what is being done
+    std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
 };
 
-/// Studies the scenes and writes OUT/results.json and the page OUT/index.html. Returns the record. Scenes that cannot
-/// be read, or whose meshes are not there, are told to `failed` and left out. Throws UsageError, InputError.
+/// Studies the scenes and writes OUT/results.json and the page OUT/index.html. Returns the record. The
+/// messages of unreadable scenes, or scenes whose meshes are missing, are appended to `failed`; these are skipped.
+/// Throws UsageError, InputError.
 Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
                   std::vector<std::string>& failed);
 

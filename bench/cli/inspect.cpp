@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <tuple>
+
 #include "umbra/shadows/volumes/silhouettes.h"
 
 namespace umbra {
@@ -17,13 +19,14 @@ std::string join(const Json& list) {
 std::string mesh_state(const Json& o) {
     if (o["closed"]) return o["outward"] ? "closed, oriented outwards" : "closed, oriented inwards";
     std::string text;
-    for (const auto& [key, what] : {std::pair{"boundary_edges", "boundary edges"},
-                                    {"nonmanifold_edges", "non-manifold edges"},
-                                    {"misoriented_edges", "misoriented edges"},
-                                    {"nonmanifold_vertices", "non-manifold vertices"},
-                                    {"degenerate_triangles", "degenerate triangles"},
-                                    {"duplicate_triangles", "duplicate triangles"}})
-        if (o[key] != 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", o[key].get<std::uint64_t>(), what);
+    for (const auto& [key, one, many] : {std::tuple{"boundary_edges", "boundary edge", "boundary edges"},
+                                         {"nonmanifold_edges", "non-manifold edge", "non-manifold edges"},
+                                         {"misoriented_edges", "misoriented edge", "misoriented edges"},
+                                         {"nonmanifold_vertices", "non-manifold vertex", "non-manifold vertices"},
+                                         {"degenerate_triangles", "degenerate triangle", "degenerate triangles"},
+                                         {"duplicate_triangles", "duplicate triangle", "duplicate triangles"}})
+        if (const auto n = o[key].get<std::uint64_t>(); n != 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, n == 1 ? one : many);
     return "not closed: " + text;
 }
 

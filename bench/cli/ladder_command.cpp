@@ -8,8 +8,10 @@
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
+#include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/results_file.h"
+#include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -18,8 +20,8 @@ Json climb_ladders(const LadderOptions& options) {
     if (std::filesystem::exists(options.out / "results.json") &&
         !read_results(options.out / "results.json")["ladders"].present())
         throw InputError(
-            fmt::format("{}: holds the results of something else, so it is not replaced (name another folder "
-                        "with -o)",
+            fmt::format("{}: holds the results of another command and is not replaced, expected another folder "
+                        "with -o",
                         options.out.string()));
     std::vector<const Ladder*> chosen;
     for (const std::string& name : options.names) chosen.push_back(&find_ladder(name));
@@ -35,14 +37,16 @@ Json climb_ladders(const LadderOptions& options) {
                    {"breaking_share", kBreakingShare}, {"ladders", Json::array()}};
     StagedFolder staged(options.out);
     std::filesystem::create_directory(staged.folder() / "breaks");
+    Steps steps(chosen.size(), options.progress);
+    const auto progress = [&](const std::string& what) { steps.show(what); };
     for (const Ladder* ladder : chosen) {
-        const LadderRun run = climb_ladder(*ladder, methods_chosen, options.progress);
+        steps.next();
+        const LadderRun run = climb_ladder(*ladder, methods_chosen, progress);
         Json entry          = ladder_json(run);
         for (std::size_t m = 0; m < run.methods.size(); ++m) {
             const Climb c = climb(run, m);
             if (!c.breaks_at || !run.rungs[*c.breaks_at].outcomes[m].ran()) continue;
-            if (options.progress)
-                options.progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
+            progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
             Json& method = entry["methods"][m];
             const auto same =
                 std::count_if(run.methods.begin(), run.methods.begin() + std::ptrdiff_t(m),

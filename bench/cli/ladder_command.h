@@ -1,4 +1,4 @@
-// `umbra ladder`: climbs ladders and writes what it found.
+// `umbra ladder`: climbs ladders and writes the results.
 #pragma once
 
 #include <filesystem>
@@ -12,15 +12,15 @@ namespace umbra {
 
 struct LadderOptions {
     std::vector<std::string> names;    ///< empty: all
-    std::vector<std::string> methods;  ///< as typed; empty: all with their defaults, but `exact`, which is the truth
+    std::vector<std::string> methods;  ///< as typed; empty: all but `exact`, the reference, with their defaults
     std::filesystem::path out;
     std::string command;  ///< for the record
     int threads = 0;
-    std::function<void(const std::string&)> progress;  ///< told what is being done; may be empty
+    std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
 };
 
 /// Climbs and writes OUT: results.json, breaks/ with a small scene and pictures of each break, index.html. The folder
-/// is written beside and moved into place. Returns the record in results.json. Throws UsageError, InputError.
+/// is written under another name and then renamed. Returns the record in results.json. Throws UsageError, InputError.
 Json climb_ladders(const LadderOptions& options);
 
 }  // namespace umbra

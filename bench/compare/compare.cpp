@@ -8,9 +8,11 @@
 #include <set>
 
 #include "umbra/bench/compare/pictures.h"
+#include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
+#include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
@@ -168,6 +170,11 @@ Json image_json(const fs::path& folder, const std::string& id, const MethodRun& 
             {"flip_hdr", number(flip_hdr(reference.linear, rendered.linear).mean)}};
 }
 
+void warn(const Scene& scene, const std::function<void(const std::string&)>& receive) {
+    if (!receive) return;
+    for (const std::string& warning : scene.warnings) receive(fmt::format("{}: {}", scene.name, warning));
+}
+
 /// "name", then "name-2", ...: ids name files and must not repeat.
 std::string unique_id(std::string_view name, std::set<std::string>& used) {
     std::string id(name);
@@ -245,7 +252,7 @@ Size parse_size(const std::string& text) {
     };
     if (cross == std::string::npos || !read(0, cross, size.width) || !read(cross + 1, text.size(), size.height) ||
         static_cast<long>(size.width) * size.height > kMaxArea)
-        throw UsageError(fmt::format("--size {}: not a size (write WIDTHxHEIGHT, each 1 to {}, at most {} pixels)",
+        throw UsageError(fmt::format("--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels",
                                      text, kMaxPictureSide, kMaxArea));
     return size;
 }
@@ -259,6 +266,9 @@ PreparedScene prepare_scene(const fs::path& file, Size size) {
     p.rays_build_ms = timed_ms([&] { rays.emplace(p.scene); });
     p.gbuffer_ms =
         timed_ms([&] { p.points = primary_points(*rays, p.scene, p.scene.camera, size.width, size.height); });
+    const auto& seen = p.points.triangle;
+    if (std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; }))
+        p.scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
     return p;
 }
 
@@ -275,6 +285,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size);
     const Scene& scene           = prepared.scene;
+    warn(scene, options.warn);
 
     const fs::path folder = options.out / scene.name;
     StagedFolder stage(folder);
@@ -344,19 +355,28 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
     for (const fs::path& file : files)
         if (!stems.insert(file.stem().string()).second)
             throw UsageError(
-                fmt::format("two scenes are called \"{}\": their results would share a folder (compare them with "
-                            "different -o)",
+                fmt::format("two scenes are named \"{}\" and would write to one folder, expected a run with its own -o "
+                            "for each",
                             file.stem().string()));
+    for (const std::string& text : options.methods) static_cast<void>(parse_method(text));
+    if (options.reference) static_cast<void>(parse_method(*options.reference));
     ScenesDone done;
     Json last;
+    CompareOptions numbered = options;
+    Steps steps(files.size(), options.progress);
+    numbered.progress = [&](const std::string& what) { steps.show(what); };
     for (const fs::path& file : files) {
+        steps.next();
         try {
-            last = compare_scene(file, options);
+            last = compare_scene(file, numbered);
             done.names.push_back(last["scene"]["name"]);
         } catch (const MissingMesh& e) {
             done.missing.emplace_back(e.what());
         } catch (const InputError& e) {
             done.failed.emplace_back(e.what());
+        } catch (const std::exception& e) {
+            done.failed.push_back(fmt::format("{}: {}", file.stem().string(), e.what()));
+            done.internal = true;
         }
     }
     if (files.size() == 1 && done.names.size() == 1)
@@ -367,7 +387,8 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
 Service render_scene(const fs::path& file, const RenderOptions& options) {
     const MethodChoice choice    = parse_method(options.method);
     const PreparedScene prepared = prepare_scene(file, options.size);
-    const MethodRun run          = run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0});
+    warn(prepared.scene, options.warn);
+    const MethodRun run = run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0});
     if (!run.service) return run.service;
     const Rendered rendered = render(prepared.scene, prepared.points, run.planes);
     Image image             = options.out.extension() == ".png" ? rendered.shown

@@ -1,4 +1,4 @@
-// `umbra compare` and `umbra render`: a scene under several methods, held against a reference, into files.
+// `umbra compare` and `umbra render`: runs methods on a scene, compares them with a reference and writes files.
 #pragma once
 
 #include <filesystem>
@@ -32,13 +32,14 @@ struct Size {
 struct CompareOptions {
     std::vector<std::string> methods;      ///< as typed; empty: all with their defaults
     std::optional<std::string> reference;  ///< as typed; none: `default_reference`
-    std::optional<std::uint64_t> points;   ///< to judge area lights on; none: as many as are not too dear
+    std::optional<std::uint64_t> points;   ///< at which area lights are scored; none: all, if affordable
     Size size;
     std::filesystem::path out;
     std::string command;  ///< for the records
     int threads = 0;
     Repeats repeats;
-    std::function<void(const std::string&)> progress;  ///< told what is being done; may be empty
+    std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
+    std::function<void(const std::string&)> warn;      ///< receives "SCENE: warning" of loading; may be empty
 };
 
 /// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
@@ -46,11 +47,13 @@ struct CompareOptions {
 Json compare_scene(const std::filesystem::path& file, const CompareOptions& options);
 
 /// All scenes one after the other; where there is one only, OUT/results.json is a copy with paths that hold there.
-/// Scenes that cannot be read are told to `failed` and left out; their older results stay.
+/// Scenes that cannot be read, or on which a method throws, are added to `failed` and skipped; their older results
+/// stay. Throws UsageError before the first scene where the methods or the reference are wrong.
 struct ScenesDone {
     std::vector<std::string> names;    ///< folders below OUT, in order
     std::vector<std::string> failed;   ///< messages
     std::vector<std::string> missing;  ///< messages: scenes whose meshes are not there
+    bool internal = false;             ///< at least one of `failed` is no fault of the input: something threw
 };
 ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
 
@@ -62,6 +65,7 @@ struct RenderOptions {
     std::filesystem::path out;
     std::string command;
     bool with_geometry = false;
+    std::function<void(const std::string&)> warn;  ///< receives "SCENE: warning" of loading; may be empty
 };
 [[nodiscard]] Service render_scene(const std::filesystem::path& file, const RenderOptions& options);
 

@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <fnmatch.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/bench/diff/difference_map.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -29,11 +31,49 @@ std::vector<std::string> find_unlike(const LoadedImage& a, const LoadedImage& b)
         reasons.push_back(fmt::format("data windows differ: begin at ({}, {}) against ({}, {})", a.x, a.y, b.x, b.y));
     const auto only_a = missing(a.image.channels, b.image.channels);
     const auto only_b = missing(b.image.channels, a.image.channels);
+    const auto common = missing(a.image.channels, only_a);
     if (!only_a.empty() || !only_b.empty())
-        reasons.push_back(fmt::format("channels differ: only the first has [{}], only the second [{}], both [{}]",
-                                      fmt::join(only_a, " "), fmt::join(only_b, " "),
-                                      fmt::join(missing(a.image.channels, only_a), " ")));
+        reasons.push_back(fmt::format(
+            "channels differ: only the first has [{}], only the second [{}], both [{}]{}", fmt::join(only_a, " "),
+            fmt::join(only_b, " "), fmt::join(common, " "),
+            common.empty() ? ""
+                           : fmt::format("; to compare those of both: --channels \"{}\"", fmt::join(common, ","))));
     return reasons;
+}
+
+bool matches(const std::string& name, const std::vector<std::string>& patterns) {
+    return std::any_of(patterns.begin(), patterns.end(),
+                       [&](const std::string& p) { return fnmatch(p.c_str(), name.c_str(), 0) == 0; });
+}
+
+/// The image's channels `names`, in that order; it must have them.
+Image select(const Image& image, const std::vector<std::string>& names) {
+    Image selected(image.width, image.height, names);
+    for (std::size_t c = 0; c < names.size(); ++c) {
+        const auto from =
+            std::size_t(std::find(image.channels.begin(), image.channels.end(), names[c]) - image.channels.begin());
+        for (std::size_t i = 0; i < image.pixels(); ++i) selected.at(i, c) = image.at(i, from);
+    }
+    return selected;
+}
+
+/// Leaves the channels that match; returns why that makes no sense, or an empty string.
+std::string keep_matching(LoadedImage& a, LoadedImage& b, const std::vector<std::string>& patterns) {
+    std::vector<std::string> unused = patterns;
+    for (LoadedImage* loaded : {&a, &b})
+        std::erase_if(unused, [&](const std::string& pattern) {
+            const auto& names = loaded->image.channels;
+            return std::any_of(names.begin(), names.end(), [&](const auto& name) { return matches(name, {pattern}); });
+        });
+    if (!unused.empty())
+        return fmt::format("no channel is called {}: the first has [{}], the second [{}]", fmt::join(unused, " or "),
+                           fmt::join(a.image.channels, " "), fmt::join(b.image.channels, " "));
+    for (LoadedImage* loaded : {&a, &b}) {
+        std::vector<std::string> names = loaded->image.channels;
+        std::erase_if(names, [&](const std::string& name) { return !matches(name, patterns); });
+        loaded->image = select(loaded->image, names);
+    }
+    return "";
 }
 
 /// Linear light as an 8- or 16-bit file would hold it. Alpha is not light.
@@ -46,11 +86,24 @@ void encode(Image& image) {
     }
 }
 
-Image one_channel(const Image& image, const std::string& name) {
-    const auto c = std::size_t(std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin());
-    Image channel(image.width, image.height, {name});
-    for (std::size_t i = 0; i < image.pixels(); ++i) channel.data[i] = image.at(i, c);
-    return channel;
+Image one_channel(const Image& image, std::size_t c) { return select(image, {image.channels[c]}); }
+
+/// Where the largest difference is, or the first value that is not finite in one image only.
+void find_worst(DiffResult& result, const Image& a, const Image& b) {
+    auto& worst   = result.worst;
+    const auto at = result.error.worst;
+    worst         = {at.x, at.y, std::size_t(at.channel), 0, 0};
+    std::size_t i = std::size_t(at.y) * std::size_t(a.width) + std::size_t(at.x);
+    if (result.error.max == 0 && result.error.unlike_not_finite > 0) {
+        const auto unlike = [&](std::size_t k) {
+            return a.data[k] != b.data[k] && !(std::isnan(a.data[k]) && std::isnan(b.data[k]));
+        };
+        std::size_t k = 0;
+        while (!unlike(k)) ++k;
+        i     = k / a.channels.size();
+        worst = {int(i % std::size_t(a.width)), int(i / std::size_t(a.width)), k % a.channels.size(), 0, 0};
+    }
+    worst.a = a.at(i, worst.channel), worst.b = b.at(i, worst.channel);
 }
 
 void measure(DiffResult& result, const Image& a, const Image& b, double fail) {
@@ -58,8 +111,9 @@ void measure(DiffResult& result, const Image& a, const Image& b, double fail) {
     result.height   = a.height;
     result.channels = a.channels;
     result.error    = image_error(a, b, fail);
-    for (const std::string& name : a.channels)
-        result.channel_error.push_back(image_error(one_channel(a, name), one_channel(b, name), fail));
+    for (std::size_t c = 0; c < a.channels.size(); ++c)
+        result.channel_error.push_back(image_error(one_channel(a, c), one_channel(b, c), fail));
+    find_worst(result, a, b);
     if (result.error.differing == 0) {  // nothing to see, and FLIP takes its time over it
         result.flip.map.resize(a.pixels());
         return;
@@ -92,22 +146,31 @@ void judge(DiffResult& result, const DiffOptions& options, double fail, bool ask
     result.verdict = result.reasons.empty() ? Verdict::close : Verdict::differs;
 }
 
-void write_map(const std::filesystem::path& file, const DiffResult& result, const Image& a, const Image& b) {
+/// FLIP, and B - A of every channel.
+Image all_differences(const DiffResult& result, const Image& a, const Image& b) {
     std::vector<std::string> names{"FLIP"};
-    if (file.extension() == ".exr")
-        for (const std::string& name : a.channels) names.push_back("difference." + name);
+    for (const std::string& name : a.channels) names.push_back("difference." + name);
     Image map(a.width, a.height, names);
     map.metadata = {{"umbra:difference", result.b + " minus " + result.a}};
-    for (std::size_t i = 0; i < map.pixels(); ++i) map.at(i, 0) = result.flip.map[i];
-    for (std::size_t c = 1; c < names.size(); ++c) {
-        const Image of_a = one_channel(a, a.channels[c - 1]);
-        const Image of_b = one_channel(b, a.channels[c - 1]);
-        for (std::size_t i = 0; i < map.pixels(); ++i) map.at(i, c) = of_b.data[i] - of_a.data[i];
+    for (std::size_t i = 0; i < map.pixels(); ++i) {
+        map.at(i, 0) = result.flip.map[i];
+        for (std::size_t c = 0; c < a.channels.size(); ++c) map.at(i, c + 1) = b.at(i, c) - a.at(i, c);
     }
-    write_image(file, map);
+    return map;
 }
 
-std::string number(double x) { return fmt::format("{:.6g}", x); }
+void write_pictures(DiffResult& result, const Image& a, const Image& b, const DiffOptions& options) {
+    const bool colours = options.map.extension() == ".png" || !options.pictures.empty();
+    DifferenceMap map;
+    if (colours) map = difference_map(a, b, result.hdr), result.map_range = map.range;
+    if (!options.map.empty())
+        write_image(options.map, options.map.extension() == ".png" ? map.picture : all_differences(result, a, b));
+    if (options.pictures.empty() || result.verdict == Verdict::same) return;
+    const auto name = [&](const char* ending) { return options.pictures.string() + ending; };
+    write_image(name(".a.png"), shown_picture(a, result.hdr));
+    write_image(name(".b.png"), shown_picture(b, result.hdr));
+    write_image(name(".map.png"), map.picture);
+}
 
 }  // namespace
 
@@ -124,8 +187,9 @@ std::string_view to_string(Verdict verdict) {
 
 DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path& file_b, const DiffOptions& options) {
     DiffResult result;
-    result.a = file_a.string();
-    result.b = file_b.string();
+    result.name = file_a.filename().string();
+    result.a    = file_a.string();
+    result.b    = file_b.string();
 
     LoadedImage a, b;
     for (const auto& [file, loaded] : {std::pair{&file_a, &a}, std::pair{&file_b, &b}}) {
@@ -139,7 +203,10 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
         result.verdict = Verdict::unreadable;
         return result;
     }
-    result.reasons = find_unlike(a, b);
+    if (!options.channels.empty())
+        if (std::string reason = keep_matching(a, b, options.channels); !reason.empty())
+            result.reasons.push_back(std::move(reason));
+    if (result.reasons.empty()) result.reasons = find_unlike(a, b);
     if (!result.reasons.empty()) {
         result.verdict = Verdict::unlike;
         return result;
@@ -151,85 +218,15 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
             fmt::format("{} holds linear light, the other sRGB: clamped and encoded before comparing",
                         first ? result.a : result.b));
     }
+    b.image    = select(b.image, a.image.channels);
     result.hdr = a.encoding == Encoding::linear && b.encoding == Encoding::linear;
 
     const bool asks_else = options.fail_rmse || options.fail_flip || options.fail_psnr || options.fail_ssim;
     const double fail    = options.fail.value_or(kDefaultFail);
     measure(result, a.image, b.image, fail);
     judge(result, options, fail, options.fail || !asks_else);
-    if (!options.map.empty()) write_map(options.map, result, a.image, b.image);
+    write_pictures(result, a.image, b.image, options);
     return result;
-}
-
-std::string diff_text(const DiffResult& result) {
-    std::string text;
-    const auto line = [&]<class... Values>(fmt::format_string<Values...> format, Values&&... values) {
-        text += fmt::format(format, std::forward<Values>(values)...) + '\n';
-    };
-    if (result.comparable()) {
-        const ImageError& e = result.error;
-        const double pixels = double(result.flip.map.size());
-        line("{} against {}: {}x{}, {}", result.a, result.b, result.width, result.height,
-             fmt::join(result.channels, " "));
-        line("  MAE     {}", number(e.mae));
-        line("  RMSE    {}", number(e.rmse));
-        line("  PSNR    {}", std::isfinite(e.psnr) ? number(e.psnr) + " dB" : "infinite");
-        line("  max     {}{}", number(e.max),
-             e.max > 0 ? fmt::format(" at ({}, {}), channel {}", e.worst.x, e.worst.y,
-                                     result.channels[std::size_t(e.worst.channel)])
-                       : "");
-        line("  SSIM    {}", number(result.ssim));
-        line("  FLIP    {} (mean, {}), weighted median {}, quartiles {} and {}, max {}", number(result.flip.mean),
-             result.hdr ? "HDR" : "LDR", number(result.flip.weighted_median), number(result.flip.first_quartile),
-             number(result.flip.third_quartile), number(result.flip.max));
-        line("  pixels  {} differ ({:.3g} %), {} beyond the limit ({:.3g} %)", e.differing,
-             100 * double(e.differing) / pixels, e.over, 100 * double(e.over) / pixels);
-        if (e.not_finite > 0)
-            line("  {} values are not finite, {} of them unlike in the two", e.not_finite, e.unlike_not_finite);
-        if (result.channels.size() > 3 && e.differing > 0)
-            for (std::size_t c = 0; c < result.channels.size(); ++c)
-                if (const ImageError& of = result.channel_error[c]; of.differing > 0)
-                    line("  {}: MAE {}, RMSE {}, max {} at ({}, {})", result.channels[c], number(of.mae),
-                         number(of.rmse), number(of.max), of.worst.x, of.worst.y);
-    }
-    for (const std::string& note : result.notes) line("  note: {}", note);
-    line("{}{}{}", to_string(result.verdict), result.reasons.empty() ? "" : ": ", fmt::join(result.reasons, "; "));
-    return text;
-}
-
-nlohmann::json diff_json(const DiffResult& result) {
-    nlohmann::json json{{"verdict", to_string(result.verdict)},
-                        {"exit_code", int(result.verdict)},
-                        {"a", result.a},
-                        {"b", result.b},
-                        {"reasons", result.reasons},
-                        {"notes", result.notes}};
-    if (!result.comparable()) return json;
-    const ImageError& e = result.error;
-    json["size"]        = {result.width, result.height};
-    json["mae"]         = e.mae;
-    json["rmse"]        = e.rmse;
-    json["max"]         = e.max;
-    json["psnr"]        = std::isfinite(e.psnr) ? nlohmann::json(e.psnr) : nlohmann::json();
-    json["ssim"]        = result.ssim;
-    json["flip"]        = {{"mean", result.flip.mean},
-                           {"weighted_median", result.flip.weighted_median},
-                           {"first_quartile", result.flip.first_quartile},
-                           {"third_quartile", result.flip.third_quartile},
-                           {"min", result.flip.min},
-                           {"max", result.flip.max},
-                           {"kind", result.hdr ? "hdr" : "ldr"}};
-    json["worst"] = {{"x", e.worst.x}, {"y", e.worst.y}, {"channel", result.channels[std::size_t(e.worst.channel)]}};
-    json["differing_pixels"]  = e.differing;
-    json["pixels_over"]       = e.over;
-    json["not_finite"]        = e.not_finite;
-    json["unlike_not_finite"] = e.unlike_not_finite;
-    json["channels"]          = nlohmann::json::array();
-    for (std::size_t c = 0; c < result.channels.size(); ++c) {
-        const ImageError& of = result.channel_error[c];
-        json["channels"].push_back({{"name", result.channels[c]}, {"mae", of.mae}, {"rmse", of.rmse}, {"max", of.max}});
-    }
-    return json;
 }
 
 }  // namespace umbra

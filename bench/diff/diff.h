@@ -1,12 +1,10 @@
-// Two image files, how far they differ, and whether that is little enough: the question behind `umbra diff`.
+// Two image files: how far they differ, and whether that is within given limits. Behind `umbra diff`.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
@@ -32,12 +30,18 @@ struct DiffOptions {
     std::optional<double> fail_psnr{};  ///< dB against a peak of 1; less is too little
     std::optional<double> fail_ssim{};  ///< less is too little
     double warn = 0;                    ///< largest difference of a value that still counts as the same
-    std::filesystem::path map{};        ///< .png: FLIP of each pixel in grey; .exr: FLIP, and B - A of every channel
+    /// Compare only channels of these names, shell patterns allowed ("S.*"); empty: all.
+    std::vector<std::string> channels{};
+    /// .png: difference_map (bench/diff/difference_map.h); .exr: FLIP, and B - A of every channel. Empty: none.
+    std::filesystem::path map{};
+    /// Where the images are comparable and not the same: writes PICTURES.a.png, .b.png and .map.png. Empty: none.
+    std::filesystem::path pictures{};
 };
 inline constexpr double kDefaultFail = 1e-6;
 
 struct DiffResult {
     Verdict verdict = Verdict::same;
+    std::string name;                  ///< of the pair: the file's path inside its folder, or A's file name
     std::string a, b;                  ///< file names
     std::vector<std::string> reasons;  ///< which limits were missed; what is unlike; why a file is unreadable
     std::vector<std::string> notes;    ///< what was assumed
@@ -50,8 +54,15 @@ struct DiffResult {
     double ssim = 1;                        ///< of R, G, B's luminance, or of the first channel, values as stored
     Flip flip;                              ///< of R, G, B, or of the first channel
     bool hdr = false;                       ///< HDR-FLIP: both files hold linear light; LDR-FLIP otherwise
+    struct {
+        int x = 0, y = 0;
+        std::size_t channel = 0;  ///< index into `channels`
+        float a = 0, b = 0;       ///< the values of the two images there
+    } worst;               ///< largest difference; where there is none, the first unlike value that is not finite
+    double map_range = 0;  ///< of the difference map, if written: its darkest colours are +-this
 
-    [[nodiscard]] bool comparable() const { return verdict <= Verdict::differs; }
+    [[nodiscard]] bool comparable() const { return width > 0; }
+    [[nodiscard]] bool any_difference() const { return error.differing > 0; }
 };
 
 /// Compares value by value as the files store them (integer formats scaled to [0, 1]), channels by name. Where one file
@@ -59,12 +70,5 @@ struct DiffResult {
 /// for what is wrong with the files; throws InputError where the map cannot be written.
 [[nodiscard]] DiffResult diff(const std::filesystem::path& a, const std::filesystem::path& b,
                               const DiffOptions& options);
-
-/// For people, ends in a newline. Nothing but the verdict and its reasons where the images are not comparable.
-[[nodiscard]] std::string diff_text(const DiffResult& result);
-
-/// verdict, mae, rmse, max, psnr (null where equal), ssim, flip {...}, worst {x, y, channel}, ... File names may hold
-/// any bytes: dump with error_handler_t::replace.
-[[nodiscard]] nlohmann::json diff_json(const DiffResult& result);
 
 }  // namespace umbra

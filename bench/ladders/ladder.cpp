@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/suggest.h"
 
 namespace umbra {
 namespace {
@@ -22,12 +23,13 @@ const std::vector<const Ladder*> kLadders = {
 std::span<const Ladder* const> ladders() { return kLadders; }
 
 const Ladder& find_ladder(std::string_view name) {
-    std::vector<std::string_view> known;
+    std::vector<std::string> known;
     for (const Ladder* ladder : kLadders) {
         if (ladder->name == name) return *ladder;
-        known.push_back(ladder->name);
+        known.emplace_back(ladder->name);
     }
-    throw UsageError(fmt::format("unknown ladder \"{}\" (known: {})", name, fmt::join(known, ", ")));
+    throw UsageError(
+        fmt::format("unknown ladder \"{}\"{} (known: {})", name, did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 }  // namespace umbra

@@ -4,7 +4,7 @@
 
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/ladders/minimal_scene.h"
-#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/out/files.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_writer.h"
 

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
+#include "umbra/bench/out/files.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -21,18 +20,13 @@ StagedFiles::~StagedFiles() {
 
 /// False where it is staged already.
 bool StagedFiles::stage(const fs::path& file) {
-    std::error_code error;
-    fs::create_directories(file.parent_path(), error);
-    if (error) throw InputError(fmt::format("{}: cannot be made: {}", file.parent_path().string(), error.message()));
+    make_folder(file.parent_path());
     return files_.insert(file).second;
 }
 
 void StagedFiles::write(const fs::path& file, std::string_view content) {
     stage(file);
-    std::ofstream stream(beside(file), std::ios::binary);
-    stream.write(content.data(), std::streamsize(content.size()));
-    stream.close();
-    if (!stream) throw InputError(fmt::format("{}: cannot be written", file.string()));
+    write_text(beside(file), content);
 }
 
 void StagedFiles::copy(const fs::path& from, const fs::path& to) {

@@ -7,8 +7,8 @@
 
 namespace umbra {
 
-/// Files are written and copied beside their places and moved there by commit(); what fails before leaves nothing.
-/// Throws InputError naming the file.
+/// Files are written and copied as FILE.part and renamed by commit(); a failure before that leaves nothing. Throws
+/// InputError naming the file.
 class StagedFiles {
 public:
     StagedFiles()                              = default;
@@ -18,7 +18,7 @@ public:
 
     void write(const std::filesystem::path& file, std::string_view content);
     void copy(const std::filesystem::path& from,
-              const std::filesystem::path& to);  ///< once, however often it is asked for
+              const std::filesystem::path& to);  ///< only the first call for a file has an effect
     void commit();
 
 private:

@@ -6,9 +6,8 @@
 
 namespace umbra {
 
-/// A folder beside the one to be, which takes its place on commit() and is gone where that is not called. What stands
-/// there already is replaced only if it is empty or holds a results.json, and stays whole until then. Throws
-/// InputError.
+/// A temporary folder beside `to`, renamed to `to` by commit() and removed where that is not called. An existing `to`
+/// is replaced only if it is empty or holds a results.json, and stays as it is until commit(). Throws InputError.
 class StagedFolder {
 public:
     explicit StagedFolder(const std::filesystem::path& to);
@@ -22,8 +21,5 @@ public:
 private:
     std::filesystem::path to_, folder_;
 };
-
-/// Writes a file of text as it is. Throws InputError naming it.
-void write_text(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace umbra

@@ -19,7 +19,7 @@ public:
     using InputError::InputError;
 };
 
-/// A wrong command line or parameter. Commands print it and exit with 2.
+/// A wrong command line or parameter. Commands print it and exit with 64.
 class UsageError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;

@@ -8,6 +8,9 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "umbra/shadows/method.h"
 
 namespace {
 
@@ -45,17 +48,114 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(Cli, UsageErrorsEndWithTwo) {
-    const std::string render = "render " + kScene;
-    for (const std::string& arguments : std::vector<std::string>{
-             "", "paint", "render", render, render + " --method crayon -o " + file("a.png"),
-             render + " --method ray_traced:samples=0 -o " + file("a.png"),
-             render + " --method ray_traced:samples -o " + file("a.png"), render + " --size 0x0 -o " + file("a.png"),
-             render + " -o " + file("a.tiff"), "--threads 0 list", "inspect --nonsense x"})
-        EXPECT_EQ(umbra(arguments).exit_code, 2) << arguments << "\n" << umbra(arguments).output;
-    EXPECT_NE(umbra("render " + kScene + " --method crayon -o " + file("a.png")).output.find("shadow_zbuffer"),
-              std::string::npos);
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// Standard error alone.
+std::string errors_of(const std::string& arguments) {
+    std::string command = "(";
+    command += UMBRA_PROGRAM;
+    return run(command + " " + arguments + " 2>&1 >/dev/null)").output;
+}
+
+TEST_F(Cli, UsageErrorsEndWithSixtyFour) {
+    const std::string render  = "render " + kScene;
+    const std::string compare = "compare " + kScene + " -o " + file("out");
+    const std::string diff    = "diff a.png b.png ";
+    for (const std::string& arguments :
+         std::vector<std::string>{"",
+                                  "paint",
+                                  "render",
+                                  render,
+                                  render + " --method crayon -o " + file("a.png"),
+                                  render + " --method ray_traced:samples=0 -o " + file("a.png"),
+                                  render + " --method ray_traced:samples -o " + file("a.png"),
+                                  render + " --size 0x0 -o " + file("a.png"),
+                                  render + " -o " + file("a.tiff"),
+                                  "--threads 0 list",
+                                  "inspect --nonsense x",
+                                  "inspect no_such_scene",
+                                  "list no_such_thing",
+                                  "ladder no_such_ladder -o " + file("out"),
+                                  "compare -o " + file("out"),
+                                  compare + " --methods crayon",
+                                  compare + " --reference crayon",
+                                  compare + " --reference-points 0",
+                                  compare + " --reference-points many",
+                                  "completion fish",
+                                  diff + "--fail -1",
+                                  diff + "--fail nan",
+                                  diff + "--fail-percent 200",
+                                  diff + "--fail-percent -1",
+                                  diff + "--fail-flip 2",
+                                  diff + "--fail-ssim 3",
+                                  diff + "--fail-psnr inf",
+                                  diff + "--fail-rmse x",
+                                  diff + "--warn -1",
+                                  diff + "-o map.bmp",
+                                  "diff " + file("") + " " + kScene,
+                                  "accept moon"}) {
+        const Answer answer = umbra(arguments);
+        EXPECT_EQ(answer.exit_code, 64) << arguments << "\n" << answer.output;
+        EXPECT_EQ(answer.output.find("umbra: "), 0u) << answer.output;
+        EXPECT_LT(answer.output.size(), 1500u) << answer.output;
+    }
+    EXPECT_TRUE(contains(umbra(render + " --method crayon -o " + file("a.png")).output, "shadow_zbuffer"));
+    const std::string points = umbra(compare + " --reference-points 0").output;
+    EXPECT_LT(points.size(), 160u) << points;
     EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Cli, MistypedNamesGetSuggestions) {
+    EXPECT_TRUE(contains(umbra("compar x").output, "unknown command \"compar\"; did you mean compare?"));
+    EXPECT_TRUE(contains(umbra("--threads 2 --quiet redner").output, "did you mean render?"));
+    EXPECT_TRUE(contains(umbra("inspect sun_on_plan").output, "did you mean sun_on_plane?"));
+    EXPECT_TRUE(contains(umbra("ladder far_from_orign -o " + file("out")).output, "did you mean far_from_origin?"));
+    EXPECT_TRUE(contains(umbra("list shadow_zbufer").output, "did you mean shadow_zbuffer?"));
+    EXPECT_TRUE(contains(umbra("compare sun_on_plane --metods exact -o out").output, "did you mean --methods?"));
+}
+
+TEST_F(Cli, CanonicalNamesAreScenes) {
+    const std::string by_file = umbra("inspect --json " + kScene).output;
+    EXPECT_EQ(umbra("inspect --json sun_on_plane").output, by_file);
+    EXPECT_EQ(umbra("render sun_on_plane --size 32x18 -o " + file("a.png")).exit_code, 0);
+    // A file of that name comes first.
+    EXPECT_EQ(
+        run("cd " + folder_.string() + " && echo nothing > sun_on_plane && " + UMBRA_PROGRAM + " inspect sun_on_plane")
+            .exit_code,
+        4);
+}
+
+TEST_F(Cli, ListsOfMethodsLeaveTheScene) {
+    const std::string options = " --size 32x18 --quiet -o " + file("out");
+    EXPECT_EQ(umbra("compare --methods planar_projection shadow_volumes sun_on_plane" + options).exit_code, 0);
+    EXPECT_TRUE(fs::exists(file("out/sun_on_plane/shadow_volumes.png")));
+    EXPECT_EQ(umbra("compare --methods shadow_volumes " + kScene + options).exit_code, 0);
+    EXPECT_EQ(umbra("ladder --methods planar_projection far_from_origin -o " + file("ladders")).exit_code, 0);
+    const std::string missing = umbra("compare --methods exact" + options).output;
+    EXPECT_TRUE(contains(missing, "SCENE is required")) << missing;
+}
+
+TEST_F(Cli, WarningsGoToStandardErrorWithTheScene) {
+    std::ofstream(file("away.json")) << R"({
+        "camera": {"eye": [0, 1, 0], "target": [0, 2, 0.1]},
+        "lights": [{"name": "lamp", "type": "point", "position": [0, 4, 0]}],
+        "objects": [{"name": "floor", "type": "plane", "size": [8, 8]}]
+    })";
+    std::ofstream(file("bare.obj")) << "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const std::string nothing = "warning: away: the camera sees nothing: no primary ray meets a surface\n";
+    const std::string size    = " --size 32x18 ";
+    EXPECT_EQ(errors_of("render " + file("away.json") + size + "-o " + file("a.png")), nothing);
+    EXPECT_EQ(errors_of("compare " + file("away.json") + size + "--methods ray_traced -o " + file("out")), nothing);
+    std::ifstream in(file("out/away/results.json"));
+    EXPECT_TRUE(contains(nlohmann::json::parse(in)["scene"]["warnings"].dump(), "the camera sees nothing"));
+    const std::string bare = errors_of("render " + file("bare.obj") + size + "-o " + file("a.png"));
+    EXPECT_TRUE(contains(bare, "none.mtl")) << bare;
+    std::istringstream lines(bare);
+    int count = 0;
+    for (std::string line; std::getline(lines, line); ++count) EXPECT_EQ(line.find("warning: bare: "), 0u) << line;
+    EXPECT_GE(count, 2) << bare;  // the materials, the camera
+    EXPECT_EQ(errors_of("render --quiet " + file("bare.obj") + size + "-o " + file("a.png")), "");
+    EXPECT_EQ(errors_of("render " + kScene + size + "-o " + file("a.png")), "");
 }
 
 TEST_F(Cli, UnreadableInputEndsWithFourAndLeavesNothing) {
@@ -70,26 +170,120 @@ TEST_F(Cli, UnreadableInputEndsWithFourAndLeavesNothing) {
     EXPECT_EQ(umbra("render " + kScene + " --size 32x18 -o /nonexistent/folder/a.png").exit_code, 4);
 }
 
+/// Names in the table of commands.
+std::vector<std::string> command_names() {
+    std::vector<std::string> names;
+    std::ifstream in(std::string(UMBRA_SOURCE) + "/bench/cli/commands.def");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("COMMAND(")) names.push_back(line.substr(8, line.find(',') - 8));
+    return names;
+}
+
 TEST_F(Cli, HelpAndVersionAreThereEverywhere) {
-    for (const char* command : {"", "list", "inspect", "render", "compare", "diff", "accept", "report"}) {
-        const Answer answer = umbra(std::string(command) + " --help");
+    ASSERT_GE(command_names().size(), 10u);
+    const Answer all = umbra("--help");
+    EXPECT_EQ(all.exit_code, 0);
+    EXPECT_TRUE(contains(all.output, "./umbra"));
+    EXPECT_TRUE(contains(all.output, "64 wrong usage"));
+    for (const std::string& command : command_names()) {
+        EXPECT_TRUE(contains(all.output, "\n  " + command + " ")) << command;
+        const Answer answer = umbra(command + " --help");
         EXPECT_EQ(answer.exit_code, 0) << command;
         EXPECT_GT(answer.output.size(), 80u) << command;
+        EXPECT_FALSE(contains(answer.output, "./umbra")) << answer.output;
     }
     EXPECT_EQ(umbra("--version").exit_code, 0);
 }
 
+TEST_F(Cli, ScriptPrintsHelpOnAFreshCloneWithoutSettingUp) {
+    fs::create_directories(folder_ / "bench/cli");
+    fs::copy(std::string(UMBRA_SOURCE) + "/umbra", folder_ / "umbra");
+    fs::copy(std::string(UMBRA_SOURCE) + "/bench/cli/commands.def", folder_ / "bench/cli/commands.def");
+    for (const char* arguments : {"", " --help", " -h", " help"}) {
+        const Answer answer = run(file("umbra") + arguments);
+        EXPECT_EQ(answer.exit_code, 0) << answer.output;
+        for (const std::string& command : command_names())
+            EXPECT_TRUE(contains(answer.output, "\n  " + command + " ")) << command << "\n" << answer.output;
+        for (const char* command : {"setup", "test", "bench", "check"})
+            EXPECT_TRUE(contains(answer.output, std::string("\n  ") + command + " ")) << command;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / ".build"));
+}
+
 TEST_F(Cli, ListNamesEveryMethodWithItsParameters) {
     const nlohmann::json record = nlohmann::json::parse(umbra("list --json").output);
-    std::vector<std::string> names;
+    std::vector<std::string> names, expected, scenes;
     for (const auto& m : record["methods"]) {
         names.push_back(m["name"]);
         EXPECT_FALSE(m["paper"].get<std::string>().empty());
         for (const auto& p : m["parameters"]) EXPECT_FALSE(p["doc"].get<std::string>().empty()) << p;
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"planar_projection", "shadow_volumes", "shadow_zbuffer", "ray_traced",
-                                               "exact"}));
-    EXPECT_GE(record["scenes"].size(), 11u);
+    for (const umbra::MethodInfo* info : umbra::methods()) expected.emplace_back(info->name);
+    EXPECT_EQ(names, expected);
+    std::ifstream canonical(std::string(UMBRA_SCENES) + "/canonical.txt");
+    for (std::string line; std::getline(canonical, line);)
+        if (!line.empty() && line[0] != '#') scenes.push_back(line.substr(0, line.find('.')));
+    EXPECT_EQ(record["scenes"].get<std::vector<std::string>>(), scenes);
+}
+
+TEST_F(Cli, ListShowsOneEntryInFull) {
+    const Answer method = umbra("list shadow_zbuffer");
+    EXPECT_EQ(method.exit_code, 0);
+    EXPECT_TRUE(contains(method.output, "resolution=")) << method.output;
+    EXPECT_FALSE(contains(method.output, "planar_projection"));
+    const Answer ladder = umbra("list far_from_origin");
+    EXPECT_TRUE(contains(ladder.output, "rungs: 1, ")) << ladder.output;
+    const Answer scene = umbra("list sun_on_plane");
+    EXPECT_TRUE(contains(scene.output, "A light at infinity over one plane")) << scene.output;
+    EXPECT_EQ(nlohmann::json::parse(umbra("list exact --json").output)["method"]["name"], "exact");
+}
+
+/// What the Bash completion offers for a line that ends at the cursor, sorted by it.
+std::string completed(const std::string& script, const std::string& line) {
+    return run("bash -c 'source " + script + R"(; COMP_WORDBREAKS=" =:"; COMP_LINE=$1; COMP_POINT=${#1}; _umbra; )" +
+               R"(printf "%s\n" "${COMPREPLY[@]}"' - ')" + line + "'")
+        .output;
+}
+
+TEST_F(Cli, BashCompletes) {
+    ASSERT_EQ(run(std::string(UMBRA_PROGRAM) + " completion bash > " + file("umbra.bash")).exit_code, 0);
+    const std::string script = file("umbra.bash");
+    EXPECT_EQ(completed(script, "umbra com"), "compare\ncompletion\n");
+    EXPECT_EQ(completed(script, "./umbra --thr"), "--threads\n");
+    EXPECT_EQ(completed(script, "umbra --threads 2 rend"), "render\n");
+    EXPECT_EQ(completed(script, "umbra render x.json --meth"), "--method\n");
+    EXPECT_EQ(completed(script, "umbra render --method shadow_z"), "shadow_zbuffer\n");
+    EXPECT_EQ(completed(script, "umbra compare --methods exact shadow_v"), "shadow_volumes\n");
+    EXPECT_EQ(completed(script, "umbra render sun_on"), "sun_on_plane\n");
+    EXPECT_EQ(completed(script, "umbra render --size 3x3 sun_on"), "sun_on_plane\n");
+    EXPECT_EQ(completed(script, "umbra ladder far_from"), "far_from_origin\n");
+    EXPECT_EQ(completed(script, "umbra completion "), "bash\nzsh\n");
+    // Readline replaces what follows the last : or =.
+    EXPECT_EQ(completed(script, "umbra render --method shadow_zbuffer:resol"), "resolution=\n");
+    EXPECT_EQ(completed(script, "umbra render --method shadow_zbuffer:bias=rec"), "receiver_plane\n");
+    EXPECT_EQ(completed(script, "umbra render --method shadow_zbuffer:resolution=64,bias=man"), "manual\n");
+    std::ofstream(file("picture.png")) << "file names are completed, too";
+    EXPECT_EQ(completed(script, "umbra diff " + file("pict")), file("picture.png") + "\n");
+    // Every command, and every option in its help.
+    const std::string commands = completed(script, "umbra ");
+    for (const std::string& command : command_names()) {
+        EXPECT_TRUE(contains("\n" + commands, "\n" + command + "\n")) << command;
+        const std::string help    = umbra(command + " --help").output,
+                          options = completed(script, "umbra " + command + " --");
+        for (std::size_t at = help.find("--"); at != std::string::npos; at = help.find("--", at + 2)) {
+            const std::string option = help.substr(at, help.find_first_of(" ,\n", at) - at);
+            EXPECT_TRUE(contains("\n" + options, "\n" + option + "\n")) << command << ' ' << option << '\n' << options;
+        }
+    }
+}
+
+TEST_F(Cli, ZshScriptHoldsTheSameTables) {
+    const std::string bash = umbra("completion bash").output, zsh = umbra("completion zsh").output;
+    EXPECT_EQ(zsh.find("#compdef umbra\n"), 0u);
+    const std::string tables =
+        bash.substr(bash.find("_umbra_list()"), bash.find("_umbra() {") - bash.find("_umbra_list()"));
+    EXPECT_GT(tables.size(), 1000u);
+    EXPECT_TRUE(contains(zsh, tables));
 }
 
 TEST_F(Cli, InspectSaysWhoServesAndWhy) {
@@ -102,8 +296,9 @@ TEST_F(Cli, InspectSaysWhoServesAndWhy) {
 }
 
 TEST_F(Cli, RenderIsTheSameForAnyNumberOfThreads) {
-    for (const char* method : {"planar_projection", "shadow_volumes", "shadow_zbuffer", "ray_traced"}) {
-        const std::string options = " --size 160x90 --quiet --method " + std::string(method) + " -o ";
+    for (const umbra::MethodInfo* info : umbra::methods()) {
+        const std::string method(info->name);
+        const std::string options = " --size 160x90 --quiet --method " + method + " -o ";
         ASSERT_EQ(umbra("--threads 1 render " + kScene + options + file("one.exr")).exit_code, 0);
         ASSERT_EQ(umbra("--threads 3 render " + kScene + options + file("three.exr")).exit_code, 0);
         EXPECT_EQ(umbra("diff " + file("one.exr") + " " + file("three.exr")).exit_code, 0) << method;
@@ -125,6 +320,30 @@ TEST_F(Cli, DiffExitCodes) {
         nlohmann::json::parse(umbra("diff " + file("a.png") + " " + file("b.png") + " --json").output);
     for (const char* key : {"mae", "rmse", "max", "psnr", "ssim", "flip", "worst"})
         EXPECT_TRUE(record.contains(key)) << key;
+    EXPECT_TRUE(record["worst"].contains("a") && record["worst"].contains("b")) << record["worst"];
+}
+
+TEST_F(Cli, DiffOfFoldersAndChosenChannels) {
+    fs::create_directories(folder_ / "old");
+    fs::create_directories(folder_ / "new");
+    const std::string render = "render sun_on_plane --size 64x36 --quiet -o ";
+    ASSERT_EQ(umbra(render + file("old/a.exr")).exit_code, 0);
+    ASSERT_EQ(umbra(render + file("old/b.exr")).exit_code, 0);
+    ASSERT_EQ(umbra(render + file("new/a.exr")).exit_code, 0);
+    ASSERT_EQ(umbra(render + file("new/b.exr --geometry")).exit_code, 0);
+    const std::string folders = "diff " + file("old") + " " + file("new");
+    Answer answer             = umbra(folders + " --html " + file("page.html") + " --junit " + file("junit.xml"));
+    EXPECT_EQ(answer.exit_code, 3) << answer.output;
+    EXPECT_TRUE(contains(answer.output, "same       a.exr\nunlike     b.exr: channels differ"));
+    EXPECT_TRUE(contains(answer.output, "--channels"));
+    EXPECT_TRUE(fs::exists(file("page.html")) && fs::exists(file("junit.xml")));
+    answer = umbra(folders + " --channels 'R,G,B,S.*'");
+    EXPECT_EQ(answer.exit_code, 0) << answer.output;
+    answer = umbra("diff --channels R,G,B " + file("old/b.exr") + " " + file("new/b.exr"));
+    EXPECT_EQ(answer.exit_code, 0) << answer.output;
+    fs::remove(file("new/b.exr"));
+    EXPECT_EQ(umbra(folders).exit_code, 2);
+    EXPECT_EQ(umbra(folders + " --channels R").exit_code, 2);
 }
 
 TEST_F(Cli, AcceptRenewsOnceAndCheckNeverWrites) {
@@ -132,7 +351,7 @@ TEST_F(Cli, AcceptRenewsOnceAndCheckNeverWrites) {
     std::ofstream(file("canonical.txt")) << "# one scene\nsun.json\n";
     const std::string with_folders =
         "UMBRA_SCENES=" + folder_.string() + " UMBRA_GOLDEN=" + file("golden") + " " + UMBRA_PROGRAM + " accept ";
-    EXPECT_EQ(run(with_folders + "moon").exit_code, 2);
+    EXPECT_EQ(run(with_folders + "moon").exit_code, 64);
     Answer answer = run(with_folders + "--check");
     EXPECT_EQ(answer.exit_code, 1);
     EXPECT_NE(answer.output.find("sun/shadow_zbuffer: new"), std::string::npos) << answer.output;

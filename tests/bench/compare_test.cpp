@@ -184,6 +184,39 @@ TEST_F(Compare, UnreadableSceneLeavesTheOldResult) {
         EXPECT_NE(entry.path().filename().string()[0], '.') << "left over: " << entry.path();
 }
 
+TEST_F(Compare, OneThrowLosesOneSceneOnly) {
+    const fs::path bad = folder_ / "bad.json", broken = folder_ / "broken.json";
+    fs::copy_file(scene_, bad);
+    write(broken, "{ \"lights\": [");
+    options_.methods = {"ray_traced"};
+    std::vector<std::string> lines;
+    options_.progress = [&](const std::string& what) {
+        lines.push_back(what);
+        if (what.find("bad: ray_traced") != std::string::npos) throw std::runtime_error("a planted defect");
+    };
+    const ScenesDone done = compare_scenes({bad, broken, scene_}, options_);
+    EXPECT_EQ(done.names, std::vector<std::string>{"lamp_over_box"});
+    ASSERT_EQ(done.failed.size(), 2u);
+    EXPECT_EQ(done.failed[0], "bad: a planted defect");
+    EXPECT_TRUE(done.internal);
+    EXPECT_FALSE(compare_scenes({broken}, options_).internal) << "that is the input's fault";
+    EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box/results.json"));
+    EXPECT_FALSE(fs::exists(options_.out / "bad"));
+    EXPECT_EQ(lines[0], "[1/3] bad: loading");
+    EXPECT_TRUE(std::any_of(lines.begin(), lines.end(), [](const std::string& line) {
+        return line.starts_with("[3/3] lamp_over_box: ray_traced, ") && line.ends_with(" left");
+    })) << lines.back();
+}
+
+TEST_F(Compare, WrongMethodsAreRefusedBeforeTheFirstScene) {
+    options_.methods = {"ray_traced", "crayon"};
+    EXPECT_THROW((void)compare_scenes({scene_}, options_), UsageError);
+    options_.methods   = {"ray_traced"};
+    options_.reference = "crayon";
+    EXPECT_THROW((void)compare_scenes({scene_}, options_), UsageError);
+    EXPECT_FALSE(fs::exists(options_.out));
+}
+
 TEST_F(Compare, ScenesOfOneNameAreRefused) {
     fs::create_directories(folder_ / "other");
     fs::copy_file(scene_, folder_ / "other/lamp_over_box.json");

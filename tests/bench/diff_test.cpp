@@ -5,7 +5,12 @@
 
 #include <cmath>
 #include <fstream>
+#include <regex>
 
+#include "umbra/bench/diff/diff_page.h"
+#include "umbra/bench/diff/diff_record.h"
+#include "umbra/bench/diff/diff_set.h"
+#include "umbra/bench/diff/difference_map.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -50,7 +55,7 @@ TEST_F(Diff, EqualsIdiff) {
     EXPECT_NEAR(json["rmse"].get<double>(), 0.049616, 5e-7);
     EXPECT_NEAR(json["psnr"].get<double>(), 26.0876, 5e-5);
     EXPECT_NEAR(json["max"].get<double>(), 0.5, 1e-7);
-    EXPECT_EQ(json["worst"], (nlohmann::json{{"x", 5}, {"y", 17}, {"channel", "G"}}));
+    EXPECT_EQ(json["worst"], (nlohmann::json{{"x", 5}, {"y", 17}, {"channel", "G"}, {"a", 0.1f}, {"b", 0.6f}}));
     EXPECT_EQ(json["pixels_over"], 121);
     EXPECT_EQ(json["flip"]["kind"], "hdr");
     EXPECT_GT(json["flip"]["mean"].get<double>(), 0.005);
@@ -60,7 +65,9 @@ TEST_F(Diff, EqualsIdiff) {
 
     const std::string text = diff_text(result);
     EXPECT_NE(text.find("  MAE     0.0049235"), std::string::npos) << text;
-    EXPECT_NE(text.find("max     0.5 at (5, 17), channel G"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n  max     0.5\n  worst   (5, 17), channel G: A 0.1, B 0.6\n"), std::string::npos) << text;
+    EXPECT_EQ(diff_line(result),
+              "differs    a.exr: largest difference 0.5 is above 0.1; worst (5, 17), channel G: A 0.1, B 0.6");
     EXPECT_NE(text.find("121 beyond the limit"), std::string::npos) << text;
     EXPECT_NE(text.find("\ndiffers: largest difference 0.5 is above 0.1\n"), std::string::npos) << text;
 }
@@ -107,7 +114,8 @@ TEST_F(Diff, ManyNamedChannelsInAnyOrder) {
     b.at(19, 0)             = 0.25f;
     const DiffResult result = diff(written("a.exr", a), written("b.exr", b), {});
     EXPECT_EQ(result.verdict, Verdict::differs);
-    EXPECT_EQ(diff_json(result)["worst"], (nlohmann::json{{"x", 3}, {"y", 2}, {"channel", "S.sun"}}));
+    EXPECT_EQ(diff_json(result)["worst"],
+              (nlohmann::json{{"x", 3}, {"y", 2}, {"channel", "S.sun"}, {"a", 0.0}, {"b", 0.25}}));
     EXPECT_EQ(result.flip.mean, 0);  // R, G, B are equal
     EXPECT_NE(diff_text(result).find("  S.sun: MAE 0.00390625, RMSE 0.03125, max 0.25 at (3, 2)"), std::string::npos)
         << diff_text(result);
@@ -138,6 +146,11 @@ TEST_F(Diff, WhatIsNotFiniteIsReportedAndNeverClose) {
     EXPECT_EQ(json["not_finite"], 3);
     EXPECT_EQ(json["unlike_not_finite"], 1);
     EXPECT_EQ(json["max"], 0.0);
+    EXPECT_EQ(json["worst"]["x"], 3);
+    EXPECT_EQ(json["worst"]["y"], 1);
+    EXPECT_EQ(json["worst"]["a"], 0.0);
+    EXPECT_TRUE(json["worst"]["b"].is_null());
+    EXPECT_NE(diff_text(result).find("(3, 1), channel R: A 0, B nan"), std::string::npos) << diff_text(result);
     EXPECT_NE(diff_text(result).find("3 values are not finite, 1 of them unlike"), std::string::npos);
 }
 
@@ -148,8 +161,10 @@ TEST_F(Diff, UnlikeImagesSayWhy) {
     EXPECT_EQ(sizes.reasons, std::vector<std::string>{"sizes differ: 64x64 against 64x63"});
     const DiffResult channels = diff(a, box("c.exr", 0.1f, {"R", "G", "B", "S.lamp"}), {});
     EXPECT_EQ(channels.verdict, Verdict::unlike);
-    EXPECT_EQ(channels.reasons, std::vector<std::string>{
-                                    "channels differ: only the first has [], only the second [S.lamp], both [R G B]"});
+    EXPECT_EQ(
+        channels.reasons,
+        std::vector<std::string>{"channels differ: only the first has [], only the second [S.lamp], both [R G B]; to "
+                                 "compare those of both: --channels \"R,G,B\""});
     EXPECT_EQ(diff_json(channels)["exit_code"], 3);
     EXPECT_FALSE(diff_json(channels).contains("mae"));
     EXPECT_EQ(diff_text(channels), "unlike: " + channels.reasons[0] + "\n");
@@ -177,26 +192,157 @@ TEST_F(Diff, LinearAgainstEncodedComparesWhatIsShown) {
     EXPECT_EQ(verdict(folder / "b.png", folder / "a.exr", {.fail = 0.5 / 255 + 1e-6}), Verdict::close);
 }
 
-TEST_F(Diff, MapShowsWhere) {
+TEST_F(Diff, ChannelsChooseWhatIsCompared) {
+    const fs::path a = box("a.exr", 0.1f, {"R", "G", "B", "Z"});
+    const fs::path b = box("b.exr", 0.6f, {"R", "G", "B", "S.lamp"});
+    EXPECT_EQ(verdict(a, b, {}), Verdict::unlike);
+    EXPECT_EQ(verdict(a, b, {.channels = {"R", "G", "B"}}), Verdict::differs);
+    const DiffResult equal = diff(a, b, {.channels = {"B", "R"}});
+    EXPECT_EQ(equal.verdict, Verdict::same);
+    EXPECT_EQ(equal.channels, (std::vector<std::string>{"R", "B"}));
+    EXPECT_EQ(verdict(a, b, {.channels = {"[RB]"}}), Verdict::same);
+
+    const DiffResult only_one = diff(a, b, {.channels = {"R", "S.*"}});
+    EXPECT_EQ(only_one.verdict, Verdict::unlike);
+    EXPECT_EQ(only_one.reasons[0].find("channels differ: only the first has [], only the second [S.lamp], both [R]"),
+              0u);
+    const DiffResult none = diff(a, b, {.channels = {"R", "T.*"}});
+    EXPECT_EQ(none.verdict, Verdict::unlike);
+    EXPECT_EQ(none.reasons,
+              std::vector<std::string>{"no channel is called T.*: the first has [R G B Z], the second [R G B S.lamp]"});
+}
+
+bool is_grey(const Image& picture, std::size_t x, std::size_t y) {
+    const std::size_t i = y * std::size_t(picture.width) + x;
+    return picture.at(i, 0) == picture.at(i, 1) && picture.at(i, 1) == picture.at(i, 2);
+}
+
+TEST_F(Diff, MapInColoursHasAScaleAndHidesNothing) {
+    Image a(300, 200, {"R", "G", "B"});
+    std::fill(a.data.begin(), a.data.end(), 0.5f);
+    Image b                  = a;
+    const auto pixel         = [](std::size_t x, std::size_t y) { return y * 300 + x; };
+    b.at(pixel(40, 50), 1)   = 0.5f + 0.3f;
+    b.at(pixel(200, 60), 2)  = 0.5f - 1e-6f;  // the smallest differences are found, too
+    b.at(pixel(120, 150), 0) = std::numeric_limits<float>::quiet_NaN();
+    const DifferenceMap map  = difference_map(a, b, true);
+    const Image& p           = map.picture;
+    EXPECT_DOUBLE_EQ(map.range, 0.5);
+    EXPECT_GT(p.at(pixel(40, 50), 0), p.at(pixel(40, 50), 2) + 0.2f);    // red: B is larger
+    EXPECT_GT(p.at(pixel(200, 60), 2), p.at(pixel(200, 60), 0) + 0.2f);  // blue: B is smaller
+    EXPECT_LT(p.at(pixel(120, 150), 2), 0.1f);                           // yellow: not finite
+    EXPECT_GT(p.at(pixel(120, 150), 1), 0.8f);
+    EXPECT_TRUE(is_grey(p, 280, 180));
+    EXPECT_GT(p.at(pixel(280, 180), 0), 0.85f);
+    for (const auto& [x, y] : {std::pair{40, 50}, {200, 60}, {120, 150}})  // a black ring of 8 pixels around each
+        EXPECT_EQ(p.at(pixel(std::size_t(x) + 8, std::size_t(y)), 0), 0) << x;
+
+    for (std::size_t y = 100; y < 140; ++y)
+        for (std::size_t x = 20; x < 60; ++x) b.at(pixel(x, y), 1) = 0.9f;  // too large for a ring
+    const Image large = difference_map(a, b, true).picture;
+    for (std::size_t x = 60; x < 100; ++x) EXPECT_GT(large.at(pixel(x, 120), 0), 0.85f) << x;
+    EXPECT_EQ(difference_map(a, a, true).range, 0);
+}
+
+TEST_F(Diff, MapFiles) {
     const fs::path a        = box("a.exr", 0.1f);
     const fs::path b        = box("b.exr", 0.6f);
     const DiffResult result = diff(a, b, {.map = folder / "map.png"});
+    EXPECT_NE(diff_text(result).find("blue -0.5 to red +0.5"), std::string::npos) << diff_text(result);
     EXPECT_EQ(diff(a, b, {.map = folder / "map.exr"}).verdict, Verdict::differs);
-    const Image grey = read_image(folder / "map.png").image;
-    const Image full = read_image(folder / "map.exr").image;
-    ASSERT_EQ(grey.channels.size(), 1u);
+    const Image colours = read_image(folder / "map.png").image;
+    const Image full    = read_image(folder / "map.exr").image;
+    ASSERT_EQ(colours.channels.size(), 3u);
     const auto channel = [&](const char* name) {
         return std::size_t(std::find(full.channels.begin(), full.channels.end(), name) - full.channels.begin());
     };
     const std::size_t inside = 22 * 64 + 10;
-    const std::size_t corner = 60 * 64 + 60;
     EXPECT_NEAR(full.at(inside, channel("difference.G")), 0.5, 1e-6);
     EXPECT_EQ(full.at(inside, channel("difference.R")), 0);
     EXPECT_EQ(full.at(inside, channel("FLIP")), result.flip.map[inside]);
-    EXPECT_NEAR(grey.at(inside, 0), result.flip.map[inside], 0.51 / 255);
-    EXPECT_GT(grey.at(inside, 0), 0.3f);
-    EXPECT_EQ(grey.at(corner, 0), 0);
+    EXPECT_NEAR(colours.at(inside, 0), 0x67 / 255.0, 0.51 / 255);  // the end of the scale
+    EXPECT_NEAR(colours.at(inside, 1), 0, 0.51 / 255);
+    EXPECT_TRUE(is_grey(colours, 60, 60));
     EXPECT_THROW(static_cast<void>(diff(a, b, {.map = folder / "no" / "map.png"})), InputError);
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(Diff, FoldersAreComparedImageByImage) {
+    const fs::path a = folder / "a", b = folder / "b";
+    fs::create_directories(a / "deep");
+    fs::create_directories(b / "deep");
+    static_cast<void>(box("a/equal.png", 0.1f));
+    static_cast<void>(box("b/equal.png", 0.1f));
+    static_cast<void>(box("a/deep/other.exr", 0.1f));
+    static_cast<void>(box("b/deep/other.exr", 0.6f));
+    static_cast<void>(box("a/gone <&>.png", 0.1f));
+    static_cast<void>(box("b/new.png", 0.1f));
+    std::ofstream(a / "notes.txt") << "no image";
+
+    std::vector<std::string> progress;
+    const fs::path page = folder / "page.html";
+    DiffSet set         = diff_set(a, b, {.map = folder / "maps", .pictures = diff_pictures_folder(page)},
+                                   [&](const std::string& name) { progress.push_back(name); });
+    std::vector<std::string> names;
+    for (const DiffResult& image : set.images) names.push_back(image.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"deep/other.exr", "equal.png", "gone <&>.png", "new.png"}));
+    EXPECT_EQ(progress, names);
+    EXPECT_EQ(set.worst(), Verdict::differs);
+    EXPECT_EQ(set.images[2].reasons, std::vector<std::string>{"missing in " + b.string()});
+    EXPECT_EQ(set.images[3].reasons, std::vector<std::string>{"missing in " + a.string()});
+    const std::string text = diff_set_text(set);
+    EXPECT_NE(text.find("same       equal.png\n"), std::string::npos) << text;
+    EXPECT_NE(text.find("\n4 images: 1 same, 3 differs\n"), std::string::npos) << text;
+    EXPECT_EQ(diff_set_json(set)["counts"]["differs"], 3);
+    EXPECT_EQ(diff_set_json(set)["exit_code"], 2);
+    EXPECT_TRUE(fs::exists(folder / "maps/deep/other.exr.png"));
+    EXPECT_FALSE(fs::exists(folder / "maps/equal.png.png"));
+
+    const std::string junit = diff_set_junit(set);
+    EXPECT_NE(junit.find("<testsuite name=\"umbra diff\" tests=\"4\" failures=\"3\" errors=\"0\">"), std::string::npos)
+        << junit;
+    EXPECT_NE(junit.find("<testcase classname=\"umbra.diff\" name=\"equal.png\"/>"), std::string::npos);
+    EXPECT_NE(junit.find("name=\"gone &lt;&amp;&gt;.png\">\n<failure type=\"differs\""), std::string::npos);
+    EXPECT_NE(junit.find("(5, 17), channel G: A 0.1, B 0.6"), std::string::npos);
+
+    write_diff_page(page, set);
+    const std::string html = text_of(page);
+    EXPECT_NE(html.find("3 of 4 images differ"), std::string::npos) << html;
+    EXPECT_EQ(html.find("gone <&>"), std::string::npos);
+    std::size_t pictures = 0;  // every picture that the page shows exists
+    const std::regex source("<img src=\"([^\"]*)\""), slash("&#x2F;");
+    for (std::sregex_iterator found(html.begin(), html.end(), source), end; found != end; ++found, ++pictures) {
+        const std::string path = std::regex_replace((*found)[1].str(), slash, std::string("/"));
+        EXPECT_TRUE(fs::exists(folder / path)) << path;
+    }
+    EXPECT_EQ(pictures, 3u);
+
+    // The worst exit code wins; equal folders are the same.
+    std::ofstream(b / "equal.png") << "no image";
+    set = diff_set(a, b, {}, {});
+    EXPECT_EQ(set.worst(), Verdict::unreadable);
+    EXPECT_NE(diff_set_junit(set).find("<error type=\"unreadable\""), std::string::npos);
+    EXPECT_EQ(diff_set(a, a, {}, {}).worst(), Verdict::same);
+    fs::create_directory(folder / "empty");
+    EXPECT_THROW(static_cast<void>(diff_set(folder / "empty", folder / "empty", {}, {})), InputError);
+    EXPECT_EQ(diff_set(a, folder / "empty", {}, {}).count(Verdict::differs), 3u);
+    EXPECT_THROW(static_cast<void>(diff_set(a, page, {}, {})), UsageError);
+}
+
+TEST_F(Diff, JunitOfAPairAndNamesThatAreNoText) {
+    const fs::path a    = box("a\x01\xff.exr", 0.1f);
+    const DiffSet equal = diff_set(a, a, {}, {});
+    EXPECT_NE(diff_set_junit(equal).find("tests=\"1\" failures=\"0\""), std::string::npos);
+    EXPECT_NE(diff_set_junit(equal).find("name=\"a?\xef\xbf\xbd.exr\"/>"), std::string::npos) << diff_set_junit(equal);
+    EXPECT_EQ(diff_set_text(equal), diff_text(equal.images[0]));
+    const DiffSet differs = diff_set(a, box("b.exr", 0.6f), {}, {});
+    EXPECT_NE(diff_set_junit(differs).find("failures=\"1\""), std::string::npos);
+    write_diff_page(folder / "pair.html", differs);
+    EXPECT_NE(text_of(folder / "pair.html").find("The images: differs"), std::string::npos);
 }
 
 }  // namespace

@@ -1,0 +1,120 @@
+#include "umbra/bench/cli/command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+
+#include "umbra/bench/run/describe.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/base/suggest.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::array kCommands = {
+#define COMMAND(name, about) Command{#name, about, name##_command},
+#include "umbra/bench/cli/commands.def"
+#undef COMMAND
+};
+
+/// Throws UsageError where the first word that is no option names no command.
+void check_command(int argc, const char* const* argv) {
+    std::vector<std::string> known;
+    for (const Command& command : kCommands) known.emplace_back(command.name);
+    for (int i = 1; i < argc; ++i) {
+        const std::string word = argv[i];
+        if (word == "--help" || word == "-h" || word == "--version") return;
+        if (word == "--threads") ++i;
+        if (word.starts_with("-")) continue;
+        if (std::find(known.begin(), known.end(), word) != known.end()) return;
+        throw UsageError(fmt::format("unknown command \"{}\"{}", word, did_you_mean(word, known)));
+    }
+    throw UsageError("no command given");
+}
+
+/// What CLI11 says about a wrong command line, with names for mistyped options.
+std::string explain(const CLI::App& app, const CLI::App& command, const CLI::ParseError& error) {
+    std::string text = error.what();
+    if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
+    std::vector<std::string> options;
+    for (const CLI::App* of : {&command, &app})
+        for (const CLI::Option* option : of->get_options())
+            for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+    for (const std::string& word : app.remaining(true))
+        if (word.starts_with("--")) text += did_you_mean(word.substr(0, word.find('=')), options);
+    return text;
+}
+
+int parse_and_run(int argc, const char* const* argv, std::string& help) {
+    CLI::App app;
+    Common common;
+    const std::vector<Action> actions = define_commands(app, common);
+    common.command                    = "umbra";
+    for (int i = 1; i < argc; ++i) common.command += fmt::format(" {}", argv[i]);
+
+    check_command(argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        const auto parsed = app.get_subcommands();
+        if (!parsed.empty()) help = parsed.front()->get_name() + " --help";
+        throw UsageError(explain(app, parsed.empty() ? app : *parsed.front(), error));
+    }
+    const ThreadLimit limit(common.threads);
+    const std::string name = app.get_subcommands().front()->get_name();
+    help                   = name + " --help";
+    for (std::size_t i = 0; i < kCommands.size(); ++i)
+        if (kCommands[i].name == name) return actions[i]();
+    return kInternal;
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
+
+std::vector<Action> define_commands(CLI::App& app, Common& common) {
+    app.description(
+        "Umbra compares shadow algorithms: one scene, many methods, one question: which fraction of each light does "
+        "each surface point see?");
+    app.name("umbra");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", std::string(version()));
+    app.fallthrough();
+    app.add_option("--threads", common.threads, "Threads to use (default: all)")
+        ->check(CLI::Range(1, 1024))
+        ->type_name("N");
+    app.add_flag("--quiet", common.quiet, "Print results and errors only");
+    std::vector<Action> actions;
+    for (const Command& command : kCommands)
+        actions.push_back(
+            command.define(*app.add_subcommand(std::string(command.name), std::string(command.about)), common));
+    // After the commands were added, which would inherit it.
+    app.footer(
+        "SCENE is a file or the name of a canonical scene; METHOD is NAME or NAME:setting=value,setting=value (see "
+        "umbra list).\n"
+        "Exit codes: 0 done, 1 the answer is no, 4 input unreadable, 5 a method failed or internal error, 64 wrong "
+        "usage; diff: 0 same, 1 close, 2 differs, 3 size or channels differ, 4 unreadable.\n"
+        "The script ./umbra also has: setup, test, bench, check.");
+    return actions;
+}
+
+int run_command_line(int argc, const char* const* argv) {
+    std::string help = "--help";
+    try {
+        return parse_and_run(argc, argv, help);
+    } catch (const UsageError& e) {
+        fmt::print(stderr, "umbra: {}\nTry: umbra {}\n", e.what(), help);
+        return kUsage;
+    } catch (const InputError& e) {
+        fmt::print(stderr, "{}\n", e.what());
+        return kUnreadable;
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "umbra: internal error: {}\n", e.what());
+        return kInternal;
+    }
+}
+
+}  // namespace umbra

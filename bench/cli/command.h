@@ -1,0 +1,43 @@
+// What the files of the command line share: exit codes, options of all commands, the table of commands.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace umbra {
+
+/// `diff` exits with its verdict (bench/diff/diff.h), 0 to 4.
+enum Exit : int { kDone = 0, kNo = 1, kUnreadable = 4, kInternal = 5, kUsage = 64 };
+
+/// Options of all commands.
+struct Common {
+    int threads = 0;  ///< 0: all
+    bool quiet  = false;
+    std::string command;  ///< the whole command line, for the records
+};
+
+/// Runs a command after its command line was parsed; returns the exit code. Throws UsageError, InputError.
+using Action = std::function<int()>;
+
+/// One line of commands.def. `define` adds the command's options to `app` and returns its action; `app` and `common`
+/// must outlive it.
+struct Command {
+    std::string_view name, about;
+    Action (*define)(CLI::App& app, const Common& common);
+};
+[[nodiscard]] std::span<const Command> commands();
+
+#define COMMAND(name, about) Action name##_command(CLI::App& app, const Common& common);
+#include "umbra/bench/cli/commands.def"
+#undef COMMAND
+
+/// Defines the whole command line on an empty `app`; returns the action of each command, in the order of commands().
+[[nodiscard]] std::vector<Action> define_commands(CLI::App& app, Common& common);
+
+/// Parses and runs. Prints errors to standard error and returns the exit code; does not throw.
+int run_command_line(int argc, const char* const* argv);
+
+}  // namespace umbra

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/golden/golden.h"
+#include "umbra/bench/run/canonical.h"
+
+namespace umbra {
+namespace {
+
+struct AcceptLine {
+    GoldenOptions options;
+    bool only_check = false;
+};
+
+void print_change(const GoldenChange& change) {
+    fmt::print("{}: {}\n", change.name, to_string(change.kind));
+    for (const std::string& line : change.lines) fmt::print("    {}\n", line);
+}
+
+std::string summary(const std::vector<GoldenChange>& changes, const AcceptLine& line) {
+    const auto count = [&](GoldenChange::Kind kind) {
+        return std::count_if(changes.begin(), changes.end(), [&](const GoldenChange& c) { return c.kind == kind; });
+    };
+    if (changes.empty()) return "nothing changed";
+    return fmt::format(
+        "{} changed, {} new, {} removed{}", count(GoldenChange::Kind::changed), count(GoldenChange::Kind::added),
+        count(GoldenChange::Kind::removed),
+        line.only_check ? "; nothing was written" : fmt::format(", in {}", line.options.folder.string()));
+}
+
+int accept(AcceptLine line, const Common& common) {
+    const std::vector<std::filesystem::path> scenes = teaching_scenes(scenes_folder());
+    check_golden_names(scenes, line.options);
+    line.options.folder = golden_folder();
+    line.options.renew  = !line.only_check;
+
+    std::vector<GoldenChange> all;
+    const auto add = [&](const std::vector<GoldenChange>& changes) {
+        for (const GoldenChange& change : changes) {
+            if (!common.quiet) print_change(change);
+            all.push_back(change);
+        }
+    };
+    for (const std::filesystem::path& scene : scenes) {
+        std::vector<GoldenChange> changes;
+        {
+            const Terminal terminal(common.quiet);
+            terminal.progress(scene.stem().string());
+            changes = golden_changes(scene, line.options);
+        }
+        add(changes);
+    }
+    add(golden_leftovers(scenes, line.options));
+    if (!common.quiet) fmt::print("{}\n", summary(all, line));
+    return line.only_check && !all.empty() ? kNo : kDone;
+}
+
+}  // namespace
+
+Action accept_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<AcceptLine>();
+    app.add_option("GOLDEN", line->options.names, "SCENE, METHOD or SCENE/METHOD (default: all)")->type_name("");
+    app.add_flag("--check", line->only_check, "Write nothing; exit with 1 if anything would change");
+    app.add_option("--pictures", line->options.pictures,
+                   "Write golden, result and difference of everything that changed to DIR")
+        ->type_name("DIR");
+    return [line, &common] { return accept(*line, common); };
+}
+
+}  // namespace umbra

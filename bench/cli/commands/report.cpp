@@ -1,0 +1,55 @@
+#include "umbra/bench/report/report.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/long_runs.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/run/canonical.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ReportLine {
+    std::vector<std::string> folders;
+    std::string out;
+};
+
+/// All canonical scenes and all ladders.
+int run_everything(const fs::path& out, const Common& common) {
+    LadderOptions ladders;
+    ladders.out = out / "ladders";
+    climb_on_terminal(ladders, common);
+    CompareOptions options;
+    options.out = out;
+    // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
+    const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, {ladders.out});
+    const int code        = exit_code(done);
+    return code == kDone && done.names.empty() ? kUnreadable : code;
+}
+
+int report(const ReportLine& line, const Common& common) {
+    fs::path out = line.out;
+    if (out.empty()) out = line.folders.size() == 1 ? line.folders[0] : "results";
+    if (line.folders.empty()) return run_everything(out, common);
+    write_report({line.folders.begin(), line.folders.end()}, out, {});
+    if (!common.quiet) fmt::print("{}\n", (out / "index.html").string());
+    return kDone;
+}
+
+}  // namespace
+
+Action report_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<ReportLine>();
+    app.add_option("DIR", line->folders, "Folders that compare or ladder wrote: only rebuild their pages")
+        ->type_name("");
+    app.add_option("-o,--output", line->out, "Folder to write to (default: results; given one DIR, that folder)")
+        ->type_name("DIR");
+    return [line, &common] { return report(*line, common); };
+}
+
+}  // namespace umbra

@@ -1,0 +1,21 @@
+// Comparing and climbing with progress and warnings on the terminal: what `compare`, `ladder` and `report` share.
+#pragma once
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/ladder_command.h"
+#include "umbra/bench/compare/compare.h"
+
+namespace umbra {
+
+/// Compares the scenes and writes the pages of the results, and of the folders `also`. Prints the first page's path,
+/// and to standard error the messages of the scenes that failed.
+ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, CompareOptions options,
+                               const Common& common, const std::vector<std::filesystem::path>& also = {});
+
+/// 0; 4 where scenes could not be read; 5 where a method failed.
+[[nodiscard]] int exit_code(const ScenesDone& done);
+
+/// Climbs; returns the record.
+Json climb_on_terminal(LadderOptions options, const Common& common);
+
+}  // namespace umbra

@@ -1,0 +1,114 @@
+#include "umbra/bench/cli/names.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/run/canonical.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/suggest.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool is_file(const std::string& name) {
+    std::error_code ignored;
+    return fs::is_regular_file(name, ignored);
+}
+
+void return_to(std::vector<std::string>& positionals, std::vector<std::string>& list,
+               const std::function<bool(const std::string&)>& is_positional) {
+    const std::vector<std::string> methods = method_names();
+    const auto taken = std::stable_partition(list.begin(), list.end(), [&](const std::string& word) {
+        return contains(methods, word.substr(0, word.find(':'))) || !is_positional(word);
+    });
+    positionals.insert(positionals.end(), taken, list.end());
+    list.erase(taken, list.end());
+}
+
+}  // namespace
+
+fs::path scenes_folder() {
+    const char* set = std::getenv("UMBRA_SCENES");
+    return set != nullptr ? set : UMBRA_SCENES_FOLDER;
+}
+
+fs::path golden_folder() {
+    const char* set = std::getenv("UMBRA_GOLDEN");
+    return set != nullptr ? set : UMBRA_GOLDEN_FOLDER;
+}
+
+std::vector<std::string> canonical_names() {
+    std::vector<std::string> names;
+    try {
+        for (const fs::path& scene : canonical_scenes(scenes_folder())) names.push_back(scene.stem().string());
+    } catch (const InputError&) {  // an installed program may have none
+    }
+    return names;
+}
+
+std::vector<std::string> method_names() {
+    std::vector<std::string> names;
+    for (const MethodInfo* info : methods()) names.emplace_back(info->name);
+    return names;
+}
+
+std::vector<std::string> ladder_names() {
+    std::vector<std::string> names;
+    for (const Ladder* ladder : ladders()) names.emplace_back(ladder->name);
+    return names;
+}
+
+fs::path scene_file(const std::string& scene) {
+    if (is_file(scene)) return scene;
+    const std::vector<std::string> known = canonical_names();
+    if (contains(known, scene))
+        for (const fs::path& file : canonical_scenes(scenes_folder()))
+            if (file.stem() == scene) return file;
+    if (scene.find('/') != std::string::npos || fs::path(scene).has_extension()) return scene;
+    throw UsageError(
+        fmt::format("unknown scene \"{}\": neither a file nor a canonical scene{}", scene, did_you_mean(scene, known)));
+}
+
+std::vector<fs::path> scene_files(const std::vector<std::string>& scenes) {
+    std::vector<fs::path> files;
+    for (const std::string& scene : scenes) files.push_back(scene_file(scene));
+    return files;
+}
+
+void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& positionals) {
+    const std::vector<std::string> known = canonical_names();
+    return_to(positionals, methods, [&](const std::string& word) { return is_file(word) || contains(known, word); });
+}
+
+void return_ladders(std::vector<std::string>& methods, std::vector<std::string>& positionals) {
+    const std::vector<std::string> known = ladder_names();
+    return_to(positionals, methods, [&](const std::string& word) { return contains(known, word); });
+}
+
+CLI::Validator number_in(double low, double high, const std::string& expected) {
+    const auto check = [low, high, expected](const std::string& text) -> std::string {
+        double value            = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value >= low &&
+            value <= high)
+            return "";
+        return fmt::format("\"{}\" is not {}", text, expected);
+    };
+    return {check, "", "number"};
+}
+
+}  // namespace umbra

@@ -1,0 +1,34 @@
+// Names on the command line: scenes, what a list of methods swallowed, numbers with limits.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace umbra {
+
+/// Folder of the canonical scenes: $UMBRA_SCENES, else that of the source tree this was built from.
+[[nodiscard]] std::filesystem::path scenes_folder();
+/// Folder of the goldens: $UMBRA_GOLDEN, else that of the source tree this was built from.
+[[nodiscard]] std::filesystem::path golden_folder();
+
+[[nodiscard]] std::vector<std::string> canonical_names();  ///< empty where the list of them cannot be read
+[[nodiscard]] std::vector<std::string> method_names();
+[[nodiscard]] std::vector<std::string> ladder_names();
+
+/// The file that SCENE names: itself where there is such a file; else the canonical scene of that name; else, where
+/// it looks like a file name (a separator or an extension), itself. Throws UsageError with near matches.
+[[nodiscard]] std::filesystem::path scene_file(const std::string& scene);
+[[nodiscard]] std::vector<std::filesystem::path> scene_files(const std::vector<std::string>& scenes);
+
+/// An option that takes a list also takes the positionals that follow it. Moves to `positionals` what is a scene (a
+/// file, or a canonical name) and no method.
+void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& positionals);
+/// The same for ladders.
+void return_ladders(std::vector<std::string>& methods, std::vector<std::string>& positionals);
+
+/// Checks that an option's value is a finite number in [low, high]; `expected` says so in words.
+[[nodiscard]] CLI::Validator number_in(double low, double high, const std::string& expected);
+
+}  // namespace umbra

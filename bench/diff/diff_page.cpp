@@ -1,0 +1,79 @@
+#include "umbra/bench/diff/diff_page.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+
+#include "report_assets.h"
+#include "umbra/bench/diff/diff_record.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/report_text.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// Bytes that are not UTF-8 are replaced.
+std::string utf8(const std::string& text) {
+    return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace));
+}
+
+json image_view(const DiffResult& image, std::size_t index, const fs::path& pictures) {
+    json view = {{"name", utf8(image.name)},
+                 {"id", fmt::format("image-{}", index + 1)},
+                 {"verdict", to_string(image.verdict)},
+                 {"reasons", utf8(fmt::format("{}", fmt::join(image.reasons, "; ")))},
+                 {"notes", utf8(fmt::format("{}", fmt::join(image.notes, "; ")))},
+                 {"worst", worst_pixel(image)},
+                 {"measured", false},
+                 {"pictures", false}};
+    if (!image.comparable()) return view;
+    const ImageError& e = image.error;
+    view["measured"]    = json{{"max", score(e.max)},
+                            {"rmse", score(e.rmse)},
+                            {"mae", score(e.mae)},
+                            {"psnr", std::isfinite(e.psnr) ? fmt::format("{:.2f} dB", e.psnr) : "∞"},
+                            {"ssim", fmt::format("{:.4f}", image.ssim)},
+                            {"flip", score(image.flip.mean)},
+                            {"pixels", count(double(e.differing))},
+                            {"over", count(double(e.over))},
+                            {"size", fmt::format("{} × {}", image.width, image.height)},
+                            {"channels", fmt::format("{}", fmt::join(image.channels, " "))}};
+    if (image.verdict == Verdict::same) return view;
+    const std::string source = (pictures / image.name).string();
+    view["pictures"]         = json{{"a", url(source + ".a.png")},
+                            {"b", url(source + ".b.png")},
+                            {"map", url(source + ".map.png")},
+                            {"file_a", utf8(image.a)},
+                            {"file_b", utf8(image.b)},
+                            {"range", image.map_range > 0 ? fmt::format("{:g}", image.map_range) : ""},
+                            {"width", std::to_string(image.width)},
+                            {"height", std::to_string(image.height)}};
+    return view;
+}
+
+}  // namespace
+
+fs::path diff_pictures_folder(const fs::path& file) { return fs::path(file).replace_extension(".files"); }
+
+void write_diff_page(const fs::path& file, const DiffSet& set) {
+    const fs::path pictures = diff_pictures_folder(file).filename();
+    json images             = json::array();
+    for (std::size_t i = 0; i < set.images.size(); ++i) images.push_back(image_view(set.images[i], i, pictures));
+    const std::size_t fine = set.count(Verdict::same) + set.count(Verdict::close);
+    StagedFiles staged;
+    staged.write(file, render_page(assets::diff_html, {{"a", utf8(set.a)},
+                                                       {"b", utf8(set.b)},
+                                                       {"verdict", to_string(set.worst())},
+                                                       {"count", count(double(set.images.size()))},
+                                                       {"bad", count(double(set.images.size() - fine))},
+                                                       {"many", set.images.size() != 1},
+                                                       {"images", std::move(images)}}));
+    staged.commit();
+}
+
+}  // namespace umbra

@@ -1,0 +1,159 @@
+#include "umbra/bench/diff/diff_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include "umbra/bench/diff/diff_record.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::array kEndings = {".exr",  ".png", ".jpg", ".jpeg", ".hdr", ".pfm", ".tif",
+                                 ".tiff", ".bmp", ".tga", ".ppm",  ".pgm", ".webp"};
+
+std::set<fs::path> images_in(const fs::path& folder) {
+    std::set<fs::path> names;
+    std::error_code error;
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        std::string ending = entry->path().extension().string();
+        std::transform(ending.begin(), ending.end(), ending.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        if (std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end() && entry->is_regular_file())
+            names.insert(entry->path().lexically_relative(folder));
+    }
+    if (error) throw InputError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
+    return names;
+}
+
+DiffResult missing(const fs::path& a, const fs::path& b, const std::string& where) {
+    DiffResult result;
+    result.verdict = Verdict::differs;
+    result.a       = a.string();
+    result.b       = b.string();
+    result.reasons = {fmt::format("missing in {}", where)};
+    return result;
+}
+
+DiffResult pair_of_folders(const fs::path& a, const fs::path& b, const fs::path& name, const DiffOptions& options) {
+    if (!fs::exists(a / name)) return missing(a / name, b / name, a.string());
+    if (!fs::exists(b / name)) return missing(a / name, b / name, b.string());
+    DiffOptions of = options;
+    if (!options.map.empty()) of.map = (options.map / name) += ".png";
+    if (!options.pictures.empty()) of.pictures = options.pictures / name;
+    for (const fs::path& file : {of.map, of.pictures})
+        if (!file.empty()) make_folder(file.parent_path());
+    DiffResult result = diff(a / name, b / name, of);
+    if (result.verdict == Verdict::same && !of.map.empty()) {  // an older map would show what is gone
+        std::error_code ignored;
+        fs::remove(of.map, ignored);
+    }
+    return result;
+}
+
+/// Valid UTF-8 without the characters that XML 1.0 forbids, and with markup escaped.
+std::string xml(const std::string& text) {
+    const std::string valid =
+        nlohmann::json::parse(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    std::string escaped;
+    for (const char c : valid) switch (c) {
+            case '&': escaped += "&amp;"; break;
+            case '<': escaped += "&lt;"; break;
+            case '>': escaped += "&gt;"; break;
+            case '"': escaped += "&quot;"; break;
+            case '\n': escaped += "&#10;"; break;
+            default: escaped += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+        }
+    return escaped;
+}
+
+}  // namespace
+
+Verdict DiffSet::worst() const {
+    Verdict worst = Verdict::same;
+    for (const DiffResult& image : images) worst = std::max(worst, image.verdict);
+    return worst;
+}
+
+std::size_t DiffSet::count(Verdict verdict) const {
+    return std::size_t(
+        std::count_if(images.begin(), images.end(), [&](const DiffResult& image) { return image.verdict == verdict; }));
+}
+
+DiffSet diff_set(const fs::path& a, const fs::path& b, const DiffOptions& options,
+                 const std::function<void(const std::string&)>& progress) {
+    DiffSet set{a.string(), b.string(), fs::is_directory(a), {}};
+    if (fs::exists(a) && fs::exists(b) && fs::is_directory(b) != set.folders)
+        throw UsageError(fmt::format("{} is a folder and {} is not, expected two files or two folders",
+                                     set.folders ? set.a : set.b, set.folders ? set.b : set.a));
+    if (!set.folders) {
+        DiffOptions of = options;
+        if (!options.pictures.empty()) {
+            make_folder(options.pictures);
+            of.pictures = options.pictures / a.filename();
+        }
+        set.images.push_back(diff(a, b, of));
+        return set;
+    }
+    std::set<fs::path> names = images_in(a);
+    if (fs::exists(b)) names.merge(images_in(b));
+    if (names.empty()) throw InputError(fmt::format("{}: holds no images, nor does {}", set.a, set.b));
+    for (const fs::path& name : names) {
+        if (progress) progress(name.string());
+        set.images.push_back(pair_of_folders(a, b, name, options));
+        set.images.back().name = name.string();
+    }
+    return set;
+}
+
+std::string diff_set_text(const DiffSet& set) {
+    if (!set.folders) return diff_text(set.images.at(0));
+    std::string text;
+    for (const DiffResult& image : set.images) text += diff_line(image) + "\n";
+    text += fmt::format("{} images", set.images.size());
+    char separator = ':';
+    for (const Verdict v : {Verdict::same, Verdict::close, Verdict::differs, Verdict::unlike, Verdict::unreadable}) {
+        if (set.count(v) == 0) continue;
+        text += fmt::format("{} {} {}", separator, set.count(v), to_string(v));
+        separator = ',';
+    }
+    return text + "\n";
+}
+
+nlohmann::json diff_set_json(const DiffSet& set) {
+    if (!set.folders) return diff_json(set.images.at(0));
+    nlohmann::json json{
+        {"verdict", to_string(set.worst())},  {"exit_code", int(set.worst())},    {"a", set.a}, {"b", set.b},
+        {"counts", nlohmann::json::object()}, {"images", nlohmann::json::array()}};
+    for (const Verdict v : {Verdict::same, Verdict::close, Verdict::differs, Verdict::unlike, Verdict::unreadable})
+        json["counts"][std::string(to_string(v))] = set.count(v);
+    for (const DiffResult& image : set.images) json["images"].push_back(diff_json(image));
+    return json;
+}
+
+std::string diff_set_junit(const DiffSet& set) {
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+        "<testsuite name=\"umbra diff\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
+        set.images.size(), set.count(Verdict::differs) + set.count(Verdict::unlike), set.count(Verdict::unreadable));
+    for (const DiffResult& image : set.images) {
+        text += fmt::format("<testcase classname=\"umbra.diff\" name=\"{}\"", xml(image.name));
+        if (image.verdict <= Verdict::close) {
+            text += "/>\n";
+            continue;
+        }
+        const char* element = image.verdict == Verdict::unreadable ? "error" : "failure";
+        text += fmt::format(">\n<{} type=\"{}\" message=\"{}\">{}</{}>\n</testcase>\n", element,
+                            to_string(image.verdict), xml(diff_line(image)), xml(diff_text(image)), element);
+    }
+    return text + "</testsuite>\n</testsuites>\n";
+}
+
+}  // namespace umbra

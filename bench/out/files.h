@@ -1,0 +1,16 @@
+// Text files and folders, with errors that name them.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+namespace umbra {
+
+/// Writes a file of text as it is. Throws InputError naming it.
+void write_text(const std::filesystem::path& file, std::string_view text);
+
+/// Makes the folder and those above it where they are missing; an empty path is the working folder. Throws InputError
+/// naming it.
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace umbra
