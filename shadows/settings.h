@@ -51,10 +51,11 @@ struct MemberOf<Value Class::*> {
 
 /// The parameter that sets `member`, a pointer to an int, a double, a bool or an enumeration of an options struct whose
 /// default constructor gives the defaults. `about` says all but the type, the default and the store.
-template <auto member>
+/// `Options` is a template argument so that a struct of an unnamed namespace makes the function local to its file: GCC
+/// 12 derives linkage from types alone, and `parameter<&Options::x>` of two files would become one function.
+template <auto member, class Options = typename settings_detail::MemberOf<decltype(member)>::Options>
 [[nodiscard]] Parameter parameter(Parameter about) {
-    using Options = typename settings_detail::MemberOf<decltype(member)>::Options;
-    using Type    = typename settings_detail::MemberOf<decltype(member)>::Type;
+    using Type = typename settings_detail::MemberOf<decltype(member)>::Type;
     static_assert(std::is_same_v<Type, int> || std::is_same_v<Type, double> || std::is_same_v<Type, bool> ||
                   std::is_enum_v<Type>);
     about.type     = std::is_same_v<Type, bool>  ? Parameter::Type::boolean
