@@ -18,6 +18,7 @@
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/sampling.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/shared/light_points.h"
 
 namespace umbra {
 namespace {
@@ -142,14 +143,10 @@ Target make_target(const Light& light, const RaySpace& space) {
     target.centre = vec3(centre / static_cast<double>(target.unit));
     target.sphere = centre;
     target.radius = static_cast<double>(light.radius) * scale;
-    dvec3 u = dvec3(light.edge_u) * 0.5, v = dvec3(light.edge_v) * 0.5;
-    if (light.kind == LightKind::disk) {
-        const dvec3 n = glm::normalize(dvec3(light.direction));
-        u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))) * double(light.radius);
-        v = glm::cross(n, u);
-    }
-    target.axis_u = vec3(u * (scale / static_cast<double>(target.unit)));
-    target.axis_v = vec3(v * (scale / static_cast<double>(target.unit)));
+    DiskAxes axes{dvec3(light.edge_u) * 0.5, dvec3(light.edge_v) * 0.5};
+    if (light.kind == LightKind::disk) axes = disk_axes(light);
+    target.axis_u = vec3(axes.u * (scale / static_cast<double>(target.unit)));
+    target.axis_v = vec3(axes.v * (scale / static_cast<double>(target.unit)));
     return target;
 }
 

@@ -1,13 +1,13 @@
 #include "umbra/shadows/zbuffer/light_views.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/memory.h"
 
 namespace umbra {
 namespace {
@@ -19,9 +19,7 @@ constexpr double kEpsilon   = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-double LightViews::half_of_memory() {
-    return 0.5 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
+double LightViews::half_of_memory() { return 0.5 * machine_memory(); }
 
 std::size_t LightViews::memory_bytes() const {
     std::size_t bytes = casters_.memory_bytes();
