@@ -26,6 +26,7 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/shared/triangle_tree.h"
 #include "umbra/shadows/volumes/counting_tree.h"
@@ -295,7 +296,7 @@ public:
             for (std::size_t e = begin; e < end; ++e) volumes.add_side(tree, edges_[e], depth_fail);
         });
         tree.for_each([&](std::uint32_t i, std::int32_t count) {
-            out.s[i] = origin + count > 0 || centre_is_behind(points, light, i) ? 0.0f : 1.0f;
+            out.s[i] = origin + count > 0 || centre_is_behind(*scene_, points, light, i) ? 0.0f : 1.0f;
         });
     }
 
@@ -346,15 +347,6 @@ private:
             }
         }
         return edges;
-    }
-
-    /// An area light that the point's plane cuts may have its centre, as which it is taken, behind.
-    bool centre_is_behind(const PointBatch& points, LightId light, std::size_t i) const {
-        if (points.facing[light][i] != Facing::partly) return false;
-        const TriangleId t = points.triangle[i];
-        const int side     = side_of_plane(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2),
-                                           scene_->lights[light].position);
-        return points.flipped[i] ? side >= 0 : side <= 0;
     }
 
     const Scene* scene_ = nullptr;

@@ -62,7 +62,7 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
 }
 
-void LightViews::aim_directional(dvec3 direction) {
+void LightViews::fit_directional(dvec3 direction) {
     LightFrame frame = looking_along(dvec3(casters_.box().centre()), direction, false);
     fit_to_scene(frame, casters_, kInfinity);
     add_view(frame, options_.resolution);
@@ -74,7 +74,7 @@ void LightViews::set_depth(LightFrame& frame, double nearest) const {
     frame.near       = std::max(depth[0].min, nearest / std::sqrt(1 + glm::dot(frame.half, frame.half)));
 }
 
-void LightViews::aim_around(const Light& light) {
+void LightViews::fit_around(const Light& light) {
     const dvec3 origin(light.position);
     // Reversed floats resolve any distance from the light as well as any other, unorm depth does not.
     const double nearest = options_.format == DepthFormat::float32 ? 0 : casters_.distance(origin);
@@ -112,16 +112,19 @@ void LightViews::aim_around(const Light& light) {
         }
 }
 
-void LightViews::aim(LightId light) {
+void LightViews::fit(LightId light) {
     views_.clear();
     cover_all_     = true;
     const Light& l = casters_.scene().lights[light];
     casters_.select(l);
     if (casters_.box().empty()) return;
     if (l.kind == LightKind::directional)
-        aim_directional(dvec3(l.direction));
+        fit_directional(dvec3(l.direction));
     else
-        aim_around(l);
+        fit_around(l);
+}
+
+void LightViews::rasterise() {
     for (MapView& view : views_) {
         const dmat4 clip_from_world = view.frame.clip_from_world();
         view.map.draw(clip_from_world, casters_.scene().positions, casters_.seen_by(clip_from_world), options_.faces);
