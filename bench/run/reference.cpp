@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/random_bits.h"
 
 namespace umbra {
 namespace {
@@ -28,15 +29,6 @@ std::uint64_t affordable(const Scene& scene, std::uint64_t points) {
     return static_cast<std::uint64_t>(std::clamp(kSampled / triangles, kFewest, kMost));
 }
 
-/// A well mixed word [Sebastiano Vigna's SplitMix64 finaliser; Guy Steele and others, Fast Splittable Pseudorandom
-/// Number Generators, 2014].
-std::uint64_t mixed(std::uint64_t x) {
-    x += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-}
-
 /// One pixel with a surface out of each tile that has any: about `wanted` of them where all have.
 std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint64_t wanted) {
     const auto width   = static_cast<std::size_t>(points.raster->width),
@@ -50,7 +42,7 @@ std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint
             for (std::size_t y = top; y < std::min(height, top + side); ++y)
                 for (std::size_t x = left; x < std::min(width, left + side); ++x)
                     if (has_surface(points, y * width + x)) tile.push_back(static_cast<std::uint32_t>(y * width + x));
-            if (!tile.empty()) sample.push_back(tile[mixed(top * width + left) % tile.size()]);
+            if (!tile.empty()) sample.push_back(tile[mixed_bits(top * width + left) % tile.size()]);
         }
     return sample;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/errors/shadow_edges.h"
 #include "umbra/core/render/shade.h"
@@ -37,21 +38,6 @@ bool share_a_corner(const Scene& scene, TriangleId s, TriangleId t) {
         for (int k = 0; k < 3; ++k)
             if (scene.vertex(s, j) == scene.vertex(t, k)) return true;
     return false;
-}
-
-double distance_to_segment(dvec3 p, dvec3 a, dvec3 b) {
-    const dvec3 d       = b - a;
-    const double length = glm::dot(d, d);
-    const double t      = length > 0 ? std::clamp(glm::dot(p - a, d) / length, 0.0, 1.0) : 0.0;
-    return glm::length(a + t * d - p);
-}
-
-double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 n     = glm::cross(b - a, c - a);
-    const auto within = [&](dvec3 from, dvec3 to) { return glm::dot(glm::cross(to - from, p - from), n) >= 0; };
-    if (glm::dot(n, n) > 0 && within(a, b) && within(b, c) && within(c, a))
-        return std::abs(glm::dot(p - a, n)) / glm::length(n);
-    return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
 }
 
 /// How far the occluder is from p: along the way to a hard light, which meets it.

@@ -17,6 +17,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
@@ -202,25 +203,6 @@ TriangleId RayScene::first_hit(ShadowRay ray) const {
 }
 
 // ---- distance -------------------------------------------------------------------------------------------------------
-
-namespace {
-
-double distance_to_segment(dvec3 p, dvec3 a, dvec3 b) {
-    const dvec3 along  = b - a;
-    const double whole = glm::dot(along, along);
-    const double share = whole > 0 ? std::clamp(glm::dot(p - a, along) / whole, 0.0, 1.0) : 0.0;
-    return glm::length(a + share * along - p);
-}
-
-double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 n       = glm::cross(b - a, c - a);
-    const auto inside   = [&](dvec3 from, dvec3 to) { return glm::dot(glm::cross(to - from, p - from), n) >= 0; };
-    const double length = glm::length(n);
-    if (length > 0 && inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(glm::dot(n, p - a)) / length;
-    return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
-}
-
-}  // namespace
 
 double RayScene::clearance(dvec3 point, double reach) const {
     struct Nearest {

@@ -16,6 +16,7 @@
 #include <cstdlib>
 #include <span>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
@@ -90,9 +91,8 @@ struct Seed {
 
 /// Least squares over the corners, weighted by area: the height over `start` as a linear function in the plane.
 Plane fit(const Scene& scene, std::span<const TriangleId> triangles, const Plane& start) {
-    const dvec3 n      = start.normal;
-    const dvec3 helper = std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-    const dvec3 e1 = glm::normalize(glm::cross(helper, n)), e2 = glm::cross(n, e1);
+    const dvec3 n       = start.normal;
+    const auto [e1, e2] = axes_across(n);
 
     dvec3 mean{0};
     double total = 0;

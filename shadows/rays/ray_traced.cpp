@@ -17,7 +17,9 @@
 #include "umbra/core/base/predicates.h"
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/sampling.h"
+#include "umbra/core/render/tiles.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/shared/light_points.h"
 
 namespace umbra {
 namespace {
@@ -70,14 +72,15 @@ const std::vector<Parameter> kParameters{
                                .max   = 2147483647}),
 };
 
-/// Rays end this share of their way before the light, so that a lamp's own triangles, on which the light lies, do not
-/// block it. 256 float steps: enough for incidence down to about a degree. What stands in that last stretch before a
-/// hard light and does not touch it is asked apart.
-constexpr double kLastStretch = 0x1p-16;
-constexpr float kAlmostThere  = 1 - 0x1p-16f;
+/// Rays end this fraction of the segment to the light before it, so that triangles on which the light lies, as those of
+/// its own shape, do not block it. 256 float steps: enough for incidence down to about a degree. Triangles in that last
+/// part before a hard light that do not touch it are tested apart.
+constexpr double kUntraced = 0x1p-16;
+constexpr float kTraced    = 1 - 0x1p-16f;
 
-/// A triangle in the last stretch before a hard light: its corners less the light's position, which is exact in double
-/// for any two floats within 2^29 of each other, and the side of its plane that the light is on.
+/// A triangle near a hard light, in the part of some segment to it that rays do not trace: its corners less the light's
+/// position, which is exact in double for any two floats within 2^29 of each other, and the side of its plane that the
+/// light is on.
 struct NearLight {
     TriangleId triangle = kNoTriangle;
     dvec3 a{0}, b{0}, c{0};
@@ -91,17 +94,17 @@ double squared_distance(const NearLight& t) {
     return glm::dot(gap, gap);
 }
 
-/// The triangles that stand in the last stretch of some ray to the light. Those whose plane holds the light, as a
-/// lamp's own, are not among them: a ray that ends in a plane does not pass through it.
+/// The triangles in the untraced part of some segment to the light. Those whose plane holds the light, as those of its
+/// own shape, are not among them: a segment that ends in a plane does not pass through it.
 std::vector<NearLight> near_light(const Scene& scene, vec3 light) {
-    const Box box         = bounds(scene);
-    const dvec3 farthest  = glm::max(glm::abs(dvec3(box.min) - dvec3(light)), glm::abs(dvec3(box.max) - dvec3(light)));
-    const double stretch2 = kLastStretch * kLastStretch * glm::dot(farthest, farthest);
+    const Box box          = bounds(scene);
+    const dvec3 farthest   = glm::max(glm::abs(dvec3(box.min) - dvec3(light)), glm::abs(dvec3(box.max) - dvec3(light)));
+    const double untraced2 = kUntraced * kUntraced * glm::dot(farthest, farthest);
     std::vector<NearLight> near;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
         const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
         NearLight n{t, dvec3(a) - dvec3(light), dvec3(b) - dvec3(light), dvec3(c) - dvec3(light), 0};
-        if (squared_distance(n) > stretch2) continue;
+        if (squared_distance(n) > untraced2) continue;
         n.light_side = side_of_plane(a, b, c, light);
         if (n.light_side != 0) near.push_back(n);
     }
@@ -142,14 +145,10 @@ Target make_target(const Light& light, const RaySpace& space) {
     target.centre = vec3(centre / static_cast<double>(target.unit));
     target.sphere = centre;
     target.radius = static_cast<double>(light.radius) * scale;
-    dvec3 u = dvec3(light.edge_u) * 0.5, v = dvec3(light.edge_v) * 0.5;
-    if (light.kind == LightKind::disk) {
-        const dvec3 n = glm::normalize(dvec3(light.direction));
-        u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))) * double(light.radius);
-        v = glm::cross(n, u);
-    }
-    target.axis_u = vec3(u * (scale / static_cast<double>(target.unit)));
-    target.axis_v = vec3(v * (scale / static_cast<double>(target.unit)));
+    DiskAxes axes{dvec3(light.edge_u) * 0.5, dvec3(light.edge_v) * 0.5};
+    if (light.kind == LightKind::disk) axes = disk_axes(light);
+    target.axis_u = vec3(axes.u * (scale / static_cast<double>(target.unit)));
+    target.axis_v = vec3(axes.v * (scale / static_cast<double>(target.unit)));
     return target;
 }
 
@@ -160,6 +159,21 @@ struct Starts {
     float height[8]{};  ///< what the ray meets before it has risen so far above the point's plane is no hit
     TriangleId id[8]{};
 };
+
+/// Lane `lane` as lane 0; the other lanes are zero.
+Starts lane_alone(const Starts& starts, int lane) {
+    Starts alone;
+    for (const auto member :
+         {&Starts::x, &Starts::y, &Starts::z, &Starts::nx, &Starts::ny, &Starts::nz, &Starts::height})
+        (alone.*member)[0] = (starts.*member)[lane];
+    alone.id[0] = starts.id[lane];
+    return alone;
+}
+
+/// Whether any of `count` points asks for S_j, by their facing.
+bool any_asks(const Facing* facing, std::size_t count) {
+    return std::any_of(facing, facing + count, [](Facing f) { return f >= Facing::partly; });
+}
 
 /// Moves p along n by float steps, which grow with the distance from the origin as the rounding of p does, or by a
 /// constant close to the origin, where they would vanish.
@@ -180,10 +194,10 @@ public:
             return {How::approximately, fmt::format("area lights are sampled, {} rays a point", options.samples)};
         if (options.offset != OffsetPolicy::skip_triangle)
             return {How::approximately, "rays start off the surface, so that contact shadows move"};
-        // Held against `exact`, one point in a hundred thousand is wrong where two bodies pass through each other: its
+        // Compared with `exact`, one point in a hundred thousand is wrong where two bodies pass through each other: its
         // ray starts, in float, on the wrong side of the other surface.
         return {How::approximately,
-                "one ray in float arithmetic decides each point: right but for rounding at creases"};
+                "one ray in float arithmetic decides each point: correct except for rounding at creases"};
     }
 
     void build(const Scene& scene, const SceneFacts&) override {
@@ -201,9 +215,9 @@ public:
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override;
 
-    /// What the ray to the light meets first; of an area light, the first ray that meets anything. Samples go by the
-    /// place of a point in its batch, so that these rays are not those that gave its S_j, and only as good as they.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override;
+    /// What the ray to the light meets first; of an area light, the first ray that meets anything. Samples are
+    /// keyed by the point's index in the batch, so that these rays differ from those of visibility, and are as good.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override;
 
     [[nodiscard]] std::size_t memory_bytes() const override {
         return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0) +
@@ -214,11 +228,13 @@ private:
     [[nodiscard]] std::vector<NearLight> find_near_light(LightId light) const;
     [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
     [[nodiscard]] TriangleId blocker_near_light(const PointBatch& points, LightId light, std::size_t i) const;
-    void start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
-    void hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
+    void load_starts(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
+    std::size_t hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
+    void trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
     template <class Body>
-    bool each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const;
-    [[nodiscard]] float seen_share(const Starts& starts, int lane, PointKey key) const;
+    bool for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const;
+    [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const;
+    void trace_area_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
     [[nodiscard]] TriangleId first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const;
 
     const Scene* scene_ = nullptr;
@@ -229,15 +245,15 @@ private:
     std::vector<NearLight> near_light_;
 };
 
-/// The triangles that stand in the last stretch of some ray to a hard light. Mostly there are none, and the tree says
-/// so at once.
+/// The triangles in the untraced part of some segment to a hard light. Mostly there are none, and the tree finds that
+/// at once.
 std::vector<NearLight> RayTraced::find_near_light(LightId light) const {
     const double distance = glm::length(target_.sphere);
     if (target_.kind != LightKind::point && target_.kind != LightKind::spot) return {};
     // Ray space holds the scene within 2 each way. What is farther than that from it is far from every triangle, too.
     constexpr double scene_radius = 4;
     if (distance > 2 * scene_radius) return {};
-    const double stretch = kLastStretch * (distance + scene_radius);
+    const double stretch = kUntraced * (distance + scene_radius);
     if (rays_->clearance(target_.sphere, stretch) >= stretch) return {};
     return near_light(*scene_, scene_->lights[light].position);
 }
@@ -263,8 +279,9 @@ TriangleId RayTraced::blocker_near_light(const PointBatch& points, LightId light
     return kNoTriangle;
 }
 
-/// Of the points first .. first + count - 1, at most eight. Lanes from `count` on stay as they were.
-void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
+/// Where the rays of the points first .. first + count - 1 start, at most eight. Lanes from `count` on stay as they
+/// were.
+void RayTraced::load_starts(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
     const RaySpace& space = rays_->space();
     const auto load       = [&](const auto& from, auto& to) {
         if (count == 8)
@@ -307,14 +324,15 @@ void RayTraced::start(const PointBatch& points, std::size_t first, std::size_t c
     constexpr float u = 0x1p-24f, least = 0x1p-30f;
     for (int k = 0; k < 8; ++k) {
         const float nx = starts.nx[k], ny = starts.ny[k], nz = starts.nz[k];
-        const auto lean  = [](float n) { return std::abs(n) * std::sqrt(std::max(0.0f, 1 - n * n)); };
+        const auto term  = [](float n) { return std::abs(n) * std::sqrt(std::max(0.0f, 1 - n * n)); };
         starts.height[k] = u * (std::abs(nx * starts.x[k]) + std::abs(ny * starts.y[k]) + std::abs(nz * starts.z[k])) +
-                           (4 * u) * (lean(nx) + lean(ny) + lean(nz)) + least;
+                           (4 * u) * (term(nx) + term(ny) + term(nz)) + least;
     }
 }
 
-/// One ray a point that faces the light, one after the other from `rays` on.
-void RayTraced::hard(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const {
+/// Writes one ray for each of the `count` points that faces the light, from `rays` on. Returns how many.
+std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count,
+                                       ShadowRay* rays) const {
     const bool parallel  = target_.kind == LightKind::directional;
     const float per_unit = parallel ? 0 : 1 / target_.unit;
     float dx[8], dy[8], dz[8], tnear[8];
@@ -325,17 +343,21 @@ void RayTraced::hard(const Starts& starts, const Facing* facing, std::size_t cou
         const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
         tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
     }
-    const float tfar = parallel ? kInfinity : kAlmostThere * target_.unit;
+    const float tfar    = parallel ? kInfinity : kTraced * target_.unit;
+    std::size_t written = 0;
     for (std::size_t k = 0; k < count; ++k) {
         if (facing[k] < Facing::partly) continue;
-        *rays++ = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k], dy[k], dz[k], 0, tfar, ~0u, starts.id[k], 0};
+        rays[written++] = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k],        dy[k],
+                           dz[k],       0,           tfar,        ~0u,      starts.id[k], 0};
     }
+    return written;
 }
 
 /// Calls body(packet) for each eight samples of the light, with their rays ready, until it returns false. Lanes are
-/// valid where there is a sample and it lies in front of the point's plane. False where the point lies in the lamp.
+/// valid where there is a sample and it lies in front of the point's plane. False where the point lies within the
+/// light.
 template <class Body>
-bool RayTraced::each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const {
+bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const {
     const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]), n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
     vec3 to_centre = target_.centre - o * (1 / target_.unit), axis_u = target_.axis_u, axis_v = target_.axis_v;
     if (target_.kind == LightKind::sphere) {
@@ -365,7 +387,7 @@ bool RayTraced::each_packet(const Starts& starts, int lane, PointKey key, const 
             const float rise = n.x * dx + n.y * dy + n.z * dz;
             packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
             packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
-            packet.tfar[k]  = kAlmostThere * target_.unit;
+            packet.tfar[k]  = kTraced * target_.unit;
             packet.valid[k] = rise > 0 && first + k < options.samples ? -1 : 0;
         }
         if (!body(packet)) return true;
@@ -373,103 +395,96 @@ bool RayTraced::each_packet(const Starts& starts, int lane, PointKey key, const 
     return true;
 }
 
-/// Of all samples of the light, the share that the point sees. What lies behind the point's plane is not seen.
-float RayTraced::seen_share(const Starts& starts, int lane, PointKey key) const {
-    int seen            = 0;
-    const bool from_out = each_packet(starts, lane, key, [&](ShadowPacket& packet) {
+/// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
+float RayTraced::visible_fraction(const Starts& starts, int lane, PointKey key) const {
+    int seen           = 0;
+    const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
         rays_->occluded(packet);
         for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
         return true;
     });
-    return from_out ? static_cast<float>(seen) / static_cast<float>(options.samples) : 1;
+    return outside ? static_cast<float>(seen) / static_cast<float>(options.samples) : 1;
+}
+
+/// Hard lights: all rays of a tile are one list, since neighbours meet the same triangles.
+void RayTraced::trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile,
+                                 std::span<float> s) const {
+    const FlushDenormals flush;
+    const Facing* facing = points.facing[light].data();
+    Starts starts;
+    ShadowRay rays[PointTile::kPoints];
+    std::size_t traced = 0;
+    tile.for_each_run([&](std::size_t first, std::size_t count) {
+        if (!any_asks(facing + first, count)) return;
+        load_starts(points, first, count, starts);
+        traced += hard_light_rays(starts, facing + first, count, rays + traced);
+    });
+    if (traced == 0) return;
+    rays_->occluded(std::span(rays, traced));
+    std::size_t next = 0;
+    tile.for_each_run([&](std::size_t first, std::size_t count) {
+        for (std::size_t i = first; i < first + count; ++i) {
+            if (!points.asks(light, i)) continue;
+            const bool blocked = rays[next++].tfar < 0 || blocker_near_light(points, light, i) != kNoTriangle;
+            s[i]               = blocked ? 0.0f : 1.0f;
+        }
+    });
+}
+
+/// Area lights: eight rays of one point are a packet.
+void RayTraced::trace_area_light(const PointBatch& points, LightId light, const PointTile& tile,
+                                 std::span<float> s) const {
+    const FlushDenormals flush;
+    const Facing* facing = points.facing[light].data();
+    Starts starts;
+    tile.for_each_run([&](std::size_t first, std::size_t count) {
+        if (!any_asks(facing + first, count)) return;
+        load_starts(points, first, count, starts);
+        for (std::size_t k = 0; k < count; ++k)
+            if (points.asks(light, first + k))
+                s[first + k] = visible_fraction(starts, static_cast<int>(k), set_->key(first + k));
+    });
 }
 
 void RayTraced::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    const std::span<float> s = out.s;
-    // Tiles of 16 x 8 pixels, so that neighbouring rays meet the same triangles; without a raster 128 points. Hard
-    // lights: all rays of a tile are one list. Area lights: eight rays of one point are a packet.
-    constexpr std::size_t tile_width = 16, tile_height = 8;
-    const bool raster        = points.raster.has_value();
-    const std::size_t width  = raster ? points.raster->width : tile_width,
-                      height = raster ? points.raster->height : (points.size() + tile_width - 1) / tile_width;
-    const std::size_t across = (width + tile_width - 1) / tile_width, down = (height + tile_height - 1) / tile_height;
-    const Facing* facing = points.facing[light].data();
-    const auto sees      = [&](std::size_t i) { return points.asks(light, i); };
-    parallel_ranges(across * down, 8, [&](std::size_t begin, std::size_t end) {
-        const FlushDenormals flush;
-        Starts starts;
-        ShadowRay rays[tile_width * tile_height];
-        for (std::size_t tile = begin; tile < end; ++tile) {
-            const std::size_t x0 = tile % across * tile_width, y0 = tile / across * tile_height;
-            std::size_t traced   = 0;
-            const auto each_span = [&](const auto& body) {  // up to eight points of a row
-                for (std::size_t y = y0; y < std::min(y0 + tile_height, height); ++y)
-                    for (std::size_t x = x0; x < std::min(x0 + tile_width, width); x += 8) {
-                        const std::size_t first = y * width + x;
-                        if (first >= points.size()) continue;
-                        body(first, std::min({std::size_t{8}, width - x, points.size() - first}));
-                    }
-            };
-            each_span([&](std::size_t first, std::size_t count) {
-                const auto facing_light =
-                    std::count_if(facing + first, facing + first + count, [](Facing f) { return f >= Facing::partly; });
-                if (facing_light == 0) return;
-                start(points, first, count, starts);
-                if (!is_area(target_.kind)) {
-                    hard(starts, facing + first, count, rays + traced);
-                    traced += static_cast<std::size_t>(facing_light);
-                    return;
-                }
-                for (std::size_t k = 0; k < count; ++k)
-                    if (sees(first + k)) s[first + k] = seen_share(starts, static_cast<int>(k), set_->key(first + k));
-            });
-            if (traced == 0) continue;
-            rays_->occluded(std::span(rays, traced));
-            std::size_t next = 0;
-            each_span([&](std::size_t first, std::size_t count) {
-                for (std::size_t i = first; i < first + count; ++i)
-                    if (sees(i))
-                        s[i] =
-                            rays[next++].tfar < 0 || blocker_near_light(points, light, i) != kNoTriangle ? 0.0f : 1.0f;
-            });
-        }
+    for_each_tile(points, [&](const PointTile& tile) {
+        if (is_area(target_.kind))
+            trace_area_light(points, light, tile, out.s);
+        else
+            trace_hard_light(points, light, tile, out.s);
     });
 }
 
 TriangleId RayTraced::first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const {
     if (!is_area(target_.kind)) {
-        Starts one = starts;
-        std::swap(one.x[0], one.x[lane]), std::swap(one.y[0], one.y[lane]), std::swap(one.z[0], one.z[lane]);
-        std::swap(one.nx[0], one.nx[lane]), std::swap(one.ny[0], one.ny[lane]), std::swap(one.nz[0], one.nz[lane]);
-        std::swap(one.height[0], one.height[lane]), std::swap(one.id[0], one.id[lane]);
         ShadowRay ray;
-        hard(one, &facing, 1, &ray);
+        hard_light_rays(lane_alone(starts, lane), &facing, 1, &ray);
         return rays_->first_hit(ray);
     }
     // Where little of the light is hidden one set of samples may miss it: sixteen are tried.
-    TriangleId who = kNoTriangle;
-    for (std::uint64_t attempt = 0; attempt < 16 && who == kNoTriangle; ++attempt)
-        each_packet(starts, lane, set_->key(16 * point + attempt), [&](const ShadowPacket& packet) {
-            for (int k = 0; k < 8 && who == kNoTriangle; ++k)
+    TriangleId blocker = kNoTriangle;
+    for (std::uint64_t attempt = 0; attempt < 16 && blocker == kNoTriangle; ++attempt)
+        for_each_packet(starts, lane, set_->key(16 * point + attempt), [&](const ShadowPacket& packet) {
+            for (int k = 0; k < 8 && blocker == kNoTriangle; ++k)
                 if (packet.valid[k] != 0)
-                    who = rays_->first_hit({packet.org_x[k], packet.org_y[k], packet.org_z[k], packet.tnear[k],
-                                            packet.dir_x[k], packet.dir_y[k], packet.dir_z[k], 0, packet.tfar[k], ~0u,
-                                            packet.id[k], 0});
-            return who == kNoTriangle;
+                    blocker = rays_->first_hit({packet.org_x[k], packet.org_y[k], packet.org_z[k], packet.tnear[k],
+                                                packet.dir_x[k], packet.dir_y[k], packet.dir_z[k], 0, packet.tfar[k],
+                                                ~0u, packet.id[k], 0});
+            return blocker == kNoTriangle;
         });
-    return who;
+    return blocker;
 }
 
-void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const {
+void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
     const std::vector<Facing>& facing = points.facing[light];
     parallel_ranges((points.size() + 7) / 8, 8, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         Starts starts;
         for (std::size_t first = 8 * begin; first < std::min(8 * end, points.size()); first += 8) {
             const std::size_t count = std::min<std::size_t>(8, points.size() - first);
-            start(points, first, count, starts);
+            load_starts(points, first, count, starts);
             for (std::size_t k = 0; k < count; ++k) {
-                TriangleId& blocker = who[first + k];
+                TriangleId& blocker = blockers[first + k];
                 blocker             = kNoTriangle;
                 if (facing[first + k] < Facing::partly) continue;
                 blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], first + k);

@@ -2,14 +2,14 @@
 
 #include <cmath>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/render/sampling.h"
 
 namespace umbra {
 
 DiskAxes disk_axes(const Light& disk) {
     const dvec3 n = glm::normalize(dvec3(disk.direction));
-    const dvec3 u = glm::normalize(glm::cross(n, std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))) *
-                    static_cast<double>(disk.radius);
+    const dvec3 u = -axes_across(n).u * static_cast<double>(disk.radius);
     return {u, glm::cross(n, u)};
 }
 

@@ -8,9 +8,9 @@
 //     O ------- p ---[F====B]-->     depth-pass: nothing between O and p,    count(p) = count(O)      lit
 //     O --[F==== p ====B]------>     one face entered between,               count(p) = count(O) + 1  umbra
 //
-// There is no near and no far plane, no stencil and no pixel: faces are counted at the exact points (point_tree.h). In
-// the projection from O every edge, and every line that an edge's end runs away along, is one half-space that all faces
-// beside it share bit for bit, so that no point is lost or counted twice between two faces.
+// There is no near and no far plane, no stencil and no pixel: faces are counted at the exact points (counting_tree.h).
+// In the projection from O every edge, and every line that an edge's end runs away along, is one half-space that all
+// faces beside it share bit for bit, so that no point is lost or counted twice between two faces.
 //
 // This work is based on:
 // Frank Crow. Shadow Algorithms for Computer Graphics. 1977
@@ -26,9 +26,10 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/shared/triangle_tree.h"
-#include "umbra/shadows/volumes/point_tree.h"
+#include "umbra/shadows/volumes/counting_tree.h"
 #include "umbra/shadows/volumes/silhouettes.h"
 
 namespace umbra {
@@ -77,7 +78,7 @@ public:
     }
 
     /// The near cap of a triangle: region and weight of its crossings.
-    void add_near_cap(PointTree& tree, TriangleId t, int turn, bool depth_fail) const {
+    void add_near_cap(CountingTree& tree, TriangleId t, int turn, bool depth_fail) const {
         const Cap cap = near_cap(t, turn);
         Region region;
         region.add(HalfSpace::side(cap.behind, cap.behind_offset, cap.origin_behind == depth_fail ? +1 : -1));
@@ -90,7 +91,7 @@ public:
     }
 
     /// The far cap: directions in which a point at infinity lies in the triangle's volume.
-    void add_far_cap(PointTree& tree, TriangleId t, int turn) const {
+    void add_far_cap(CountingTree& tree, TriangleId t, int turn) const {
         const uvec3 corners = turned(meshes_.triangles()[t], turn);
         Region region;
         for (int k = 0; k < 3; ++k) {
@@ -100,7 +101,7 @@ public:
         tree.add(region, +1);
     }
 
-    void add_side(PointTree& tree, const SilhouetteEdge& e, bool depth_fail) const {
+    void add_side(CountingTree& tree, const SilhouetteEdge& e, bool depth_fail) const {
         const Plane plane = side_plane(e.a, e.b);
         const int origin  = plane.origin_outside ? +1 : -1;
         Region region;
@@ -277,7 +278,7 @@ public:
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         const bool depth_fail = options.counting == Counting::depth_fail;
-        PointTree tree(*scene_, points, light);
+        CountingTree tree(*scene_, points, light);
         if (tree.size() == 0) return;
         const Light& l = scene_->lights[light];
         const SeenVolumes volumes(*meshes_, l, tree.view());
@@ -295,7 +296,7 @@ public:
             for (std::size_t e = begin; e < end; ++e) volumes.add_side(tree, edges_[e], depth_fail);
         });
         tree.for_each([&](std::uint32_t i, std::int32_t count) {
-            out.s[i] = origin + count > 0 || centre_is_behind(points, light, i) ? 0.0f : 1.0f;
+            out.s[i] = origin + count > 0 || centre_is_behind(*scene_, points, light, i) ? 0.0f : 1.0f;
         });
     }
 
@@ -346,15 +347,6 @@ private:
             }
         }
         return edges;
-    }
-
-    /// An area light that the point's plane cuts may have its centre, as which it is taken, behind.
-    bool centre_is_behind(const PointBatch& points, LightId light, std::size_t i) const {
-        if (points.facing[light][i] != Facing::partly) return false;
-        const TriangleId t = points.triangle[i];
-        const int side     = side_of_plane(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2),
-                                           scene_->lights[light].position);
-        return points.flipped[i] ? side >= 0 : side <= 0;
     }
 
     const Scene* scene_ = nullptr;

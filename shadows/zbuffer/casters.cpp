@@ -3,25 +3,13 @@
 #include <bit>
 #include <cmath>
 
+#include "umbra/core/base/geometry.h"
+
 namespace umbra {
 namespace {
 
 constexpr double kRounding = 0x1p-22;  // of a corner that was computed in float, relative
 constexpr double kGrazing  = 1e-6;     // sine: flatter light may as well lie in the plane
-
-double distance_to_triangle(dvec3 p, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 n     = glm::cross(b - a, c - a);
-    const auto within = [&](dvec3 from, dvec3 to) { return glm::dot(glm::cross(to - from, p - from), n) >= 0; };
-    if (glm::dot(n, n) > 0 && within(a, b) && within(b, c) && within(c, a))
-        return std::abs(glm::dot(p - a, n)) / glm::length(n);
-    const auto to_segment = [&](dvec3 from, dvec3 to) {
-        const dvec3 d       = to - from;
-        const double length = glm::dot(d, d);
-        const double t      = length > 0 ? std::clamp(glm::dot(p - from, d) / length, 0.0, 1.0) : 0.0;
-        return glm::length(from + t * d - p);
-    };
-    return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
-}
 
 }  // namespace
 

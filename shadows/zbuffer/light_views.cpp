@@ -1,13 +1,13 @@
 #include "umbra/shadows/zbuffer/light_views.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/memory.h"
 
 namespace umbra {
 namespace {
@@ -19,9 +19,7 @@ constexpr double kEpsilon   = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-double LightViews::half_of_memory() {
-    return 0.5 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
+double LightViews::half_of_memory() { return 0.5 * machine_memory(); }
 
 std::size_t LightViews::memory_bytes() const {
     std::size_t bytes = casters_.memory_bytes();
@@ -64,7 +62,7 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
 }
 
-void LightViews::aim_directional(dvec3 direction) {
+void LightViews::fit_directional(dvec3 direction) {
     LightFrame frame = looking_along(dvec3(casters_.box().centre()), direction, false);
     fit_to_scene(frame, casters_, kInfinity);
     add_view(frame, options_.resolution);
@@ -76,7 +74,7 @@ void LightViews::set_depth(LightFrame& frame, double nearest) const {
     frame.near       = std::max(depth[0].min, nearest / std::sqrt(1 + glm::dot(frame.half, frame.half)));
 }
 
-void LightViews::aim_around(const Light& light) {
+void LightViews::fit_around(const Light& light) {
     const dvec3 origin(light.position);
     // Reversed floats resolve any distance from the light as well as any other, unorm depth does not.
     const double nearest = options_.format == DepthFormat::float32 ? 0 : casters_.distance(origin);
@@ -114,16 +112,19 @@ void LightViews::aim_around(const Light& light) {
         }
 }
 
-void LightViews::aim(LightId light) {
+void LightViews::fit(LightId light) {
     views_.clear();
     cover_all_     = true;
     const Light& l = casters_.scene().lights[light];
     casters_.select(l);
     if (casters_.box().empty()) return;
     if (l.kind == LightKind::directional)
-        aim_directional(dvec3(l.direction));
+        fit_directional(dvec3(l.direction));
     else
-        aim_around(l);
+        fit_around(l);
+}
+
+void LightViews::rasterise() {
     for (MapView& view : views_) {
         const dmat4 clip_from_world = view.frame.clip_from_world();
         view.map.draw(clip_from_world, casters_.scene().positions, casters_.seen_by(clip_from_world), options_.faces);

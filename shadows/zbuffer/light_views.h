@@ -2,7 +2,7 @@
 //
 //   directional     one orthographic view, fitted to the scene, in the roll about the light's direction of least area
 //   point, area     one perspective view fitted to the scene where that fits into a cone of 50 degrees; else six faces
-//                   of a cube. Area lights stand in their centres
+//                   of a cube. Area lights are taken as their centres
 //   spot            one view of the cone, shrunk to the scene, and where the scene reaches out of it six faces at
 //                   `surround` of the resolution: the spot's factor in the sum is 0 there, S_j is not
 //
@@ -39,11 +39,14 @@ public:
     LightViews(const Scene& scene, const SceneFacts& facts, const Options& options)
         : options_(options), casters_(scene, facts, options.fit_to_casters) {}
 
-    /// For the next aim. `fit_to_casters` stays as it was made.
+    /// For the next fit. `fit_to_casters` stays as it was made.
     void set_options(const Options& options) { options_ = options; }
 
-    /// Draws the maps of `light`. Throws UsageError where they would not fit into memory.
-    void aim(LightId light);
+    /// Chooses the views of `light` and fits them; their maps are empty. Throws UsageError where the maps take more
+    /// than `memory_limit`.
+    void fit(LightId light);
+    /// Draws the depth of what casts into the maps of all views.
+    void rasterise();
 
     [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
     /// Which triangle each sample of a view's map shows, kNoTriangle where none. Draws the map again.
@@ -55,8 +58,8 @@ public:
 
 private:
     void add_view(LightFrame frame, int resolution);
-    void aim_directional(dvec3 direction);
-    void aim_around(const Light& light);
+    void fit_directional(dvec3 direction);
+    void fit_around(const Light& light);
     /// Depth limits of a perspective window about the axis, with no geometry nearer to the light than `nearest`.
     void set_depth(LightFrame& frame, double nearest) const;
 

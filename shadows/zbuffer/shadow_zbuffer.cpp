@@ -1,7 +1,10 @@
 // Shadow z-buffer: draw depth from the light, then compare every surface point with it.
 //
-// The parts: casters (what can block the light), light_frame and light_views (which maps see that), depth_map (drawing
-// them), depth_lookup (bias and filter).
+// build finds what can block a light (casters.h).
+// aim fits frames to that as the light sees it, one map or six (light_views.h, light_frame.h), and rasterises its depth
+// into each (depth_map.h).
+// visibility takes each point to the view that covers it, projects it there, moves it towards the light by the bias,
+// and compares its depth with those that the filter asks for (depth_lookup.h): S_j is the fraction that does not block.
 //
 // This work is based on:
 // Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
@@ -18,6 +21,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/facing.h"
 
 namespace umbra {
 namespace {
@@ -123,7 +127,7 @@ void ShadowZBuffer::configure(const Settings& settings) {
 
 Service ShadowZBuffer::serves(const SceneFacts& facts) const {
     std::string why = "any triangles and lights, through a map that samples depth";
-    if (!facts.hard_lights_only) why += "; area lights stand in their centres, so that penumbrae are missing";
+    if (!facts.hard_lights_only) why += "; area lights are taken as their centres, so that penumbrae are missing";
     if (map_options_.faces != Faces::all && (facts.open_objects > 0 || facts.nonmanifold_objects > 0))
         why += "; open meshes cast with one side only";
     return {How::approximately, why + "."};
@@ -131,7 +135,10 @@ Service ShadowZBuffer::serves(const SceneFacts& facts) const {
 
 void ShadowZBuffer::build(const Scene& scene, const SceneFacts& facts) { views_.emplace(scene, facts, map_options_); }
 
-void ShadowZBuffer::aim(LightId light) { views_->aim(light); }
+void ShadowZBuffer::aim(LightId light) {
+    views_->fit(light);
+    views_->rasterise();
+}
 
 template <class Body>
 void ShadowZBuffer::for_each_facet(const PointBatch& points, LightId light, const Body& body) const {
@@ -154,12 +161,22 @@ void ShadowZBuffer::for_each_facet(const PointBatch& points, LightId light, cons
 
 void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibility out) const {
     for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        if (!look_up(facet, p, points.facing[light][i], views_->scene().lights[light], out.s[i]))
-            out.answer[i] = Answer::undefined;
+        if (centre_is_behind(views_->scene(), points, light, i)) {
+            out.s[i] = 0;
+            return;
+        }
+        for (const MapView& view : views_->views())
+            if (const std::optional<Receiver> biased = receive(view, facet, p, bias_, filter_)) {
+                out.s[i] = lit_share(view.map, *biased, bias_.mode, filter_);
+                return;
+            }
+        // No view covers the point: nothing blocks the light there, or nobody looked.
+        out.s[i] = 1;
+        if (!views_->cover_all()) out.answer[i] = Answer::undefined;
     });
 }
 
-void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const {
+void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
     struct Sample {
         std::size_t view = ~std::size_t{0};
         ivec2 at{0};
@@ -173,13 +190,14 @@ void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<Tri
                 return;
             }
     });
-    std::fill(who.begin(), who.end(), kNoTriangle);
+    std::ranges::fill(blockers, kNoTriangle);
     for (std::size_t v = 0; v < views.size(); ++v) {
         if (std::ranges::find(samples, v, &Sample::view) == samples.end()) continue;
         const std::vector<TriangleId> owners = views_->owners(views[v]);
         for (std::size_t i = 0; i < samples.size(); ++i)
             if (samples[i].view == v)
-                who[i] = owners[static_cast<std::size_t>(samples[i].at.y) * views[v].map.width() + samples[i].at.x];
+                blockers[i] =
+                    owners[static_cast<std::size_t>(samples[i].at.y) * views[v].map.width() + samples[i].at.x];
     }
 }
 
@@ -191,21 +209,6 @@ Facet ShadowZBuffer::make_facet(TriangleId t, bool flipped) const {
     Facet facet{a, dvec3(scene.vertex(t, 1)) - a, dvec3(scene.vertex(t, 2)) - a, {}};
     facet.normal = glm::normalize(glm::cross(facet.ab, facet.ac)) * (flipped ? -1.0 : 1.0);
     return facet;
-}
-
-bool ShadowZBuffer::look_up(const Facet& facet, dvec3 p, Facing facing, const Light& light, float& s) const {
-    // An area light that the receiver's plane cuts may have its centre behind.
-    if (facing == Facing::partly && glm::dot(facet.normal, dvec3(light.position) - p) <= 0) {
-        s = 0;
-        return true;
-    }
-    for (const MapView& view : views_->views())
-        if (const std::optional<Receiver> receiver = receive(view, facet, p, bias_, filter_)) {
-            s = lit_share(view.map, *receiver, bias_.mode, filter_);
-            return true;
-        }
-    s = 1;
-    return views_->cover_all();
 }
 
 extern const MethodInfo shadow_zbuffer;

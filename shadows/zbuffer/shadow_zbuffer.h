@@ -11,7 +11,7 @@ namespace umbra {
 enum class FilterKind : std::uint8_t { nearest, pcf };
 enum class Fit : std::uint8_t { casters, scene };
 
-/// The parameters, as docs in shadow_zbuffer.cpp say.
+/// The parameters; shadow_zbuffer.cpp documents each.
 struct ZBufferOptions {
     int resolution       = 2048;
     DepthFormat depth    = DepthFormat::float32;
@@ -35,16 +35,15 @@ public:
     void aim(LightId light) override;
     void visibility(const PointBatch& points, LightId light, Visibility out) const override;
     /// Whose depth the map holds in the texel that blocks the point, the nearest of several. Draws the maps again.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override;
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override;
     [[nodiscard]] std::size_t memory_bytes() const override;
 
 private:
     [[nodiscard]] Facet make_facet(TriangleId t, bool flipped) const;
-    /// Calls body(point, facet, place) for the points that face the light, in parallel.
+    /// Calls body(i, facet, p) for the points that ask for S_j, in parallel: the point's index, its triangle, and the
+    /// point in double.
     template <class Body>
     void for_each_facet(const PointBatch& points, LightId light, const Body& body) const;
-    /// Writes S_j of one point; false where no view covers it.
-    [[nodiscard]] bool look_up(const Facet& facet, dvec3 p, Facing facing, const Light& light, float& s) const;
 
     Bias bias_;
     Filter filter_;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/render/ray.h"
 
 namespace umbra {
@@ -217,13 +218,12 @@ double light_step(const Scene& scene) { return 0x1p-18 * above(largest_coordinat
 
 /// Two edges of about `size` that span a rectangle facing `towards`, of few bits.
 void set_rectangle(Light& light, dvec3 towards, double size, double step) {
-    const dvec3 n      = glm::dot(towards, towards) > 0 ? glm::normalize(towards) : dvec3(0, -1, 0);
-    const dvec3 helper = std::abs(n.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0);
-    const dvec3 u      = glm::normalize(glm::cross(helper, n));
-    light.kind         = LightKind::rectangle;
-    light.edge_u       = coarse(vec3(size * u), step);
-    light.edge_v       = coarse(vec3(size * glm::cross(n, u)), step);
-    light.direction    = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
+    const dvec3 n   = glm::dot(towards, towards) > 0 ? glm::normalize(towards) : dvec3(0, -1, 0);
+    const Axes axes = axes_across(n);
+    light.kind      = LightKind::rectangle;
+    light.edge_u    = coarse(vec3(size * axes.u), step);
+    light.edge_v    = coarse(vec3(size * axes.v), step);
+    light.direction = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
 }
 
 double distance_to_scene(const Scene& scene, vec3 p) {

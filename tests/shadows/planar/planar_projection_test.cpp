@@ -7,7 +7,9 @@
 #include <random>
 #include <string>
 
+#include "umbra/core/base/error.h"
 #include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/planar/project.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -54,7 +56,7 @@ TEST(PlanarProjection, DefinesItsPlanesAndNothingElse) {
 TEST(PlanarProjection, SaysHowItServes) {
     const auto how = [](const Scene& scene, const std::string& choice) { return MethodCase(choice, scene).serves(); };
     const Scene boxes = known_scene("box_from_front").scene;
-    EXPECT_EQ(how(boxes, "planar_projection").how, How::exactly);
+    EXPECT_EQ(how(boxes, "planar_projection").how, How::to_rounding);
     EXPECT_NE(how(boxes, "planar_projection").why.find("100 %"), std::string::npos);
     EXPECT_EQ(how(boxes, "planar_projection:plane_share=0.95").how, How::not_at_all);
     EXPECT_EQ(how(known_scene("penumbra_of_half_plane").scene, "planar_projection").how, How::approximately);
@@ -298,6 +300,52 @@ TEST_F(Penumbra, OfASphere) {
     };
     EXPECT_LT(rmse(light_of(LightKind::sphere), 64, s), 0.03);
     EXPECT_LT(rmse(light_of(LightKind::sphere), 1024, s), 0.015) << "the nearness of the light is left out";
+}
+
+/// An area light's shadows are made in aim, once for each sample, and visibility adds nothing.
+TEST(PlanarProjection, AimHoldsTheShadowsOfEverySample) {
+    const Scene scene       = known_scene("penumbra_of_half_plane").scene;
+    const PointBatch points = primary(scene);
+    const auto bytes        = [&](int samples) {
+        MethodCase run("planar_projection:light_samples=" + std::to_string(samples), scene);
+        run.method->build(scene, run.facts);
+        const std::size_t built = run.method->memory_bytes();
+        run.method->aim(0);
+        const std::size_t aimed = run.method->memory_bytes();
+        (void)run.visibility(points, 0);
+        EXPECT_EQ(run.method->memory_bytes(), aimed);
+        return aimed - built;
+    };
+    EXPECT_GT(bytes(16), 16 * sizeof(planar::Shadow));
+    EXPECT_NEAR(static_cast<double>(bytes(64)), 4.0 * static_cast<double>(bytes(16)),
+                0.2 * 4.0 * static_cast<double>(bytes(16)));
+}
+
+/// More samples than memory holds are refused with a number that fits, which then does fit.
+TEST(PlanarProjection, RefusesMoreSamplesThanMemoryHolds) {
+    const Scene scene      = known_scene("penumbra_of_half_plane").scene;
+    const SceneFacts facts = find_facts(scene);
+    planar::Occluders occluders{&scene, {}, std::vector(scene.triangles.size(), planar::Occluders::kNoPlane)};
+    for (TriangleId t = 0; t < scene.triangles.size(); ++t) occluders.triangles.push_back(t);
+    const std::vector<planar::Receiver> receivers{planar::make_receiver(scene, facts.planes[0], 0, +1),
+                                                  planar::make_receiver(scene, facts.planes[0], 0, -1)};
+    const auto project = [&](int samples, double limit) {
+        return planar::project(occluders, receivers, planar::sources_of(scene.lights[0], samples), limit);
+    };
+    const auto limit = static_cast<double>(planar::memory_bytes(project(20, 1e9)));
+    try {
+        (void)project(64, limit);
+        FAIL() << "64 samples fit into the memory of 20";
+    } catch (const UsageError& e) {
+        const std::string what = e.what();
+        EXPECT_NE(what.find("light_samples=64 take"), std::string::npos) << what;
+        const std::string fit = "; light_samples=";
+        ASSERT_NE(what.find(fit), std::string::npos) << what;
+        const int samples = std::stoi(what.substr(what.find(fit) + fit.size()));
+        EXPECT_GE(samples, 18);
+        EXPECT_NO_THROW((void)project(samples, limit));
+    }
+    EXPECT_NO_THROW((void)project(1, 1)) << "one source is never refused";
 }
 
 }  // namespace

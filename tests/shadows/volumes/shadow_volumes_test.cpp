@@ -40,7 +40,8 @@ Truth truth_at(const Scene& scene, const PointBatch& points, std::size_t i, cons
     const auto of        = [&](TriangleId t, int k) { return dvec3l(scene.vertex(t, k)); };
     const TriangleId own = points.triangle[i];
     Real w[3]            = {1 - Real(points.u[i]) - Real(points.v[i]), points.u[i], points.v[i]};
-    if (std::min({w[0], w[1], w[2]}) < 0x1p-26L)  // a point on its triangle's border: as seen from within, point_tree.h
+    if (std::min({w[0], w[1], w[2]}) <
+        0x1p-26L)  // a point on its triangle's border: as seen from within, counting_tree.h
         for (Real& x : w) x = std::max(x, 0x1p-26L);
     const dvec3l p   = (w[0] * of(own, 0) + w[1] * of(own, 1) + w[2] * of(own, 2)) / (w[0] + w[1] + w[2]);
     const bool far   = light.kind == LightKind::directional;

@@ -240,7 +240,8 @@ TEST(ShadowZBuffer, AutomaticBiasDetachesByNoMoreThanItStates) {
         const Scene flat       = scene_with(1e-4);
         const SceneFacts facts = find_facts(flat);
         LightViews views(flat, facts, {.fit_to_casters = false});
-        views.aim(0);
+        views.fit(0);
+        views.rasterise();
         const MapView& view = views.views().at(0);
         const double width  = 2 * std::max(view.frame.half.x, view.frame.half.y) / view.map.width();
 
@@ -318,13 +319,13 @@ TEST(ShadowZBuffer, MapsThatDoNotFitIntoMemoryAreRefused) {
     const SceneFacts facts = find_facts(scene);
     LightViews::Options options{.resolution = 512, .fit_to_casters = false};
     LightViews all(scene, facts, options);
-    all.aim(0);
+    all.fit(0);
     ASSERT_EQ(all.views().size(), 5u);  // above the light there is nothing
     options.memory_limit = static_cast<double>(all.memory_bytes());
-    EXPECT_NO_THROW(LightViews(scene, facts, options).aim(0));
+    EXPECT_NO_THROW(LightViews(scene, facts, options).fit(0));
     options.memory_limit -= 1;
     try {
-        LightViews(scene, facts, options).aim(0);
+        LightViews(scene, facts, options).fit(0);
         FAIL() << "five maps in the memory of less";
     } catch (const UsageError& e) {
         EXPECT_NE(std::string(e.what()).find("resolution=512"), std::string::npos) << e.what();

@@ -1,4 +1,4 @@
-#include "umbra/shadows/volumes/point_tree.h"
+#include "umbra/shadows/volumes/counting_tree.h"
 
 #include <tbb/parallel_sort.h>
 
@@ -6,6 +6,8 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+
+#include "umbra/core/base/morton.h"
 
 namespace umbra {
 namespace {
@@ -59,15 +61,6 @@ ViewFrame choose_view(const PointBatch& points, std::span<const std::uint32_t> a
 
 // ---- the order of points --------------------------------------------------------------------------------------------
 
-/// Every second bit of the result is one of v's sixteen. [Guy Morton, A Computer Oriented Geodetic Data Base, 1966]
-std::uint32_t spread(std::uint32_t v) {
-    v = (v | v << 8) & 0x00ff00ffu;
-    v = (v | v << 4) & 0x0f0f0f0fu;
-    v = (v | v << 2) & 0x33333333u;
-    v = (v | v << 1) & 0x55555555u;
-    return v;
-}
-
 bool needs_answer(Facing f) { return f == Facing::front || f == Facing::partly; }
 
 /// Points that need an answer; those of a raster in blocks of 8 x 8 pixels along Morton's curve, so that neighbours in
@@ -82,9 +75,9 @@ std::vector<std::uint32_t> active_points(const PointBatch& points, std::span<con
     }
     const auto width  = static_cast<std::uint32_t>(points.raster->width);
     const auto height = static_cast<std::uint32_t>(points.raster->height);
-    std::vector<std::pair<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>>> blocks;
+    std::vector<std::pair<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>>> blocks;
     for (std::uint32_t y = 0; y < height; y += 8)
-        for (std::uint32_t x = 0; x < width; x += 8) blocks.push_back({spread(x / 8) | spread(y / 8) << 1, {x, y}});
+        for (std::uint32_t x = 0; x < width; x += 8) blocks.push_back({morton_code(x / 8, y / 8), {x, y}});
     std::sort(blocks.begin(), blocks.end());
     for (const auto& [key, corner] : blocks)
         for (std::uint32_t y = corner.second; y < std::min(corner.second + 8, height); ++y)
@@ -106,8 +99,9 @@ void sort_by_projection(std::vector<std::uint32_t>& index, const PointBatch& poi
     parallel_ranges(index.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const dvec2 cell = glm::clamp((projected(index[k]) - low) * scale, dvec2(0), dvec2(65535));
-            keys[k] = {spread(static_cast<std::uint32_t>(cell.x)) | spread(static_cast<std::uint32_t>(cell.y)) << 1,
-                       index[k]};
+            keys[k]          = {static_cast<std::uint32_t>(
+                           morton_code(static_cast<std::uint32_t>(cell.x), static_cast<std::uint32_t>(cell.y))),
+                                index[k]};
         }
     });
     tbb::parallel_sort(keys.begin(), keys.end());
@@ -160,7 +154,7 @@ dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, d
 
 // ---- the tree -------------------------------------------------------------------------------------------------------
 
-PointTree::PointTree(const Scene& scene, const PointBatch& points, LightId light)
+CountingTree::CountingTree(const Scene& scene, const PointBatch& points, LightId light)
     : index_(active_points(points, points.facing[light])) {
     if (index_.empty()) return;
     view_ = choose_view(points, index_);
@@ -169,7 +163,7 @@ PointTree::PointTree(const Scene& scene, const PointBatch& points, LightId light
     build_nodes();
 }
 
-void PointTree::project(const Scene& scene, const PointBatch& points) {
+void CountingTree::project(const Scene& scene, const PointBatch& points) {
     const std::size_t padded = (size() + kLeaf - 1) / kLeaf * kLeaf;
     for (std::vector<double>* v : {&x_, &y_, &w_}) v->resize(padded, 0);
     count_.resize(padded, 0);
@@ -181,7 +175,7 @@ void PointTree::project(const Scene& scene, const PointBatch& points) {
     });
 }
 
-void PointTree::build_nodes() {
+void CountingTree::build_nodes() {
     levels_.emplace_back((size() + kLeaf - 1) / kLeaf);
     parallel_ranges(levels_[0].size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t leaf = begin; leaf < end; ++leaf) {
@@ -206,12 +200,13 @@ void PointTree::build_nodes() {
     }
 }
 
-void PointTree::add(const Region& region, std::int32_t weight) {
+void CountingTree::add(const Region& region, std::int32_t weight) {
     if (!levels_.empty()) descend(region, weight, levels_.size() - 1, 0, (1u << region.count) - 1);
 }
 
 /// `open` has a bit for each face that does not yet hold the whole node.
-void PointTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t node, unsigned open) {
+void CountingTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t node,
+                           unsigned open) {
     Node& n = levels_[level][node];
     if (glm::any(glm::lessThan(n.max, region.box_min)) || glm::any(glm::greaterThan(n.min, region.box_max))) return;
     // The box alone rules small regions out of large nodes; their faces are asked where they can tell more.
@@ -235,7 +230,7 @@ void PointTree::descend(const Region& region, std::int32_t weight, std::size_t l
     }
 }
 
-void PointTree::add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open) {
+void CountingTree::add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open) {
     const double* x = &x_[leaf * kLeaf];
     const double* y = &y_[leaf * kLeaf];
     const double* w = &w_[leaf * kLeaf];
@@ -256,7 +251,7 @@ void PointTree::add_to_leaf(const Region& region, std::int32_t weight, std::size
     }
 }
 
-void PointTree::push_down() {
+void CountingTree::push_down() {
     for (std::size_t level = levels_.size(); level-- > 0;) {
         std::vector<Node>& nodes = levels_[level];
         for (std::size_t i = 0; i < nodes.size(); ++i) {

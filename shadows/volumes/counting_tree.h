@@ -46,10 +46,10 @@ struct Region {
 };
 
 /// The points of a batch that need an answer for one light, in a tree over (x, y, w).
-class PointTree {
+class CountingTree {
 public:
     /// Takes the points whose facing to the light is `front` or `partly`. All lie in front of the view.
-    PointTree(const Scene& scene, const PointBatch& points, LightId light);
+    CountingTree(const Scene& scene, const PointBatch& points, LightId light);
 
     [[nodiscard]] const ViewFrame& view() const { return view_; }
     [[nodiscard]] std::size_t size() const { return index_.size(); }
@@ -90,7 +90,7 @@ private:
 [[nodiscard]] dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin);
 
 template <class Visit>
-void PointTree::for_each(const Visit& visit) {
+void CountingTree::for_each(const Visit& visit) {
     push_down();
     parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) visit(index_[k], count_[k]);

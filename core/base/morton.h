@@ -1,0 +1,24 @@
+// The Morton curve: an order of the cells of a square grid in which neighbours are mostly near each other.
+#pragma once
+
+#include <cstdint>
+
+namespace umbra {
+
+/// Bit k of x becomes bit 2 k of the result; the bits between are 0.
+[[nodiscard]] constexpr std::uint64_t spread_bits(std::uint32_t x) {
+    std::uint64_t b = x;
+    b               = (b | b << 16) & 0x0000ffff0000ffffu;
+    b               = (b | b << 8) & 0x00ff00ff00ff00ffu;
+    b               = (b | b << 4) & 0x0f0f0f0f0f0f0f0fu;
+    b               = (b | b << 2) & 0x3333333333333333u;
+    return (b | b << 1) & 0x5555555555555555u;
+}
+
+/// Place of cell (x, y) on the curve: the bits of both in turn, x's lowest bit first. Cells below 2^16 give less than
+/// 2^32. [G. M. Morton, A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing, 1966]
+[[nodiscard]] constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y) {
+    return spread_bits(x) | spread_bits(y) << 1;
+}
+
+}  // namespace umbra

@@ -1,0 +1,15 @@
+// Which side of a surface point's plane a light's centre is on.
+#pragma once
+
+#include <cstddef>
+
+#include "umbra/core/render/points.h"
+
+namespace umbra {
+
+/// Whether the centre of an area light that the plane of point i cuts is behind that plane, or in it: what methods ask
+/// that take an area light as one point, in its centre, whose S_j is then 0 there. False where the plane does not cut
+/// the light. Exact. `points.facing[light]` is filled.
+[[nodiscard]] bool centre_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i);
+
+}  // namespace umbra

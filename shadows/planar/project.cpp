@@ -1,0 +1,293 @@
+#include "umbra/shadows/planar/project.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/geometry.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/base/predicates.h"
+#include "umbra/core/render/sampling.h"
+#include "umbra/shadows/shared/light_points.h"
+
+namespace umbra::planar {
+namespace {
+
+constexpr std::size_t kRun = 4096;  ///< triangles
+
+// ---- floats rounded outwards ----------------------------------------------------------------------------------------
+
+float nearest_float(double x) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
+}
+
+}  // namespace
+
+float float_below(double x) { return std::nextafter(nearest_float(x), -kInfinity); }
+float float_above(double x) { return std::nextafter(nearest_float(x), +kInfinity); }
+
+// ---- receivers and sources ------------------------------------------------------------------------------------------
+
+Receiver make_receiver(const Scene& scene, const PlanarReceiver& plane, std::uint32_t index, int side) {
+    const Axes axes = axes_across(plane.normal);
+    const dvec3 corner(scene.vertex(plane.triangles[0], 0));
+    Receiver r;
+    r.plane  = index;
+    r.e1     = axes.u;
+    r.e2     = static_cast<double>(side) * axes.v;  // the other side is turned up about e1
+    r.normal = static_cast<double>(side) * plane.normal;
+    r.origin = corner - plane.normal * (glm::dot(plane.normal, corner) - plane.offset);
+    for (const TriangleId t : plane.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const dvec3 x = r.local(dvec3(scene.vertex(t, k)));
+            r.low         = glm::min(r.low, dvec2(x));
+            r.high        = glm::max(r.high, dvec2(x));
+            r.tolerance   = std::max(r.tolerance, std::abs(x.z));
+        }
+    return r;
+}
+
+Source centre_of(const Light& light) {
+    if (light.kind == LightKind::directional) return {true, -light.direction};
+    return {false, light.position};
+}
+
+/// A sphere is seen as a disk from everywhere: points of the ball with density 1 / sqrt(1 - r^2) fill that disk evenly
+/// in every direction, and they are what points spread evenly over the unit sphere of four dimensions are, less their
+/// fourth coordinate.
+std::vector<Source> sources_of(const Light& light, int samples) {
+    if (!is_area(light.kind)) return {centre_of(light)};
+
+    std::vector<Source> sources;
+    const DiskAxes disk = light.kind == LightKind::disk ? disk_axes(light) : DiskAxes{};
+    const SampleSet set(Sampler::sobol, samples, 0);
+    for (int first = 0; first < samples; first += 8) {
+        Samples8 eight;
+        set.eight(set.key(0), first, eight);
+        if (light.kind == LightKind::disk) map_to_disk(eight);
+        for (int i = 0; i < std::min(8, samples - first); ++i) {
+            const double x = static_cast<double>(eight.x[i]), y = static_cast<double>(eight.y[i]);
+            dvec3 offset{0};
+            if (light.kind == LightKind::rectangle)
+                offset = (x - 0.5) * dvec3(light.edge_u) + (y - 0.5) * dvec3(light.edge_v);
+            else if (light.kind == LightKind::disk)
+                offset = -(x * disk.u + y * disk.v);
+            else {
+                const double angle = 2 * kPi * ((first + i + 0.5) / samples), r = std::sqrt(x), q = std::sqrt(1 - x);
+                offset = static_cast<double>(light.radius) *
+                         dvec3(r * std::cos(2 * kPi * y), r * std::sin(2 * kPi * y), q * std::cos(angle));
+            }
+            sources.push_back({false, vec3(dvec3(light.position) + offset)});
+        }
+    }
+    return sources;
+}
+
+// ---- clipping and projecting ----------------------------------------------------------------------------------------
+
+namespace {
+
+Triangle local_triangle(const Scene& scene, TriangleId t, const Receiver& receiver) {
+    return {receiver.local(dvec3(scene.vertex(t, 0))), receiver.local(dvec3(scene.vertex(t, 1))),
+            receiver.local(dvec3(scene.vertex(t, 2)))};
+}
+
+/// The order in which an edge's ends are taken, so that both triangles of an edge compute the same.
+bool before(dvec3 a, dvec3 b) {
+    if (a.x != b.x) return a.x < b.x;
+    if (a.y != b.y) return a.y < b.y;
+    return a.z < b.z;
+}
+
+/// The part of a triangle on the plane's upper side, a convex polygon.
+/// [Ivan Sutherland, Gary Hodgman, Reentrant Polygon Clipping, 1974]
+std::vector<dvec3> clip_at_plane(const Triangle& triangle) {
+    std::vector<dvec3> kept;
+    for (std::size_t k = 0; k < 3; ++k) {
+        dvec3 a = triangle[k], b = triangle[(k + 1) % 3];
+        if (a.z >= 0) kept.push_back(a);
+        if ((a.z < 0 && b.z > 0) || (a.z > 0 && b.z < 0)) {
+            if (before(b, a)) std::swap(a, b);
+            const dvec3 cut = a + (b - a) * (a.z / (a.z - b.z));
+            kept.emplace_back(cut.x, cut.y, 0);
+        }
+    }
+    return kept;
+}
+
+/// Bounds on the plane.
+struct Reach {
+    dvec2 low{+kInfinity}, high{-kInfinity};
+};
+
+/// Where the receiver's points are. They are off the plane by its tolerance, and are moved onto it along their rays.
+Reach reach_of(const Receiver& receiver, const LocalSource& source) {
+    const double span  = source.at_infinity ? glm::length(source.at)
+                                            : glm::length(source.at - dvec3(receiver.low, 0)) +
+                                                 glm::length(receiver.high - receiver.low);
+    const double slope = span / std::max(source.at.z - (source.at_infinity ? 0 : receiver.tolerance), 1e-300);
+    const dvec2 slack(receiver.tolerance * slope);
+    return {receiver.low - slack, receiver.high + slack};
+}
+
+/// Bounds of the shadow of a triangle over the plane.
+Reach bounds_of_shadow(const LocalSource& source, const Triangle& triangle) {
+    Reach bounds;
+    for (const dvec3 x : triangle) {
+        if (!source.at_infinity && x.z >= source.at.z)  // the shadow runs off to infinity
+            return {dvec2(-kInfinity), dvec2(+kInfinity)};
+        const dvec2 q = source.project(x);
+        // Far above the rounding of q, which grows as the ray to it flattens.
+        const double height = source.at_infinity ? source.at.z : source.at.z - x.z;
+        const double length = glm::length(source.at_infinity ? source.at : source.at - x);
+        const dvec2 e       = 1e-14 * (1 + length / height) * (glm::abs(dvec2(x)) + glm::abs(q));
+        bounds.low          = glm::min(bounds.low, q - e);
+        bounds.high         = glm::max(bounds.high, q + e);
+    }
+    return bounds;
+}
+
+/// Adds the shadow of a triangle over the plane, unless it misses `reach`. The part of the triangle above the source is
+/// not cut away: rays from the source to it do not come down to the plane.
+void add_shadow(Shadows& run, const Reach& reach, const LocalSource& source, const Triangle& triangle, Shadow shadow) {
+    Reach bounds = bounds_of_shadow(source, triangle);
+    bounds.low   = glm::max(bounds.low, reach.low);
+    bounds.high  = glm::min(bounds.high, reach.high);
+    if (bounds.low.x > bounds.high.x || bounds.low.y > bounds.high.y) return;
+    shadow.low  = {float_below(bounds.low.x), float_below(bounds.low.y)};
+    shadow.high = {float_above(bounds.high.x), float_above(bounds.high.y)};
+    if (shadow.is_piece) {
+        run.piece_of.push_back(shadow.triangle);
+        shadow.triangle = static_cast<std::uint32_t>(run.pieces.size());
+        run.pieces.push_back(triangle);
+    }
+    run.shadows.push_back(shadow);
+}
+
+/// Adds the shadow of triangle t, cut at the plane where it crosses it. One that is not between plane and source has
+/// none, and neither has one that the source sees edge-on: that shadow is a line, all boundary.
+void project_triangle(Shadows& run, const Scene& scene, TriangleId t, const Receiver& receiver, const Reach& reach,
+                      const Source& from, const LocalSource& source) {
+    const Triangle x = local_triangle(scene, t, receiver);
+    const double low = std::min({x[0].z, x[1].z, x[2].z}), high = std::max({x[0].z, x[1].z, x[2].z});
+    if (high <= 0 || (!source.at_infinity && low >= source.at.z)) return;
+
+    const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
+    const int facing = from.at_infinity ? side_of_direction(a, b, c, from.at) : side_of_plane(a, b, c, from.at);
+    if (facing == 0) return;
+
+    Shadow shadow;
+    shadow.triangle    = t;
+    shadow.from_behind = facing < 0;
+    if (low >= 0) {
+        add_shadow(run, reach, source, x, shadow);
+        return;
+    }
+    shadow.is_piece    = true;
+    const auto polygon = clip_at_plane(x);
+    for (std::size_t k = 2; k < polygon.size(); ++k)
+        add_shadow(run, reach, source, {polygon[0], polygon[k - 1], polygon[k]}, shadow);
+}
+
+}  // namespace
+
+std::vector<Shadows> project(const Occluders& occluders, const Receiver& receiver, const Source& from) {
+    const LocalSource source(receiver, from);
+    if (!source.is_above()) return {};
+    const Reach reach   = reach_of(receiver, source);
+    const std::size_t n = occluders.triangles.size();
+    std::vector<Shadows> runs((n + kRun - 1) / kRun);
+    parallel_ranges(runs.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t r = first; r < last; ++r) {
+            for (std::size_t i = r * kRun; i < std::min(n, (r + 1) * kRun); ++i) {
+                const TriangleId t = occluders.triangles[i];
+                if (occluders.plane_of[t] != receiver.plane)
+                    project_triangle(runs[r], *occluders.scene, t, receiver, reach, from, source);
+            }
+            runs[r].shadows.shrink_to_fit();
+            runs[r].pieces.shrink_to_fit();
+            runs[r].piece_of.shrink_to_fit();
+        }
+    });
+    return runs;
+}
+
+LightShadows project(const Occluders& occluders, std::span<const Receiver> receivers, std::span<const Source> sources,
+                     double memory_limit) {
+    LightShadows all;
+    double bytes = 0;
+    for (const Source& source : sources) {
+        std::vector<std::vector<Shadows>>& on_receivers = all.emplace_back();
+        for (const Receiver& receiver : receivers) {
+            on_receivers.push_back(project(occluders, receiver, source));
+            for (const Shadows& run : on_receivers.back()) bytes += static_cast<double>(run.memory_bytes());
+        }
+        if (sources.size() == 1 || bytes <= memory_limit) continue;
+        const double a_source = bytes / static_cast<double>(all.size());
+        throw UsageError(
+            fmt::format("planar_projection: the shadows of light_samples={} take about {:.3g} MB, expected at most "
+                        "{:.3g} MB, a quarter of this machine's memory; light_samples={} would fit",
+                        sources.size(), a_source * static_cast<double>(sources.size()) / 1e6, memory_limit / 1e6,
+                        std::max(1.0, std::floor(memory_limit / a_source))));
+    }
+    return all;
+}
+
+std::size_t Shadows::memory_bytes() const {
+    return sizeof(Shadows) + shadows.size() * sizeof(Shadow) + pieces.size() * (sizeof(Triangle) + sizeof(TriangleId));
+}
+
+std::size_t memory_bytes(const LightShadows& shadows) {
+    std::size_t bytes = 0;
+    for (const auto& receivers : shadows)
+        for (const auto& runs : receivers)
+            for (const Shadows& run : runs) bytes += run.memory_bytes();
+    return bytes;
+}
+
+// ---- what a shadow holds --------------------------------------------------------------------------------------------
+
+namespace {
+
+/// det(from - source, to - from, p - from). Only differences of near points meet the large ones of a far source.
+Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) {
+    if (before(to, from)) {
+        std::swap(from, to);
+        sign = -sign;
+    }
+    const dvec3 n = sign * glm::cross(source.at_infinity ? -source.at : from - source.at, to - from);
+    return {n.x, n.y, -glm::dot(n, from)};
+}
+
+}  // namespace
+
+std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                             const Shadows& run, const Shadow& shadow) {
+    const Triangle x = shadow.is_piece ? run.pieces[shadow.triangle] : local_triangle(scene, shadow.triangle, receiver);
+    // Inside, det(a - source, b - a, p - a) has the sign of the triangle seen from behind.
+    const double sign = shadow.from_behind ? 1 : -1;
+    return {side_of_edge(source, x[0], x[1], sign), side_of_edge(source, x[1], x[2], sign),
+            side_of_edge(source, x[2], x[0], sign)};
+}
+
+TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                      std::span<const Shadows> runs, dvec2 at) {
+    const vec2 place(at);
+    const auto in_box = [&](const Shadow& s) {
+        return place.x >= s.low.x && place.x <= s.high.x && place.y >= s.low.y && place.y <= s.high.y;
+    };
+    for (const Shadows& run : runs)
+        for (const Shadow& shadow : run.shadows) {
+            if (!in_box(shadow)) continue;
+            const std::array<Side, 3> sides = sides_of(scene, receiver, source, run, shadow);
+            if (std::ranges::all_of(sides, [&](const Side& e) { return e.at(at.x, at.y) >= 0; }))
+                return run.caster(shadow);
+        }
+    return kNoTriangle;
+}
+
+}  // namespace umbra::planar

@@ -1,0 +1,133 @@
+// The shadows that triangles throw onto one side of a plane, from one point of a light.
+//
+//            light *            w = H - h > 0 between plane and light; a point at height h goes to
+//                 / \           q = v + (v - light) h / (H - h), in the plane's coordinates
+//          v ____/___\    H
+//          h    /     \         Whether p lies in the triangle's shadow is decided without q: by the sides of p to the
+//    _________q_________p___    three planes through the light and an edge, which need no division and hold where
+//                               q runs off to infinity. q only bounds the shadow.
+//
+// Only what lies between plane and light is projected; what is behind the light, or under the plane, would cast shadows
+// that are not there.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "umbra/core/scene/facts.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra::planar {
+
+/// One side of a receiver's plane, with coordinates of its own: x and y in the plane, z the height over it on that
+/// side, from an origin in the plane, so that neither a far nor a large scene costs digits. World units.
+struct Receiver {
+    std::uint32_t plane = 0;  ///< index of the plane that it is a side of
+    dvec3 origin{0}, e1{0}, e2{0}, normal{0};
+    dvec2 low{+kInfinity}, high{-kInfinity};  ///< bounds of the plane's triangles, in its coordinates
+    double tolerance = 0;                     ///< greatest distance of their corners from the plane
+
+    [[nodiscard]] dvec3 local(dvec3 world) const { return local_direction(world - origin); }
+    [[nodiscard]] dvec3 local_direction(dvec3 d) const {
+        return {glm::dot(e1, d), glm::dot(e2, d), glm::dot(normal, d)};
+    }
+};
+
+/// The side of `plane` that its normal points to (`side` = +1), or the other (-1). `index` becomes Receiver::plane.
+[[nodiscard]] Receiver make_receiver(const Scene& scene, const PlanarReceiver& plane, std::uint32_t index, int side);
+
+/// One point to project from, world space: a hard light, or one of an area light's samples.
+struct Source {
+    bool at_infinity = false;
+    vec3 at{0};  ///< position; at infinity the direction towards the light
+};
+
+/// The light as one source, in its centre.
+[[nodiscard]] Source centre_of(const Light& light);
+
+/// The sources of a light, of equal weight: `samples` points of an area light, one of any other.
+[[nodiscard]] std::vector<Source> sources_of(const Light& light, int samples);
+
+/// A source in a receiver's coordinates.
+struct LocalSource {
+    bool at_infinity;
+    dvec3 at;
+
+    LocalSource(const Receiver& receiver, const Source& source)
+        : at_infinity(source.at_infinity),
+          at(at_infinity ? receiver.local_direction(dvec3(source.at)) : receiver.local(dvec3(source.at))) {}
+
+    /// Whether the source lights this side of the plane.
+    [[nodiscard]] bool is_above() const { return at.z > 0; }
+
+    /// The shadow of x on the plane; x lies below a source that is not at infinity.
+    [[nodiscard]] dvec2 project(dvec3 x) const {
+        if (at_infinity) return dvec2(x) - dvec2(at) * (x.z / at.z);
+        return dvec2(x) + (dvec2(x) - dvec2(at)) * (x.z / (at.z - x.z));
+    }
+};
+
+/// What can cast a shadow. A triangle casts none onto the receiver that it belongs to.
+struct Occluders {
+    static constexpr std::uint32_t kNoPlane = 0xffffffffu;
+
+    const Scene* scene = nullptr;         ///< outlives this object
+    std::vector<TriangleId> triangles;    ///< those that have an area
+    std::vector<std::uint32_t> plane_of;  ///< for each triangle of the scene: Receiver::plane, or kNoPlane
+};
+
+using Triangle = std::array<dvec3, 3>;  ///< corners in a receiver's coordinates
+
+/// Bounds of a triangle's shadow, in a receiver's coordinates, in floats rounded outwards. A triangle that the plane
+/// cuts is several pieces.
+struct Shadow {
+    vec2 low{+kInfinity}, high{-kInfinity};
+    std::uint32_t triangle = 0;  ///< index into the scene, or into Shadows::pieces
+    bool is_piece          = false;
+    bool from_behind       = false;  ///< the source is behind the triangle, by its winding
+};
+
+/// The shadows of a run of triangles. Runs have the same length for any number of threads.
+struct Shadows {
+    std::vector<Shadow> shadows;
+    std::vector<Triangle> pieces;
+    std::vector<TriangleId> piece_of;  ///< for each piece: the triangle that it was cut from
+
+    [[nodiscard]] TriangleId caster(const Shadow& s) const { return s.is_piece ? piece_of[s.triangle] : s.triangle; }
+    [[nodiscard]] std::size_t memory_bytes() const;
+};
+
+/// The shadows on one receiver from one source, in runs; none where the source is not above the receiver.
+[[nodiscard]] std::vector<Shadows> project(const Occluders& occluders, const Receiver& receiver, const Source& source);
+
+/// The shadows on all receivers from all sources: [source][receiver][run].
+using LightShadows = std::vector<std::vector<std::vector<Shadows>>>;
+[[nodiscard]] std::size_t memory_bytes(const LightShadows& shadows);
+
+/// Projects from every source onto every receiver. Throws UsageError where several sources' shadows take more than
+/// `memory_limit` bytes: how many would fit. One source is never refused. In use there may be one source's shadows more
+/// than the limit for a moment.
+[[nodiscard]] LightShadows project(const Occluders& occluders, std::span<const Receiver> receivers,
+                                   std::span<const Source> sources, double memory_limit);
+
+/// Side of a point (x, y) of the plane to the plane through the source and one edge: sign of x * a + y * b + c.
+struct Side {
+    double a, b, c;
+    [[nodiscard]] double at(double x, double y) const { return a * x + b * y + c; }
+};
+
+/// The three sides of one of `run`'s shadows, positive inside. `source` is the one that it was projected from.
+[[nodiscard]] std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                                           const Shadows& run, const Shadow& shadow);
+
+/// The first triangle whose shadow holds the point `at` of the plane, kNoTriangle where none does.
+[[nodiscard]] TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                                    std::span<const Shadows> runs, dvec2 at);
+
+/// The next float below, or above, the float nearest to x.
+[[nodiscard]] float float_below(double x);
+[[nodiscard]] float float_above(double x);
+
+}  // namespace umbra::planar
