@@ -10,7 +10,8 @@
 
 namespace umbra {
 
-/// Topology of one object, over positions welded where they are bit-equal.
+/// Topology of one object, over positions welded where they are bit-equal. `closed` says which objects a halfedge mesh
+/// can hold.
 struct ObjectFacts {
     std::string name;
     std::uint32_t triangles = 0, vertices = 0;   ///< vertices after welding, used ones only
@@ -23,6 +24,7 @@ struct ObjectFacts {
     std::uint32_t components           = 0;      ///< connected over shared welded vertices
     bool closed                        = false;  ///< closed 2-manifold: none of the faults above, duplicates included
     bool outward                       = false;  ///< closed and of positive volume
+    bool solid                         = false;  ///< closed, and each of its connected parts is of positive volume
     bool planar                        = false;  ///< all its triangles lie in one plane
     double area = 0, volume = 0;                 ///< volume by the divergence theorem; where the object is not closed,
                                                  ///< that of the cones from the world's origin to its triangles
@@ -58,6 +60,7 @@ struct SceneFacts {
 /// A plane counts as a receiver from this share of the scene's area on.
 inline constexpr double kPlanarShare = 0.005;
 
+[[nodiscard]] std::vector<ObjectFacts> find_object_facts(const Scene& scene);  ///< one entry an object, in order
 [[nodiscard]] SceneFacts find_facts(const Scene& scene);
 
 /// What the scene asks a renderer for, and what it does not ask for: a phrase each, for people.
