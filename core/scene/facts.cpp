@@ -78,7 +78,7 @@ std::uint32_t count_roots(DisjointSets& parts, std::size_t vertices) {
     return n;
 }
 
-/// Whether each part of a closed object has a volume that is certainly positive, by the divergence theorem. The parts
+/// Whether each part of a manifold object has a volume that is certainly positive, by the divergence theorem. The parts
 /// may cross themselves and one another; CGAL's is_outward_oriented and does_bound_a_volume require that none does.
 bool bounds_solids(const Scene& scene, const Topology& topology, DisjointSets& parts) {
     std::vector<double> volume(topology.position.size(), 0), uncertainty(volume);
@@ -110,8 +110,10 @@ ObjectFacts object_facts(const Scene& scene, const Object& object) {
     f.duplicate_triangles = count_duplicates(topology);
     DisjointSets parts    = connected_parts(topology);
     f.components          = count_roots(parts, topology.position.size());
-    f.closed              = f.triangles > 0 && f.boundary_edges + f.nonmanifold_edges + f.misoriented_edges == 0 &&
-               f.nonmanifold_vertices + f.degenerate_triangles + f.duplicate_triangles == 0;
+    const bool whole      = topology.uses.size() == 3 * topology.triangles.size();  // no corner is repeated
+    f.manifold = f.triangles > 0 && whole && f.boundary_edges + f.nonmanifold_edges + f.misoriented_edges == 0 &&
+                 f.nonmanifold_vertices == 0;
+    f.closed = f.manifold && f.degenerate_triangles + f.duplicate_triangles == 0;
 
     // A closed body's volume does not depend on the origin; its own centre keeps the terms small.
     const dvec3 origin = f.closed ? dvec3(f.box.centre()) : dvec3(0);
@@ -121,7 +123,7 @@ ObjectFacts object_facts(const Scene& scene, const Object& object) {
         f.volume += glm::dot(n, dvec3(scene.vertex(t, 0)) - origin) / 6;
     }
     f.outward = f.closed && f.volume > 0;
-    f.solid   = f.closed && bounds_solids(scene, topology, parts);
+    f.solid   = f.manifold && bounds_solids(scene, topology, parts);
     f.planar  = common_plane(scene, object.first_triangle, object.triangle_count).has_value();
     return f;
 }

@@ -26,8 +26,8 @@ struct Neighbours {
     TriangleId left = 0, right = 0;
 };
 
-/// The mesh of one object that is closed (ObjectFacts::closed). All vertices and triangles that go in or come out are
-/// counted over the scene.
+/// The mesh of one object that is a closed 2-manifold (ObjectFacts::manifold). All vertices and triangles that go in or
+/// come out are counted over the scene.
 class ClosedMesh {
 public:
     /// `first_vertex`: the number that the object's first welded vertex has in the scene.

@@ -16,7 +16,7 @@ SilhouetteMeshes::SilhouetteMeshes(const Scene& scene, std::span<const ObjectFac
         ObjectMesh& mesh    = objects_.emplace_back();
         mesh.first_triangle = object.first_triangle;
         mesh.triangle_count = object.triangle_count;
-        if (facts[o].closed) {
+        if (facts[o].manifold) {
             mesh.closed.emplace(scene, topology, first_vertex);
             continue;
         }

@@ -4,8 +4,8 @@
 // mesh holds 2-manifolds only: where an edge has one triangle, three, or two that run it in the same direction, or
 // where a vertex has two fans, CGAL refuses the triangle. Scenes have such objects, and shadow volumes serve them; they
 // stay in the project's own core/scene/topology.h, where an edge has any number of triangles. That is also what says
-// whether an object is closed (ObjectFacts::closed), since it has to count the faults of those that are not. Which way
-// a triangle faces is decided by CGAL's exact predicates for both kinds.
+// whether an object is such a manifold (ObjectFacts::manifold), since it has to count the faults of those that are not.
+// Which way a triangle faces is decided by CGAL's exact predicates for both kinds.
 #pragma once
 
 #include <optional>

@@ -127,6 +127,24 @@ TEST(Silhouettes, ATriangleInAPlaneWithTheLightFacesItNot) {
     EXPECT_EQ(absolute, 8);
 }
 
+// A box with a corner in the middle of an edge: a triangle without area closes it.
+TEST(Silhouettes, ATriangleWithoutAreaLeavesAMeshASolid) {
+    Mesh box          = make_box({2, 2, 2});
+    const uvec3 last  = box.triangles.back();
+    const auto middle = static_cast<std::uint32_t>(box.positions.size());
+    box.positions.push_back(0.5f * (box.positions[last[0]] + box.positions[last[1]]));
+    box.triangles.back() = {last[0], middle, last[2]};
+    box.triangles.push_back({middle, last[1], last[2]});
+    box.triangles.push_back({last[0], last[1], middle});
+    const Scene scene = scene_of({box});
+    const auto facts  = find_object_facts(scene);
+    EXPECT_EQ(facts[0].degenerate_triangles, 1u);
+    EXPECT_FALSE(facts[0].closed);
+    EXPECT_TRUE(facts[0].manifold);
+    EXPECT_TRUE(facts[0].solid);
+    EXPECT_TRUE(meshes_of(scene).objects()[0].closed.has_value());
+}
+
 // The neighbours of every edge as the triangles themselves name them, of closed meshes that lie behind one another in a
 // scene and that share positions.
 TEST(Silhouettes, NeighboursRunTheirEdgeInBothDirections) {
