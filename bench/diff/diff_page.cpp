@@ -66,13 +66,14 @@ void write_diff_page(const fs::path& file, const DiffSet& set) {
     for (std::size_t i = 0; i < set.images.size(); ++i) images.push_back(image_view(set.images[i], i, pictures));
     const std::size_t fine = set.count(Verdict::same) + set.count(Verdict::close);
     StagedFiles staged;
-    staged.write(file, render_page(assets::diff_html, {{"a", utf8(set.a)},
-                                                       {"b", utf8(set.b)},
-                                                       {"verdict", to_string(set.worst())},
-                                                       {"count", count(double(set.images.size()))},
-                                                       {"bad", count(double(set.images.size() - fine))},
-                                                       {"many", set.images.size() != 1},
-                                                       {"images", std::move(images)}}));
+    staged.write(file, render_page(assets::diff_html, {},
+                                   {{"a", utf8(set.a)},
+                                    {"b", utf8(set.b)},
+                                    {"verdict", to_string(set.worst())},
+                                    {"count", count(double(set.images.size()))},
+                                    {"bad", count(double(set.images.size() - fine))},
+                                    {"many", set.images.size() != 1},
+                                    {"images", std::move(images)}}));
     staged.commit();
 }
 

@@ -1,4 +1,4 @@
-// Signs that must not be wrong: filtered in double, decided in exact rationals where the filter cannot tell.
+// Signs that must not be wrong: CGAL's exact predicates, for the scene's float positions.
 #pragma once
 
 #include "umbra/core/base/math.h"

@@ -6,31 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
+#include "umbra/core/base/disjoint_sets.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/core/scene/winding.h"
 
 namespace umbra {
 namespace {
-
-/// Disjoint sets with path halving; the smaller number is the root, so that roots do not depend on order.
-class Sets {
-public:
-    explicit Sets(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-    std::uint32_t root(std::uint32_t i) {
-        while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-        return i;
-    }
-    void unite(std::uint32_t i, std::uint32_t j) {
-        i = root(i);
-        j = root(j);
-        if (i != j) parent_[std::max(i, j)] = std::min(i, j);
-    }
-
-private:
-    std::vector<std::uint32_t> parent_;
-};
 
 void count_edges(const Topology& topology, ObjectFacts& facts) {
     for (const Edge& e : topology.edges) {
@@ -44,7 +27,7 @@ void count_edges(const Topology& topology, ObjectFacts& facts) {
 /// Two triangles at a vertex belong to one fan where they share an edge that ends there. Corners are numbered
 /// 3 * triangle + corner.
 std::uint32_t count_nonmanifold_vertices(const Topology& topology) {
-    Sets fans(3 * topology.triangles.size());
+    DisjointSets fans(3 * topology.triangles.size());
     for (const Edge& e : topology.edges) {
         // The use's triangle has edge end a at corner `side` where it runs forward, else at the next one.
         const auto corner = [&](const EdgeUse& use, bool at_a) {
@@ -79,15 +62,37 @@ std::uint32_t count_duplicates(const Topology& topology) {
     return static_cast<std::uint32_t>(topology.triangles.size() - static_cast<std::size_t>(distinct));
 }
 
-std::uint32_t count_components(const Topology& topology) {
-    Sets parts(topology.position.size());
+/// Parts of the object that hang together over welded vertices.
+DisjointSets connected_parts(const Topology& topology) {
+    DisjointSets parts(topology.position.size());
     for (const uvec3 t : topology.triangles) {
         parts.unite(t.x, t.y);
         parts.unite(t.x, t.z);
     }
+    return parts;
+}
+
+std::uint32_t count_roots(DisjointSets& parts, std::size_t vertices) {
     std::uint32_t n = 0;
-    for (std::uint32_t v = 0; v < topology.position.size(); ++v) n += parts.root(v) == v;
+    for (std::uint32_t v = 0; v < vertices; ++v) n += parts.root(v) == v;
     return n;
+}
+
+/// Whether each part of a manifold object has a volume that is certainly positive, by the divergence theorem. The parts
+/// may cross themselves and one another; CGAL's is_outward_oriented and does_bound_a_volume require that none does.
+bool bounds_solids(const Scene& scene, const Topology& topology, DisjointSets& parts) {
+    std::vector<double> volume(topology.position.size(), 0), uncertainty(volume);
+    for (const uvec3 t : topology.triangles) {
+        const std::uint32_t part = parts.root(t[0]);
+        const dvec3 base(scene.positions[topology.position[part]]);
+        const auto corner = [&](int k) { return dvec3(scene.positions[topology.position[t[k]]]) - base; };
+        const dvec3 a = corner(0), b = corner(1), c = corner(2);
+        volume[part] += glm::dot(a, glm::cross(b, c));
+        uncertainty[part] += 0x1p-30 * glm::length(a) * glm::length(b) * glm::length(c);  // far above rounding
+    }
+    for (std::uint32_t v = 0; v < volume.size(); ++v)
+        if (parts.root(v) == v && !(volume[v] > uncertainty[v])) return false;
+    return true;
 }
 
 ObjectFacts object_facts(const Scene& scene, const Object& object) {
@@ -103,9 +108,12 @@ ObjectFacts object_facts(const Scene& scene, const Object& object) {
     f.degenerate_triangles =
         static_cast<std::uint32_t>(std::count(topology.degenerate.begin(), topology.degenerate.end(), 1));
     f.duplicate_triangles = count_duplicates(topology);
-    f.components          = count_components(topology);
-    f.closed              = f.triangles > 0 && f.boundary_edges + f.nonmanifold_edges + f.misoriented_edges == 0 &&
-               f.nonmanifold_vertices + f.degenerate_triangles + f.duplicate_triangles == 0;
+    DisjointSets parts    = connected_parts(topology);
+    f.components          = count_roots(parts, topology.position.size());
+    const bool whole      = topology.uses.size() == 3 * topology.triangles.size();  // no corner is repeated
+    f.manifold = f.triangles > 0 && whole && f.boundary_edges + f.nonmanifold_edges + f.misoriented_edges == 0 &&
+                 f.nonmanifold_vertices == 0;
+    f.closed = f.manifold && f.degenerate_triangles + f.duplicate_triangles == 0;
 
     // A closed body's volume does not depend on the origin; its own centre keeps the terms small.
     const dvec3 origin = f.closed ? dvec3(f.box.centre()) : dvec3(0);
@@ -115,22 +123,9 @@ ObjectFacts object_facts(const Scene& scene, const Object& object) {
         f.volume += glm::dot(n, dvec3(scene.vertex(t, 0)) - origin) / 6;
     }
     f.outward = f.closed && f.volume > 0;
+    f.solid   = f.manifold && bounds_solids(scene, topology, parts);
     f.planar  = common_plane(scene, object.first_triangle, object.triangle_count).has_value();
     return f;
-}
-
-/// How often the object winds around the point: 1 or -1 inside a simple closed body, 0 outside.
-/// [Adriaan van Oosterom, Jan Strackee, The Solid Angle of a Plane Triangle, 1983]
-double winding_number(const Scene& scene, const Object& object, dvec3 point) {
-    double angle = 0;
-    for (TriangleId t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t) {
-        const dvec3 a = dvec3(scene.vertex(t, 0)) - point, b = dvec3(scene.vertex(t, 1)) - point,
-                    c   = dvec3(scene.vertex(t, 2)) - point;
-        const double la = glm::length(a), lb = glm::length(b), lc = glm::length(c);
-        angle += 2 * std::atan2(glm::dot(a, glm::cross(b, c)),
-                                la * lb * lc + glm::dot(a, b) * lc + glm::dot(b, c) * la + glm::dot(c, a) * lb);
-    }
-    return angle / (4 * kPi);
 }
 
 bool holds(const Box& box, vec3 p) {
@@ -231,16 +226,21 @@ std::string_view to_string(LightPlace place) {
     return "";
 }
 
+std::vector<ObjectFacts> find_object_facts(const Scene& scene) {
+    std::vector<ObjectFacts> facts(scene.objects.size());
+    parallel_ranges(facts.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) facts[i] = object_facts(scene, scene.objects[i]);
+    });
+    return facts;
+}
+
 SceneFacts find_facts(const Scene& scene) {
     SceneFacts facts;
     facts.triangles = scene.triangles.size();
     facts.box       = bounds(scene);
 
-    facts.objects.resize(scene.objects.size());
-    parallel_ranges(scene.objects.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) facts.objects[i] = object_facts(scene, scene.objects[i]);
-    });
-    double area = 0;
+    facts.objects = find_object_facts(scene);
+    double area   = 0;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         const ObjectFacts& f = facts.objects[i];
         area += f.area;

@@ -13,19 +13,22 @@ namespace umbra {
 /// Topology of one object, over positions welded where they are bit-equal.
 struct ObjectFacts {
     std::string name;
-    std::uint32_t triangles = 0, vertices = 0;   ///< vertices after welding, used ones only
-    std::uint32_t boundary_edges       = 0;      ///< one face
-    std::uint32_t nonmanifold_edges    = 0;      ///< three or more faces
-    std::uint32_t misoriented_edges    = 0;      ///< two faces that run it in the same direction
-    std::uint32_t nonmanifold_vertices = 0;      ///< more than one fan of faces
-    std::uint32_t degenerate_triangles = 0;      ///< exact zero area (two equal welded corners included)
-    std::uint32_t duplicate_triangles  = 0;      ///< same three welded corners as an earlier one, in any order
-    std::uint32_t components           = 0;      ///< connected over shared welded vertices
-    bool closed                        = false;  ///< closed 2-manifold: none of the faults above, duplicates included
-    bool outward                       = false;  ///< closed and of positive volume
-    bool planar                        = false;  ///< all its triangles lie in one plane
-    double area = 0, volume = 0;                 ///< volume by the divergence theorem; where the object is not closed,
-                                                 ///< that of the cones from the world's origin to its triangles
+    std::uint32_t triangles = 0, vertices = 0;  ///< vertices after welding, used ones only
+    std::uint32_t boundary_edges       = 0;     ///< one face
+    std::uint32_t nonmanifold_edges    = 0;     ///< three or more faces
+    std::uint32_t misoriented_edges    = 0;     ///< two faces that run it in the same direction
+    std::uint32_t nonmanifold_vertices = 0;     ///< more than one fan of faces
+    std::uint32_t degenerate_triangles = 0;     ///< exact zero area (two equal welded corners included)
+    std::uint32_t duplicate_triangles  = 0;     ///< same three welded corners as an earlier one, in any order
+    std::uint32_t components           = 0;     ///< connected over shared welded vertices
+    bool manifold = false;  ///< closed 2-manifold, zero area allowed: two triangles an edge, in opposite directions,
+                            ///< one fan a vertex, no corner repeated; what a halfedge mesh can hold without a border
+    bool closed  = false;         ///< manifold, and none of the faults above, duplicates included
+    bool outward = false;         ///< closed and of positive volume
+    bool solid   = false;         ///< manifold, and each of its connected parts is of positive volume
+    bool planar  = false;         ///< all its triangles lie in one plane
+    double area = 0, volume = 0;  ///< volume by the divergence theorem; where the object is not closed,
+                                  ///< that of the cones from the world's origin to its triangles
     Box box;
 };
 
@@ -58,6 +61,7 @@ struct SceneFacts {
 /// A plane counts as a receiver from this share of the scene's area on.
 inline constexpr double kPlanarShare = 0.005;
 
+[[nodiscard]] std::vector<ObjectFacts> find_object_facts(const Scene& scene);  ///< one entry an object, in order
 [[nodiscard]] SceneFacts find_facts(const Scene& scene);
 
 /// What the scene asks a renderer for, and what it does not ask for: a phrase each, for people.

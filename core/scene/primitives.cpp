@@ -10,6 +10,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "umbra/core/base/disjoint_sets.h"
+
 namespace umbra {
 namespace {
 
@@ -190,20 +192,6 @@ std::vector<std::uint32_t> weld(const std::vector<vec3>& positions) {
     return welded;
 }
 
-/// Disjoint sets of triangle corners; a set's name is its lowest corner.
-struct CornerSets {
-    std::vector<std::uint32_t> parent;
-    explicit CornerSets(std::size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-    std::uint32_t find(std::uint32_t i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    }
-    void join(std::uint32_t i, std::uint32_t j) {
-        i = find(i), j = find(j);
-        parent[std::max(i, j)] = std::min(i, j);
-    }
-};
-
 }  // namespace
 
 // Corners that meet at a position share a normal where one can walk from face to face around it over edges that are
@@ -243,24 +231,24 @@ Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees) {
         return std::tie(a.low, a.high, a.low_corner) < std::tie(b.low, b.high, b.low_corner);
     });
     const double cos_crease = crease_degrees >= 180 ? -2 : std::cos(glm::radians(double(crease_degrees)));
-    CornerSets sets(3 * faces);
+    DisjointSets sets(3 * faces);
     for (std::size_t s = 1; s < sides.size(); ++s) {
         const Side &a = sides[s - 1], &b = sides[s];
         if (a.low != b.low || a.high != b.high) continue;
         const dvec3 na = face_normal[a.low_corner / 3], nb = face_normal[b.low_corner / 3];
         const bool degenerate = na == dvec3(0) || nb == dvec3(0);  // has no direction: creases nothing
         if (!degenerate && glm::dot(na, nb) < cos_crease - 1e-9) continue;
-        sets.join(a.low_corner, b.low_corner);
-        sets.join(a.high_corner, b.high_corner);
+        sets.unite(a.low_corner, b.low_corner);
+        sets.unite(a.high_corner, b.high_corner);
     }
 
     // One vertex a set, in order of first use.
     std::vector<dvec3> sum(3 * faces, dvec3(0));
-    for (std::uint32_t c = 0; c < 3 * faces; ++c) sum[sets.find(c)] += angle[c] * face_normal[c / 3];
+    for (std::uint32_t c = 0; c < 3 * faces; ++c) sum[sets.root(c)] += angle[c] * face_normal[c / 3];
     Mesh result;
     std::vector<std::uint32_t> vertex(3 * faces);
     for (std::uint32_t c = 0; c < 3 * faces; ++c) {
-        if (const std::uint32_t set = sets.find(c); set == c) {
+        if (const std::uint32_t set = sets.root(c); set == c) {
             vertex[c]           = static_cast<std::uint32_t>(result.positions.size());
             const double length = glm::length(sum[c]);
             result.positions.push_back(mesh.positions[corner_of(c)]);

@@ -1,4 +1,5 @@
-// Topology: which triangles share which vertices and edges, once positions that are bit-equal are one vertex.
+// Topology: which triangles share which vertices and edges, once positions that are bit-equal are one vertex. It holds
+// any triangles; a halfedge mesh, as CGAL's, holds only those that form a 2-manifold.
 #pragma once
 
 #include <vector>

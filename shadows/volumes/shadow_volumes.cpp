@@ -21,196 +21,17 @@
 // Byungmoon Kim, Kihwan Kim, Greg Turk. A Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters. 2008
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/base/predicates.h"
 #include "umbra/core/render/facing.h"
+#include "umbra/core/scene/winding.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/shared/triangle_tree.h"
-#include "umbra/shadows/volumes/counting_tree.h"
-#include "umbra/shadows/volumes/silhouettes.h"
+#include "umbra/shadows/volumes/seen_volumes.h"
 
 namespace umbra {
 namespace {
-
-/// How often the object's surface winds around q. [Adriaan van Oosterom, Jan Strackee, The Solid Angle of a Plane
-/// Triangle, 1983]
-double winding_number(const SilhouetteMeshes& meshes, const Object& object, dvec3 q) {
-    constexpr std::size_t kBlock = 4096;
-    std::vector<double> sums((object.triangle_count + kBlock - 1) / kBlock);  // added up in one order
-    parallel_ranges(sums.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t block = begin; block < end; ++block) {
-            const std::size_t last = std::min<std::size_t>(object.triangle_count, (block + 1) * kBlock);
-            for (std::size_t t = block * kBlock; t < last; ++t) {
-                const uvec3 v  = meshes.triangles()[object.first_triangle + t];
-                const dvec3 a  = dvec3(meshes.vertices()[v[0]]) - q;
-                const dvec3 b  = dvec3(meshes.vertices()[v[1]]) - q;
-                const dvec3 c  = dvec3(meshes.vertices()[v[2]]) - q;
-                const double A = glm::length(a), B = glm::length(b), C = glm::length(c);
-                sums[block] += std::atan2(glm::dot(a, glm::cross(b, c)),
-                                          A * B * C + glm::dot(a, b) * C + glm::dot(b, c) * A + glm::dot(c, a) * B);
-            }
-        }
-    });
-    double sum = 0;
-    for (const double s : sums) sum += s;
-    return sum / (2 * kPi);
-}
-
-/// The volumes of one light, seen from a view.
-///
-/// Directions from the light are taken to the view's frame. `far(v)`, where vertex v ends up at infinity, is v less the
-/// light, or the light's direction; on the way there v moves in the plane of v and `travel`, from O.
-class SeenVolumes {
-public:
-    SeenVolumes(const SilhouetteMeshes& meshes, const Light& light, const ViewFrame& view)
-        : meshes_(meshes), at_infinity_(light.kind == LightKind::directional) {
-        travel_ = at_infinity_ ? view.turned(dvec3(light.direction)) : -view.seen(dvec3(light.position));
-        vertices_.resize(meshes.vertices().size());
-        parallel_ranges(vertices_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t v = begin; v < end; ++v) vertices_[v] = view.seen(dvec3(meshes.vertices()[v]));
-        });
-        double radius2 = 0;
-        for (const dvec3& v : vertices_) radius2 = std::max(radius2, glm::dot(v, v));
-        radius_ = std::sqrt(radius2);
-    }
-
-    /// The near cap of a triangle: region and weight of its crossings.
-    void add_near_cap(CountingTree& tree, TriangleId t, int turn, bool depth_fail) const {
-        const Cap cap = near_cap(t, turn);
-        Region region;
-        region.add(HalfSpace::side(cap.behind, cap.behind_offset, cap.origin_behind == depth_fail ? +1 : -1));
-        for (int k = 0; k < 3; ++k) {
-            const Line e = edge(cap.corners[k], cap.corners[(k + 1) % 3]);
-            region.add(HalfSpace::side(e.normal, 0, cap.origin_behind ? e.sense : -e.sense));
-        }
-        bound(region, cap.corners, depth_fail);
-        tree.add(region, cap.origin_behind == depth_fail ? +1 : -1);
-    }
-
-    /// The far cap: directions in which a point at infinity lies in the triangle's volume.
-    void add_far_cap(CountingTree& tree, TriangleId t, int turn) const {
-        const uvec3 corners = turned(meshes_.triangles()[t], turn);
-        Region region;
-        for (int k = 0; k < 3; ++k) {
-            const Line e = far_edge(corners[k], corners[(k + 1) % 3]);
-            region.add(HalfSpace::side(e.normal, 0, -e.sense));
-        }
-        tree.add(region, +1);
-    }
-
-    void add_side(CountingTree& tree, const SilhouetteEdge& e, bool depth_fail) const {
-        const Plane plane = side_plane(e.a, e.b);
-        const int origin  = plane.origin_outside ? +1 : -1;
-        Region region;
-        region.add(HalfSpace::side(plane.normal, plane.offset, depth_fail ? origin : -origin));
-        region.add(HalfSpace::side(edge(e.a, e.b).normal, 0, origin));
-        region.add(HalfSpace::side(glm::cross(vertices_[e.b], travel_), 0, origin));
-        region.add(HalfSpace::side(glm::cross(vertices_[e.a], travel_), 0, -origin));
-        if (depth_fail && !at_infinity_) region.add(HalfSpace::side(far_edge(e.a, e.b).normal, 0, -origin));
-        tree.add(region, depth_fail ? -origin * e.weight : origin * e.weight);
-    }
-
-    /// In how many volumes the view's origin lies: by the same planes, and the same rule where it lies in one.
-    std::int32_t count_at_origin(std::span<const std::int8_t> turn) const {
-        std::atomic<std::int32_t> count{0};
-        parallel_ranges(turn.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            std::int32_t in_range = 0;
-            for (std::size_t t = begin; t < end; ++t) {
-                if (turn[t] == 0) continue;
-                const Cap cap = near_cap(static_cast<TriangleId>(t), turn[t]);
-                bool within   = cap.origin_behind;
-                for (int k = 0; within && k < 3; ++k) {
-                    const std::uint32_t i = cap.corners[k], j = cap.corners[(k + 1) % 3];
-                    within = side_plane(std::min(i, j), std::max(i, j)).origin_outside == (i > j);
-                }
-                in_range += within;
-            }
-            count += in_range;
-        });
-        return count;
-    }
-
-private:
-    static uvec3 turned(uvec3 t, int turn) { return turn > 0 ? t : uvec3(t[0], t[2], t[1]); }
-
-    /// A triangle as the light sees it, anticlockwise; behind.p + behind_offset > 0 on its far side.
-    ///
-    /// A point in the plane of the triangle, its own or one that coincides with it, is not behind it. Points and
-    /// vertices carry a few roundings u = 2^-53 relative to their distance from O, at most `radius`, the normal
-    /// relative to the two sides that span it; the sum of both, over both points and the evaluation, is below 32 u.
-    struct Cap {
-        uvec3 corners;
-        dvec3 behind;
-        double behind_offset = 0;
-        bool origin_behind   = false;
-    };
-    Cap near_cap(TriangleId t, int turn) const {
-        Cap cap;
-        cap.corners       = turned(meshes_.triangles()[t], turn);
-        const dvec3 a     = vertices_[cap.corners[0]];
-        const dvec3 p     = vertices_[cap.corners[1]] - a;
-        const dvec3 q     = vertices_[cap.corners[2]] - a;
-        cap.behind        = glm::cross(q, p);
-        const double tiny = 32 * 0x1p-53 * radius_ * std::sqrt(glm::dot(p, p) * glm::dot(q, q));
-        cap.behind_offset = -glm::dot(cap.behind, a) - tiny;
-        cap.origin_behind = cap.behind_offset > 0;
-        return cap;
-    }
-
-    /// A side's plane, its normal out of the volume of a triangle that runs the edge from a to b.
-    struct Plane {
-        dvec3 normal;
-        double offset       = 0;
-        bool origin_outside = false;
-    };
-    Plane side_plane(std::uint32_t a, std::uint32_t b) const {
-        Plane plane;
-        plane.normal         = glm::cross(far(a), vertices_[b] - vertices_[a]);
-        plane.offset         = -glm::dot(plane.normal, vertices_[a]);
-        plane.origin_outside = plane.offset >= 0;
-        return plane;
-    }
-
-    dvec3 far(std::uint32_t v) const { return at_infinity_ ? travel_ : vertices_[v] + travel_; }
-
-    /// The plane through O and an edge, made the same for both directions of the edge; `sense` is -1 for the second.
-    struct Line {
-        dvec3 normal;
-        int sense = +1;
-    };
-    Line edge(std::uint32_t from, std::uint32_t to) const {
-        return {glm::cross(vertices_[std::min(from, to)], vertices_[std::max(from, to)]), from < to ? +1 : -1};
-    }
-    Line far_edge(std::uint32_t from, std::uint32_t to) const {
-        return {glm::cross(far(std::min(from, to)), far(std::max(from, to))), from < to ? +1 : -1};
-    }
-
-    /// A box around the points that can count a cap in front of the view: those that it covers, farther or nearer.
-    void bound(Region& region, uvec3 corners, bool depth_fail) const {
-        dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-        for (int k = 0; k < 3; ++k) {
-            const dvec3 v = vertices_[corners[k]];
-            if (!(v.z > 0x1p-20 * (std::abs(v.x) + std::abs(v.y)))) return;
-            const dvec3 projected(v.x / v.z, v.y / v.z, 1 / v.z);
-            low  = glm::min(low, projected);
-            high = glm::max(high, projected);
-        }
-        const dvec3 rounding = 0x1p-40 * glm::max(glm::abs(low), glm::abs(high));
-        region.box_min       = low - rounding;
-        region.box_max       = high + rounding;
-        (depth_fail ? region.box_max.z : region.box_min.z) =
-            depth_fail ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
-    }
-
-    const SilhouetteMeshes& meshes_;
-    bool at_infinity_;
-    dvec3 travel_;
-    std::vector<dvec3> vertices_;
-    double radius_ = 0;
-};
 
 enum class Counting : std::uint8_t { depth_pass, depth_fail };
 enum class Edges : std::uint8_t { weighted, silhouette, per_triangle };
@@ -252,28 +73,17 @@ public:
                 "non-manifold or badly oriented"};
     }
 
-    void build(const Scene& scene, const SceneFacts&) override {
+    void build(const Scene& scene, const SceneFacts& facts) override {
         scene_  = &scene;
-        meshes_ = std::make_unique<SilhouetteMeshes>(scene);
+        facts_  = &facts;
+        meshes_ = std::make_unique<SilhouetteMeshes>(scene, facts.objects);
     }
 
     void aim(LightId light) override {
         const Light& l = scene_->lights[light];
-        turn_          = facing_triangles(*scene_, l);
-        if (options.edges == Edges::silhouette) {
-            // From a solid that the light is outside of, a line to the light leaves as often as it enters, or once
-            // more: the triangles that face the light are enough.
-            for (std::size_t o = 0; o < scene_->objects.size(); ++o) {
-                const Object& object = scene_->objects[o];
-                if (!meshes_->solid(o)) continue;
-                if (l.kind != LightKind::directional &&
-                    std::abs(winding_number(*meshes_, object, dvec3(l.position))) > 1e-6)  // inside, or on it
-                    continue;
-                for (std::uint32_t t = 0; t < object.triangle_count; ++t)
-                    turn_[object.first_triangle + t] = std::max<std::int8_t>(turn_[object.first_triangle + t], 0);
-            }
-        }
-        edges_ = options.edges == Edges::per_triangle ? all_edges() : meshes_->edges(turn_);
+        orientation_   = meshes_->facing(l);
+        if (options.edges == Edges::silhouette) leave_out_back_faces(l);
+        edges_ = options.edges == Edges::per_triangle ? all_edges() : meshes_->edges(orientation_);
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
@@ -282,14 +92,14 @@ public:
         if (tree.size() == 0) return;
         const Light& l = scene_->lights[light];
         const SeenVolumes volumes(*meshes_, l, tree.view());
-        const std::int32_t origin = depth_fail ? 0 : volumes.count_at_origin(turn_);
+        const std::int32_t origin = depth_fail ? 0 : volumes.count_at_origin(orientation_);
 
-        parallel_ranges(turn_.size(), 256, [&](std::size_t begin, std::size_t end) {
+        parallel_ranges(orientation_.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
-                if (turn_[t] == 0) continue;
-                volumes.add_near_cap(tree, static_cast<TriangleId>(t), turn_[t], depth_fail);
+                if (orientation_[t] == 0) continue;
+                volumes.add_near_cap(tree, static_cast<TriangleId>(t), orientation_[t], depth_fail);
                 if (depth_fail && l.kind != LightKind::directional)
-                    volumes.add_far_cap(tree, static_cast<TriangleId>(t), turn_[t]);
+                    volumes.add_far_cap(tree, static_cast<TriangleId>(t), orientation_[t]);
             }
         });
         parallel_ranges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -300,37 +110,51 @@ public:
         });
     }
 
-    /// A sum of crossings names no volume. So the volumes that hold the point are looked for anew, each by its own
-    /// planes, in double: the triangle farthest off is named, which rounding at the point's own surface cannot be.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override {
+    /// A sum of crossings names no volume. So each volume is asked whether it holds the point, by its own planes, in
+    /// double: the farthest triangle is named, which rounding at the point's own surface cannot be.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
         const TriangleTree tree(*scene_);
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                who[i] = points.asks(light, i) ? farthest_volume(tree, points, i, light) : kNoTriangle;
+                blockers[i] = points.asks(light, i) ? farthest_volume(tree, points, i, light) : kNoTriangle;
         });
     }
 
     std::size_t memory_bytes() const override {
-        return meshes_->memory_bytes() + turn_.capacity() + edges_.capacity() * sizeof(SilhouetteEdge);
+        return meshes_->memory_bytes() + orientation_.capacity() + edges_.capacity() * sizeof(SilhouetteEdge);
     }
 
 private:
+    /// From a solid that the light is outside of, a line to the light leaves as often as it enters, or once more: the
+    /// triangles that face the light are enough.
+    void leave_out_back_faces(const Light& light) {
+        for (std::size_t o = 0; o < scene_->objects.size(); ++o) {
+            const Object& object = scene_->objects[o];
+            if (!facts_->objects[o].solid) continue;
+            if (light.kind != LightKind::directional &&
+                std::abs(winding_number(*scene_, object, dvec3(light.position))) > 1e-6)  // inside, or on it
+                continue;
+            for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
+                orientation_[t] = std::max<std::int8_t>(orientation_[t], 0);
+        }
+    }
+
     TriangleId farthest_volume(const TriangleTree& tree, const PointBatch& points, std::size_t i, LightId light) const {
         const Light& l         = scene_->lights[light];
         const bool at_infinity = l.kind == LightKind::directional;
         const dvec3 p          = named_point(*scene_, points, i, dvec3(0));
-        const dvec3 way        = at_infinity ? -dvec3(l.direction) : dvec3(l.position) - p;
+        const dvec3 to_light   = at_infinity ? -dvec3(l.direction) : dvec3(l.position) - p;
         TriangleId farthest    = kNoTriangle;
         double most            = 0;
-        tree.visit({p, way, at_infinity ? std::numeric_limits<double>::infinity() : 1.0, 0}, [&](TriangleId t) {
-            if (turn_[t] == 0) return true;
+        tree.visit({p, to_light, at_infinity ? std::numeric_limits<double>::infinity() : 1.0, 0}, [&](TriangleId t) {
+            if (orientation_[t] == 0) return true;
             std::array<dvec3, 3> v;
             for (int k = 0; k < 3; ++k) v[static_cast<std::size_t>(k)] = dvec3(scene_->vertex(t, k)) - p;
             const dvec3 n      = glm::cross(v[1] - v[0], v[2] - v[0]);
-            const double share = glm::dot(n, v[0]) / glm::dot(n, way);  // of the way to the light
+            const double share = glm::dot(n, v[0]) / glm::dot(n, to_light);  // of the segment to the light
             int inside         = 0;
             for (std::size_t k = 0; k < 3; ++k)
-                inside += glm::dot(glm::cross(v[k], v[(k + 1) % 3]), way) >= 0 ? +1 : -1;
+                inside += glm::dot(glm::cross(v[k], v[(k + 1) % 3]), to_light) >= 0 ? +1 : -1;
             if (std::abs(inside) == 3 && share > most && (at_infinity || share < 1)) most = share, farthest = t;
             return true;
         });
@@ -339,19 +163,20 @@ private:
 
     std::vector<SilhouetteEdge> all_edges() const {
         std::vector<SilhouetteEdge> edges;
-        for (std::size_t t = 0; t < turn_.size(); ++t) {
-            if (turn_[t] == 0) continue;
+        for (std::size_t t = 0; t < orientation_.size(); ++t) {
+            if (orientation_[t] == 0) continue;
             for (int k = 0; k < 3; ++k) {
                 const std::uint32_t i = meshes_->triangles()[t][k], j = meshes_->triangles()[t][(k + 1) % 3];
-                edges.push_back({std::min(i, j), std::max(i, j), i < j ? turn_[t] : -turn_[t]});
+                edges.push_back({std::min(i, j), std::max(i, j), i < j ? orientation_[t] : -orientation_[t]});
             }
         }
         return edges;
     }
 
-    const Scene* scene_ = nullptr;
+    const Scene* scene_      = nullptr;
+    const SceneFacts* facts_ = nullptr;
     std::unique_ptr<SilhouetteMeshes> meshes_;
-    std::vector<std::int8_t> turn_;  // of each triangle: taken as wound, turned over, or not an occluder
+    std::vector<std::int8_t> orientation_;  // of each triangle: +1 taken as wound, -1 turned over, 0 no occluder
     std::vector<SilhouetteEdge> edges_;
 };
 

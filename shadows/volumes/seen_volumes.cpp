@@ -1,0 +1,129 @@
+#include "umbra/shadows/volumes/seen_volumes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "umbra/core/base/parallel.h"
+
+namespace umbra {
+namespace {
+
+uvec3 oriented(uvec3 t, int orientation) { return orientation > 0 ? t : uvec3(t[0], t[2], t[1]); }
+
+}  // namespace
+
+SeenVolumes::SeenVolumes(const SilhouetteMeshes& meshes, const Light& light, const ViewFrame& view)
+    : meshes_(meshes), at_infinity_(light.kind == LightKind::directional) {
+    travel_ = at_infinity_ ? view.turned(dvec3(light.direction)) : -view.seen(dvec3(light.position));
+    vertices_.resize(meshes.vertices().size());
+    parallel_ranges(vertices_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) vertices_[v] = view.seen(dvec3(meshes.vertices()[v]));
+    });
+    double radius2 = 0;
+    for (const dvec3& v : vertices_) radius2 = std::max(radius2, glm::dot(v, v));
+    radius_ = std::sqrt(radius2);
+}
+
+void SeenVolumes::add_near_cap(CountingTree& tree, TriangleId t, int orientation, bool depth_fail) const {
+    const Cap cap = near_cap(t, orientation);
+    Region region;
+    region.add(HalfSpace::side(cap.behind, cap.behind_offset, cap.origin_behind == depth_fail ? +1 : -1));
+    for (int k = 0; k < 3; ++k) {
+        const Line e = edge(cap.corners[k], cap.corners[(k + 1) % 3]);
+        region.add(HalfSpace::side(e.normal, 0, cap.origin_behind ? e.sense : -e.sense));
+    }
+    bound(region, cap.corners, depth_fail);
+    tree.add(region, cap.origin_behind == depth_fail ? +1 : -1);
+}
+
+void SeenVolumes::add_far_cap(CountingTree& tree, TriangleId t, int orientation) const {
+    const uvec3 corners = oriented(meshes_.triangles()[t], orientation);
+    Region region;
+    for (int k = 0; k < 3; ++k) {
+        const Line e = far_edge(corners[k], corners[(k + 1) % 3]);
+        region.add(HalfSpace::side(e.normal, 0, -e.sense));
+    }
+    tree.add(region, +1);
+}
+
+void SeenVolumes::add_side(CountingTree& tree, const SilhouetteEdge& e, bool depth_fail) const {
+    const Plane plane = side_plane(e.a, e.b);
+    const int origin  = plane.origin_outside ? +1 : -1;
+    Region region;
+    region.add(HalfSpace::side(plane.normal, plane.offset, depth_fail ? origin : -origin));
+    region.add(HalfSpace::side(edge(e.a, e.b).normal, 0, origin));
+    region.add(HalfSpace::side(glm::cross(vertices_[e.b], travel_), 0, origin));
+    region.add(HalfSpace::side(glm::cross(vertices_[e.a], travel_), 0, -origin));
+    if (depth_fail && !at_infinity_) region.add(HalfSpace::side(far_edge(e.a, e.b).normal, 0, -origin));
+    tree.add(region, depth_fail ? -origin * e.weight : origin * e.weight);
+}
+
+std::int32_t SeenVolumes::count_at_origin(std::span<const std::int8_t> orientation) const {
+    std::atomic<std::int32_t> count{0};
+    parallel_ranges(orientation.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        std::int32_t in_range = 0;
+        for (std::size_t t = begin; t < end; ++t) {
+            if (orientation[t] == 0) continue;
+            const Cap cap = near_cap(static_cast<TriangleId>(t), orientation[t]);
+            bool within   = cap.origin_behind;
+            for (int k = 0; within && k < 3; ++k) {
+                const std::uint32_t i = cap.corners[k], j = cap.corners[(k + 1) % 3];
+                within = side_plane(std::min(i, j), std::max(i, j)).origin_outside == (i > j);
+            }
+            in_range += within;
+        }
+        count += in_range;
+    });
+    return count;
+}
+
+// A point in the plane of the triangle, its own or one that coincides with it, is not behind it. Points and vertices
+// carry a few roundings u = 2^-53 relative to their distance from O, at most `radius`, the normal relative to the two
+// sides that span it; the sum of both, over both points and the evaluation, is below 32 u.
+SeenVolumes::Cap SeenVolumes::near_cap(TriangleId t, int orientation) const {
+    Cap cap;
+    cap.corners       = oriented(meshes_.triangles()[t], orientation);
+    const dvec3 a     = vertices_[cap.corners[0]];
+    const dvec3 p     = vertices_[cap.corners[1]] - a;
+    const dvec3 q     = vertices_[cap.corners[2]] - a;
+    cap.behind        = glm::cross(q, p);
+    const double tiny = 32 * 0x1p-53 * radius_ * std::sqrt(glm::dot(p, p) * glm::dot(q, q));
+    cap.behind_offset = -glm::dot(cap.behind, a) - tiny;
+    cap.origin_behind = cap.behind_offset > 0;
+    return cap;
+}
+
+SeenVolumes::Plane SeenVolumes::side_plane(std::uint32_t a, std::uint32_t b) const {
+    Plane plane;
+    plane.normal         = glm::cross(far(a), vertices_[b] - vertices_[a]);
+    plane.offset         = -glm::dot(plane.normal, vertices_[a]);
+    plane.origin_outside = plane.offset >= 0;
+    return plane;
+}
+
+SeenVolumes::Line SeenVolumes::edge(std::uint32_t from, std::uint32_t to) const {
+    return {glm::cross(vertices_[std::min(from, to)], vertices_[std::max(from, to)]), from < to ? +1 : -1};
+}
+
+SeenVolumes::Line SeenVolumes::far_edge(std::uint32_t from, std::uint32_t to) const {
+    return {glm::cross(far(std::min(from, to)), far(std::max(from, to))), from < to ? +1 : -1};
+}
+
+void SeenVolumes::bound(Region& region, uvec3 corners, bool depth_fail) const {
+    dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (int k = 0; k < 3; ++k) {
+        const dvec3 v = vertices_[corners[k]];
+        if (!(v.z > 0x1p-20 * (std::abs(v.x) + std::abs(v.y)))) return;
+        const dvec3 projected(v.x / v.z, v.y / v.z, 1 / v.z);
+        low  = glm::min(low, projected);
+        high = glm::max(high, projected);
+    }
+    const dvec3 rounding = 0x1p-40 * glm::max(glm::abs(low), glm::abs(high));
+    region.box_min       = low - rounding;
+    region.box_max       = high + rounding;
+    (depth_fail ? region.box_max.z : region.box_min.z) =
+        depth_fail ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+}
+
+}  // namespace umbra

@@ -1,0 +1,73 @@
+// The shadow volumes of one light, seen from a view: their faces as regions of a point tree.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "umbra/shadows/volumes/counting_tree.h"
+#include "umbra/shadows/volumes/silhouettes.h"
+
+namespace umbra {
+
+/// Directions from the light are in the view's frame. Vertex v ends at infinity in direction `far(v)`: v less the
+/// light, or the light's direction. On its path there it stays in the plane through O, v and `travel`.
+///
+/// `orientation`, in all functions: +1 for a triangle taken as wound, -1 for one taken turned over. Functions that add
+/// to a tree may run in several threads at once.
+class SeenVolumes {
+public:
+    /// `meshes` must outlive this object.
+    SeenVolumes(const SilhouetteMeshes& meshes, const Light& light, const ViewFrame& view);
+
+    /// The near cap of a triangle: region and weight of its crossings.
+    void add_near_cap(CountingTree& tree, TriangleId t, int orientation, bool depth_fail) const;
+
+    /// The far cap: directions in which a point at infinity lies in the triangle's volume.
+    void add_far_cap(CountingTree& tree, TriangleId t, int orientation) const;
+
+    /// The side that an edge extrudes.
+    void add_side(CountingTree& tree, const SilhouetteEdge& e, bool depth_fail) const;
+
+    /// In how many volumes the view's origin lies: by the same planes, and the same rule where it lies in one.
+    /// `orientation`: of each triangle, 0 where it bounds no volume.
+    [[nodiscard]] std::int32_t count_at_origin(std::span<const std::int8_t> orientation) const;
+
+private:
+    /// A triangle as the light sees it, anticlockwise; behind.p + behind_offset > 0 on its far side.
+    struct Cap {
+        uvec3 corners;
+        dvec3 behind;
+        double behind_offset = 0;
+        bool origin_behind   = false;
+    };
+    [[nodiscard]] Cap near_cap(TriangleId t, int orientation) const;
+
+    /// A side's plane, its normal out of the volume of a triangle that runs the edge from a to b.
+    struct Plane {
+        dvec3 normal;
+        double offset       = 0;
+        bool origin_outside = false;
+    };
+    [[nodiscard]] Plane side_plane(std::uint32_t a, std::uint32_t b) const;
+
+    /// The plane through O and an edge, made the same for both directions of the edge; `sense` is -1 for the second.
+    struct Line {
+        dvec3 normal;
+        int sense = +1;
+    };
+    [[nodiscard]] Line edge(std::uint32_t from, std::uint32_t to) const;
+    [[nodiscard]] Line far_edge(std::uint32_t from, std::uint32_t to) const;
+
+    [[nodiscard]] dvec3 far(std::uint32_t v) const { return at_infinity_ ? travel_ : vertices_[v] + travel_; }
+
+    /// A box around the points that can count a cap in front of the view: those that it covers, farther or nearer.
+    void bound(Region& region, uvec3 corners, bool depth_fail) const;
+
+    const SilhouetteMeshes& meshes_;
+    bool at_infinity_;
+    dvec3 travel_;
+    std::vector<dvec3> vertices_;
+    double radius_ = 0;  // of all vertices, from O
+};
+
+}  // namespace umbra
