@@ -13,24 +13,27 @@
 namespace umbra {
 namespace {
 
-struct Options {
+/// No other method's options may have this name: GCC 12 gives `parameter<&Options::samples>` external linkage though
+/// Options is in an unnamed namespace, so that the linker merges two methods' of that name.
+struct BruteForceOptions {
     int samples       = 16;
     int max_triangles = 20000;
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::samples>({.name  = "samples",
-                                  .doc   = "Segments from a point to an area light; other lights take one.",
-                                  .unit  = "segments a point",
-                                  .phase = Phase::visibility,
-                                  .min   = 1,
-                                  .max   = 4096,
-                                  .sweep = "4|16|64"}),
-    parameter<&Options::max_triangles>({.name  = "max_triangles",
-                                        .doc   = "Scenes of more triangles are not served: a picture would take hours.",
-                                        .phase = Phase::build,
-                                        .min   = 1,
-                                        .max   = 50000000}),
+    parameter<&BruteForceOptions::samples>({.name  = "samples",
+                                            .doc   = "Segments from a point to an area light; other lights take one.",
+                                            .unit  = "segments a point",
+                                            .phase = Phase::visibility,
+                                            .min   = 1,
+                                            .max   = 4096,
+                                            .sweep = "4|16|64"}),
+    parameter<&BruteForceOptions::max_triangles>(
+        {.name  = "max_triangles",
+         .doc   = "Scenes of more triangles are not served: a picture would take hours.",
+         .phase = Phase::build,
+         .min   = 1,
+         .max   = 50000000}),
 };
 
 /// Whether the open segment p + t d, 0 < t < end, passes through the triangle.
@@ -43,7 +46,7 @@ bool crosses(dvec3 p, dvec3 d, double end, dvec3 a, dvec3 b, dvec3 c) {
     return t > 0 && t < end && u >= 0 && v >= 0 && u + v <= 1;
 }
 
-class BruteForce final : public MethodWith<Options> {
+class BruteForce final : public MethodWith<BruteForceOptions> {
 public:
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (facts.triangles > static_cast<std::uint64_t>(options.max_triangles))
