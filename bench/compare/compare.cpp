@@ -108,6 +108,10 @@ Json noise_json(const std::optional<Noise>& n) {
     return {{"runs", n->runs}, {"noise_rmse", number(n->rms)}, {"bias_rmse", number(n->bias)}};
 }
 
+Json direction_json(const VisibilityError::Direction& d) {
+    return {{"false_shadow", d.false_shadow}, {"false_light", d.false_light}};
+}
+
 Json error_json(const std::string& light, const Explained& explained) {
     const VisibilityError& e = explained.error;
     // Detachment and leak are told apart by the occluder: null where the reference names none.
@@ -128,6 +132,8 @@ Json error_json(const std::string& light, const Explained& explained) {
               {"detachment", named ? Json(e.detachment) : Json()},
               {"leak", named ? Json(e.leak) : Json()}}},
             {"interior", {{"lit", e.interior.lit}, {"umbra", e.interior.umbra}, {"penumbra", e.interior.penumbra}}},
+            {"penumbra_error", direction_json(e.penumbra_error)},
+            {"noise_error", direction_json(e.noise_error)},
             {"terminator",
              {{"facet_away", e.terminator.facet_away},
               {"normal_away", e.terminator.normal_away},
@@ -198,8 +204,7 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
         light_times.push_back({{"light", light.name},
                                {"aim_ms", timing_json(run.aim[j])},
                                {"visibility_ms", timing_json(run.visibility[j])}});
-        explained.push_back(explain(scene, prepared.points, j, run, reference));
-        if (noise[j]) explained.back().noise = noise[j]->result(explained.back().classes, reference.planes[j]);
+        explained.push_back(explain(scene, prepared.points, j, run, reference, noise[j] ? &*noise[j] : nullptr));
         errors.push_back(error_json(light.name, explained.back()));
     }
     entry["times"]        = {{"build_ms", timing_json(run.build)},

@@ -211,6 +211,10 @@ Json figures_of(const PreparedScene& prepared, const MethodRun& run, const Metho
                                                   {"edge_displacement_mean", edges.mean},
                                                   {"edge_displacement_max", edges.max},
                                                   {"penumbra_width", penumbrae.method}};
+        if (!is_area(prepared.scene.lights[j].kind)) continue;
+        Json& area                    = figures[prepared.scene.lights[j].name];
+        area["penumbra_false_shadow"] = e.penumbra_error.false_shadow;
+        area["penumbra_false_light"]  = e.penumbra_error.false_light;
     }
     return figures;
 }
