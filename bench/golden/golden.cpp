@@ -13,6 +13,7 @@
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 
@@ -467,7 +468,8 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     const fs::path figures_file = options.folder / name / "figures.json";
     Figures accepted            = read_figures(figures_file);
     std::vector<GoldenChange> changes;
-    if (choices.size() == methods().size()) changes = method_leftovers(name, options, accepted);
+    const bool all = choices.size() == std::size_t(std::ranges::count_if(methods(), &MethodInfo::by_default));
+    if (all) changes = method_leftovers(name, options, accepted);
     const GoldenScene scene(file);
     for (const MethodChoice& choice : choices)
         if (auto change = method_change(scene, choice, options, accepted)) changes.push_back(std::move(*change));
