@@ -146,6 +146,7 @@ ScenesDone compare(const std::vector<fs::path>& files, CompareOptions options, c
     if (!common.quiet && !folders.empty()) fmt::print("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) fmt::print(stderr, "{}\n", message);
     for (const std::string& message : done.missing) fmt::print(stderr, "{}\n", message);
+    for (const std::string& message : done.stopped) fmt::print(stderr, "{}\n", message);
     return done;
 }
 
@@ -192,6 +193,7 @@ int report(const std::vector<fs::path>& folders, const fs::path& out, const Comm
         climb(ladders, common);
         // A canonical scene whose mesh could not be obtained at set-up is left out: that is told, but it is no failure.
         const ScenesDone done = compare(canonical_scenes(scenes_folder()), options, common, {ladders.out});
+        if (!done.stopped.empty()) return kInternal;
         return done.failed.empty() && !done.names.empty() ? kDone : kUnreadable;
     }
     write_report(folders, out, {});
@@ -367,6 +369,7 @@ int run(int argc, char** argv) {
         if (!reference.empty()) compare_options.reference = reference;
         compare_options.out   = out;
         const ScenesDone done = compare({scenes.begin(), scenes.end()}, compare_options, common);
+        if (!done.stopped.empty()) return kInternal;
         return done.failed.empty() && done.missing.empty() ? kDone : kUnreadable;
     }
     if (*ladder_command) {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/shade.h"
 
