@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

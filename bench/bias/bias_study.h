@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/run.h"
 #include "umbra/core/errors/visibility_error.h"
 
 namespace umbra {

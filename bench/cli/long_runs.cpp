@@ -29,12 +29,13 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
     }
     if (!common.quiet && !folders.empty()) fmt::print("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) fmt::print(stderr, "{}\n", message);
+    for (const std::string& message : done.stopped) fmt::print(stderr, "{}\n", message);
     for (const std::string& message : done.missing) fmt::print(stderr, "{}\n", message);
     return done;
 }
 
 int exit_code(const ScenesDone& done) {
-    if (done.internal) return kInternal;
+    if (done.internal || !done.stopped.empty()) return kInternal;
     return done.failed.empty() ? kDone : kUnreadable;
 }
 

@@ -2,12 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <chrono>
 #include <set>
 
 #include "umbra/bench/compare/pictures.h"
+#include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/explain.h"
@@ -16,22 +14,11 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
-#include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/ray.h"
 #include "umbra/core/render/shade.h"
 
 namespace umbra {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr long kMaxArea = 1L << 26;
-
-template <class Work>
-double timed_ms(Work&& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// One method's S_j planes made into pictures, once.
 struct Rendered {
@@ -53,13 +40,6 @@ std::map<std::string, std::string> metadata(const Scene& scene, const MethodChoi
             {"umbra:parameters", choice.text()},
             {"umbra:version", std::string(version())},
             {"umbra:command", command}};
-}
-
-Json parameters_json(const Settings& settings) {
-    Json values = Json::object();
-    for (const Parameter& p : settings.parameters())
-        values[std::string(p.name)] = setting_json(p, settings.value(p.name));
-    return values;
 }
 
 /// Writes one method's files into `folder` and returns their names. `explained` is one a light, or empty where there is
@@ -89,64 +69,6 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
         files["lights"][light] = std::move(entry);
     }
     return files;
-}
-
-Json displacement_json(const std::optional<EdgeDisplacement>& d) {
-    if (!d) return {};
-    return {{"mean", number(d->mean)},
-            {"p95", number(d->p95)},
-            {"max", number(d->max)},
-            {"pieces", d->pieces},
-            {"unmatched", d->unmatched}};
-}
-
-Json penumbra_json(const std::optional<PenumbraWidth>& w) {
-    if (!w) return {};
-    return {{"method", number(w->method)}, {"reference", number(w->reference)}};
-}
-
-Json noise_json(const std::optional<Noise>& n) {
-    if (!n) return {};
-    return {{"runs", n->runs}, {"noise_rmse", number(n->rms)}, {"bias_rmse", number(n->bias)}};
-}
-
-Json error_json(const std::string& light, const Explained& explained) {
-    const VisibilityError& e = explained.error;
-    // Detachment and leak are told apart by the occluder: null where the reference names none.
-    const bool named = e.unnamed == 0;
-    return {{"light", light},
-            {"points", e.points},
-            {"undefined", e.undefined},
-            {"away", e.away},
-            {"on_boundary", e.on_boundary},
-            {"not_judged", e.not_judged},
-            {"lit", e.lit},
-            {"umbra", e.umbra},
-            {"penumbra", e.penumbra},
-            {"false_shadow", {{"interior", e.false_shadow.interior}, {"edge", e.false_shadow.edge}, {"acne", e.acne}}},
-            {"false_light",
-             {{"interior", e.false_light.interior},
-              {"edge", e.false_light.edge},
-              {"detachment", named ? Json(e.detachment) : Json()},
-              {"leak", named ? Json(e.leak) : Json()}}},
-            {"interior", {{"lit", e.interior.lit}, {"umbra", e.interior.umbra}, {"penumbra", e.interior.penumbra}}},
-            {"terminator",
-             {{"facet_away", e.terminator.facet_away},
-              {"normal_away", e.terminator.normal_away},
-              {"wrong", e.terminator.wrong}}},
-            {"bracket", e.max_half_width > 0 ? Json{{"max_half_width", number(e.max_half_width)}} : Json()},
-            {"mae", number(e.mae)},
-            {"rmse", number(e.rmse)},
-            {"max", number(e.max)},
-            {"bias", number(e.bias)},
-            {"noise", noise_json(explained.noise)},
-            {"edge_displacement_px", displacement_json(explained.displacement)},
-            {"penumbra_width_px", penumbra_json(explained.penumbra_width)}};
-}
-
-Json judged_json(const ReferenceRun& reference) {
-    if (reference.stand_in.empty()) return nullptr;
-    return {{"points", reference.judged}, {"of", reference.of}, {"guess", reference.stand_in}};
 }
 
 /// Differences of the pictures over covered pixels: where a method leaves any light undefined, the reference's pixel
@@ -182,41 +104,20 @@ std::string unique_id(std::string_view name, std::set<std::string>& used) {
     return id;
 }
 
+/// What a method answered, differences, times and files. `at` is the light that is being worked on.
 Json method_entry(const fs::path& folder, const std::string& id, const PreparedScene& prepared, const MethodRun& run,
                   const MethodRun& reference, const Rendered& reference_rendered, const std::string& command,
-                  double& shade_ms) {
-    const MethodInfo& info = *run.choice.info;
-    Json entry             = {{"id", id},
-                              {"name", info.name},
-                              {"title", info.title},
-                              {"paper", info.paper},
-                              {"summary", info.summary},
-                              {"text", run.choice.text()},
-                              {"parameters", parameters_json(run.choice.settings)},
-                              {"serves", service_json(run.service)}};
-    if (!run.service) return entry;
-
+                  double& shade_ms, std::optional<LightId>& at) {
     const Scene& scene = prepared.scene;
-    Json light_times = Json::array(), errors = Json::array();
     std::vector<Explained> explained;
+    at.reset();
     const auto noise = noise_runs(run.choice, scene, prepared.facts, prepared.points);
     for (LightId j = 0; j < scene.lights.size(); ++j) {
-        const Light& light = scene.lights[j];
-        light_times.push_back({{"light", light.name},
-                               {"aim_ms", timing_json(run.aim[j])},
-                               {"visibility_ms", timing_json(run.visibility[j])}});
-        explained.push_back(explain(scene, prepared.points, j, run, reference));
-        if (noise[j]) explained.back().noise = noise[j]->result(explained.back().classes, reference.planes[j]);
-        errors.push_back(error_json(light.name, explained.back()));
+        at = j;
+        explained.push_back(explain(scene, prepared.points, j, run, reference, noise[j] ? &*noise[j] : nullptr));
     }
-    entry["times"]        = {{"build_ms", timing_json(run.build)},
-                             {"aim_ms", timing_json(total(run.aim))},
-                             {"visibility_ms", timing_json(total(run.visibility))}};
-    entry["light_times"]  = std::move(light_times);
-    entry["memory_bytes"] = run.memory_bytes;
-    entry["coverage"]     = run.coverage(prepared.points);
-    entry["errors"]       = std::move(errors);
-
+    at.reset();
+    Json entry = served_json(id, prepared, run, explained);
     Rendered rendered;
     shade_ms       = timed_ms([&] { rendered = render(scene, prepared.points, run.planes); });
     Json files     = write_files(folder, id, prepared, run, rendered, reference, explained, command);
@@ -225,62 +126,27 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     return entry;
 }
 
-/// The record with every file name set behind `prefix`.
-Json with_prefix(Json record, const std::string& prefix) {
-    const auto visit = [&](auto&& self, Json& node) -> void {
-        for (auto& item : node.items()) {
-            if (item.value().is_string())
-                item.value() = prefix + item.value().get<std::string>();
-            else
-                self(self, item.value());
-        }
-    };
-    if (record["reference"].contains("files")) visit(visit, record["reference"]["files"]);
-    for (Json& method : record["methods"])
-        if (method.contains("files")) visit(visit, method["files"]);
-    return record;
+/// The methods of the options, in order. Throws UsageError, also where settings contradict one another.
+std::vector<MethodChoice> chosen(const CompareOptions& options) {
+    std::vector<MethodChoice> choices;
+    for (const std::string& text : options.methods) {
+        choices.push_back(parse_method(text));
+        static_cast<void>(choices.back().make());
+    }
+    choices.insert(choices.end(), options.choices.begin(), options.choices.end());
+    if (choices.empty())
+        for (const MethodInfo* info : methods())
+            if (info->by_default) choices.emplace_back(*info);
+    return choices;
 }
 
 }  // namespace
-
-Size parse_size(const std::string& text) {
-    Size size;
-    const std::size_t cross = text.find('x');
-    const auto read         = [&](std::size_t begin, std::size_t end, int& value) {
-        const auto [at, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        return error == std::errc() && at == text.data() + end && value >= 1 && value <= kMaxPictureSide;
-    };
-    if (cross == std::string::npos || !read(0, cross, size.width) || !read(cross + 1, text.size(), size.height) ||
-        static_cast<long>(size.width) * size.height > kMaxArea)
-        throw UsageError(fmt::format("--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels",
-                                     text, kMaxPictureSide, kMaxArea));
-    return size;
-}
-
-PreparedScene prepare_scene(const fs::path& file, Size size) {
-    PreparedScene p;
-    p.load_ms  = timed_ms([&] { p.scene = load_scene(file); });
-    p.facts_ms = timed_ms([&] { p.facts = find_facts(p.scene); });
-    if (size.width == 0) size = {p.scene.width, p.scene.height};
-    std::optional<RayScene> rays;
-    p.rays_build_ms = timed_ms([&] { rays.emplace(p.scene); });
-    p.gbuffer_ms =
-        timed_ms([&] { p.points = primary_points(*rays, p.scene, p.scene.camera, size.width, size.height); });
-    const auto& seen = p.points.triangle;
-    if (std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; }))
-        p.scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
-    return p;
-}
 
 Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const auto tell = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", file.stem().string(), what));
     };
-    std::vector<MethodChoice> choices;
-    for (const std::string& text : options.methods) choices.push_back(parse_method(text));
-    if (options.methods.empty())
-        for (const MethodInfo* info : methods())
-            if (info->by_default) choices.emplace_back(*info);
+    const std::vector<MethodChoice> choices = chosen(options);
 
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size);
@@ -301,30 +167,19 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const MethodRun& reference_run   = reference_ran.run;
     const Rendered reference_rendered = render(scene, prepared.points, reference_run.planes);
 
-    Json record = {{"schema", kResultsSchema},
-                   {"version", version()},
-                   {"command", options.command},
-                   {"machine", machine_json(options.threads)},
-                   {"scene", scene_json(scene)},
-                   {"facts", facts_json(prepared.facts)},
-                   {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
-                   {"lights", lights_json(prepared.facts)},
-                   {"times", Json::object()},
-                   {"reference",
-                    {{"name", reference.choice.info->name},
-                     {"title", reference.choice.info->title},
-                     {"text", reference.choice.text()},
-                     {"parameters", parameters_json(reference.choice.settings)},
-                     {"exact", reference.exact},
-                     {"note", reference.note},
-                     {"judged", judged_json(reference_ran)},
-                     {"times",
-                      {{"build_ms", timing_json(reference_run.build)},
-                       {"aim_ms", timing_json(total(reference_run.aim))},
-                       {"visibility_ms", timing_json(total(reference_run.visibility))}}},
-                     {"files", write_files(staging, "reference", prepared, reference_run, reference_rendered,
-                                           reference_run, {}, options.command)}}},
-                   {"methods", Json::array()}};
+    Json record                  = {{"schema", kResultsSchema},
+                                    {"version", version()},
+                                    {"command", options.command},
+                                    {"machine", machine_json(options.threads)},
+                                    {"scene", scene_json(scene)},
+                                    {"facts", facts_json(prepared.facts)},
+                                    {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
+                                    {"lights", lights_json(prepared.facts)},
+                                    {"times", Json::object()},
+                                    {"reference", reference_json(reference, reference_ran)},
+                                    {"methods", Json::array()}};
+    record["reference"]["files"] = write_files(staging, "reference", prepared, reference_run, reference_rendered,
+                                               reference_run, {}, options.command);
 
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
@@ -333,12 +188,22 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
         const bool itself = choice.text() == reference.choice.text();
         if (itself && options.methods.empty() && !reference_ran.stand_in.empty()) continue;
         tell(choice.text());
-        const bool slow     = total(reference_run.visibility).median > options.repeats.budget_ms;
-        const MethodRun run = itself && slow && reference_ran.stand_in.empty()
-                                  ? reference_run
-                                  : run_method(choice, scene, prepared.facts, prepared.points, options.repeats);
-        record["methods"].push_back(method_entry(staging, unique_id(choice.info->name, used), prepared, run,
-                                                 reference_run, reference_rendered, options.command, shade_ms));
+        const std::string id = unique_id(choice.info->name, used);
+        const bool slow      = total(reference_run.visibility).median > options.repeats.budget_ms;
+        std::optional<LightId> at;
+        try {
+            const MethodRun run =
+                itself && slow && reference_ran.stand_in.empty()
+                    ? reference_run
+                    : run_method(choice, scene, prepared.facts, prepared.points, options.repeats, &at);
+            record["methods"].push_back(run.service ? method_entry(staging, id, prepared, run, reference_run,
+                                                                   reference_rendered, options.command, shade_ms, at)
+                                                    : unserved_json(id, choice, run.service));
+        } catch (const InputError&) {  // a file that cannot be written is no fault of the method
+            throw;
+        } catch (const std::exception& e) {
+            record["methods"].push_back(failed_json(id, choice, scene, at, e.what()));
+        }
     }
     record["times"] = {{"load_ms", prepared.load_ms},
                        {"facts_ms", prepared.facts_ms},
@@ -370,6 +235,7 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
         try {
             last = compare_scene(file, numbered);
             done.names.push_back(last["scene"]["name"]);
+            for (std::string& message : failures(last)) done.stopped.push_back(std::move(message));
         } catch (const MissingMesh& e) {
             done.missing.emplace_back(e.what());
         } catch (const InputError& e) {

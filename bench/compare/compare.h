@@ -8,29 +8,15 @@
 #include <vector>
 
 #include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/bench/run/run.h"
 
 namespace umbra {
 
-/// Everything about a scene that all methods share, made once: facts, the G-buffer, and what each step cost.
-struct PreparedScene {
-    Scene scene;
-    SceneFacts facts;
-    PointBatch points;
-    double load_ms = 0, facts_ms = 0, rays_build_ms = 0, gbuffer_ms = 0;
-};
-
-struct Size {
-    int width = 0, height = 0;  ///< 0: the scene's own
-};
-/// "WxH". Throws UsageError.
-[[nodiscard]] Size parse_size(const std::string& text);
-
-[[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size);
-
 struct CompareOptions {
-    std::vector<std::string> methods;      ///< as typed; empty: all with their defaults
+    std::vector<std::string> methods;      ///< as typed
+    std::vector<MethodChoice> choices;     ///< after those; where both are empty: all methods with their defaults
     std::optional<std::string> reference;  ///< as typed; none: `default_reference`
     std::optional<std::uint64_t> points;   ///< at which area lights are scored; none: all, if affordable
     Size size;
@@ -43,7 +29,9 @@ struct CompareOptions {
 };
 
 /// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
-/// into place; an older result stays whole until then. Returns the record that it wrote. Throws InputError, UsageError.
+/// into place; an older result stays whole until then. A method that throws or breaks its contract has an entry that
+/// says so (`failed`), and the others go on. Returns the record that it wrote. Throws InputError, UsageError, and what
+/// the reference throws.
 Json compare_scene(const std::filesystem::path& file, const CompareOptions& options);
 
 /// All scenes one after the other; where there is one only, OUT/results.json is a copy with paths that hold there.
@@ -54,6 +42,7 @@ struct ScenesDone {
     std::vector<std::string> failed;   ///< messages
     std::vector<std::string> missing;  ///< messages: scenes whose meshes are not there
     bool internal = false;             ///< at least one of `failed` is no fault of the input: something threw
+    std::vector<std::string> stopped;  ///< messages: methods that failed on a scene, which has results all the same
 };
 ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
 

@@ -13,6 +13,7 @@
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 
@@ -211,6 +212,10 @@ Json figures_of(const PreparedScene& prepared, const MethodRun& run, const Metho
                                                   {"edge_displacement_mean", edges.mean},
                                                   {"edge_displacement_max", edges.max},
                                                   {"penumbra_width", penumbrae.method}};
+        if (!is_area(prepared.scene.lights[j].kind)) continue;
+        Json& area                    = figures[prepared.scene.lights[j].name];
+        area["penumbra_false_shadow"] = e.penumbra_error.false_shadow;
+        area["penumbra_false_light"]  = e.penumbra_error.false_light;
     }
     return figures;
 }
@@ -463,7 +468,8 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     const fs::path figures_file = options.folder / name / "figures.json";
     Figures accepted            = read_figures(figures_file);
     std::vector<GoldenChange> changes;
-    if (choices.size() == methods().size()) changes = method_leftovers(name, options, accepted);
+    const bool all = choices.size() == std::size_t(std::ranges::count_if(methods(), &MethodInfo::by_default));
+    if (all) changes = method_leftovers(name, options, accepted);
     const GoldenScene scene(file);
     for (const MethodChoice& choice : choices)
         if (auto change = method_change(scene, choice, options, accepted)) changes.push_back(std::move(*change));

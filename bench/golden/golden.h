@@ -16,7 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/run.h"
 
 namespace umbra {
 

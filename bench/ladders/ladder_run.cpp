@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/shade.h"
 
@@ -13,14 +13,12 @@ namespace {
 
 constexpr Repeats kOnce{1, 0};
 
-/// What most of the interior errors are; of equals the first. In a true penumbra they are noise, or a penumbra that the
-/// method does not have, whatever side they err to.
+/// What most of the interior errors are; of equals the first.
 std::string kind_of(const VisibilityError& e) {
-    if (2 * e.interior.penumbra > e.false_shadow.interior + e.false_light.interior) return "penumbra";
     const std::pair<std::uint64_t, const char*> kinds[] = {
-        {e.acne, "acne"},           {e.false_shadow.interior - e.acne, "false shadow"},
+        {e.acne, "acne"},           {e.other_shadow(), "false shadow"},
         {e.leak, "leak"},           {e.detachment, "detachment"},
-        {e.unnamed, "false light"},
+        {e.unnamed, "false light"}, {e.penumbra_error.false_shadow + e.penumbra_error.false_light, "penumbra"},
     };
     const auto* most = std::max_element(std::begin(kinds), std::end(kinds),
                                         [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -106,7 +104,8 @@ RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vec
             o.false_shadow.interior += e.false_shadow.interior, o.false_shadow.edge += e.false_shadow.edge;
             o.false_light.interior += e.false_light.interior, o.false_light.edge += e.false_light.edge;
             sum.false_shadow.interior += e.false_shadow.interior, sum.acne += e.acne;
-            sum.false_light.interior += e.false_light.interior, sum.interior.penumbra += e.interior.penumbra;
+            sum.penumbra_error.false_shadow += e.penumbra_error.false_shadow;
+            sum.penumbra_error.false_light += e.penumbra_error.false_light;
             sum.leak += e.leak, sum.detachment += e.detachment, sum.unnamed += e.unnamed;
             absolute += e.mae * double(e.points);
             if (explained != nullptr) explained->push_back(std::move(light));

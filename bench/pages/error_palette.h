@@ -4,7 +4,9 @@
 // Three hues that colour-blind eyes keep apart, on light and on dark ground: false shadow is blue, false light orange
 // to red, the terminator green. Within a hue the rarer and graver class has the stronger colour. Right points are grey
 // and show the reference's S_j, so that a reader recognises the scene.
-// After Masataka Okabe, Kei Ito, Color Universal Design, 2008 (orange, sky blue, bluish green, vermillion, blue).
+// Penumbra and noise have hues of their own, since they err either way: wine and olive.
+// After Masataka Okabe, Kei Ito, Color Universal Design, 2008 (orange, sky blue, bluish green, vermillion, blue), and
+// Paul Tol, Colour Schemes, 2021 (wine, olive).
 #pragma once
 
 #include <array>
@@ -42,6 +44,10 @@ inline constexpr std::array kErrorPalette = {
                 true, "Too bright: no occluder is known, so detachment and leak cannot be told apart."},
     ErrorColour{ErrorClass::false_light_edge, "false_light_edge", "false light: edge band", "#ffc861", "false_light",
                 "", false, "Too bright within 1.5 pixels of a shadow boundary."},
+    ErrorColour{ErrorClass::penumbra, "penumbra", "penumbra", "#882255", "", "", true,
+                "Wrong by more than 0.1 where the reference is in penumbra: a missing or noisy penumbra."},
+    ErrorColour{ErrorClass::noise, "noise", "noise", "#999933", "", "", true,
+                "Wrong by its random numbers alone: the mean of runs with other seeds is right."},
     ErrorColour{ErrorClass::terminator_wrong, "terminator_wrong", "wrong at the terminator", "#009e73", "", "", false,
                 "Wrong where the smooth normal faces away from the light: the sum multiplies S by 0 there."},
     ErrorColour{ErrorClass::on_boundary, "on_boundary", "on the boundary: never wrong", "#cc79a7", "", "", false,

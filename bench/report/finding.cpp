@@ -31,8 +31,9 @@ double sum_of(const Field& method, std::string_view group, std::string_view memb
 std::string classes_in_words(const Field& method) {
     std::vector<std::string> parts;
     for (const std::string& group : error_groups()) {
-        double rest = sum_of(method, group, "interior");
-        bool any    = false;
+        double rest = sum_of(method, group, "interior") - sum_of(method, "penumbra_error", group) -
+                      sum_of(method, "noise_error", group);
+        bool any = false;
         for (const ErrorColour& entry : kErrorPalette) {
             if (entry.group != group || entry.member.empty()) continue;
             const double n = sum_of(method, group, entry.member);
@@ -41,6 +42,11 @@ std::string classes_in_words(const Field& method) {
             rest -= n;
         }
         if (rest > 0) parts.push_back(fmt::format("{}{} {}", count(rest), any ? " other" : "", in_words(group)));
+    }
+    for (const auto& [object, name] : {std::pair{"penumbra_error", "penumbra"}, std::pair{"noise_error", "noise"}}) {
+        double n = 0;
+        for (const std::string& group : error_groups()) n += sum_of(method, object, group);
+        if (n > 0) parts.push_back(fmt::format("{} {}", count(n), name));
     }
     return fmt::format("{}", fmt::join(parts, ", "));
 }

@@ -18,13 +18,18 @@ std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, L
 }  // namespace
 
 Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
-                  const MethodRun& reference) {
+                  const MethodRun& reference, const NoiseMeter* meter) {
     const VisibilityPlane &s = run.planes[light], &truth = reference.planes[light];
     const float tolerance = visibility_tolerance(scene.lights[light].kind);
 
     Explained e;
     e.classes = error_classes(points, light, s, truth, tolerance, reference.judged_points(light));
     mark_terminator(e.classes, scene, points, light);
+    mark_penumbra(e.classes, scene, light, truth);
+    if (meter != nullptr) {
+        meter->mark(e.classes, truth, tolerance);
+        e.noise = meter->result(e.classes, truth);
+    }
     const auto dark = points_of_class(e.classes, ErrorClass::false_shadow);
     mark_acne(e.classes, scene, points, dark, blamed(run, points, light, dark));
     const auto bright = points_of_class(e.classes, ErrorClass::false_light);

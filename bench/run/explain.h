@@ -11,19 +11,20 @@
 
 namespace umbra {
 
-/// One light of one method held against the reference.
+/// One light of one method compared with the reference.
 struct Explained {
     ClassPlane classes;
     VisibilityError error;
     std::optional<EdgeDisplacement> displacement;
     std::optional<PenumbraWidth> penumbra_width;  ///< area lights only
-    std::optional<Noise> noise;                   ///< of methods that have some, in area lights
+    std::optional<Noise> noise;                   ///< where a meter was given
 };
 
-/// Sorts every point into its class and counts them; measures edges and penumbrae. All but `noise`. Both runs are of
-/// this scene and batch, and serve it; their methods are asked again where interior errors need a name, and are left
+/// Sorts every point into its class and counts them; measures edges and penumbrae. `meter`, fed with runs of the same
+/// method with other seeds, tells noise from other errors; none: no point is of class `noise`. Both runs are of this
+/// scene and batch, and serve it; their methods are asked again where interior errors need a name, and are left
 /// aimed at `light` then.
 [[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
-                                const MethodRun& reference);
+                                const MethodRun& reference, const NoiseMeter* meter = nullptr);
 
 }  // namespace umbra

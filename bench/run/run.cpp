@@ -76,14 +76,18 @@ void run_light(MethodRun& run, const PointBatch& points, LightId light, const Re
 }
 
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
-                     const Repeats& repeats) {
+                     const Repeats& repeats, std::optional<LightId>* at) {
     MethodRun run{choice};
     run.method  = choice.make();
     run.service = run.method->serves(facts);
     if (!run.service) return run;
 
     run.build = time_runs(repeats, [&] { run.method->build(scene, facts); });
-    for (LightId light = 0; light < scene.lights.size(); ++light) run_light(run, points, light, repeats);
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        if (at != nullptr) *at = light;
+        run_light(run, points, light, repeats);
+    }
+    if (at != nullptr) at->reset();
     run.memory_bytes = run.method->memory_bytes();
     return run;
 }

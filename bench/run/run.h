@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "umbra/core/errors/visibility_error.h"
@@ -51,9 +52,11 @@ struct MethodRun {
 };
 
 /// Runs all phases for all lights. Throws std::logic_error if the method breaks its contract (values outside [0, 1],
-/// or an answer for points that it must leave alone): a picture of such values would be worse than none.
+/// or an answer for points that it must leave alone): a picture of such values would be worse than none. Throws what
+/// the method throws; `at`, if given, then says which light it was about, none for the phases before.
 [[nodiscard]] MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
-                                   const PointBatch& points, const Repeats& repeats);
+                                   const PointBatch& points, const Repeats& repeats,
+                                   std::optional<LightId>* at = nullptr);
 
 /// The last two phases for one light, on points that may be others than those of the other lights: adds to `run`, whose
 /// method has been built.

@@ -78,6 +78,14 @@ void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& 
     });
 }
 
+void mark_penumbra(ClassPlane& classes, const Scene& scene, LightId light, const VisibilityPlane& reference) {
+    if (!is_area(scene.lights[light].kind)) return;
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+        const bool interior = classes[i] == ErrorClass::false_shadow || classes[i] == ErrorClass::false_light;
+        if (interior && is_penumbra(reference.s[i])) classes[i] = ErrorClass::penumbra;
+    }
+}
+
 void mark_acne(ClassPlane& classes, const Scene& scene, const PointBatch& points, std::span<const std::uint32_t> which,
                std::span<const TriangleId> who) {
     for (std::size_t k = 0; k < which.size(); ++k) {

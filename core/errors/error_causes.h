@@ -16,6 +16,10 @@ namespace umbra {
 /// What of them was wrong becomes `terminator_wrong`: there the sum multiplies S_j with 0.
 void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& points, LightId light);
 
+/// Interior errors in an area light whose reference has a penumbra there become `penumbra`: a method without penumbrae
+/// is wrong there either way, whatever triangle it blames. Lights without an area have none.
+void mark_penumbra(ClassPlane& classes, const Scene& scene, LightId light, const VisibilityPlane& reference);
+
 /// `who[k]` is the triangle that the method blames for the shadow at point which[k], a `false_shadow`. That is acne
 /// where it is the point's own triangle, has a corner at the place of one of its corners (in bit-equal coordinates), or
 /// where the method could name none.

@@ -1,7 +1,9 @@
 // What each point's error is: one class a point, from which the counts and the picture both come.
 #pragma once
 
+#include <array>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "umbra/core/render/points.h"
@@ -28,8 +30,36 @@ enum class ErrorClass : std::uint8_t {
     false_light_edge,
     false_light,  ///< interior, and no occluder is named that would tell detachment from leak
     detachment,   ///< interior, at a contact ("peter-panning")
-    leak          ///< interior, elsewhere
+    leak,         ///< interior, elsewhere
+    penumbra,     ///< interior, where the reference has a penumbra of an area light: it is missing, or wrong
+    noise         ///< interior, and the mean of runs with other random numbers is right
 };
+
+/// The names of the classes in the order of their codes, as files and pages write them.
+inline constexpr std::array<std::string_view, 18> kErrorClassNames = {"no_surface",
+                                                                      "away",
+                                                                      "terminator_away",
+                                                                      "not_judged",
+                                                                      "undefined",
+                                                                      "on_boundary",
+                                                                      "right",
+                                                                      "terminator",
+                                                                      "terminator_wrong",
+                                                                      "false_shadow_edge",
+                                                                      "false_shadow",
+                                                                      "acne",
+                                                                      "false_light_edge",
+                                                                      "false_light",
+                                                                      "detachment",
+                                                                      "leak",
+                                                                      "penumbra",
+                                                                      "noise"};
+static_assert(kErrorClassNames.size() == static_cast<std::size_t>(ErrorClass::noise) + 1);
+
+/// S_j above 1 - kFullOrNone is lit, below kFullOrNone umbra, between them penumbra.
+inline constexpr float kFullOrNone = 1.0f / 1024;
+
+[[nodiscard]] constexpr bool is_penumbra(float s) { return s >= kFullOrNone && s <= 1 - kFullOrNone; }
 
 /// Do both planes define the point, so that it is right or wrong?
 [[nodiscard]] constexpr bool is_compared(ErrorClass c) { return c >= ErrorClass::right; }

@@ -16,6 +16,15 @@ void NoiseMeter::add(const std::vector<float>& s) {
     }
 }
 
+void NoiseMeter::mark(ClassPlane& classes, const VisibilityPlane& reference, float tolerance) const {
+    for (std::size_t i = 0; i < mean_.size(); ++i) {
+        const ErrorClass c = classes[i];
+        if (c != ErrorClass::false_shadow && c != ErrorClass::false_light && c != ErrorClass::penumbra) continue;
+        const double allowed = static_cast<double>(tolerance) + static_cast<double>(reference.half_width[i]);
+        if (std::abs(mean_[i] - static_cast<double>(reference.s[i])) <= allowed) classes[i] = ErrorClass::noise;
+    }
+}
+
 Noise NoiseMeter::result(const ClassPlane& classes, const VisibilityPlane& reference) const {
     double variance = 0, squared = 0, points = 0;
     for (std::size_t i = 0; i < mean_.size(); ++i) {

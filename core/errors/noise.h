@@ -21,6 +21,11 @@ public:
 
     void add(const std::vector<float>& s);
 
+    /// Interior errors, `false_shadow`, `false_light` or `penumbra`, become `noise` where the mean of the runs is
+    /// within `tolerance` and the reference's half width of the reference: random numbers made them. The mean of K runs
+    /// is itself uncertain by noise / sqrt(K), so of strong noise a part stays in its class. At least one run.
+    void mark(ClassPlane& classes, const VisibilityPlane& reference, float tolerance) const;
+
     /// Over the points that both planes define. Of K runs' mean M, (M - reference)^2 is expected to be bias^2 +
     /// variance / K; the second is taken off with the variance found, and what is left is no less than 0. So over n
     /// points, a bias below about noise / sqrt(K) (2 / n)^(1/4) cannot be told from none. At least two runs.

@@ -7,14 +7,18 @@
 namespace umbra {
 namespace {
 
-constexpr float kFullOrNone = 1.0f / 1024;
-
-/// Adds one point that both planes define to the count that its class means.
-void count_wrong(ErrorClass c, std::uint64_t& level, VisibilityError& e) {
+/// Adds one point that both planes define to the count that its class means. `dark`: S is below the reference.
+void count_wrong(ErrorClass c, bool dark, std::uint64_t& level, VisibilityError& e) {
     const auto interior = [&](VisibilityError::Kind& kind, std::uint64_t& cause) {
         ++kind.interior;
         ++cause;
         ++level;
+    };
+    const auto either_way = [&](VisibilityError::Direction& cause) {
+        if (dark)
+            interior(e.false_shadow, cause.false_shadow);
+        else
+            interior(e.false_light, cause.false_light);
     };
     std::uint64_t other = 0;
     switch (c) {
@@ -27,6 +31,8 @@ void count_wrong(ErrorClass c, std::uint64_t& level, VisibilityError& e) {
         case ErrorClass::false_light: interior(e.false_light, e.unnamed); break;
         case ErrorClass::detachment: interior(e.false_light, e.detachment); break;
         case ErrorClass::leak: interior(e.false_light, e.leak); break;
+        case ErrorClass::penumbra: either_way(e.penumbra_error); break;
+        case ErrorClass::noise: either_way(e.noise_error); break;
         default: break;
     }
 }
@@ -52,10 +58,10 @@ VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes
         ++e.points;
         const float r = reference.s[i];
         const auto at = [&](auto& levels) -> std::uint64_t& {
-            return r > 1 - kFullOrNone ? levels.lit : r < kFullOrNone ? levels.umbra : levels.penumbra;
+            return is_penumbra(r) ? levels.penumbra : r < kFullOrNone ? levels.umbra : levels.lit;
         };
         ++at(e);
-        count_wrong(classes[i], at(e.interior), e);
+        count_wrong(classes[i], s.s[i] < r, at(e.interior), e);
 
         const double d = static_cast<double>(s.s[i]) - static_cast<double>(r);
         absolute += std::abs(d);

@@ -12,7 +12,7 @@ namespace umbra {
 /// Counts are points, taken from the plane of classes; `points` are those with a surface whose light is not `away` and
 /// that both planes define, and all counts and means below `away` are over them. Of the others with a surface and a
 /// light not `away`, `on_boundary` are those that the reference says are, `undefined` those that either plane leaves
-/// open. lit, umbra and penumbra: the reference is above 1 - 1/1024, below 1/1024, between.
+/// open. lit, umbra and penumbra are by `kFullOrNone`.
 struct VisibilityError {
     std::uint64_t points = 0, undefined = 0, away = 0;
     std::uint64_t on_boundary = 0;
@@ -26,10 +26,20 @@ struct VisibilityError {
     };
     Kind false_shadow, false_light;  ///< without those at the terminator
     Level interior;                  ///< both kinds' interior points, by what the reference is there
-    std::uint64_t acne       = 0;    ///< of false_shadow.interior; 0 unless causes were looked for
-    std::uint64_t detachment = 0;    ///< of false_light.interior, likewise
-    std::uint64_t leak       = 0;    ///< of false_light.interior, likewise
-    std::uint64_t unnamed    = 0;    ///< the rest of false_light.interior: the reference named no occluder
+    struct Direction {
+        std::uint64_t false_shadow = 0, false_light = 0;
+    };
+    Direction penumbra_error;  ///< of both kinds' interior points, those of class `penumbra`; acne, detachment, leak
+                               ///< and unnamed have none of them
+    Direction noise_error;     ///< likewise those of class `noise`
+    std::uint64_t acne       = 0;  ///< of false_shadow.interior; 0 unless causes were looked for
+    std::uint64_t detachment = 0;  ///< of false_light.interior, likewise
+    std::uint64_t leak       = 0;  ///< of false_light.interior, likewise
+    std::uint64_t unnamed    = 0;  ///< the rest of false_light.interior: the reference named no occluder
+    /// What is left of false_shadow.interior: the method blames another surface, or no cause was looked for.
+    [[nodiscard]] std::uint64_t other_shadow() const {
+        return false_shadow.interior - acne - penumbra_error.false_shadow - noise_error.false_shadow;
+    }
     struct Terminator {
         std::uint64_t facet_away  = 0;  ///< the shading normal faces the light, the facet does not. None can be wrong
         std::uint64_t normal_away = 0;  ///< the facet faces the light, the shading normal does not

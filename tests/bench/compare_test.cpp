@@ -28,6 +28,20 @@ std::string text_of(const fs::path& file) {
 
 void write(const fs::path& file, std::string_view text) { std::ofstream(file, std::ios::binary) << text; }
 
+void expect_valid(const Json& json) {
+    rapidjson::Document document, record;
+    document.Parse(text_of(UMBRA_SCHEMA).c_str());
+    ASSERT_FALSE(document.HasParseError());
+    const rapidjson::SchemaDocument schema(document);
+    record.Parse(json.dump().c_str());
+    ASSERT_FALSE(record.HasParseError());
+    rapidjson::SchemaValidator valid(schema);
+    rapidjson::StringBuffer where;
+    const bool accepted = record.Accept(valid);
+    valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
+    EXPECT_TRUE(accepted) << "at " << where.GetString() << ": " << (accepted ? "" : valid.GetInvalidSchemaKeyword());
+}
+
 class Compare : public testing::Test {
 protected:
     void SetUp() override {
@@ -123,6 +137,73 @@ TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
     const double mae = whole["methods"][0]["errors"][1]["mae"], sampled = sample["methods"][0]["errors"][1]["mae"];
     EXPECT_GT(sampled, 0.2 * mae);
     EXPECT_LT(sampled, 5 * mae);
+}
+
+/// Lit everywhere, but fails where its parameter says.
+enum class Fails : std::uint8_t { never, build, aim, visibility, contract };
+struct FailingOptions {
+    Fails at = Fails::never;
+};
+class Failing : public MethodWith<FailingOptions> {
+public:
+    [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "for a test"}; }
+    void build(const Scene& scene, const SceneFacts&) override {
+        scene_ = &scene;
+        if (options.at == Fails::build) throw std::runtime_error("no stone left");
+    }
+    void aim(LightId light) override {
+        if (options.at == Fails::aim && scene_->lights[light].name == "panel")
+            throw UsageError("the panel is too large");
+    }
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
+        if (options.at == Fails::visibility && light == 1) throw std::bad_alloc();
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (points.asks(light, i)) out.s[i] = options.at == Fails::contract ? 1.5f : 1;
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
+
+private:
+    const Scene* scene_ = nullptr;
+};
+
+TEST_F(Compare, AMethodThatFailsLosesNoOther) {
+    MethodInfo info;
+    info.name       = "failing";
+    info.title      = "Failing";
+    info.parameters = {parameter<&FailingOptions::at>(
+        {.name = "at", .doc = "Where it fails.", .choices = "never|build|aim|visibility|contract"})};
+    info.create     = create<Failing>;
+
+    options_.methods = {"shadow_zbuffer"};
+    struct Case {
+        const char *phase, *light, *message;
+    };
+    const std::vector<Case> cases = {{"build", nullptr, "no stone left"},
+                                     {"aim", "panel", "the panel is too large"},
+                                     {"visibility", "panel", "std::bad_alloc"},
+                                     {"contract", "lamp", "failing breaks its contract at point"},
+                                     {"never", nullptr, ""}};
+    for (const Case& c : cases) options_.choices.emplace_back(info).settings.set("at", std::string_view(c.phase));
+    const ScenesDone done = compare_scenes({scene_}, options_);
+    ASSERT_EQ(done.names, std::vector<std::string>{"lamp_over_box"});
+    EXPECT_TRUE(done.failed.empty());
+    ASSERT_EQ(done.stopped.size(), 4u);
+    EXPECT_EQ(done.stopped[1], "lamp_over_box: failing:at=aim: It failed at light panel: the panel is too large");
+
+    const Json record = Json::parse(text_of(options_.out / "lamp_over_box/results.json"));
+    expect_valid(record);
+    ASSERT_EQ(record["methods"].size(), 6u);
+    EXPECT_FALSE(record["methods"][0].contains("failed"));
+    for (std::size_t k = 0; k < 4; ++k) {
+        const Json& method = record["methods"][k + 1];
+        ASSERT_TRUE(method.contains("failed")) << cases[k].phase;
+        EXPECT_EQ(method["failed"]["light"], cases[k].light ? Json(cases[k].light) : Json()) << cases[k].phase;
+        EXPECT_NE(method["failed"]["message"].get<std::string>().find(cases[k].message), std::string::npos);
+        EXPECT_EQ(method["serves"]["how"], "not");
+        EXPECT_FALSE(method.contains("errors"));
+    }
+    EXPECT_EQ(record["methods"][5]["errors"].size(), 2u) << "the others go on";
+    EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box/failing-5.exr"));
 }
 
 TEST_F(Compare, SchemaRefusesWhatItShould) {

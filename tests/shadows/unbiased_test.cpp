@@ -9,7 +9,6 @@
 #include <cmath>
 #include <random>
 
-#include "umbra/bench/compare/compare.h"
 #include "umbra/bench/golden/golden.h"
 #include "umbra/bench/run/canonical.h"
 #include "umbra/tests/support/known_scenes.h"

@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/noise_runs.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -68,10 +69,11 @@ struct Stage {
 
 /// The interior classes, each of which a defect may raise.
 struct Interior {
-    std::uint64_t acne, other_shadow, detachment, leak, at_terminator;
+    std::uint64_t acne, other_shadow, detachment, leak, at_terminator, penumbra;
 };
 Interior interior(const VisibilityError& e) {
-    return {e.acne, e.false_shadow.interior - e.acne, e.detachment, e.leak, e.terminator.wrong};
+    return {e.acne, e.other_shadow(),   e.detachment,
+            e.leak, e.terminator.wrong, e.penumbra_error.false_shadow + e.penumbra_error.false_light};
 }
 void expect_none(const Interior& i, std::string_view but) {
     EXPECT_TRUE(but == "acne" || i.acne == 0) << i.acne;
@@ -79,6 +81,7 @@ void expect_none(const Interior& i, std::string_view but) {
     EXPECT_TRUE(but == "detachment" || i.detachment == 0) << i.detachment;
     EXPECT_TRUE(but == "leak" || i.leak == 0) << i.leak;
     EXPECT_TRUE(but == "at_terminator" || i.at_terminator == 0) << i.at_terminator;
+    EXPECT_TRUE(but == "penumbra" || i.penumbra == 0) << i.penumbra;
 }
 
 TEST(PlantedDefects, NoneNoErrors) {
@@ -255,6 +258,88 @@ TEST(PlantedDefects, TheTerminatorIsCountedApart) {
     EXPECT_EQ(e.error.terminator.wrong, planted);
     EXPECT_EQ(e.error.terminator.normal_away, planted);
     EXPECT_EQ(e.error.false_shadow.edge + e.error.false_light.edge, 0u);
+}
+
+/// The wall and the board under a window, in a small picture, since exact area fractions are slow.
+Scene under_a_window() {
+    Scene scene      = wall_and_board();
+    Light& window    = scene.lights[0];
+    window.kind      = LightKind::rectangle;
+    window.position  = {0.5f, 6, -0.5f};
+    window.edge_u    = {1.6f, 0, 0};
+    window.edge_v    = {0, 0, 1.6f};
+    window.direction = {0, -1, 0};
+    scene.width      = 200;
+    scene.height     = 125;
+    return scene;
+}
+const Stage& window_stage() {
+    static const Stage stage(under_a_window());
+    return stage;
+}
+
+TEST(PlantedDefects, AMissingPenumbraIsThatAlone) {
+    const Stage& stage  = window_stage();
+    Scene hard          = stage.scene;
+    hard.lights[0].kind = LightKind::point;  // at the centre
+    const Explained e   = stage.explained(stage.run("ray_traced", hard));
+    expect_none(interior(e.error), "penumbra");
+    EXPECT_EQ(e.error.unnamed, 0u);
+    EXPECT_GT(e.error.penumbra_error.false_shadow, 100u);
+    EXPECT_GT(e.error.penumbra_error.false_light, 100u);
+    EXPECT_EQ(e.error.false_shadow.interior, e.error.penumbra_error.false_shadow);
+    EXPECT_EQ(e.error.false_light.interior, e.error.penumbra_error.false_light);
+    EXPECT_EQ(e.error.interior.penumbra, e.error.false_shadow.interior + e.error.false_light.interior);
+}
+
+TEST(PlantedDefects, NoiseIsNeitherLeakNorAcne) {
+    const Stage& stage   = window_stage();
+    const auto method    = parse_method("ray_traced:samples=4,sampler=random");
+    const MethodRun run  = run_method(method, stage.scene, stage.facts, stage.points, {1, 0});
+    const Explained once = stage.explained(run);
+    expect_none(interior(once.error), "penumbra");
+    EXPECT_EQ(once.error.noise_error.false_shadow + once.error.noise_error.false_light, 0u) << "nobody asked";
+
+    const auto meters  = noise_runs(method, stage.scene, stage.facts, stage.points);
+    const Explained e  = explain(stage.scene, stage.points, 0, run, stage.truth, &*meters[0]);
+    const Interior bad = interior(e.error);
+    expect_none(bad, "penumbra");
+    EXPECT_GT(e.error.noise_error.false_shadow, 100u);
+    EXPECT_GT(e.error.noise_error.false_light, 100u);
+    EXPECT_LT(bad.penumbra, e.error.noise_error.false_shadow + e.error.noise_error.false_light);
+    EXPECT_EQ(e.error.false_shadow.interior, once.error.false_shadow.interior);
+    EXPECT_EQ(e.error.false_light.interior, once.error.false_light.interior);
+    ASSERT_TRUE(e.noise);
+    EXPECT_GT(e.noise->rms, 0.02);
+}
+
+TEST(PlantedDefects, RandomNumbersDoNotExplainAMissingPenumbra) {
+    // A method whose runs all lack the penumbra: their mean lacks it, too.
+    const Stage& stage  = window_stage();
+    Scene hard          = stage.scene;
+    hard.lights[0].kind = LightKind::point;
+    const MethodRun run = stage.run("ray_traced", hard);
+    NoiseMeter meter(stage.points.size());
+    for (int k = 0; k < 3; ++k) meter.add(run.planes[0].s);
+    const Explained e = explain(stage.scene, stage.points, 0, run, stage.truth, &meter);
+    EXPECT_EQ(e.error.noise_error.false_shadow + e.error.noise_error.false_light, 0u);
+    expect_none(interior(e.error), "penumbra");
+    EXPECT_GT(interior(e.error).penumbra, 200u);
+}
+
+TEST(PlantedDefects, ALeakIntoTheUmbraOfAnAreaLightIsALeak) {
+    const Stage& stage = window_stage();
+    Scene cracked      = stage.scene;
+    for (std::uint32_t t = 0; t < 2; ++t)
+        for (int k = 0; k < 3; ++k) {
+            float& x = cracked.positions[cracked.triangles[cracked.objects[kRightHalf].first_triangle + t][k]].x;
+            if (x == 1.5f) x = 2;
+        }
+    const Explained e  = stage.explained(stage.run("ray_traced:samples=256", cracked));
+    const Interior bad = interior(e.error);
+    EXPECT_GT(bad.leak, 50u);
+    EXPECT_EQ(bad.leak, e.error.interior.umbra);
+    EXPECT_EQ(bad.acne + bad.other_shadow + bad.detachment + bad.at_terminator, 0u);
 }
 
 TEST(PlantedDefects, WithinItsBracketNoPointIsWrong) {

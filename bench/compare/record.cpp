@@ -1,0 +1,167 @@
+#include "umbra/bench/compare/record.h"
+
+#include <fmt/format.h>
+
+namespace umbra {
+namespace {
+
+Json parameters_json(const Settings& settings) {
+    Json values = Json::object();
+    for (const Parameter& p : settings.parameters())
+        values[std::string(p.name)] = setting_json(p, settings.value(p.name));
+    return values;
+}
+
+Json displacement_json(const std::optional<EdgeDisplacement>& d) {
+    if (!d) return {};
+    return {{"mean", number(d->mean)},
+            {"p95", number(d->p95)},
+            {"max", number(d->max)},
+            {"pieces", d->pieces},
+            {"unmatched", d->unmatched}};
+}
+
+Json penumbra_json(const std::optional<PenumbraWidth>& w) {
+    if (!w) return {};
+    return {{"method", number(w->method)}, {"reference", number(w->reference)}};
+}
+
+Json noise_json(const std::optional<Noise>& n) {
+    if (!n) return {};
+    return {{"runs", n->runs}, {"noise_rmse", number(n->rms)}, {"bias_rmse", number(n->bias)}};
+}
+
+Json direction_json(const VisibilityError::Direction& d) {
+    return {{"false_shadow", d.false_shadow}, {"false_light", d.false_light}};
+}
+
+Json error_json(const std::string& light, const Explained& explained) {
+    const VisibilityError& e = explained.error;
+    // Detachment and leak are told apart by the occluder: null where the reference names none.
+    const bool named = e.unnamed == 0;
+    return {{"light", light},
+            {"points", e.points},
+            {"undefined", e.undefined},
+            {"away", e.away},
+            {"on_boundary", e.on_boundary},
+            {"not_judged", e.not_judged},
+            {"lit", e.lit},
+            {"umbra", e.umbra},
+            {"penumbra", e.penumbra},
+            {"false_shadow", {{"interior", e.false_shadow.interior}, {"edge", e.false_shadow.edge}, {"acne", e.acne}}},
+            {"false_light",
+             {{"interior", e.false_light.interior},
+              {"edge", e.false_light.edge},
+              {"detachment", named ? Json(e.detachment) : Json()},
+              {"leak", named ? Json(e.leak) : Json()}}},
+            {"interior", {{"lit", e.interior.lit}, {"umbra", e.interior.umbra}, {"penumbra", e.interior.penumbra}}},
+            {"penumbra_error", direction_json(e.penumbra_error)},
+            {"noise_error", direction_json(e.noise_error)},
+            {"terminator",
+             {{"facet_away", e.terminator.facet_away},
+              {"normal_away", e.terminator.normal_away},
+              {"wrong", e.terminator.wrong}}},
+            {"bracket", e.max_half_width > 0 ? Json{{"max_half_width", number(e.max_half_width)}} : Json()},
+            {"mae", number(e.mae)},
+            {"rmse", number(e.rmse)},
+            {"max", number(e.max)},
+            {"bias", number(e.bias)},
+            {"noise", noise_json(explained.noise)},
+            {"edge_displacement_px", displacement_json(explained.displacement)},
+            {"penumbra_width_px", penumbra_json(explained.penumbra_width)}};
+}
+
+Json judged_json(const ReferenceRun& reference) {
+    if (reference.stand_in.empty()) return nullptr;
+    return {{"points", reference.judged}, {"of", reference.of}, {"guess", reference.stand_in}};
+}
+
+/// What is known of a method before it runs.
+Json head_json(const std::string& id, const MethodChoice& choice, const Service& service) {
+    const MethodInfo& info = *choice.info;
+    return {{"id", id},
+            {"name", info.name},
+            {"title", info.title},
+            {"paper", info.paper},
+            {"summary", info.summary},
+            {"text", choice.text()},
+            {"parameters", parameters_json(choice.settings)},
+            {"serves", service_json(service)}};
+}
+
+Json times_json(const MethodRun& run) {
+    return {{"build_ms", timing_json(run.build)},
+            {"aim_ms", timing_json(total(run.aim))},
+            {"visibility_ms", timing_json(total(run.visibility))}};
+}
+
+}  // namespace
+
+Json reference_json(const Reference& reference, const ReferenceRun& ran) {
+    return {{"name", reference.choice.info->name},
+            {"title", reference.choice.info->title},
+            {"text", reference.choice.text()},
+            {"parameters", parameters_json(reference.choice.settings)},
+            {"exact", reference.exact},
+            {"note", reference.note},
+            {"judged", judged_json(ran)},
+            {"times", times_json(ran.run)}};
+}
+
+Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
+                 std::span<const Explained> explained) {
+    Json entry       = head_json(id, run.choice, run.service);
+    Json light_times = Json::array(), errors = Json::array();
+    for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
+        const std::string& light = prepared.scene.lights[j].name;
+        light_times.push_back(
+            {{"light", light}, {"aim_ms", timing_json(run.aim[j])}, {"visibility_ms", timing_json(run.visibility[j])}});
+        errors.push_back(error_json(light, explained[j]));
+    }
+    entry["times"]        = times_json(run);
+    entry["light_times"]  = std::move(light_times);
+    entry["memory_bytes"] = run.memory_bytes;
+    entry["coverage"]     = run.coverage(prepared.points);
+    entry["errors"]       = std::move(errors);
+    return entry;
+}
+
+Json unserved_json(const std::string& id, const MethodChoice& choice, const Service& service) {
+    return head_json(id, choice, service);
+}
+
+Json failed_json(const std::string& id, const MethodChoice& choice, const Scene& scene, std::optional<LightId> light,
+                 const std::string& message) {
+    const std::string where = light ? fmt::format(" at light {}", scene.lights[*light].name) : "";
+    Json entry              = head_json(id, choice, {How::not_at_all, fmt::format("It failed{}: {}", where, message)});
+    entry["failed"]         = {{"light", light ? Json(scene.lights[*light].name) : Json()}, {"message", message}};
+    return entry;
+}
+
+std::vector<std::string> failures(const Json& record) {
+    std::vector<std::string> messages;
+    for (const Json& method : record["methods"])
+        if (method.contains("failed"))
+            messages.push_back(fmt::format("{}: {}: {}", record["scene"]["name"].get<std::string>(),
+                                           method["text"].get<std::string>(),
+                                           method["serves"]["why"].get<std::string>()));
+    return messages;
+}
+
+/// The record with every file name set behind `prefix`.
+Json with_prefix(Json record, const std::string& prefix) {
+    const auto visit = [&](auto&& self, Json& node) -> void {
+        for (auto& item : node.items()) {
+            if (item.value().is_string())
+                item.value() = prefix + item.value().get<std::string>();
+            else
+                self(self, item.value());
+        }
+    };
+    if (record["reference"].contains("files")) visit(visit, record["reference"]["files"]);
+    for (Json& method : record["methods"])
+        if (method.contains("files")) visit(visit, method["files"]);
+    return record;
+}
+
+}  // namespace umbra

@@ -1,0 +1,35 @@
+// The parts of results.json that compare alone writes, by the names of bench/run/results.schema.json.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/reference.h"
+
+namespace umbra {
+
+/// `reference` without its files.
+[[nodiscard]] Json reference_json(const Reference& reference, const ReferenceRun& ran);
+
+/// An entry of `methods`, without image and files; `explained` is one a light.
+[[nodiscard]] Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
+                               std::span<const Explained> explained);
+[[nodiscard]] Json unserved_json(const std::string& id, const MethodChoice& choice, const Service& service);
+
+/// The entry of a method that threw or broke its contract, at `light` if it was about one. It serves `not`, since it
+/// has no answers.
+[[nodiscard]] Json failed_json(const std::string& id, const MethodChoice& choice, const Scene& scene,
+                               std::optional<LightId> light, const std::string& message);
+
+/// "SCENE: METHOD: It failed at light LIGHT: message" for every failed method of a results.json.
+[[nodiscard]] std::vector<std::string> failures(const Json& record);
+
+/// The record with every file name set behind `prefix`.
+[[nodiscard]] Json with_prefix(Json record, const std::string& prefix);
+
+}  // namespace umbra

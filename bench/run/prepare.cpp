@@ -1,0 +1,49 @@
+#include "umbra/bench/run/prepare.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/ray.h"
+
+namespace umbra {
+namespace {
+
+constexpr long kMaxArea = 1L << 26;
+
+}  // namespace
+
+Size parse_size(const std::string& text) {
+    Size size;
+    const std::size_t cross = text.find('x');
+    const auto read         = [&](std::size_t begin, std::size_t end, int& value) {
+        const auto [at, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+        return error == std::errc() && at == text.data() + end && value >= 1 && value <= kMaxPictureSide;
+    };
+    if (cross == std::string::npos || !read(0, cross, size.width) || !read(cross + 1, text.size(), size.height) ||
+        static_cast<long>(size.width) * size.height > kMaxArea)
+        throw UsageError(fmt::format("--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels",
+                                     text, kMaxPictureSide, kMaxArea));
+    return size;
+}
+
+PreparedScene prepare_scene(const std::filesystem::path& file, Size size) {
+    PreparedScene p;
+    p.load_ms  = timed_ms([&] { p.scene = load_scene(file); });
+    p.facts_ms = timed_ms([&] { p.facts = find_facts(p.scene); });
+    if (size.width == 0) size = {p.scene.width, p.scene.height};
+    std::optional<RayScene> rays;
+    p.rays_build_ms = timed_ms([&] { rays.emplace(p.scene); });
+    p.gbuffer_ms =
+        timed_ms([&] { p.points = primary_points(*rays, p.scene, p.scene.camera, size.width, size.height); });
+    const auto& seen = p.points.triangle;
+    if (std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; }))
+        p.scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
+    return p;
+}
+
+}  // namespace umbra
