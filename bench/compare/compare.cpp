@@ -117,7 +117,7 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
         explained.push_back(explain(scene, prepared.points, j, run, reference, noise[j] ? &*noise[j] : nullptr));
     }
     at.reset();
-    Json entry = served_json(id, prepared, run, explained);
+    Json entry = served_json(id, prepared, run, explained, reference.choice.text());
     Rendered rendered;
     shade_ms       = timed_ms([&] { rendered = render(scene, prepared.points, run.planes); });
     Json files     = write_files(folder, id, prepared, run, rendered, reference, explained, command);
@@ -181,6 +181,24 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     record["reference"]["files"] = write_files(staging, "reference", prepared, reference_run, reference_rendered,
                                                reference_run, {}, options.command);
 
+    // Methods that measure what the reference does not measure are compared with a truth of their own.
+    struct Truth {
+        ReferenceRun ran;
+        Rendered rendered;
+    };
+    std::optional<Truth> other;
+    const auto differs_in_measure = [&](const MethodChoice& choice) {
+        const Measure measure = choice.make()->measures();
+        if (prepared.facts.hard_lights_only || measure == reference_run.method->measures()) return false;
+        if (!other) {
+            const Reference chosen = default_reference(prepared.facts, measure);
+            tell("reference " + chosen.choice.text());
+            other.emplace(Truth{run_reference(chosen, scene, prepared.facts, prepared.points, options.points), {}});
+            other->rendered = render(scene, prepared.points, other->ran.run.planes);
+        }
+        return true;
+    };
+
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
     for (const MethodChoice& choice : choices) {
@@ -192,12 +210,15 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
         const bool slow      = total(reference_run.visibility).median > options.repeats.budget_ms;
         std::optional<LightId> at;
         try {
+            const bool apart               = differs_in_measure(choice);
+            const MethodRun& truth         = apart ? other->ran.run : reference_run;
+            const Rendered& truth_rendered = apart ? other->rendered : reference_rendered;
             const MethodRun run =
                 itself && slow && reference_ran.stand_in.empty()
                     ? reference_run
                     : run_method(choice, scene, prepared.facts, prepared.points, options.repeats, &at);
-            record["methods"].push_back(run.service ? method_entry(staging, id, prepared, run, reference_run,
-                                                                   reference_rendered, options.command, shade_ms, at)
+            record["methods"].push_back(run.service ? method_entry(staging, id, prepared, run, truth, truth_rendered,
+                                                                   options.command, shade_ms, at)
                                                     : unserved_json(id, choice, run.service));
         } catch (const InputError&) {  // a file that cannot be written is no fault of the method
             throw;

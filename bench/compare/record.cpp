@@ -109,7 +109,7 @@ Json reference_json(const Reference& reference, const ReferenceRun& ran) {
 }
 
 Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                 std::span<const Explained> explained) {
+                 std::span<const Explained> explained, const std::string& reference) {
     Json entry       = head_json(id, run.choice, run.service);
     Json light_times = Json::array(), errors = Json::array();
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
@@ -118,11 +118,13 @@ Json served_json(const std::string& id, const PreparedScene& prepared, const Met
             {{"light", light}, {"aim_ms", timing_json(run.aim[j])}, {"visibility_ms", timing_json(run.visibility[j])}});
         errors.push_back(error_json(light, explained[j]));
     }
-    entry["times"]        = times_json(run);
-    entry["light_times"]  = std::move(light_times);
-    entry["memory_bytes"] = run.memory_bytes;
-    entry["coverage"]     = run.coverage(prepared.points);
-    entry["errors"]       = std::move(errors);
+    entry["times"]         = times_json(run);
+    entry["light_times"]   = std::move(light_times);
+    entry["memory_bytes"]  = run.memory_bytes;
+    entry["coverage"]      = run.coverage(prepared.points);
+    entry["measures"]      = to_string(run.method->measures());
+    entry["compared_with"] = reference;
+    entry["errors"]        = std::move(errors);
     return entry;
 }
 

@@ -16,9 +16,9 @@ namespace umbra {
 /// `reference` without its files.
 [[nodiscard]] Json reference_json(const Reference& reference, const ReferenceRun& ran);
 
-/// An entry of `methods`, without image and files; `explained` is one a light.
+/// An entry of `methods`, without image and files; `explained` is one a light, against `reference`, as typed.
 [[nodiscard]] Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                               std::span<const Explained> explained);
+                               std::span<const Explained> explained, const std::string& reference);
 [[nodiscard]] Json unserved_json(const std::string& id, const MethodChoice& choice, const Service& service);
 
 /// The entry of a method that threw or broke its contract, at `light` if it was about one. It serves `not`, since it

@@ -16,6 +16,15 @@ namespace {
 
 using nlohmann::json;
 
+/// Why it serves as it does, and which truth it is compared with where that is not the visible area.
+std::string reason(const Field& method) {
+    std::string why = method["serves"]["why"].text();
+    if (method["measures"].text() == "irradiance")
+        why += fmt::format(" It measures the irradiance-weighted fraction and is compared with {}.",
+                           method["compared_with"].text());
+    return why;
+}
+
 json parameters(const Field& method) {
     json all = json::array();
     for (const auto& [name, value] : method["parameters"].members())
@@ -151,7 +160,7 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
         const bool served = serves(method);
         used.push_back({{"label", label},
                         {"how", served ? method["serves"]["how"].text() : "not served"},
-                        {"why", method["serves"]["why"].text()},
+                        {"why", reason(method)},
                         {"parameters", parameters(method)}});
         if (!served) {
             unserved.push_back({{"label", label}, {"why", method["serves"]["why"].text()}});

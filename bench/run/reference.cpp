@@ -71,17 +71,27 @@ MethodChoice stand_in_for_reference() {
     throw UsageError("no method in the list can stand in for a reference");
 }
 
+/// The same method, answering this measure. Throws UsageError where it cannot.
+MethodChoice of_measure(MethodChoice choice, Measure measure) {
+    if (choice.make()->measures() == measure) return choice;
+    choice.settings.set("measure", to_string(measure));
+    if (choice.make()->measures() != measure)
+        throw UsageError(fmt::format("{} does not measure {}", choice.info->name, to_string(measure)));
+    return choice;
+}
+
 }  // namespace
 
-Reference default_reference(const SceneFacts& facts) {
+Reference default_reference(const SceneFacts& facts, Measure measure) {
     std::string why;
     for (const MethodInfo* info : methods()) {
         if (!info->reference) continue;
-        const Service service = info->make()->serves(facts);
-        if (service) return {MethodChoice(*info), true, service.why};
+        const MethodChoice choice = of_measure(MethodChoice(*info), measure);
+        const Service service     = choice.make()->serves(facts);
+        if (service) return {choice, true, service.why};
         why += fmt::format(" {} does not serve here: {}.", info->title, service.why);
     }
-    MethodChoice choice = stand_in_for_reference();
+    const MethodChoice choice = of_measure(stand_in_for_reference(), measure);
     return {choice, false, fmt::format("{}: better sampled, not exact.{}", choice.info->title, why)};
 }
 
@@ -105,7 +115,8 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
         return done;
     }
 
-    const MethodRun stand_in                = run_method(stand_in_for_reference(), scene, facts, points, kOnce);
+    const MethodRun stand_in =
+        run_method(of_measure(stand_in_for_reference(), run.method->measures()), scene, facts, points, kOnce);
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
     run.build                               = time_runs(kOnce, [&] { run.method->build(scene, facts); });

@@ -17,7 +17,8 @@ struct Reference {
 };
 
 /// The first method of the list that may be a reference and serves the scene, else a stand-in that is not exact.
-[[nodiscard]] Reference default_reference(const SceneFacts& facts);
+/// Its answers are of the given measure.
+[[nodiscard]] Reference default_reference(const SceneFacts& facts, Measure measure = Measure::area);
 
 /// The reference's answers: at all points of the picture for lights without an area; for area lights at all points, or
 /// at a stratified sample of them. Elsewhere its planes hold values of another method (MethodInfo::stand_in), which

@@ -40,6 +40,7 @@ struct Options {
     int samples         = 16;
     Sampler sampler     = Sampler::sobol;
     int seed            = 0;
+    Measure measure     = Measure::area;
 };
 
 const std::vector<Parameter> kParameters{
@@ -70,6 +71,11 @@ const std::vector<Parameter> kParameters{
                                .phase = Phase::aim,
                                .min   = 0,
                                .max   = 2147483647}),
+    parameter<&Options::measure>({.name = "measure",
+                                  .doc  = "Which fraction of an area light S_j is. area: of its area; irradiance: each "
+                                          "sample counts by the irradiance it sends, as in most renderers.",
+                                  .phase   = Phase::visibility,
+                                  .choices = "area|irradiance"}),
 };
 
 /// Rays end this fraction of the segment to the light before it, so that triangles on which the light lies, as those of
@@ -189,6 +195,8 @@ vec3 integer_offset(vec3 p, vec3 n) {
 
 class RayTraced final : public MethodWith<Options> {
 public:
+    [[nodiscard]] Measure measures() const override { return options.measure; }
+
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only)
             return {How::approximately, fmt::format("area lights are sampled, {} rays a point", options.samples)};
@@ -233,6 +241,7 @@ private:
     void trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
     template <class Body>
     bool for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const;
+    [[nodiscard]] float visible_irradiance(const Starts& starts, int lane, PointKey key) const;
     [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const;
     void trace_area_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
     [[nodiscard]] TriangleId first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const;
@@ -395,8 +404,32 @@ bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, co
     return true;
 }
 
+/// The fraction of the light's irradiance that arrives at the point. Towards a flat light the cosine at the light is
+/// the same height over the distance for all samples, so that one of direction d counts n.d / |d|^4; the disk that a
+/// point sees of a sphere spans the directions that the sphere does.
+float RayTraced::visible_irradiance(const Starts& starts, int lane, PointKey key) const {
+    const vec3 n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
+    double seen = 0, all = 0;
+    const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
+        double weight[8];
+        for (int k = 0; k < 8; ++k) {
+            const dvec3 d(packet.dir_x[k], packet.dir_y[k], packet.dir_z[k]);
+            const double square = glm::dot(d, d);
+            weight[k]           = packet.valid[k] != 0 ? glm::dot(dvec3(n), d) / (square * square) : 0;
+        }
+        rays_->occluded(packet);
+        for (int k = 0; k < 8; ++k) {
+            all += weight[k];
+            if (packet.tfar[k] >= 0) seen += weight[k];
+        }
+        return true;
+    });
+    return outside && all > 0 ? static_cast<float>(seen / all) : outside ? 0.0f : 1.0f;
+}
+
 /// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
 float RayTraced::visible_fraction(const Starts& starts, int lane, PointKey key) const {
+    if (options.measure == Measure::irradiance) return visible_irradiance(starts, lane, key);
     int seen           = 0;
     const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
         rays_->occluded(packet);

@@ -8,6 +8,8 @@
 #include <rapidjson/stringbuffer.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -68,6 +70,40 @@ protected:
     fs::path folder_, scene_;
     CompareOptions options_;
 };
+
+/// A large light close above the floor, half hidden by a board: the part that is hidden matters more, or less, to
+/// irradiance than its area says.
+TEST_F(Compare, IrradianceIsComparedWithIrradiance) {
+    const fs::path scene = folder_ / "board.json";
+    write(scene, R"({
+        "shows": "A large light close above a floor, and a board that hides part of it.",
+        "camera": {"eye": [0, 2, 5], "target": [0, 0, 0]},
+        "lights": [{"name": "panel", "type": "rectangle", "position": [0, 1.5, 0], "edge_u": [4, 0, 0], "edge_v": [0, 0, 4]}],
+        "objects": [{"name": "floor", "type": "plane", "size": [6, 6]},
+                    {"name": "board", "type": "box", "size": [1.5, 0.05, 3], "transform": [{"translate": [1, 0.6, 0]}]}]
+    })");
+    options_.methods = {"ray_traced:samples=1024", "ray_traced:samples=1024,measure=irradiance", "shadow_volumes"};
+    ASSERT_EQ(compare_scenes({scene}, options_).names.size(), 1u);
+    const Json record = Json::parse(text_of(options_.out / "board" / "results.json"));
+    expect_valid(record);
+    const Json &area = record["methods"][0], &irradiance = record["methods"][1];
+    EXPECT_EQ(area["measures"], "area");
+    EXPECT_EQ(area["compared_with"], "exact");
+    EXPECT_EQ(irradiance["measures"], "irradiance");
+    EXPECT_EQ(irradiance["compared_with"], "exact:measure=irradiance");
+    EXPECT_LT(area["errors"][0]["rmse"].get<double>(), 0.004);
+    EXPECT_LT(irradiance["errors"][0]["rmse"].get<double>(), 0.004);
+
+    // The two truths are far apart here, so that neither could pass for the other.
+    const Image a = read_image(options_.out / "board" / "ray_traced.exr").image;
+    const Image b = read_image(options_.out / "board" / "ray_traced-2.exr").image;
+    double most   = 0;
+    for (std::size_t i = 0; i < a.pixels(); ++i) {
+        const std::size_t c = static_cast<std::size_t>(std::ranges::find(a.channels, "S.panel") - a.channels.begin());
+        most                = std::max(most, std::abs(double(a.at(i, c)) - double(b.at(i, c))));
+    }
+    EXPECT_GT(most, 0.05);
+}
 
 TEST_F(Compare, RecordFollowsItsSchemaAndNamesFilesThatExist) {
     const ScenesDone done = compare_scenes({scene_}, options_);
