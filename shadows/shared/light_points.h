@@ -13,7 +13,7 @@ struct DiskAxes {
 [[nodiscard]] DiskAxes disk_axes(const Light& disk);
 
 /// Point k >= 0 of an area light as p sees it, world space: an additive recurrence that fills the light evenly, of a
-/// sphere the disk that p sees (its centre where p lies inside). The same for every p but for spheres.
+/// sphere the disk that p sees (its centre where p lies inside). The same for every p, except for spheres.
 /// [Martin Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018]
 [[nodiscard]] dvec3 light_point(const Light& light, dvec3 p, int k);
 

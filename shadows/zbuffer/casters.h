@@ -25,7 +25,7 @@ struct Extent {
 
 /// What can cast a shadow, and where it lies.
 ///
-/// Scenes stand on floors and between walls that reach far beyond all else, and a map fitted to those wastes its
+/// Many scenes have floors and walls that reach far beyond all else, and a map fitted to those wastes its
 /// samples. What such planes do, seen from a light:
 ///   - Where the whole scene lies on the light's side of a plane, it blocks nothing: no segment between two points of a
 ///     closed half-space crosses its border. It is not drawn.
@@ -58,7 +58,7 @@ public:
     /// From p to the nearest point of what is fitted to.
     [[nodiscard]] double distance(dvec3 p) const;
 
-    /// Those triangles that are drawn, but for parts whose boxes lie wholly beyond one side of the view.
+    /// The triangles that are drawn, without parts whose boxes lie wholly beyond one side of the view.
     [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world) const;
 
 private:

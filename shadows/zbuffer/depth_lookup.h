@@ -18,13 +18,14 @@ enum class BiasMode : std::uint8_t {
 /// The automatic bias
 ///
 /// A sample shows a surface elsewhere than at the point, up to half a sample off. Where it is the point's own plane,
-/// its depth there is known but for rounding (receiver_plane). Where the surface is curved or folded, what the map
+/// its depth there is known up to rounding (receiver_plane). Where the surface is curved or folded, what the map
 /// holds may lie above that plane by as much as the surface rises in half a sample: with the fold's angle, the flatter
 /// the light falls the more. So the automatic bias takes the nearer of plane and point and adds a width and a quarter
 /// of the gradient. All in all it never moves a sample by more than 16 widths from the plane: where light grazes, depth
 /// gradients are without bound, and a bias that follows them lifts points out of the shadow of what is just before them
 /// (graphics hardware has had a clamp of its slope bias for the same reason). What follows:
-///   - a plane has no acne at any slope, but for light below 1/16000 of a radian, where snapped corners shift its depth
+///   - a plane has no acne at any slope, except for light below 1/16000 of a radian, where snapped corners shift its
+///   depth
 ///     by more than the limit;
 ///   - a shadow never comes off by more than 16 widths of a sample (of a kernel, that many times as much) from the
 ///     point's plane. But that plane is asked beyond the triangle, and where light grazes a small steep facet it may

@@ -57,7 +57,7 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     if (static_cast<double>(memory_bytes()) + bytes > options_.memory_limit)
         throw UsageError(
             fmt::format("shadow_zbuffer: resolution={} takes more than half of the machine's memory "
-                        "({:.0f} MiB a map, {} of them as yet; choose a smaller one)",
+                        "({:.0f} MiB a map, {} of them so far), expected a smaller one",
                         options_.resolution, bytes / (1 << 20), views_.size()));
     views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
 }

@@ -23,7 +23,7 @@ void add(Scene& scene, const std::string& name, const Mesh& mesh, const mat4& m 
 }
 mat4 at(vec3 p) { return glm::translate(mat4(1), p); }
 
-Light lamp(vec3 position) {
+Light light_at(vec3 position) {
     Light light;
     light.position = position;
     return light;
@@ -62,7 +62,7 @@ TEST(PlanarProjection, SaysHowItServes) {
     EXPECT_EQ(how(known_scene("penumbra_of_half_plane").scene, "planar_projection").how, How::approximately);
     Scene ball;
     add(ball, "ball", make_sphere(1, 64, 32));
-    ball.lights.push_back(lamp({0, 5, 0}));
+    ball.lights.push_back(light_at({0, 5, 0}));
     EXPECT_EQ(how(ball, "planar_projection").how, How::not_at_all);
 }
 
@@ -94,7 +94,7 @@ TEST(PlanarProjection, IsExactAtEveryScale) {
             wrong += got.s[i] != right.s[i];
         }
         EXPECT_GT(compared, 3000u) << scale;
-        // Scaling rounds every vertex anew, so that a point or two may change sides.
+        // Scaling rounds every vertex again, so that a point or two may change sides.
         EXPECT_LE(wrong, 2u) << scale;
     }
 }
@@ -104,7 +104,7 @@ TEST(PlanarProjection, HasNoPinholes) {
     Scene scene;
     add(scene, "floor", make_plane(8, 8), glm::rotate(mat4(1), 0.2f, vec3(0.6f, 0, 0.8f)));
     add(scene, "torus", make_torus(1, 0.45f, 160, 80), glm::rotate(at({0, 1.7f, 0}), 0.7f, vec3(1, 0, 0)));
-    scene.lights.push_back(lamp({1.5f, 6, 0.7f}));
+    scene.lights.push_back(light_at({1.5f, 6, 0.7f}));
     scene.camera.eye        = {0, 7, 5};
     scene.width             = 640;
     scene.height            = 400;
@@ -121,7 +121,7 @@ TEST(PlanarProjection, HasNoPinholes) {
 }
 
 /// Points whose ray passes exactly through an edge that two occluders share: whichever way rounding turns, one of the
-/// two must catch it. From a lamp at height 4, an edge's ends a at height 2 and b at height 3 fall on exactly 2 a and
+/// two must catch it. From a light at height 4, an edge's ends a at height 2 and b at height 3 fall on exactly 2 a and
 /// 4 b; there lie the ends of an edge of the floor, and its middle is the point.
 TEST(PlanarProjection, SharedEdgesAreWatertight) {
     std::mt19937 random(3);
@@ -133,7 +133,7 @@ TEST(PlanarProjection, SharedEdgesAreWatertight) {
         Scene scene;
         add(scene, "floor", Mesh{{{2 * a.x, 0, 2 * a.z}, {4 * b.x, 0, 4 * b.z}, {0, 0, 20}}, {}, {{0, 1, 2}}});
         add(scene, "roof", Mesh{{a, b, front, back}, {}, {{0, 1, 2}, {1, 0, 3}}});
-        scene.lights.push_back(lamp({0, 4, 0}));
+        scene.lights.push_back(light_at({0, 4, 0}));
         PointBatch points;
         points.eye = {0, 10, 0};
         points.resize(1);
@@ -187,7 +187,7 @@ TEST(PlanarProjection, LightOnAnOccluderIsNotHiddenByIt) {
         Scene scene;
         add(scene, "floor", make_plane(8, 8));
         add(scene, "occluder", occluder);
-        scene.lights.push_back(lamp(light));
+        scene.lights.push_back(light_at(light));
         scene.width             = 96;
         scene.height            = 64;
         scene.camera.eye        = {0, 4, 7};
@@ -212,7 +212,7 @@ TEST(PlanarProjection, LightInOrUnderThePlaneLeavesItDark) {
         add(scene, "floor", make_plane(8, 8));
         add(scene, "box", make_box({1, 1, 1}), at({0, 1, 0}));
         scene.materials[0].two_sided = false;
-        scene.lights.push_back(lamp({3, height, 0}));
+        scene.lights.push_back(light_at({3, height, 0}));
         const PointBatch points = primary(scene);
         const auto plane        = project(scene, points);
         for (std::size_t i = 0; i < points.size(); ++i)
@@ -248,7 +248,7 @@ protected:
         return 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / kPi;
     }
     static Light light_of(LightKind kind) {
-        Light light     = lamp({0, 4, 0});
+        Light light     = light_at({0, 4, 0});
         light.kind      = kind;
         light.edge_u    = {1.5f, 0, 0};
         light.edge_v    = {0, 0, -1.5f};
@@ -258,7 +258,7 @@ protected:
     }
 };
 
-/// A light that stands half under the floor: the floor sees the upper half of it.
+/// A light that is half under the floor: the floor sees the upper half of it.
 TEST_F(Penumbra, OfALightThatThePlaneCuts) {
     Scene scene               = known_scene("penumbra_of_half_plane").scene;
     scene.lights[0]           = light_of(LightKind::rectangle);
