@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
@@ -51,8 +52,10 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
     const PointBatch& points = prepared.points;
     Json files               = {{"exr", id + ".exr"}, {"png", id + ".png"}, {"lights", Json::object()}};
 
-    Image full    = with_planes(rendered.linear, scene, points, run.planes, explained.empty());
-    full.metadata = metadata(scene, run.choice, command);
+    const bool is_reference = explained.empty();
+    Image full              = exr_image(rendered.linear, scene, points, run,
+                                        {.geometry = is_reference, .reference = is_reference, .explained = explained});
+    full.metadata.merge(metadata(scene, run.choice, command));
     write_image(folder / (id + ".exr"), full);
     write_image(folder / (id + ".png"), rendered.shown);
     for (LightId j = 0; j < scene.lights.size(); ++j) {
@@ -279,9 +282,9 @@ Service render_scene(const fs::path& file, const RenderOptions& options) {
     if (!run.service) return run.service;
     const Rendered rendered = render(prepared.scene, prepared.points, run.planes);
     Image image             = options.out.extension() == ".png" ? rendered.shown
-                                                                : with_planes(rendered.linear, prepared.scene, prepared.points,
-                                                                              run.planes, options.with_geometry);
-    image.metadata          = metadata(prepared.scene, choice, options.command);
+                                                                : exr_image(rendered.linear, prepared.scene, prepared.points, run,
+                                                                            {.geometry = options.with_geometry});
+    image.metadata.merge(metadata(prepared.scene, choice, options.command));
     write_image(options.out, image);
     return run.service;
 }

@@ -46,7 +46,7 @@ struct ScenesDone {
 };
 ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
 
-/// One method's picture of one scene: .exr (R G B, S.<light>; with geometry where asked) or .png (as displayed).
+/// One method's picture of one scene: .exr (docs/exr.md; with geometry where asked) or .png (as displayed).
 /// Returns false and the reason where the method does not serve the scene; nothing is written then.
 struct RenderOptions {
     std::string method = "ray_traced";

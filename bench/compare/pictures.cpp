@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "umbra/bench/pages/error_palette.h"
 
@@ -94,38 +93,6 @@ Image class_picture(const PointBatch& points, const ClassPlane& classes, const V
 
 Image flip_picture(int width, int height, std::span<const float> map) {
     return picture(width, height, [&](std::size_t i, std::size_t, std::size_t) { return ramp(kError, map[i]); });
-}
-
-Image with_planes(const Image& linear, const Scene& scene, const PointBatch& points,
-                  std::span<const VisibilityPlane> planes, bool with_geometry) {
-    std::vector<std::string> channels = {"R", "G", "B"};
-    for (const Light& light : scene.lights) channels.push_back("S." + light.name);
-    const std::size_t first = channels.size();
-    if (with_geometry)
-        channels.insert(channels.end(), {"Z", "N.x", "N.y", "N.z", "P.x", "P.y", "P.z", "id.object", "id.face"});
-
-    Image image(linear.width, linear.height, std::move(channels));
-    image.metadata = linear.metadata;
-    for (std::size_t i = 0; i < image.pixels(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) image.at(i, c) = linear.at(i, c);
-        for (std::size_t j = 0; j < planes.size(); ++j)
-            image.at(i, 3 + j) = planes[j].defined(i) ? planes[j].s[i] : std::numeric_limits<float>::quiet_NaN();
-        if (!with_geometry) continue;
-        const TriangleId t = points.triangle[i];
-        const bool hit     = t != kNoTriangle;
-        const vec3 n = points.normal(i), p = points.position(i);
-        const std::array<float, 9> values = {hit ? static_cast<float>(points.raster->project(dvec3(p)).z) : kInfinity,
-                                             n.x,
-                                             n.y,
-                                             n.z,
-                                             p.x,
-                                             p.y,
-                                             p.z,
-                                             hit ? static_cast<float>(scene.triangle_object[t]) : -1.0f,
-                                             hit ? static_cast<float>(t) : -1.0f};
-        for (std::size_t c = 0; c < values.size(); ++c) image.at(i, first + c) = values[c];
-    }
-    return image;
 }
 
 }  // namespace umbra

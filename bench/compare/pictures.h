@@ -25,9 +25,4 @@ namespace umbra {
 /// A FLIP map, 0 black to 1 light yellow (a monotone ramp in lightness after matplotlib's "magma" end points).
 [[nodiscard]] Image flip_picture(int width, int height, std::span<const float> map);
 
-/// The picture file's whole content: R G B scene-linear, S.<light>, and where `with_geometry`: Z, N.*, P.*, id.object,
-/// id.face. Undefined points are NaN in S.<light>; points without a surface are 0 there, and -1 in the ids.
-[[nodiscard]] Image with_planes(const Image& linear, const Scene& scene, const PointBatch& points,
-                                std::span<const VisibilityPlane> planes, bool with_geometry);
-
 }  // namespace umbra

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,6 +17,11 @@ struct Image {
     std::vector<std::string> channels;            ///< "R", "G", "B", "S.key", ...
     std::vector<float> data;                      ///< width * height * channels.size()
     std::map<std::string, std::string> metadata;  ///< "umbra:scene", "umbra:method", ...; written to EXR and PNG
+
+    /// Channels of whole numbers, one value a pixel: what float cannot hold exactly. EXR alone has them.
+    std::map<std::string, std::vector<std::uint32_t>> integers;
+    /// 4 x 4 matrices of row vectors, p' = (p, 1) M, row by row: "worldToCamera", "worldToNDC". EXR alone has them.
+    std::map<std::string, std::array<float, 16>> matrices;
 
     Image() = default;
     Image(int w, int h, std::vector<std::string> names)

@@ -1,11 +1,14 @@
 #include "umbra/core/image/image_io.h"
 
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <string_view>
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_headers.h"
@@ -18,6 +21,13 @@ std::string one_line(std::string reason) {
     while (!reason.empty() && std::isspace(static_cast<unsigned char>(reason.back()))) reason.pop_back();
     std::replace(reason.begin(), reason.end(), '\n', ' ');
     return reason.empty() ? "unknown reason" : reason;
+}
+
+/// The name that OpenEXR gives a matrix; the library has names of its own.
+std::string standard_name(const std::string& name) {
+    for (const char* standard : {"worldToCamera", "worldToNDC"})
+        if (OIIO::Strutil::iequals(name, standard)) return standard;
+    return name;
 }
 
 /// Refuses what would take memory, or cannot be compared pixel by pixel, from the header alone.
@@ -36,24 +46,84 @@ void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec
                         file.string(), spec.width, spec.height, spec.nchannels, kMaxPixels >> 20));
 }
 
+/// Neighbouring channels of a file that are read as one type.
+struct ChannelRun {
+    int begin = 0, end = 0;
+    bool is_integer = false;
+};
+
+/// EXRs with unsigned channels beside others have several runs; all other files are one run of floats.
+std::vector<ChannelRun> channel_runs(const OIIO::ImageInput& input) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const auto is_integer       = [&](int c) { return spec.channelformat(c).basetype == OIIO::TypeDesc::UINT32; };
+    std::vector<ChannelRun> runs;
+    bool any_float = false;
+    for (int c = 0; c < spec.nchannels; ++c) {
+        if (runs.empty() || runs.back().is_integer != is_integer(c)) runs.push_back({c, c, is_integer(c)});
+        runs.back().end = c + 1;
+        any_float |= !is_integer(c);
+    }
+    if (std::string_view(input.format_name()) != "openexr" || !any_float) return {{0, spec.nchannels, false}};
+    return runs;
+}
+
+/// Some rows of one run of channels, interleaved; a row of tiles where the file has tiles.
+template <class Value>
+void read_rows(const std::filesystem::path& file, OIIO::ImageInput& input, const ChannelRun& run, int y, int rows,
+               OIIO::TypeDesc type, Value* into) {
+    const OIIO::ImageSpec& spec = input.spec();
+    const int top               = spec.y + y;
+    const bool done             = spec.tile_height > 0
+                                      ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z, spec.z + 1,
+                                                         run.begin, run.end, type, into)
+                                      : input.read_scanlines(0, 0, top, top + rows, spec.z, run.begin, run.end, type, into);
+    if (!done || input.has_error())
+        throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(input.geterror())));
+}
+
 /// Reads a few rows at a time, or a row of tiles, and lets memory grow with what has been read: headers lie about
 /// sizes.
 void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Image& image) {
-    const OIIO::ImageSpec& spec = input.spec();
-    const std::size_t row       = std::size_t(spec.width) * std::size_t(spec.nchannels);
-    const bool tiled            = spec.tile_height > 0;
-    const int strip             = tiled ? spec.tile_height : 64;
+    const OIIO::ImageSpec& spec        = input.spec();
+    const std::vector<ChannelRun> runs = channel_runs(input);
+    image.channels.clear();
+    for (const ChannelRun& run : runs)
+        for (int c = run.begin; c < run.end; ++c) {
+            const std::string& name = spec.channelnames[std::size_t(c)];
+            if (run.is_integer)
+                image.integers[name];
+            else
+                image.channels.push_back(name);
+        }
+    const std::size_t channels = image.channels.size(), width = std::size_t(spec.width), row = width * channels;
+    const int strip = spec.tile_height > 0 ? spec.tile_height : 64;
+    std::vector<float> floats;
+    std::vector<std::uint32_t> integers;
     for (int y = 0; y < spec.height; y += strip) {
-        const int rows = std::min(strip, spec.height - y);
-        const int top  = spec.y + y;
+        const int rows           = std::min(strip, spec.height - y);
+        const std::size_t pixels = width * std::size_t(rows);
         image.data.resize(row * std::size_t(y + rows));
         float* const begin = image.data.data() + row * std::size_t(y);
-        const bool done    = tiled ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z,
-                                                      spec.z + 1, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, begin)
-                                   : input.read_scanlines(0, 0, top, top + rows, spec.z, 0, spec.nchannels,
-                                                          OIIO::TypeDesc::FLOAT, begin);
-        if (!done || input.has_error())
-            throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(input.geterror())));
+        std::size_t first  = 0;  // of the run, among the channels of floats
+        for (const ChannelRun& run : runs) {
+            const std::size_t n = std::size_t(run.end - run.begin);
+            if (runs.size() == 1) {
+                read_rows(file, input, run, y, rows, OIIO::TypeDesc::FLOAT, begin);
+            } else if (run.is_integer) {
+                integers.resize(pixels * n);
+                read_rows(file, input, run, y, rows, OIIO::TypeDesc::UINT32, integers.data());
+                for (std::size_t c = 0; c < n; ++c) {
+                    auto& values = image.integers[spec.channelnames[std::size_t(run.begin) + c]];
+                    for (std::size_t i = 0; i < pixels; ++i) values.push_back(integers[i * n + c]);
+                }
+            } else {
+                floats.resize(pixels * n);
+                read_rows(file, input, run, y, rows, OIIO::TypeDesc::FLOAT, floats.data());
+                for (std::size_t i = 0; i < pixels; ++i)
+                    std::copy_n(floats.data() + i * n, n, begin + i * channels + first);
+                first += n;
+            }
+        }
     }
 }
 
@@ -94,6 +164,20 @@ std::size_t png_channels(const Image& image) {
     return n > 3 && image.channels[3] == "A" ? 4 : 3;
 }
 
+/// Floats and integers of each pixel side by side, bit by bit.
+std::vector<std::uint32_t> interleaved(const Image& image) {
+    const std::size_t floats = image.channels.size(), all = floats + image.integers.size();
+    std::vector<std::uint32_t> values(image.pixels() * all);
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+        for (std::size_t c = 0; c < floats; ++c) values[i * all + c] = std::bit_cast<std::uint32_t>(image.at(i, c));
+    std::size_t c = floats;
+    for (const auto& [name, channel] : image.integers) {
+        for (std::size_t i = 0; i < image.pixels(); ++i) values[i * all + c] = channel[i];
+        ++c;
+    }
+    return values;
+}
+
 void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, const Image& image, bool is_png) {
     const auto check = [&](bool done) {
         if (!done) throw std::runtime_error(one_line(output.geterror()));
@@ -108,10 +192,21 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
         spec.attribute("oiio:UnassociatedAlpha", 1);
     } else {
         spec.attribute("compression", "zip");
+        for (const auto& [name, matrix] : image.matrices) spec.attribute(name, OIIO::TypeMatrix, matrix.data());
+        if (!image.integers.empty()) spec.channelformats.assign(channels, OIIO::TypeDesc::FLOAT);
+        for (const auto& integer : image.integers) {
+            spec.channelnames.push_back(integer.first);
+            spec.channelformats.emplace_back(OIIO::TypeDesc::UINT32);
+            ++spec.nchannels;
+        }
     }
     check(output.open(path.string(), spec));
-    check(is_png ? output.write_image(OIIO::TypeDesc::UINT8, to_8_bit(image, channels).data())
-                 : output.write_image(OIIO::TypeDesc::FLOAT, image.data.data()));
+    if (is_png)
+        check(output.write_image(OIIO::TypeDesc::UINT8, to_8_bit(image, channels).data()));
+    else if (image.integers.empty())
+        check(output.write_image(OIIO::TypeDesc::FLOAT, image.data.data()));
+    else  // every channel in its own type
+        check(output.write_image(OIIO::TypeDesc::UNKNOWN, interleaved(image).data()));
     check(output.close());
 }
 
@@ -135,9 +230,8 @@ LoadedImage read_image(const std::filesystem::path& file) {
         check_header(file, spec);
 
         LoadedImage loaded;
-        loaded.image.width  = spec.width;
-        loaded.image.height = spec.height;
-        loaded.image.channels.assign(spec.channelnames.begin(), spec.channelnames.end());
+        loaded.image.width          = spec.width;
+        loaded.image.height         = spec.height;
         loaded.x                    = spec.x;
         loaded.y                    = spec.y;
         const auto stored           = OIIO::TypeDesc::BASETYPE(spec.format.basetype);
@@ -147,6 +241,9 @@ LoadedImage read_image(const std::filesystem::path& file) {
         for (const OIIO::ParamValue& attribute : spec.extra_attribs)
             if (attribute.type() == OIIO::TypeDesc::STRING)
                 loaded.image.metadata[attribute.name().string()] = attribute.get_string();
+            else if (attribute.type() == OIIO::TypeMatrix)
+                std::copy_n(static_cast<const float*>(attribute.data()), 16,
+                            loaded.image.matrices[standard_name(attribute.name().string())].begin());
         read_pixels(file, *input, loaded.image);
         if (stored == OIIO::TypeDesc::UINT8) round_once(loaded.image, 255);
         if (stored == OIIO::TypeDesc::UINT16) round_once(loaded.image, 65535);
@@ -162,7 +259,10 @@ void write_image(const std::filesystem::path& file, const Image& image) {
     const std::string ending = file.extension().string();
     if (ending != ".exr" && ending != ".png")
         throw InputError(fmt::format("{}: cannot write image: unknown ending (.exr or .png)", file.string()));
-    if (image.channels.empty() || image.data.size() != image.pixels() * image.channels.size() || image.data.empty())
+    const bool whole = std::all_of(image.integers.begin(), image.integers.end(),
+                                   [&](const auto& channel) { return channel.second.size() == image.pixels(); });
+    if (image.channels.empty() || image.data.size() != image.pixels() * image.channels.size() || image.data.empty() ||
+        !whole)
         throw std::logic_error("write_image: the image is empty, or its size and its data disagree");
     const std::filesystem::path folder = file.parent_path();
     if (!folder.empty() && !std::filesystem::is_directory(folder))

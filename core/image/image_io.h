@@ -16,14 +16,16 @@ struct LoadedImage {
     int x = 0, y = 0;                      ///< where the stored pixels begin (an EXR's data window)
 };
 
-/// Reads any image that OpenImageIO reads (first subimage, no conversion). Throws InputError. Files that claim more
-/// pixels than `kMaxPixels`, or 4 times as many values, are refused before memory is taken. Alpha is not multiplied in.
+/// Reads any image that OpenImageIO reads (first subimage, no conversion; the integer channels of an EXR that has
+/// others too become Image::integers). Throws InputError. Files that claim more pixels than `kMaxPixels`, or 4 times as
+/// many values, are refused before memory is taken. Alpha is not multiplied in.
 inline constexpr std::size_t kMaxPixels = 1u << 28;
 [[nodiscard]] LoadedImage read_image(const std::filesystem::path& file);
 
-/// Writes .exr (float, ZIP) as is, or .png (8 bit): the first one or three channels (four where the fourth is A), which
-/// must be display values in [0, 1] already encoded; values are clamped and rounded, NaN is written as 0. Written
-/// beside and moved into place, so that a file that was there stays whole if this fails. Throws InputError.
+/// Writes .exr (float and 32-bit unsigned channels, ZIP) as is, or .png (8 bit): the first one or three channels (four
+/// where the fourth is A), which must be display values in [0, 1] already encoded; values are clamped and rounded, NaN
+/// is written as 0. Written beside and moved into place, so that a file that was there stays whole if this fails.
+/// Throws InputError.
 void write_image(const std::filesystem::path& file, const Image& image);
 
 }  // namespace umbra

@@ -270,6 +270,7 @@ TEST_F(Compare, PictureFileHoldsOnePlaneALight) {
     compare_scene(scene_, options_);
     const LoadedImage exr = read_image(options_.out / "lamp_over_box/shadow_zbuffer.exr");
     EXPECT_EQ(exr.image.channels, (std::vector<std::string>{"R", "G", "B", "S.lamp", "S.panel"}));
+    EXPECT_EQ(exr.image.integers.size(), 4u) << "answer and class of each light";
     EXPECT_EQ(exr.image.metadata.at("umbra:method"), "shadow_zbuffer");
 }
 

@@ -104,6 +104,35 @@ TEST_F(ImageIo, ExrKeepsChannelsMetadataAndEveryBit) {
     }
 }
 
+TEST_F(ImageIo, ExrKeepsIntegersAndMatrices) {
+    Image image                 = noise(37, 150, {"R", "G", "B", "Z", "h.x"});  // several strips
+    const std::uint32_t large[] = {0, 1, (1u << 24) + 1, 4294967295u, 4294967294u, 305419896u};
+    for (const char* name : {"A.first", "id.face", "k"})  // before, among and after the others by name
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+            image.integers[name].push_back(large[(i + std::size_t(name[0])) % std::size(large)] ^ std::uint32_t(i));
+    for (std::size_t k = 0; k < 16; ++k)
+        image.matrices["worldToCamera"][k] = 0.1f * float(k), image.matrices["worldToNDC"][k] = -float(k);
+    write_image(folder / "a.exr", image);
+
+    const Image loaded = read_image(folder / "a.exr").image;
+    EXPECT_EQ(loaded.integers, image.integers);
+    EXPECT_EQ(loaded.matrices, image.matrices);
+    ASSERT_EQ(loaded.channels.size(), image.channels.size());
+    for (std::size_t c = 0; c < image.channels.size(); ++c) {
+        const auto at = std::find(loaded.channels.begin(), loaded.channels.end(), image.channels[c]);
+        ASSERT_NE(at, loaded.channels.end()) << image.channels[c];
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+            ASSERT_EQ(loaded.at(i, std::size_t(at - loaded.channels.begin())), image.at(i, c))
+                << image.channels[c] << ' ' << i;
+    }
+    const std::string bytes = bytes_of(folder / "a.exr");
+    for (const char* attribute : {"worldToCamera", "worldToNDC"})  // under OpenEXR's names and type
+        EXPECT_NE(bytes.find(attribute + std::string("\0m44f\0", 6)), std::string::npos) << attribute;
+
+    image.integers["k"].pop_back();
+    EXPECT_THROW(write_image(folder / "a.exr", image), std::logic_error);
+}
+
 TEST_F(ImageIo, PngRoundsToEightBitsAndKeepsMetadata) {
     Image image(5, 1, {"R", "G", "B"});
     image.data = {0, 1, 0.5f, -3, 7, std::numeric_limits<float>::quiet_NaN(), 0.25f, 0.2499f, 1e-3f, 0, 0, 0, 1, 1, 1};
