@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "umbra/bench/run/reference.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
 
 namespace umbra {

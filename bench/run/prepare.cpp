@@ -8,7 +8,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 
 namespace umbra {
 namespace {

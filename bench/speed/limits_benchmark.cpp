@@ -24,7 +24,7 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/method.h"
 

@@ -1,24 +1,17 @@
-// Embree is used with ROBUST (watertight edges; PLATFORM: up to a fifth slower) and MEDIUM build quality.
+// Embree is used with ROBUST (watertight edges, up to a fifth slower) and MEDIUM build quality.
 #include "umbra/core/render/ray.h"
 
-#if __has_include(<embree3/rtcore.h>)  // the order in which CMakeLists.txt looks for them
-#include <embree3/rtcore.h>
-#else
-#include <embree4/rtcore.h>
-#endif
 #if defined(__SSE2__)
 #include <immintrin.h>
 #endif
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
 #include <string>
 
 #include "umbra/core/base/geometry.h"
-#include "umbra/core/base/parallel.h"
+#include "umbra/core/render/embree_api.h"
 
 namespace umbra {
 
@@ -32,75 +25,13 @@ FlushDenormals::FlushDenormals() : saved_(0) {}
 FlushDenormals::~FlushDenormals() = default;
 #endif
 
-// ---- Embree's two versions ------------------------------------------------------------------------------------------
-
 namespace {
-
-#if RTC_VERSION_MAJOR >= 4
-void intersect_coherent(RTCScene scene, const int* valid, RTCRayHit8& rays) {
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-    rtcIntersect8(valid, scene, &rays, &arguments);
-}
-void occluded_incoherent(RTCScene scene, const int* valid, RTCRay8& rays) {
-    RTCOccludedArguments arguments;
-    rtcInitOccludedArguments(&arguments);
-    rtcOccluded8(valid, scene, &rays, &arguments);
-}
-void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {  // Embree 4 has no lists any more: packets of eight
-    for (std::size_t first = 0; first < rays.size(); first += 8) {
-        alignas(32) int valid[8]{};
-        RTCRay8 packet{};
-        const std::size_t count = std::min<std::size_t>(8, rays.size() - first);
-        for (std::size_t k = 0; k < count; ++k) {
-            const ShadowRay& r = rays[first + k];
-            valid[k]           = -1;
-            packet.org_x[k] = r.org_x, packet.org_y[k] = r.org_y, packet.org_z[k] = r.org_z;
-            packet.dir_x[k] = r.dir_x, packet.dir_y[k] = r.dir_y, packet.dir_z[k] = r.dir_z;
-            packet.tnear[k] = r.tnear, packet.tfar[k] = r.tfar, packet.mask[k] = r.mask, packet.id[k] = r.id;
-        }
-        occluded_incoherent(scene, valid, packet);
-        for (std::size_t k = 0; k < count; ++k) rays[first + k].tfar = packet.tfar[k];
-    }
-}
-void intersect_one(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
-#else
-void intersect_one(RTCScene scene, RTCRayHit& ray) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(scene, &context, &ray);
-}
-void intersect_coherent(RTCScene scene, const int* valid, RTCRayHit8& rays) {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect8(valid, scene, &context, &rays);
-}
-void occluded_incoherent(RTCScene scene, const int* valid, RTCRay8& rays) {  // COHERENT makes shadow rays slower
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded8(valid, scene, &context, &rays);
-}
-void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {
-    static_assert(sizeof(ShadowRay) == sizeof(RTCRay) && offsetof(ShadowRay, id) == offsetof(RTCRay, id));
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1M(scene, &context, reinterpret_cast<RTCRay*>(rays.data()), static_cast<unsigned>(rays.size()),
-                  sizeof(ShadowRay));
-}
-#endif
 
 /// A ray's own triangle is no hit. Embree calls this for the few triangles that a shadow ray does hit.
 void skip_own_triangle(const RTCFilterFunctionNArguments* arguments) {
     for (unsigned k = 0; k < arguments->N; ++k)
         if (RTCHitN_primID(arguments->hit, arguments->N, k) == RTCRayN_id(arguments->ray, arguments->N, k))
             arguments->valid[k] = 0;
-}
-
-bool count_memory(void* counter, ssize_t bytes, bool) {
-    *static_cast<std::atomic<std::ptrdiff_t>*>(counter) += bytes;
-    return true;
 }
 
 RaySpace fit_space(const Box& box) {
@@ -118,28 +49,6 @@ RaySpace fit_space(const Box& box) {
 }
 
 }  // namespace
-
-// ---- RayScene -------------------------------------------------------------------------------------------------------
-
-struct RayScene::Impl {
-    std::atomic<std::ptrdiff_t> bytes{0};
-    RTCDevice device = nullptr;
-    RTCScene scene   = nullptr;
-    std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
-    std::span<const uvec3> triangles;
-
-    Impl() : device(rtcNewDevice(nullptr)) {
-        if (!device) throw std::runtime_error("Embree gives no device");
-        rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);
-        scene = rtcNewScene(device);
-    }
-    ~Impl() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-    Impl(const Impl&)            = delete;
-    Impl& operator=(const Impl&) = delete;
-};
 
 RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()), space_(fit_space(bounds(scene))) {
     const std::size_t triangles = scene.triangles.size();
@@ -226,230 +135,6 @@ double RayScene::clearance(dvec3 point, double reach) const {
         },
         &nearest);
     return nearest.distance;
-}
-
-// ---- the G-buffer ---------------------------------------------------------------------------------------------------
-
-namespace {
-
-constexpr int kTileWidth = 16, kTileHeight = 8;  // whole packets of 4 x 2 pixels
-
-/// What eight eye rays met, as 4 x 2 pixels.
-struct Hits8 {
-    TriangleId triangle[8];
-    float u[8], v[8];
-};
-
-/// Eye rays as the camera defines them, split into what varies with the column and with the row of the raster.
-class EyeRays {
-public:
-    EyeRays(const CameraFrame& f, const RaySpace& space)
-        : window_(f.projection == Projection::orthographic), eye_(space.point(f.eye)), forward_(f.forward) {
-        const double scale = static_cast<double>(space.scale);
-        middle_            = window_ ? (f.eye - dvec3(space.centre)) * scale : f.forward;
-        // Beyond the right and bottom edge up to whole packets; those lanes are not traced.
-        for (int x = 0; x < f.width + kTileWidth; ++x) {
-            const dvec3 offset = f.half_width * (2 * (x + 0.5) / f.width - 1) * f.right * (window_ ? scale : 1);
-            for (int d = 0; d < 3; ++d) column_[d].push_back(offset[d]);
-        }
-        for (int y = 0; y < f.height + kTileHeight; ++y)
-            row_.push_back(f.half_height * (2 * (y + 0.5) / f.height - 1) * f.up * (window_ ? scale : 1));
-    }
-
-    /// What all packets have alike: the eye, or the direction of an orthographic view.
-    void start(RTCRay8& ray) const {
-        fill(window_ ? forward_ : eye_, window_ ? ray.dir_x : ray.org_x, window_ ? ray.dir_y : ray.org_y,
-             window_ ? ray.dir_z : ray.org_z);
-        std::fill_n(ray.mask, 8, ~0u);
-    }
-
-    void aim(RTCRay8& ray, int x, int y) const {
-        lanes(0, x, y, window_ ? ray.org_x : ray.dir_x);
-        lanes(1, x, y, window_ ? ray.org_y : ray.dir_y);
-        lanes(2, x, y, window_ ? ray.org_z : ray.dir_z);
-        std::fill_n(ray.tfar, 8, kInfinity);
-    }
-
-private:
-    static void fill(vec3 v, float* x, float* y, float* z) {
-        std::fill_n(x, 8, v.x), std::fill_n(y, 8, v.y), std::fill_n(z, 8, v.z);
-    }
-    void lanes(int d, int x, int y, float* to) const {
-        const double* column = column_[d].data() + x;
-        for (int r = 0; r < 2; ++r)
-            for (int k = 0; k < 4; ++k) to[4 * r + k] = static_cast<float>(middle_[d] + (column[k] - row_[y + r][d]));
-    }
-
-    bool window_;
-    vec3 eye_, forward_;
-    dvec3 middle_{0};  ///< perspective: forward; orthographic: the eye, in ray space
-    std::vector<double> column_[3];
-    std::vector<dvec3> row_;
-};
-
-using TileHits = Hits8[kTileHeight / 2][kTileWidth / 4];
-
-void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, int height, TileHits& hits) {
-    const FlushDenormals flush;
-    RTCRayHit8 rays{};
-    eye.start(rays.ray);
-    for (int y = y0; y < std::min(y0 + kTileHeight, height); y += 2) {
-        for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4) {
-            alignas(32) int valid[8];
-            for (int k = 0; k < 8; ++k) valid[k] = x + (k & 3) < width && y + (k >> 2) < height ? -1 : 0;
-            eye.aim(rays.ray, x, y);
-            std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
-            intersect_coherent(scene, valid, rays);
-            Hits8& hit = hits[(y - y0) / 2][(x - x0) / 4];
-            for (int k = 0; k < 8; ++k)
-                hit.triangle[k] = rays.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? kNoTriangle : rays.hit.primID[k];
-            std::copy_n(rays.hit.u, 8, hit.u);
-            std::copy_n(rays.hit.v, 8, hit.v);
-        }
-    }
-}
-
-/// set_point for eight hits at once, to the same bits: all but the loads are loops over lanes. Leaves to set_point what
-/// needs a second look: barycentrics at or over an edge, triangles without area.
-class PointWriter {
-public:
-    PointWriter(const Scene& scene, PointBatch& batch) : scene_(scene), batch_(batch) {
-        window_ = batch.raster->projection == Projection::orthographic;
-        for (const Material& m : scene.materials) all_two_sided_ &= m.two_sided;
-    }
-
-    /// Pixels (x .. x+3, y .. y+1), those inside the raster.
-    void write(const Hits8& hits, int x, int y) const {
-        const CameraFrame& frame = *batch_.raster;
-        Points8 points;
-        place(hits, points);
-        for (int row = 0; row < std::min(2, frame.height - y); ++row) {
-            const int count     = std::min(4, frame.width - x);
-            const std::size_t i = static_cast<std::size_t>(y + row) * frame.width + x;
-            if (count == 4)
-                store(points, 4 * row, i, 4);
-            else
-                store(points, 4 * row, i, count);
-            for (int k = 4 * row; k < 4 * row + count; ++k)
-                if (hits.triangle[k] != kNoTriangle && !points.done[k])
-                    set_point(batch_, i + (k & 3), scene_, hits.triangle[k], hits.u[k], hits.v[k]);
-        }
-    }
-
-private:
-    struct Points8 {
-        TriangleId triangle[8];
-        float u[8], v[8], px[8], py[8], pz[8], nx[8], ny[8], nz[8];
-        std::uint8_t flipped[8], done[8];
-    };
-
-    void place(const Hits8& hits, Points8& out) const {
-        float a[3][8], b[3][8], c[3][8];
-        double two_sided[8];
-        for (int k = 0; k < 8; ++k) {
-            const TriangleId t = hits.triangle[k];
-            if (t == kNoTriangle) {
-                for (int d = 0; d < 3; ++d) a[d][k] = b[d][k] = c[d][k] = 0;
-                two_sided[k] = 1;
-                continue;
-            }
-            const uvec3& corner = scene_.triangles[t];
-            const vec3 &p = scene_.positions[corner.x], &q = scene_.positions[corner.y],
-                       &r = scene_.positions[corner.z];  // references: copies would pass through the stack
-            a[0][k] = p.x, a[1][k] = p.y, a[2][k] = p.z;
-            b[0][k] = q.x, b[1][k] = q.y, b[2][k] = q.z;
-            c[0][k] = r.x, c[1][k] = r.y, c[2][k] = r.z;
-            const auto both = [&] {
-                return scene_.materials[scene_.objects[scene_.triangle_object[t]].material].two_sided;
-            };
-            two_sided[k] = all_two_sided_ || both() ? 1 : 0;
-        }
-        // To the eye: eye - p, or against an orthographic view.
-        const double pull = window_ ? 0 : 1;
-        const dvec3 eye   = window_ ? -batch_.raster->forward : dvec3(batch_.eye);
-        double towards[8], length[8];
-        for (int k = 0; k < 8; ++k) {
-            const double u = static_cast<double>(hits.u[k]), v = static_cast<double>(hits.v[k]);
-            const double ax = static_cast<double>(a[0][k]), ay = static_cast<double>(a[1][k]),
-                         az = static_cast<double>(a[2][k]);
-            const double bx = static_cast<double>(b[0][k]) - ax, by = static_cast<double>(b[1][k]) - ay,
-                         bz = static_cast<double>(b[2][k]) - az;
-            const double cx = static_cast<double>(c[0][k]) - ax, cy = static_cast<double>(c[1][k]) - ay,
-                         cz = static_cast<double>(c[2][k]) - az;
-            const double nx = by * cz - cy * bz, ny = bz * cx - cz * bx, nz = bx * cy - cx * by;
-            const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
-            const double ex = eye.x - pull * px, ey = eye.y - pull * py, ez = eye.z - pull * pz;
-            length[k]           = std::sqrt(nx * nx + ny * ny + nz * nz);
-            towards[k]          = (nx * ex + ny * ey + nz * ez) * two_sided[k];
-            const double factor = (towards[k] < 0 ? -1.0 : 1.0) / length[k];
-            out.px[k] = static_cast<float>(px), out.py[k] = static_cast<float>(py), out.pz[k] = static_cast<float>(pz);
-            out.nx[k] = static_cast<float>(nx * factor);
-            out.ny[k] = static_cast<float>(ny * factor);
-            out.nz[k] = static_cast<float>(nz * factor);
-        }
-        for (int k = 0; k < 8; ++k) {
-            const double sum = static_cast<double>(hits.u[k]) + static_cast<double>(hits.v[k]);
-            out.flipped[k]   = towards[k] < 0;
-            out.done[k]      = (hits.u[k] >= 0) & (hits.v[k] >= 0) & (sum < 1) & (length[k] > 0);
-        }
-        std::copy_n(hits.triangle, 8, out.triangle);
-        std::copy_n(hits.u, 8, out.u);
-        std::copy_n(hits.v, 8, out.v);
-        for (int k = 0; k < 8; ++k) {
-            if (hits.triangle[k] != kNoTriangle) continue;
-            out.u[k] = out.v[k] = out.px[k] = out.py[k] = out.pz[k] = out.nx[k] = out.ny[k] = out.nz[k] = 0;
-            out.flipped[k]                                                                              = 0;
-        }
-    }
-
-    void store(const Points8& points, int lane, std::size_t i, int count) const {
-        std::copy_n(points.triangle + lane, count, batch_.triangle.data() + i);
-        std::copy_n(points.u + lane, count, batch_.u.data() + i);
-        std::copy_n(points.v + lane, count, batch_.v.data() + i);
-        std::copy_n(points.px + lane, count, batch_.px.data() + i);
-        std::copy_n(points.py + lane, count, batch_.py.data() + i);
-        std::copy_n(points.pz + lane, count, batch_.pz.data() + i);
-        std::copy_n(points.nx + lane, count, batch_.nx.data() + i);
-        std::copy_n(points.ny + lane, count, batch_.ny.data() + i);
-        std::copy_n(points.nz + lane, count, batch_.nz.data() + i);
-        std::copy_n(points.flipped + lane, count, batch_.flipped.data() + i);
-    }
-
-    const Scene& scene_;
-    PointBatch& batch_;
-    bool window_        = false;
-    bool all_two_sided_ = true;
-};
-
-}  // namespace
-
-void primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height,
-                    PointBatch& batch) {
-    batch.raster = frame(camera, width, height);
-    batch.eye    = camera.eye;
-    batch.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-    const EyeRays eye(*batch.raster, rays.space());
-    const PointWriter writer(scene, batch);
-    const int across = (width + kTileWidth - 1) / kTileWidth, down = (height + kTileHeight - 1) / kTileHeight;
-    const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
-    parallel_ranges(tiles, 8, [&](std::size_t begin, std::size_t end) {
-        TileHits hits;
-        for (std::size_t tile = begin; tile < end; ++tile) {
-            const int x0 = static_cast<int>(tile % across) * kTileWidth;
-            const int y0 = static_cast<int>(tile / across) * kTileHeight;
-            trace_tile(rays.impl().scene, eye, x0, y0, width, height, hits);
-            for (int y = y0; y < std::min(y0 + kTileHeight, height); y += 2)
-                for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4)
-                    writer.write(hits[(y - y0) / 2][(x - x0) / 4], x, y);
-        }
-    });
-    face_lights(batch, scene);
-}
-
-PointBatch primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height) {
-    PointBatch batch;
-    primary_points(rays, scene, camera, width, height, batch);
-    return batch;
 }
 
 }  // namespace umbra

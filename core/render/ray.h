@@ -1,4 +1,5 @@
-// Ray intersection: Embree 3 or 4 behind one class. The only file pair that includes Embree.
+// Ray intersection: Embree 3 or 4 behind one class. Only core/render/embree_api.h and the bare loops in bench/speed
+// include Embree.
 #pragma once
 
 #include <cstddef>
@@ -92,13 +93,5 @@ private:
     std::unique_ptr<Impl> impl_;
     RaySpace space_;
 };
-
-/// The G-buffer: the surface point that each pixel centre sees, in parallel, packets of 8.
-/// face_lights is called on the result. Deterministic for any number of threads.
-[[nodiscard]] PointBatch primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width,
-                                        int height);
-/// The same into a batch whose memory is used again, as for the next picture of a moving camera.
-void primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height,
-                    PointBatch& batch);
 
 }  // namespace umbra

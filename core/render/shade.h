@@ -18,7 +18,7 @@ namespace umbra {
 /// material is two-sided). A vertex whose normal is zero lends the geometric one. Point i has a surface.
 [[nodiscard]] dvec3 shading_normal(const Scene& scene, const PointBatch& points, std::size_t i);
 
-/// Exposure, then the scene's tone map (REQUIREMENTS B7), then sRGB encoding: R G B in [0, 1] to be written as PNG.
+/// Exposure, then the scene's tone map (the lectures), then sRGB encoding: R G B in [0, 1] to be written as PNG.
 [[nodiscard]] Image displayed(const Image& linear, ToneMap tone, float exposure);
 
 }  // namespace umbra

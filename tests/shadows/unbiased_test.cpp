@@ -1,6 +1,7 @@
 // Sampling methods are right on average: held against closed forms and against `exact` by a test whose rate of false
 // alarms is known. And the test itself: it keeps to that rate, and it sees biases of stated size.
 #include "umbra/tests/support/unbiased.h"
+#include "umbra/core/render/gbuffer.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "umbra/core/base/geometry.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 
 namespace umbra {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "umbra/core/errors/visibility_error.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/shadows/method.h"
 

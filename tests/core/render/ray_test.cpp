@@ -1,4 +1,4 @@
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 
 #include <gtest/gtest.h>
 

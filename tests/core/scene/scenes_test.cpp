@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 
 namespace umbra {
 namespace {

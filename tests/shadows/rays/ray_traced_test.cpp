@@ -5,7 +5,7 @@
 #include <random>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/render/ray.h"
+#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/shadows/method.h"
 

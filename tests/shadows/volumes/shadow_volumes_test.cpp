@@ -6,8 +6,8 @@
 #include <random>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/points.h"
-#include "umbra/core/render/ray.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/method.h"

@@ -1,0 +1,100 @@
+// Embree 3 and 4 behind one set of calls, and what a RayScene holds of it. Internal to core/render.
+#pragma once
+
+#if __has_include(<embree3/rtcore.h>)  // the order in which CMakeLists.txt looks for them
+#include <embree3/rtcore.h>
+#else
+#include <embree4/rtcore.h>
+#endif
+
+#include <atomic>
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+
+#include "umbra/core/render/ray.h"
+
+namespace umbra {
+
+#if RTC_VERSION_MAJOR >= 4
+inline void intersect_coherent(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &rays, &arguments);
+}
+inline void occluded_incoherent(RTCScene scene, const int* valid, RTCRay8& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    rtcOccluded8(valid, scene, &rays, &arguments);
+}
+inline void occluded_list(RTCScene scene,
+                          std::span<ShadowRay> rays) {  // Embree 4 has no lists any more: packets of eight
+    for (std::size_t first = 0; first < rays.size(); first += 8) {
+        alignas(32) int valid[8]{};
+        RTCRay8 packet{};
+        const std::size_t count = std::min<std::size_t>(8, rays.size() - first);
+        for (std::size_t k = 0; k < count; ++k) {
+            const ShadowRay& r = rays[first + k];
+            valid[k]           = -1;
+            packet.org_x[k] = r.org_x, packet.org_y[k] = r.org_y, packet.org_z[k] = r.org_z;
+            packet.dir_x[k] = r.dir_x, packet.dir_y[k] = r.dir_y, packet.dir_z[k] = r.dir_z;
+            packet.tnear[k] = r.tnear, packet.tfar[k] = r.tfar, packet.mask[k] = r.mask, packet.id[k] = r.id;
+        }
+        occluded_incoherent(scene, valid, packet);
+        for (std::size_t k = 0; k < count; ++k) rays[first + k].tfar = packet.tfar[k];
+    }
+}
+inline void intersect_one(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
+#else
+inline void intersect_one(RTCScene scene, RTCRayHit& ray) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(scene, &context, &ray);
+}
+inline void intersect_coherent(RTCScene scene, const int* valid, RTCRayHit8& rays) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &context, &rays);
+}
+inline void occluded_incoherent(RTCScene scene, const int* valid, RTCRay8& rays) {  // COHERENT makes shadow rays slower
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded8(valid, scene, &context, &rays);
+}
+inline void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {
+    static_assert(sizeof(ShadowRay) == sizeof(RTCRay) && offsetof(ShadowRay, id) == offsetof(RTCRay, id));
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1M(scene, &context, reinterpret_cast<RTCRay*>(rays.data()), static_cast<unsigned>(rays.size()),
+                  sizeof(ShadowRay));
+}
+#endif
+
+inline bool count_memory(void* counter, ssize_t bytes, bool) {
+    *static_cast<std::atomic<std::ptrdiff_t>*>(counter) += bytes;
+    return true;
+}
+
+struct RayScene::Impl {
+    std::atomic<std::ptrdiff_t> bytes{0};
+    RTCDevice device = nullptr;
+    RTCScene scene   = nullptr;
+    std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
+    std::span<const uvec3> triangles;
+
+    Impl() : device(rtcNewDevice(nullptr)) {
+        if (!device) throw std::runtime_error("Embree gives no device");
+        rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);
+        scene = rtcNewScene(device);
+    }
+    ~Impl() {
+        rtcReleaseScene(scene);
+        rtcReleaseDevice(device);
+    }
+    Impl(const Impl&)            = delete;
+    Impl& operator=(const Impl&) = delete;
+};
+
+}  // namespace umbra
