@@ -9,6 +9,7 @@
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
 #include "umbra/bench/run/steps.h"
@@ -34,6 +35,20 @@ Rendered render(const Scene& scene, const PointBatch& points, std::span<const Vi
     return r;
 }
 
+/// What people look at: `rendered` with several points a pixel where those are prepared and the method has answered the
+/// picture whole.
+Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rendered& rendered) {
+    if (prepared.pixel_side == 1 || !run.judged.empty()) return rendered.shown;
+    std::vector<VisibilityPlane> planes;
+    for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
+        run.method->aim(j);
+        planes.emplace_back(prepared.subpixels.size());
+        run.method->visibility(prepared.subpixels, j, planes.back().out());
+    }
+    return displayed(antialiased(prepared.scene, prepared.subpixels, planes, prepared.pixel_side), prepared.scene.tone,
+                     prepared.scene.exposure);
+}
+
 std::map<std::string, std::string> metadata(const Scene& scene, const MethodChoice& choice,
                                             const std::string& command) {
     return {{"umbra:scene", scene.source},
@@ -57,7 +72,7 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
                                         {.geometry = is_reference, .reference = is_reference, .explained = explained});
     full.metadata.merge(metadata(scene, run.choice, command));
     write_image(folder / (id + ".exr"), full);
-    write_image(folder / (id + ".png"), rendered.shown);
+    write_image(folder / (id + ".png"), picture_of(prepared, run, rendered));
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const std::string& light = scene.lights[j].name;
         Json entry               = {{"visibility", fmt::format("{}.S.{}.png", id, light)}};
@@ -152,7 +167,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const std::vector<MethodChoice> choices = chosen(options);
 
     tell("loading");
-    const PreparedScene prepared = prepare_scene(file, options.size);
+    const PreparedScene prepared = prepare_scene(file, options.size, options.pixel_samples);
     const Scene& scene           = prepared.scene;
     warn(scene, options.warn);
 
@@ -276,14 +291,15 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
 
 Service render_scene(const fs::path& file, const RenderOptions& options) {
     const MethodChoice choice    = parse_method(options.method);
-    const PreparedScene prepared = prepare_scene(file, options.size);
+    const bool png               = options.out.extension() == ".png";
+    const PreparedScene prepared = prepare_scene(file, options.size, png ? options.pixel_samples : 1);
     warn(prepared.scene, options.warn);
     const MethodRun run = run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0});
     if (!run.service) return run.service;
     const Rendered rendered = render(prepared.scene, prepared.points, run.planes);
-    Image image             = options.out.extension() == ".png" ? rendered.shown
-                                                                : exr_image(rendered.linear, prepared.scene, prepared.points, run,
-                                                                            {.geometry = options.with_geometry});
+    Image image =
+        png ? picture_of(prepared, run, rendered)
+            : exr_image(rendered.linear, prepared.scene, prepared.points, run, {.geometry = options.with_geometry});
     image.metadata.merge(metadata(prepared.scene, choice, options.command));
     write_image(options.out, image);
     return run.service;

@@ -18,6 +18,7 @@ struct CompareOptions {
     std::vector<std::string> methods;      ///< as typed
     std::vector<MethodChoice> choices;     ///< after those; where both are empty: all methods with their defaults
     std::optional<std::string> reference;  ///< as typed; none: `default_reference`
+    int pixel_samples = 1;                 ///< surface points a pixel in pictures; planes and errors stay at centres
     std::optional<std::uint64_t> points;   ///< at which area lights are scored; none: all, if affordable
     Size size;
     std::filesystem::path out;
@@ -51,6 +52,7 @@ ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const
 struct RenderOptions {
     std::string method = "ray_traced";
     Size size;
+    int pixel_samples = 1;  ///< of a PNG; an EXR has pixel centres
     std::filesystem::path out;
     std::string command;
     bool with_geometry = false;

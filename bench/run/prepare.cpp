@@ -6,6 +6,7 @@
 #include <charconv>
 #include <optional>
 
+#include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
@@ -31,15 +32,17 @@ Size parse_size(const std::string& text) {
     return size;
 }
 
-PreparedScene prepare_scene(const std::filesystem::path& file, Size size) {
+PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples) {
     PreparedScene p;
-    p.load_ms  = timed_ms([&] { p.scene = load_scene(file); });
-    p.facts_ms = timed_ms([&] { p.facts = find_facts(p.scene); });
+    p.pixel_side = samples_along_side(pixel_samples);
+    p.load_ms    = timed_ms([&] { p.scene = load_scene(file); });
+    p.facts_ms   = timed_ms([&] { p.facts = find_facts(p.scene); });
     if (size.width == 0) size = {p.scene.width, p.scene.height};
     std::optional<RayScene> rays;
     p.rays_build_ms = timed_ms([&] { rays.emplace(p.scene); });
     p.gbuffer_ms =
         timed_ms([&] { p.points = primary_points(*rays, p.scene, p.scene.camera, size.width, size.height); });
+    if (p.pixel_side > 1) p.subpixels = subpixel_points(*rays, p.scene, size.width, size.height, p.pixel_side);
     const auto& seen = p.points.triangle;
     if (std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; }))
         p.scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");

@@ -25,6 +25,8 @@ struct PreparedScene {
     Scene scene;
     SceneFacts facts;
     PointBatch points;
+    PointBatch subpixels{};  ///< pixel_side x pixel_side points a pixel, for the picture alone; none where that is 1
+    int pixel_side = 1;
     double load_ms = 0, facts_ms = 0, rays_build_ms = 0, gbuffer_ms = 0;
 };
 
@@ -34,7 +36,8 @@ struct Size {
 /// "WIDTHxHEIGHT". Throws UsageError.
 [[nodiscard]] Size parse_size(const std::string& text);
 
-/// Throws InputError.
-[[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size);
+/// `pixel_samples`: surface points a pixel for pictures (see antialias.h). Throws InputError, and UsageError for a
+/// number of samples that cannot be had.
+[[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples = 1);
 
 }  // namespace umbra

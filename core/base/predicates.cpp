@@ -1,6 +1,6 @@
 // CGAL's filtered kernel: static bounds first, then intervals, then exact numbers. Measured over 10^6 random calls, a
-// filter written for floats alone was 1.1 times as fast for planes and 1.2 to 1.4 times for directions; where the
-// answer is 0, CGAL is 8 to 100 times as fast as that filter with rationals behind it.
+// filter written for floats alone was 1.1 to 1.4 times as fast; where the answer is 0, CGAL is mostly 7 to 130 times as
+// fast as that filter with rationals behind it.
 #include "umbra/core/base/predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

@@ -5,6 +5,7 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -40,6 +41,11 @@ Action compare_command(CLI::App& app, const Common& common) {
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
         ->type_name("N");
     app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    line->options.pixel_samples = kPictureSamples;
+    app.add_option("--pixel-samples", line->options.pixel_samples,
+                   "Points a pixel in pictures: 1, 4, 9, 16 ... (planes and errors stay at pixel centres)")
+        ->capture_default_str()
+        ->type_name("N");
     app.add_option("-o,--output", line->options.out, "Folder to write to")->type_name("DIR")->required();
     return [line, &common] { return compare(*line, common); };
 }

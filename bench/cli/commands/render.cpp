@@ -6,6 +6,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -41,6 +42,11 @@ Action render_command(CLI::App& app, const Common& common) {
         ->capture_default_str()
         ->type_name("METHOD");
     app.add_option("--size", line->size, "Size of the picture (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    line->options.pixel_samples = kPictureSamples;
+    app.add_option("--pixel-samples", line->options.pixel_samples,
+                   "Points a pixel of a PNG: 1, 4, 9, 16 ... (an EXR has pixel centres)")
+        ->capture_default_str()
+        ->type_name("N");
     app.add_flag("--geometry", line->options.with_geometry, "Also write Z, N, P, id.object and id.face to the EXR");
     app.add_option("-o,--output", line->options.out, "FILE.exr or FILE.png")->type_name("FILE")->required();
     return [line, &common] { return render(*line, common); };

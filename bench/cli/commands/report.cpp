@@ -7,6 +7,7 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/canonical.h"
 
 namespace umbra {
@@ -25,7 +26,8 @@ int run_everything(const fs::path& out, const Common& common) {
     ladders.out = out / "ladders";
     climb_on_terminal(ladders, common);
     CompareOptions options;
-    options.out = out;
+    options.out           = out;
+    options.pixel_samples = kPictureSamples;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
     const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, {ladders.out});
     const int code        = exit_code(done);

@@ -1,0 +1,31 @@
+// Antialiased pictures: the sum at several points of each pixel, averaged in linear light.
+//
+// S_j planes, errors and image metrics stay at pixel centres; only what people look at is smoothed.
+#pragma once
+
+#include <vector>
+
+#include "umbra/core/image/image.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/visibility.h"
+
+namespace umbra {
+
+/// What commands take for pictures where nobody says otherwise.
+inline constexpr int kPictureSamples = 4;
+
+/// Samples along each side of a pixel for `samples` samples a pixel: 1, 4, 9, 16, 25 ... . Throws UsageError for other
+/// numbers and for more than 64.
+[[nodiscard]] int samples_along_side(int samples);
+
+/// The surface points at `side` x `side` regular subpixel centres of each pixel: a raster of `side` times the size.
+/// Throws UsageError where that is more than 2^26 points.
+[[nodiscard]] PointBatch subpixel_points(const RayScene& rays, const Scene& scene, int width, int height, int side);
+
+/// The sum at subpixel points with S_j there, box filtered to one value a pixel: R G B, linear.
+/// `visibility` has one plane a light.
+[[nodiscard]] Image antialiased(const Scene& scene, const PointBatch& subpixels,
+                                std::span<const VisibilityPlane> visibility, int side);
+
+}  // namespace umbra

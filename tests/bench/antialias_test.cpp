@@ -1,0 +1,65 @@
+// Antialiased pictures: pixels on an edge become means, and nothing that is measured changes.
+#include "umbra/bench/run/antialias.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "umbra/bench/compare/compare.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/image/image_io.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::string_view kBoard = R"({
+    "shows": "A board over a floor under a sun.",
+    "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]},
+    "lights": [{"name": "sun", "type": "directional", "direction": [0.3, -1, -0.2]}],
+    "objects": [{"name": "floor", "type": "plane", "size": [8, 8]},
+                {"name": "board", "type": "box", "size": [2, 0.1, 1], "transform": [{"rotate_y": 20}, {"translate": [0, 1, 0]}]}]
+})";
+
+Json without_times(Json record) {
+    record.erase("times");
+    record["reference"].erase("times");
+    for (Json& method : record["methods"]) method.erase("times"), method.erase("light_times");
+    return record;
+}
+
+TEST(Antialias, SamplesAreSquares) {
+    EXPECT_EQ(samples_along_side(1), 1);
+    EXPECT_EQ(samples_along_side(16), 4);
+    for (const int wrong : {0, -4, 2, 8, 65, 81}) EXPECT_THROW((void)samples_along_side(wrong), UsageError) << wrong;
+}
+
+/// The picture changes at edges alone; planes, errors and image metrics do not.
+TEST(Antialias, SmoothsEdgesAndLeavesWhatIsMeasured) {
+    const TemporaryFolder folder;
+    const auto scene = folder.write("board.json", kBoard);
+    CompareOptions options;
+    options.methods = {"ray_traced"};
+    options.size    = {64, 48};
+    options.repeats = {1, 0};
+    Json records[2];
+    Image pictures[2];
+    for (int k = 0; k < 2; ++k) {
+        options.out           = folder.path() / (k == 0 ? "plain" : "smooth");
+        options.pixel_samples = k == 0 ? 1 : 16;
+        records[k]            = without_times(compare_scene(scene, options));
+        pictures[k]           = read_image(options.out / "board" / "ray_traced.png").image;
+    }
+    EXPECT_EQ(records[0], records[1]);
+    std::size_t changed = 0;
+    for (std::size_t i = 0; i < pictures[0].pixels(); ++i) {
+        const float by = std::abs(pictures[0].at(i, 0) - pictures[1].at(i, 0));
+        changed += by > 0.02f;
+    }
+    EXPECT_GT(changed, 40u) << "edges of the board and of its shadow";
+    EXPECT_LT(changed, pictures[0].pixels() / 4) << "and nothing else";
+}
+
+}  // namespace
+}  // namespace umbra
