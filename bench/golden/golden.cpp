@@ -463,7 +463,8 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     const fs::path figures_file = options.folder / name / "figures.json";
     Figures accepted            = read_figures(figures_file);
     std::vector<GoldenChange> changes;
-    if (choices.size() == methods().size()) changes = method_leftovers(name, options, accepted);
+    const bool all = choices.size() == std::size_t(std::ranges::count_if(methods(), &MethodInfo::by_default));
+    if (all) changes = method_leftovers(name, options, accepted);
     const GoldenScene scene(file);
     for (const MethodChoice& choice : choices)
         if (auto change = method_change(scene, choice, options, accepted)) changes.push_back(std::move(*change));
