@@ -12,6 +12,7 @@
 
 #include "umbra/bench/golden/golden.h"
 #include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
