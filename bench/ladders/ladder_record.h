@@ -9,7 +9,7 @@
 
 namespace umbra {
 
-/// The entry of one ladder in `ladders` of results.json (DESIGN section 4; bench/ladders.schema.json).
+/// The entry of one ladder in `ladders` of results.json (bench/ladders/ladders.schema.json).
 [[nodiscard]] Json ladder_json(const LadderRun& run);
 
 /// A ladder as `umbra list --json` names it: name, title, about, unit, rungs.
