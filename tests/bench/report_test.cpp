@@ -233,6 +233,18 @@ TEST_F(Report, AClassThatIsCountedGetsItsColumn) {
     EXPECT_TRUE(contains(page, "<td class=\"wrong\">12</td><td>1\u202f034</td><td>5</td><td>0</td><td>987</td>"));
 }
 
+TEST_F(Report, PenumbraAndNoiseAreNoOtherFalseShadow) {
+    json results = sample("court");
+    for (const std::size_t method : {1, 2})
+        for (json& error : results["methods"][method]["errors"]) {
+            error["penumbra_error"] = {{"false_shadow", 9}, {"false_light", 0}};
+            error["noise_error"]    = {{"false_shadow", 2}, {"false_light", 0}};
+        }
+    put(out / "court", results);
+    write_report({out}, out);
+    EXPECT_TRUE(contains(read(out / "index.html"), "(2 false shadow, 18 penumbra, 4 noise)"));
+}
+
 TEST_F(Report, WritesTheSameBytesAgain) {
     put(out / "court", sample("court"));
     write_report({out}, out);
