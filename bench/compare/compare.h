@@ -56,7 +56,7 @@ struct RenderOptions {
     std::filesystem::path out;
     std::string command;
     bool with_geometry = false;
-    std::function<void(const std::string&)> warn;  ///< receives "SCENE: warning" of loading; may be empty
+    std::function<void(const std::string&)> warn{};  ///< receives "SCENE: warning" of loading; may be empty
 };
 [[nodiscard]] Service render_scene(const std::filesystem::path& file, const RenderOptions& options);
 

@@ -47,7 +47,8 @@ Action render_command(CLI::App& app, const Common& common) {
                    "Points a pixel of a PNG: 1, 4, 9, 16 ... (an EXR has pixel centres)")
         ->capture_default_str()
         ->type_name("N");
-    app.add_flag("--geometry", line->options.with_geometry, "Also write Z, N, P, id.object and id.face to the EXR");
+    app.add_flag("--geometry", line->options.with_geometry,
+                 "Also write surface points, ids and cameras to the EXR (docs/exr.md)");
     app.add_option("-o,--output", line->options.out, "FILE.exr or FILE.png")->type_name("FILE")->required();
     return [line, &common] { return render(*line, common); };
 }
