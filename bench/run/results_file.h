@@ -27,7 +27,7 @@ public:
     [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent
     [[nodiscard]] std::vector<std::pair<std::string, Field>> members() const;
 
-    /// "FILE:/place: found WHAT (EXPECTED would be right)".
+    /// "FILE:/place: found WHAT expected EXPECTED".
     [[noreturn]] void refuse(std::string_view expected) const;
 
 private:

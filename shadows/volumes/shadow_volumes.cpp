@@ -67,10 +67,10 @@ public:
             return {How::approximately, "area lights are taken as points at their centres: umbra only, no penumbra"};
         if (options.edges == Edges::silhouette && facts.closed_objects > 0)
             return {How::approximately,
-                    "silhouettes of closed meshes are right unless one turns inside out where it crosses itself"};
+                    "silhouettes of closed meshes are correct unless one turns inside out where it crosses itself"};
         return {How::to_rounding,
-                "counts volumes at the points themselves, with weighted edges for meshes that are open, "
-                "non-manifold or badly oriented"};
+                "counts volumes at the points themselves, with weighted edges for open, "
+                "non-manifold or inconsistently oriented meshes"};
     }
 
     void build(const Scene& scene, const SceneFacts& facts) override {

@@ -89,36 +89,34 @@ const Ladder thin_walls_ladder{
     .name  = "thin_walls",
     .title = "Thin walls",
     .about =
-        "A closed room has walls of this thickness, with the sun outside, a lamp and the eye within: no sunlight comes "
-        "in. What keeps surfaces from shadowing themselves lets light through walls.",
-    .unit  = "of the room",
+        "A closed room has walls of this thickness, the sun is outside, a point light and the eye are inside: no "
+        "sunlight may enter. A bias that keeps surfaces from shadowing themselves can let light through walls.",
+    .unit  = "of the room's width",
     .rungs = kThicknesses,
     .scene = thin_walls_scene};
 
-const Ladder needles_ladder{
-    .name  = "needles",
-    .title = "Needles",
-    .about =
-        "Five rods lie side by side, this thick and as far apart. The picture shows the stripes of their shadow "
-        "alone, however thin.",
-    .unit  = "of their half length",
-    .rungs = kWidths,
-    .scene = needles_scene};
+const Ladder needles_ladder{.name  = "needles",
+                            .title = "Needles",
+                            .about =
+                                "Five parallel rods; this is their width and the distance between them. The picture "
+                                "shows only the stripes of their shadow, however thin.",
+                            .unit  = "of their half length",
+                            .rungs = kWidths,
+                            .scene = needles_scene};
 
-const Ladder depth_complexity_ladder{
-    .name  = "depth_complexity",
-    .title = "Layers over one another",
-    .about =
-        "So many sheets lie one over the other, and as many volumes hold the floor beneath them: counters of eight "
-        "bits overflow at 256.",
-    .unit  = "layers",
-    .rungs = kLayers,
-    .scene = layers_scene};
+const Ladder depth_complexity_ladder{.name  = "depth_complexity",
+                                     .title = "Layers above one another",
+                                     .about =
+                                         "N sheets lie above one another, and the floor below them is inside N shadow "
+                                         "volumes: 8-bit counters overflow at 256.",
+                                     .unit  = "layers",
+                                     .rungs = kLayers,
+                                     .scene = layers_scene};
 
 const Ladder silhouette_edges_ladder{
     .name  = "silhouette_edges",
     .title = "Silhouette edges",
-    .about = "So many triangles hang anyhow over a floor, and all their edges are silhouettes.",
+    .about = "N triangles with random orientation hang over a floor, and all their edges are silhouettes.",
     .unit  = "triangles",
     .rungs = kLeaves,
     .scene = leaves_scene};

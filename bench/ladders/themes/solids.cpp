@@ -88,8 +88,8 @@ const Ladder duplicate_faces_ladder{
     .name  = "duplicate_faces",
     .title = "Coplanar duplicates",
     .about =
-        "Every triangle of a tilted floor and of a box is there so many times, bit-equal, turned either way. Nothing "
-        "may change: a surface does not shadow its own twin.",
+        "Every triangle of a tilted floor and of a box exists N times, bit-equal, with either orientation. The result "
+        "must not change: a surface does not shadow its own copy.",
     .unit  = "copies",
     .rungs = kCounts,
     .scene = duplicate_scene};
@@ -98,30 +98,28 @@ const Ladder touching_solids_ladder{
     .name  = "touching_solids",
     .title = "Gap between solids",
     .about =
-        "Two solids stand so far apart, in the end they share a face. The light runs along their facing sides and "
-        "through the gap: a stripe on the floor, which is all the picture shows.",
-    .unit  = "of their length",
+        "Two solids are at this distance; on the last rung they share a face. The light runs along their facing sides "
+        "and through the gap, and the picture shows only the stripe that it makes on the floor.",
+    .unit  = "of their width",
     .rungs = kGaps,
     .scene = touching_scene};
 
-const Ladder sunken_slab_ladder{
-    .name  = "sunken_slab",
-    .title = "A slab that hardly stands out of the floor",
-    .about =
-        "A slab is sunk into a tilted floor but for this height. The floor passes so close beneath its upper side "
-        "and must not shadow it.",
-    .unit  = "of its length",
-    .rungs = kHeights,
-    .scene = sunken_scene};
+const Ladder sunken_slab_ladder{.name  = "sunken_slab",
+                                .title = "A slab slightly above the floor",
+                                .about =
+                                    "A slab is sunk into a tilted floor except for this height. The floor passes at "
+                                    "this distance below the top of the slab and must not shadow it.",
+                                .unit  = "of its length",
+                                .rungs = kHeights,
+                                .scene = sunken_scene};
 
-const Ladder interpenetrating_solids_ladder{
-    .name  = "interpenetrating_solids",
-    .title = "Solids through each other",
-    .about =
-        "So many boxes stand in one place, through each other: at each crease the surfaces come as close as pixels "
-        "tell, with no edge in any mesh.",
-    .unit  = "boxes",
-    .rungs = kSolids,
-    .scene = interpenetrating_scene};
+const Ladder interpenetrating_solids_ladder{.name  = "interpenetrating_solids",
+                                            .title = "Interpenetrating solids",
+                                            .about =
+                                                "N boxes interpenetrate at one position: at each crease, surfaces come "
+                                                "closer than a pixel, and no mesh has an edge there.",
+                                            .unit  = "boxes",
+                                            .rungs = kSolids,
+                                            .scene = interpenetrating_scene};
 
 }  // namespace umbra
