@@ -38,7 +38,7 @@ std::uint32_t count_nonmanifold_vertices(const Topology& topology) {
             fans.unite(corner(topology.uses[e.first], false), corner(topology.uses[u], false));
         }
     }
-    std::vector<std::uint8_t> count(topology.position.size(), 0);  // fans, 2 standing for more than one
+    std::vector<std::uint8_t> count(topology.position.size(), 0);  // fans; 2 means more than one
     for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
         if (topology.repeats_a_corner(t)) continue;
         for (std::uint32_t k = 0; k < 3; ++k)
@@ -132,7 +132,7 @@ bool holds(const Box& box, vec3 p) {
     return glm::all(glm::greaterThanEqual(p, box.min)) && glm::all(glm::lessThanEqual(p, box.max));
 }
 
-/// Area lights stand where their centre stands. The eye of an orthographic view is at infinity, as is a directional
+/// The position of an area light is its centre. The eye of an orthographic view is at infinity, as is a directional
 /// light that shines along the view.
 LightPlace place_of(const Light& light, const Scene& scene) {
     const CameraFrame view  = frame(scene.camera, std::max(1, scene.width), std::max(1, scene.height));

@@ -41,8 +41,8 @@ Scene t_junction_scene(double gap) {
 
 constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0};
 
-/// A hilly sheet of right-angled triangles, whose vertices the lamp casts onto a square grid in the floor; the eye,
-/// below it and looking straight down, has its pixels there, but for a share of the grid's spacing.
+/// A hilly sheet of right-angled triangles, whose vertices the light projects onto a square grid in the floor; the eye,
+/// below it and looking straight down, has its pixels there, except for a fraction of the grid's spacing.
 Scene lattice_scene(double beside) {
     constexpr int kCells      = 60;
     constexpr double kSpacing = 1.0 / 32;
@@ -50,7 +50,7 @@ Scene lattice_scene(double beside) {
     Scene scene = empty_stage();
     scene.width = scene.height = 64;
     add_body(scene, "floor", make_plane(2, 2));
-    // Lines through pixels, but the first and the last between them: the shadow's border is at none.
+    // Lines through pixels, except the first and the last, which are between them: the shadow's border is at none.
     const auto line = [](int k) { return kSpacing * (k - 0.5 * kCells + (k == 0 ? 0.0 : k == kCells ? 1.0 : 0.5)); };
     Mesh sheet;
     for (int j = 0; j <= kCells; ++j)

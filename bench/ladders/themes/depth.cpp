@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kThicknesses = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
 
-/// A closed room, 4 wide, with walls of this share of it, the sun outside, a lamp and the eye within.
+/// A closed room, 4 wide, with walls of this fraction of it, the sun outside, a point light and the eye inside.
 Scene thin_walls_scene(double thickness) {
     Scene scene = empty_stage();
     Mesh walls  = make_box({4, 3, 4});
@@ -66,7 +66,7 @@ Scene layers_scene(double count) {
 
 constexpr std::array kLeaves = {1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4};
 
-/// Triangles that hang anyhow: every edge is a silhouette.
+/// Triangles of random orientation: every edge is a silhouette.
 Scene leaves_scene(double count) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(6, 6));

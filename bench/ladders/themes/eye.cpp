@@ -13,7 +13,7 @@ constexpr std::array kDownTo0 = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
 constexpr std::array kUp      = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 constexpr std::array kCells   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 96.0, 192.0};
 
-/// The eye under a stack of sheets, which a lamp lights from above: it is in as many volumes as there are sheets.
+/// The eye under a stack of sheets, lit from above: it is in as many shadow volumes as there are sheets.
 Scene eye_in_volumes(double rung) {
     Scene scene = empty_stage();
     const int n = int(rung);
@@ -30,7 +30,7 @@ Scene eye_in_volumes(double rung) {
     return scene;
 }
 
-/// The eye so far from the side of a box's shadow volume, on its outer side; on the last rung in it.
+/// The eye at this distance from the side of a box's shadow volume, outside it; on the last rung in its plane.
 Scene eye_near_volume_side(double rung) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(8, 8));
@@ -77,8 +77,8 @@ Scene near_to_far(double rung) {
     return scene;
 }
 
-/// A wall that floats so far above the floor, seen from so close that the gap is some pixels high at every rung; the
-/// sun sends its light through.
+/// A wall that floats at this height above the floor, with a view in which the gap is some pixels high at every rung;
+/// sunlight passes through the gap.
 Scene gap(double rung) {
     Scene scene       = empty_stage();
     const dvec3 foot  = {3.3, 1.7, 2.1};  // nothing is at 0, where floats are finer
@@ -102,8 +102,8 @@ Scene gap(double rung) {
     return scene;
 }
 
-/// A closed sheet of cells whose corners and edges lie over the points of the picture, but for rounding: whoever
-/// takes a ray between two triangles that share an edge lets light through.
+/// A closed sheet of cells whose corners and edges lie over the points of the picture, except for
+/// rounding: a method that lets a ray pass between two triangles that share an edge lets light through.
 Scene aligned_lattice(double rung) {
     Scene scene = empty_stage();
     scene.width = 96, scene.height = 96;
@@ -124,7 +124,7 @@ Scene aligned_lattice(double rung) {
     return scene;
 }
 
-/// The same for a lamp at twice the sheet's height, under which the sheet's shadow is twice as large.
+/// The same for a point light at twice the sheet's height, under which the sheet's shadow is twice as large.
 Scene aligned_lamp(double rung) {
     Scene scene = aligned_lattice(1);
     Scene made  = empty_stage();

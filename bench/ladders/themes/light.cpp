@@ -1,4 +1,4 @@
-// Ladders over where lamps stand: close to what they light, close to what blocks them, far away, grazing, and many.
+// Ladders over positions of lights (close to receivers or occluders, far away, grazing) and over their number.
 #include <array>
 #include <cmath>
 
@@ -54,7 +54,7 @@ Scene lamp_near_receiver(double rung) {
     return scene;
 }
 
-/// A lid so close beneath the lamp, and just so far under it, that half of the floor is dark whatever the distance.
+/// A lid at a distance below the light with its rim 0.1 times that beside the light: half of the floor is always dark.
 Scene lamp_near_occluder(double rung) {
     Scene scene      = empty_stage();
     const vec3 lamp  = {0.31f, 6.13f, 0.17f};
@@ -69,7 +69,7 @@ Scene lamp_near_occluder(double rung) {
     return scene;
 }
 
-/// One lamp within a closed box, which lets nothing out, and one beside it that lights the room.
+/// One light inside a closed box, which occludes it on all sides, and one outside it that lights the floor.
 Scene lamp_in_box(double rung) {
     Scene scene       = empty_stage();
     const dvec3 place = {0.37, 3.11, 0.23};
@@ -84,7 +84,7 @@ Scene lamp_in_box(double rung) {
     return scene;
 }
 
-/// The lamp stands so far above the plane of the box's lid and of the step's; on the last rung it lies in it.
+/// The light is at this height above the plane of the box's lid; on the last rung it lies in the plane.
 Scene lamp_near_face_plane(double rung) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(9, 9));
@@ -143,7 +143,7 @@ Scene many_lamps(double rung) {
     scene.height = 48;
     scene.lights.clear();
     for (int i = 0; i < int(rung); ++i) {
-        // A spiral that leaves no two at the same place. [Helmut Vogel, A Better Way to Construct the Sunflower Head,
+        // A spiral without two lights at one position. [Helmut Vogel, A Better Way to Construct the Sunflower Head,
         // 1979]
         const double angle = 2.399963229728653 * i, radius = 5 * std::sqrt((i + 0.5) / rung);
         add_point_light(scene, vec3(dvec3(radius * std::cos(angle), 6 + i % 3, radius * std::sin(angle))));

@@ -14,7 +14,8 @@ namespace {
 constexpr std::array kAspects = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 constexpr int kStrips         = 4;
 
-/// Lines along z, so long, one at each coordinate x; from each to the next a strip of two triangles. In y = height.
+/// Lines along z of this length in y = height, one at each coordinate x; from each to the next a strip of two
+/// triangles.
 Mesh strips(const std::vector<double>& x, double length, double height) {
     Mesh mesh;
     for (const double from : x) {
@@ -28,8 +29,8 @@ Mesh strips(const std::vector<double>& x, double length, double height) {
     return mesh;
 }
 
-/// The last strips of a sheet that ends at x = 0 are slivers. The lamp stands straight above, where floats are fine
-/// enough to tell them apart.
+/// The last strips of a sheet that ends at x = 0 are slivers. The light is straight above x = 0, where floats
+/// are fine enough to separate them.
 Scene sliver_occluder_scene(double aspect) {
     Scene scene = empty_stage();
     add_close_floor(scene, 4 * kStrips / aspect);

@@ -14,7 +14,7 @@ namespace {
 
 enum class Falls : std::uint8_t { never_rises, always };
 
-/// Walks from the middle pixel to the picture's four sides. `peak` is what the middle shows, to a share of 1e-4. Where
+/// Walks from the middle pixel to the picture's four sides. `peak` is the middle pixel's value, to 1e-4 of it. Where
 /// it falls always, neighbours are not equal either, down to a millionth of the peak.
 std::string wrong_around_middle(const Image& linear, double peak, Falls falls) {
     const int x0 = linear.width / 2, y0 = linear.height / 2;

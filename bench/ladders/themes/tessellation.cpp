@@ -23,7 +23,7 @@ Scene ball_scene(double longitudes) {
 
 constexpr std::array kPages = {1e0, 2e0, 3e0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3};
 
-/// So many triangles that share one edge.
+/// `count` triangles that share one edge.
 Scene pages_scene(double count) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(6, 6));
@@ -43,7 +43,7 @@ Scene pages_scene(double count) {
 
 constexpr std::array kSizes = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
 
-/// A box on a floor of two triangles that is so many times as large.
+/// A box on a floor of two triangles, which is scaled by `size`.
 Scene large_floor_scene(double size) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(static_cast<float>(8 * size), static_cast<float>(8 * size)));
