@@ -116,8 +116,8 @@ struct MethodInfo {
     bool by_default   = true;     ///< it runs where nobody says which methods; false for what is too slow for that
     bool needs_raster = false;    ///< it serves only batches that have a raster
     std::string_view seed{};      ///< the parameter that seeds its noise; empty: it has none
-    std::string_view stand_in{};  ///< settings with which its answers stand in where no reference serves, or where one
-                                  ///< takes too long at every point; empty: they never do
+    std::string_view stand_in{};  ///< settings with which it is the substitute where no reference serves, or where one
+                                  ///< takes too long at every point; empty: it never is
     std::unique_ptr<Method> (*create)() = nullptr;  ///< not configured yet
 
     /// Created and configured. Throws UsageError where the settings contradict one another.

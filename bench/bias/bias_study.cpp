@@ -76,8 +76,8 @@ MethodChoice choose(const std::string& settings) {
         parse_method(settings.empty() ? std::string(kStudied) : fmt::format("{}:{}", kStudied, settings));
     for (const char* studied : {"bias", "constant", "slope", "normal_offset"})
         if (!choice.settings.is_default(studied))
-            throw UsageError(fmt::format("--map {}: {} is what the study varies, expected settings of maps and filters",
-                                         settings, studied));
+            throw UsageError(
+                fmt::format("--map {}: the study varies {}, expected settings of maps and filters", settings, studied));
     return choice;
 }
 

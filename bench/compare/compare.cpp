@@ -90,7 +90,7 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
 }
 
 /// Differences of the pictures over covered pixels: where a method leaves any light undefined, the reference's pixel
-/// stands in.
+/// is used.
 Json image_json(const fs::path& folder, const std::string& id, const MethodRun& run, Rendered rendered,
                 const Rendered& reference, Json& files) {
     for (const VisibilityPlane& plane : run.planes)
@@ -220,7 +220,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
     for (const MethodChoice& choice : choices) {
-        // Where the whole picture is too dear for the reference, it is so for the same method in the list, too.
+        // Where the reference is too slow for the whole picture, so is the same method in the list.
         const bool itself = choice.text() == reference.choice.text();
         if (itself && options.methods.empty() && !reference_ran.stand_in.empty()) continue;
         tell(choice.text());

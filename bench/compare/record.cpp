@@ -37,7 +37,7 @@ Json direction_json(const VisibilityError::Direction& d) {
 
 Json error_json(const std::string& light, const Explained& explained) {
     const VisibilityError& e = explained.error;
-    // Detachment and leak are told apart by the occluder: null where the reference names none.
+    // Detachment and leak are distinguished by the occluder: null where the reference names none.
     const bool named = e.unnamed == 0;
     return {{"light", light},
             {"points", e.points},

@@ -96,13 +96,13 @@ struct Changes {
 Changes plane_changes(const Image& before, const Image& now, const PreparedScene& prepared) {
     Changes changes;
     if (before.width != now.width || before.height != now.height) {
-        changes.add(fmt::format("the planes were {}x{} points and are {}x{}", before.width, before.height, now.width,
+        changes.add(fmt::format("size of the planes: {}x{} -> {}x{} points", before.width, before.height, now.width,
                                 now.height),
                     false);
         return changes;
     }
     for (const std::string& name : before.channels)
-        if (!channel_named(now, name)) changes.add(name + " is no longer kept", false);
+        if (!channel_named(now, name)) changes.add(name + " is no longer stored", false);
     const auto width = static_cast<std::size_t>(now.width);
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
         const Light& light     = prepared.scene.lights[j];
@@ -227,7 +227,7 @@ bool is_range(const Json& figure) {
 /// Adds what is not as accepted. Accepted figures alone may be ranges.
 void add_figure_changes(const Json& accepted, const Json& now, Changes& changes) {
     for (const auto& light : accepted.items())
-        if (!now.contains(light.key())) changes.add(light.key() + ": no longer there", false);
+        if (!now.contains(light.key())) changes.add(light.key() + ": no longer in the scene", false);
     for (const auto& light : now.items()) {
         const Json old = accepted.value(light.key(), Json::object());
         if (old.empty()) {
@@ -236,7 +236,7 @@ void add_figure_changes(const Json& accepted, const Json& now, Changes& changes)
         }
         for (const auto& item : old.items())
             if (!light.value().contains(item.key()))
-                changes.add(fmt::format("{}: {} is no longer there", light.key(), item.key()), false);
+                changes.add(fmt::format("{}: {} is no longer measured", light.key(), item.key()), false);
         std::vector<std::string> fresh;
         for (const auto& item : light.value().items()) {
             const std::string name = fmt::format("{}: {}", light.key(), item.key());
@@ -304,9 +304,10 @@ Figures read_figures(const fs::path& file) {
     const Json record = Json::parse(in, nullptr, false);
     const auto wrong  = [&](bool is) {
         if (is)
-            throw InputError(fmt::format(
-                 "{}: not the figures of methods and lights (remove the file, and umbra accept makes it anew)",
-                 file.string()));
+            throw InputError(
+                 fmt::format("{}: expected the figures of methods and lights; remove the file and run umbra accept to "
+                              "write it again",
+                             file.string()));
     };
     wrong(!record.is_object() || !record.contains("machine") || !record["machine"].is_string() ||
           !record.contains("methods") || !record["methods"].is_object());
@@ -424,7 +425,7 @@ std::vector<GoldenChange> method_leftovers(const std::string& scene, const Golde
         GoldenChange change;
         change.name  = fmt::format("{}/{}", scene, name);
         change.kind  = GoldenChange::Kind::removed;
-        change.lines = {"there is no such method"};
+        change.lines = {"unknown method"};
         changes.push_back(std::move(change));
         if (options.renew) fs::remove(options.folder / scene / (name + ".exr"));
     }
@@ -493,7 +494,7 @@ std::vector<GoldenChange> golden_leftovers(const std::vector<fs::path>& scenes, 
         GoldenChange change;
         change.name  = name;
         change.kind  = GoldenChange::Kind::removed;
-        change.lines = {"there is no such teaching scene"};
+        change.lines = {"unknown teaching scene"};
         changes.push_back(std::move(change));
         if (options.renew) fs::remove_all(entry.path());
     }
@@ -511,8 +512,8 @@ void check_golden_names(const std::vector<fs::path>& scenes, const GoldenOptions
         std::vector<std::string> there;
         for (const fs::path& scene : scenes) there.push_back(scene.stem().string());
         for (const MethodInfo* info : methods()) there.emplace_back(info->name);
-        throw UsageError(
-            fmt::format("no golden \"{}\" (SCENE, METHOD or SCENE/METHOD of {})", name, fmt::join(there, ", ")));
+        throw UsageError(fmt::format("unknown golden \"{}\", expected SCENE, METHOD or SCENE/METHOD of {}", name,
+                                     fmt::join(there, ", ")));
     }
 }
 

@@ -1,7 +1,7 @@
 // Ladders: families of scenes over one extreme, in geometric steps from harmless to absurd.
 //
 // A ladder is one function and one line in ladders.def. On each rung `exact` is the truth; a method breaks at the first
-// rung where its interior errors exceed a stated share (bench/ladder_run.h).
+// rung where its interior errors exceed a stated fraction (bench/ladder_run.h).
 #pragma once
 
 #include <span>
@@ -21,8 +21,8 @@ struct Ladder {
     std::span<const double> rungs;          ///< harmless first; an array that outlives the program's work
     Scene (*scene)(double rung) = nullptr;  ///< with lights, camera, picture size; the same bits each time
 
-    /// Ladders over the sum, where S_j is right: says what is wrong with the picture of that rung (scene-linear R G B,
-    /// made with the true S_j); empty where nothing is. Null: S_j is judged, method by method.
+    /// Ladders over the sum, where S_j is correct: the error in the picture of that rung (scene-linear R G B,
+    /// rendered with the true S_j); empty where there is none. Null: S_j is compared, method by method.
     std::string (*wrong_sum)(double rung, const Scene& scene, const Image& linear) = nullptr;
 };
 

@@ -108,8 +108,8 @@ json break_view(const Field& ladder, const Field& method) {
             {"href", url(fs::path("breaks") / name)},
             {"command", fmt::format("umbra compare breaks/{} --methods {} -o again", name, method["text"].text())},
             {"pictures",
-             {picture("truth", "reference", fmt::format("S of {} by the reference", b["light"].text())),
-              picture("visibility", "method", fmt::format("S of {} by {}", b["light"].text(), label)),
+             {picture("truth", "reference", fmt::format("S of {}, computed by the reference", b["light"].text())),
+              picture("visibility", "method", fmt::format("S of {}, computed by {}", b["light"].text(), label)),
               picture("classes", "errors", "Classes of the wrong points")}}};
 }
 

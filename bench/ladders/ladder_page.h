@@ -9,8 +9,8 @@
 
 namespace umbra {
 
-/// Writes folder/index.html with its style and script, from folder/results.json. Throws InputError naming file and
-/// place.
+/// Writes folder/index.html with its style and script, from folder/results.json. Throws InputError naming the file
+/// and the position in it.
 void write_ladder_page(const std::filesystem::path& folder);
 
 /// The same from results that were read already, as a part of a report: `report` is the address of its first page, seen

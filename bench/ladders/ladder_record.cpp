@@ -88,7 +88,7 @@ std::string climb_in_words(const Json& method, const Json& ladder) {
     }
     if (!method["silent_from"].is_null()) {
         if (!words.empty()) words += "; ";
-        words += fmt::format("silent from {:g}", value("silent_from"));
+        words += fmt::format("mostly undefined from {:g}", value("silent_from"));
     }
     return words.empty() ? "holds" : words;
 }

@@ -132,14 +132,14 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
         try {
             set = set_stage(ladder.scene(value));
         } catch (const std::exception& e) {
-            rung.unjudged = fmt::format("no truth: {}", e.what());
+            rung.unjudged = fmt::format("no reference: {}", e.what());
             break;
         }
         const RungStage& stage = *set;
         describe_truth(stage, rung);
         if (double(rung.surface_points) < kLeastPoints * double(run.rungs[0].surface_points)) {
-            rung.unjudged = fmt::format("the eye sees {} points of the scene, and {} on the first rung",
-                                        rung.surface_points, run.rungs[0].surface_points);
+            rung.unjudged = fmt::format("the eye sees {} surface points, on the first rung {}", rung.surface_points,
+                                        run.rungs[0].surface_points);
             break;
         }
         if (ladder.wrong_sum) {

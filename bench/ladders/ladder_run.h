@@ -1,4 +1,4 @@
-// Climbing a ladder: every method on every rung, held against the truth, and the rung at which each one breaks.
+// Climbing a ladder: every method on every rung, compared with the reference, and the rung at which each one breaks.
 #pragma once
 
 #include <functional>
@@ -13,15 +13,15 @@
 
 namespace umbra {
 
-/// A method that serves a scene approximately breaks where more than this share of the judged points is wrong in the
-/// interior; one that serves it exactly or to rounding where any is.
+/// A method that serves a scene approximately breaks where more than this fraction of the compared points is wrong in
+/// the interior; one that serves it exactly or to rounding where any is.
 inline constexpr double kBreakingShare = 0.005;
 
-/// A rung is judged where the eye still sees at least this share of the points that it sees on the first rung: below
+/// A rung is judged where the eye still sees at least this fraction of the points that it sees on the first rung: below
 /// it, the scene itself has come apart in its float coordinates, or the eye rays have.
 inline constexpr double kLeastPoints = 0.1;
 
-/// A method that leaves open more than this share of the points that it is asked for no longer answers.
+/// A method that leaves undefined more than this fraction of the points that it is asked for no longer answers.
 inline constexpr double kMostUndefined = 0.5;
 
 /// What one method made of one rung, over all lights. Counts are points.
@@ -46,7 +46,7 @@ struct RungOutcome {
 struct Rung {
     double value = 0;
     std::string unjudged;  ///< why no method is judged on it and on those after it; empty where they are
-    std::string truth;     ///< what the methods were held against, as typed
+    std::string truth;     ///< the reference, as typed
     std::uint64_t surface_points = 0, lit = 0, umbra = 0, penumbra = 0, on_boundary = 0;
     std::vector<RungOutcome> outcomes;
 };
@@ -60,7 +60,7 @@ struct LadderRun {
 /// How one method fared on one ladder. Rungs are indices into LadderRun::rungs.
 struct Climb {
     std::optional<std::size_t> breaks_at;        ///< the first rung where it ran and is broken, or where it stopped
-    std::optional<std::size_t> silent_from;      ///< the first from which on it leaves most points open
+    std::optional<std::size_t> silent_from;      ///< the first from which on it leaves most points undefined
     std::optional<std::size_t> not_served_from;  ///< the first from which on it says that it does not serve
     std::string why;                             ///< of not serving, or of having stopped
 };
@@ -80,7 +80,7 @@ struct RungStage {
 [[nodiscard]] RungOutcome outcome(const RungStage& stage, const MethodChoice& method,
                                   std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr);
 
-/// Climbs one ladder with each of the methods. `progress` is told what is being done; may be empty.
+/// Climbs one ladder with each of the methods. `progress` is called with each step's description; may be empty.
 [[nodiscard]] LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
                                      const std::function<void(const std::string&)>& progress = {});
 

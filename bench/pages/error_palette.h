@@ -41,7 +41,7 @@ inline constexpr std::array kErrorPalette = {
     ErrorColour{ErrorClass::leak, "leak", "false light: leak", "#c40000", "false_light", "leak", true,
                 "Too bright away from any contact: light leaks through an occluder."},
     ErrorColour{ErrorClass::false_light, "false_light", "false light: unknown occluder", "#d55e00", "false_light", "",
-                true, "Too bright: no occluder is known, so detachment and leak cannot be told apart."},
+                true, "Too bright: no occluder is known, so detachment and leak cannot be distinguished."},
     ErrorColour{ErrorClass::false_light_edge, "false_light_edge", "false light: edge band", "#ffc861", "false_light",
                 "", false, "Too bright within 1.5 pixels of a shadow boundary."},
     ErrorColour{ErrorClass::penumbra, "penumbra", "penumbra", "#882255", "", "", true,

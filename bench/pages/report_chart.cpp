@@ -64,7 +64,7 @@ struct PlacedMark {
 };
 
 /// Where the label of each mark begins (x) and its baseline (y): right, left, above or below its own mark, where it
-/// meets neither marks nor labels; nothing where there is no such place.
+/// meets neither marks nor labels; nothing where there is no such position.
 class LabelPlaces {
 public:
     LabelPlaces(const std::vector<PlacedMark>& marks, double bottom) : bottom_(bottom) {

@@ -19,7 +19,7 @@ SceneFiles::SceneFiles(const ScenePage& scene, StagedFiles& staged) : scene_(sce
     for (const char* side : {"width", "height"}) {
         const Field pixels = scene.root["size"][side];
         if (!pixels.present()) continue;
-        if (const double n = *pixels.number(); n < 1 || n > 1e6) pixels.refuse("pixels, from 1 to a million,");
+        if (const double n = *pixels.number(); n < 1 || n > 1e6) pixels.refuse("1 to 1000000 pixels");
         size_[side] = fmt::format("{:.0f}", *pixels.number());
     }
 }
@@ -29,7 +29,7 @@ std::string SceneFiles::link(const Field& file, const fs::path& from) const {
     const fs::path path = scene_.data / name;
     if (name.is_absolute() || *path.lexically_normal().lexically_relative(scene_.data).begin() == "..")
         file.refuse("a file in the same folder");
-    if (!fs::is_regular_file(path)) file.refuse("a file that is there");
+    if (!fs::is_regular_file(path)) file.refuse("an existing file");
     if (scene_.page != scene_.data) staged_.copy(path, (scene_.page / name).lexically_normal());
     return url((scene_.page / name).lexically_normal().lexically_relative(from));
 }

@@ -21,8 +21,8 @@ struct ScenePage {
     double triangles = 0;
 };
 
-/// Links to the files that one results.json names. They must be there and lie in its folder; where the page stands
-/// elsewhere they are copied to it. Both arguments must outlive this.
+/// Links to the files that one results.json names. They must be there and lie in its folder; where the page is
+/// in another folder, they are copied to it. Both arguments must outlive this.
 class SceneFiles {
 public:
     SceneFiles(const ScenePage& scene, StagedFiles& staged);

@@ -29,7 +29,8 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// "shadow_zbuffer" as "shadow zbuffer".
 [[nodiscard]] std::string in_words(std::string key);
 
-/// Kinds of lights ("point") and their places ("at_infinity") as results.json names them; others are left as they are.
+/// Kinds of lights ("point") and their positions ("at_infinity") as results.json names them; others are left as they
+/// are.
 [[nodiscard]] std::string kind_in_words(const std::string& kind);
 [[nodiscard]] std::string place_in_words(const std::string& place);
 

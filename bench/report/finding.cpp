@@ -51,7 +51,7 @@ std::string classes_in_words(const Field& method) {
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-/// Who is right everywhere: "all 3 other methods: none", "Planar projection: none where it answers".
+/// The methods that are correct everywhere: "all 3 other methods: none", "Planar projection: none where it answers".
 std::string right_in_words(const std::vector<Compared>& right) {
     const bool partial = std::any_of(right.begin(), right.end(), [](const Compared& c) { return c.partial; });
     if (right.size() == 1) return fmt::format("{}: none{}", right[0].label, partial ? " where it answers" : "");

@@ -16,7 +16,7 @@ struct ReportOptions {
 /// folder, or DIR/results.json where there is none of those. A scene whose folder lies in `out` gets its page beside
 /// its pictures; of others the pictures are copied to out/<scene>, so that `out` can be handed out whole. The pages
 /// work from disk, name no host, and all links are relative. Everything is checked and written beside before anything
-/// is moved into place. Throws InputError naming file and place, UsageError where no folder is given.
+/// is moved into place. Throws InputError naming the file and the position in it, UsageError where no folder is given.
 void write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& out,
                   const ReportOptions& options = {});
 

@@ -10,7 +10,7 @@ namespace umbra {
 /// InputError.
 [[nodiscard]] std::vector<std::filesystem::path> canonical_scenes(const std::filesystem::path& folder);
 
-/// Those of them that stand in the repository whole: the teaching scenes. The others, real_NAME, need meshes that are
+/// Those of them that are complete in the repository: the teaching scenes. The others, real_NAME, need meshes that are
 /// obtained at set-up.
 [[nodiscard]] std::vector<std::filesystem::path> teaching_scenes(const std::filesystem::path& folder);
 

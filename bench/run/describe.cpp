@@ -25,7 +25,7 @@ std::string value_of(const char* file, std::string_view key, char separator) {
     return {};
 }
 
-/// One word a place, for scripts.
+/// One word for each LightPlace, for scripts.
 std::string_view place_word(LightPlace place) {
     switch (place) {
         case LightPlace::at_infinity: return "at_infinity";

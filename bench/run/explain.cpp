@@ -5,7 +5,7 @@
 namespace umbra {
 namespace {
 
-/// Whom the method of a run blames for the shadow at these points.
+/// The triangles that the method of a run blames for the shadow at these points.
 std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, LightId light,
                                std::span<const std::uint32_t> which) {
     std::vector<TriangleId> who(which.size(), kNoTriangle);

@@ -14,7 +14,7 @@ namespace umbra {
 inline constexpr int kNoiseRuns = 8;
 
 /// One meter a light, fed with kNoiseRuns runs; empty for methods that have no seed (their answers are always the same)
-/// and for lights without an area (their samples all fall on one place).
+/// and for lights without an area (all their samples are one point).
 [[nodiscard]] std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
                                                                 const SceneFacts& facts, const PointBatch& points);
 

@@ -47,7 +47,7 @@ std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint
     return sample;
 }
 
-/// The answers at the sample among those of the stand-in everywhere else, which judge nothing.
+/// The answers at the sample and those of the substitute method elsewhere, which are never compared.
 void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, const VisibilityPlane& stand_in,
              const PointBatch& points) {
     VisibilityPlane whole = stand_in;
@@ -64,11 +64,11 @@ void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sa
     run.judged[light] = std::move(judged);
 }
 
-/// What stands in where no reference serves, or where one takes too long at every point.
+/// The substitute where no reference serves, or where one takes too long at every point.
 MethodChoice stand_in_for_reference() {
     for (const MethodInfo* info : methods())
         if (!info->stand_in.empty()) return parse_method(fmt::format("{}:{}", info->name, info->stand_in));
-    throw UsageError("no method in the list can stand in for a reference");
+    throw UsageError("no method in the list can replace a reference");
 }
 
 /// The same method, answering this measure. Throws UsageError where it cannot.

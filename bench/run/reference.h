@@ -16,20 +16,20 @@ struct Reference {
     std::string note;
 };
 
-/// The first method of the list that may be a reference and serves the scene, else a stand-in that is not exact.
+/// The first method of the list that may be a reference and serves the scene, else a substitute that is not exact.
 /// Its answers are of the given measure.
 [[nodiscard]] Reference default_reference(const SceneFacts& facts, Measure measure = Measure::area);
 
 /// The reference's answers: at all points of the picture for lights without an area; for area lights at all points, or
 /// at a stratified sample of them. Elsewhere its planes hold values of another method (MethodInfo::stand_in), which
-/// locate shadow edges and make the reference's picture, and judge nothing (MethodRun::judged).
+/// locate shadow edges and make the reference's picture, and are never compared (MethodRun::judged).
 struct ReferenceRun {
     MethodRun run;
     std::uint64_t judged = 0, of = 0;  ///< points, of those with a surface; equal where the whole picture is judged
     std::string stand_in;              ///< the other method, as typed; empty where every point is judged
 };
 
-/// `wanted`: how many points to judge an area light on; none: the whole picture where that is not too dear, by a rule
+/// `wanted`: how many points to judge an area light on; none: the whole picture where that is not too slow, by a rule
 /// that depends on the scene and the picture alone, so that figures come out the same on every machine. The sample is
 /// one pixel, at random but always the same, out of each square tile. Throws UsageError where the reference does not
 /// serve the scene.

@@ -22,8 +22,8 @@ void Field::refuse(std::string_view expected) const {
     std::string found = "nothing";
     if (value_) found = value_->is_structured() ? fmt::format("an {}", value_->type_name()) : value_->dump();
     if (found.size() > 60) found = found.substr(0, 57) + "...";
-    throw InputError(fmt::format("{}:{}: found {} ({} would be right)", document_->file,
-                                 pointer_.empty() ? "/" : pointer_, found, expected));
+    throw InputError(fmt::format("{}:{}: found {}, expected {}", document_->file, pointer_.empty() ? "/" : pointer_,
+                                 found, expected));
 }
 
 Field Field::operator[](std::string_view key) const {
@@ -44,7 +44,7 @@ std::string Field::text() const {
 
 std::string Field::required_text() const {
     std::string s = text();
-    if (s.empty()) refuse("a string that is not empty");
+    if (s.empty()) refuse("a non-empty string");
     return s;
 }
 
@@ -83,7 +83,7 @@ std::vector<std::pair<std::string, Field>> Field::members() const {
 
 Field read_results(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(fmt::format("{}: cannot be opened (a results.json would be right)", file.string()));
+    if (!stream) throw InputError(fmt::format("{}: cannot be opened, expected a results.json", file.string()));
     const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
 
     auto document  = std::make_shared<Field::Document>();
@@ -94,15 +94,16 @@ Field read_results(const std::filesystem::path& file) {
         const auto end  = bytes.begin() + std::ptrdiff_t(std::clamp<std::size_t>(error.byte, 1, bytes.size() + 1) - 1);
         const auto line = 1 + std::count(bytes.begin(), end, '\n');
         const auto newline = std::find(std::make_reverse_iterator(end), bytes.rend(), '\n').base();
-        throw InputError(fmt::format("{}:{}:{}: not JSON, or cut off here (a whole results.json would be right)",
+        throw InputError(fmt::format("{}:{}:{}: not JSON, or cut off here; expected a complete results.json",
                                      file.string(), line, 1 + (end - newline)));
     } catch (const json::exception&) {  // a number beyond double
-        throw InputError(fmt::format("{}: a number is out of range (finite numbers would be right)", file.string()));
+        throw InputError(
+            fmt::format("{}: a number is out of range, expected numbers that a double can hold", file.string()));
     }
 
     Field root{document, &document->root, ""};
     if (root["schema"].number() != kResultsSchema)
-        root["schema"].refuse(fmt::format("{}, results as this version writes them,", kResultsSchema));
+        root["schema"].refuse(fmt::format("{}, the version that this program reads", kResultsSchema));
     return root;
 }
 

@@ -12,8 +12,8 @@
 
 namespace umbra {
 
-/// One place of a results.json, which may be absent (not there, or null). Asking for a type that it has not throws
-/// InputError with the file and the place as a JSON pointer. Copies share the file's contents.
+/// One value of a results.json, which may be absent (not there, or null). Asking for a type that it has not throws
+/// InputError with the file and the position as a JSON pointer. Copies share the file's contents.
 class Field {
 public:
     [[nodiscard]] Field operator[](std::string_view key) const;  ///< absent where this is absent
@@ -27,7 +27,7 @@ public:
     [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent
     [[nodiscard]] std::vector<std::pair<std::string, Field>> members() const;
 
-    /// "FILE:/place: found WHAT (EXPECTED would be right)".
+    /// "FILE:/POINTER: found WHAT, expected EXPECTED".
     [[noreturn]] void refuse(std::string_view expected) const;
 
 private:

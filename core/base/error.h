@@ -6,7 +6,7 @@
 
 namespace umbra {
 
-/// Input that cannot be read. what() is the whole message: "FILE[:PLACE]: what was found (what would be right)".
+/// Input that cannot be read. what() is the whole message: "FILE[:POSITION]: what was found, expected ...".
 /// Commands print it and exit with 4.
 class InputError : public std::runtime_error {
 public:

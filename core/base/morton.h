@@ -15,7 +15,7 @@ namespace umbra {
     return (b | b << 1) & 0x5555555555555555u;
 }
 
-/// Place of cell (x, y) on the curve: the bits of both in turn, x's lowest bit first. Cells below 2^16 give less than
+/// Index of cell (x, y) on the curve: the bits of both in turn, x's lowest bit first. Cells below 2^16 give less than
 /// 2^32. [G. M. Morton, A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing, 1966]
 [[nodiscard]] constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y) {
     return spread_bits(x) | spread_bits(y) << 1;

@@ -24,7 +24,7 @@ int side_of_plane(vec3 a, vec3 b, vec3 c, vec3 q) { return CGAL::orientation(poi
 
 int side_of_direction(vec3 a, vec3 b, vec3 c, vec3 d) {
     const dvec3 p = dvec3(b) - dvec3(a), q = dvec3(c) - dvec3(a);
-    // CGAL has static bounds for four points, not for three points and a direction: the sides may stand for points
+    // CGAL has static bounds for four points, not for three points and a direction: the sides can replace points
     // where they are exact, as almost all differences of floats are in double.
     if (is_exact(p, b, a) && is_exact(q, c, a))
         return CGAL::orientation(Point(CGAL::ORIGIN), point(p), point(q), point(d));

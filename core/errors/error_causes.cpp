@@ -11,8 +11,8 @@
 namespace umbra {
 namespace {
 
-/// Normals closer than this are one, but for the rounding of floats: a flat floor has no terminator, not even under a
-/// light in its plane.
+/// Normals closer than this are equal except for the rounding of floats: a flat floor has no terminator, not even under
+/// a light in its plane.
 constexpr double kSameNormal = 1e-6;
 
 /// Is any part of the light in front of the plane through p with unit normal n?

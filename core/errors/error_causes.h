@@ -21,8 +21,8 @@ void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& 
 void mark_penumbra(ClassPlane& classes, const Scene& scene, LightId light, const VisibilityPlane& reference);
 
 /// `who[k]` is the triangle that the method blames for the shadow at point which[k], a `false_shadow`. That is acne
-/// where it is the point's own triangle, has a corner at the place of one of its corners (in bit-equal coordinates), or
-/// where the method could name none.
+/// where it is the point's own triangle, has a corner at the position of one of its corners (in bit-equal coordinates),
+/// or where the method could name none.
 void mark_acne(ClassPlane& classes, const Scene& scene, const PointBatch& points, std::span<const std::uint32_t> which,
                std::span<const TriangleId> who);
 
@@ -31,11 +31,12 @@ void mark_acne(ClassPlane& classes, const Scene& scene, const PointBatch& points
 /// whose occluder has no name stay `false_light`.
 ///
 /// The distance is in units of what a pixel spans at the point's depth, across the line of sight. To a light without an
-/// area it is taken along the way to the light, so that it does not change where a triangle is split; a depth bias of
-/// that much is what loses the shadow. Area lights have many such ways, and the triangle's own distance is taken.
+/// area it is taken along the segment to the light, so that it does not change where a triangle is split; a depth bias
+/// of that much is what loses the shadow. Area lights have many such segments, and the triangle's own distance is
+/// taken.
 ///
-///          light \         occluder on its receiver: along the way to the light the occluder is near where the
-///                 \   |    receiver is near to where they touch. What a bias of b takes off the shadow are points
+///          light \         occluder on its receiver: along the segment to the light the occluder is near where
+///                 \   |    the receiver is near to where they touch. What a bias of b takes off the shadow are points
 ///                  \  |    with d < b, next to the contact; a hole in the occluder, or a shadow that is not where it
 ///        ___________\_|___ should be, shows at any d.
 ///             p |--d--|

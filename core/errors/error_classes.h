@@ -85,7 +85,7 @@ using ClassPlane = std::vector<ErrorClass>;  ///< one a point of a raster batch
 /// lights; for area lights where the penumbra is steep, and not at its faint ends. The band holds the pixels whose
 /// centre is within 1.5 pixels (Euclidean) of the point midway between such two centres. Where the light turns `away`
 /// there is no boundary, since facing is decided once and exactly. The outline of an object in front of a shadow does
-/// count: between two pixels, a shadow's boundary and an occlusion cannot be told apart.
+/// count: between two pixels, a shadow's boundary and an occlusion cannot be distinguished.
 [[nodiscard]] std::vector<std::uint8_t> edge_band(const PointBatch& points, LightId light,
                                                   const VisibilityPlane& reference, float tolerance);
 

@@ -1,4 +1,4 @@
-// Noise and bias of a sampling method, told apart by asking it several times.
+// Noise and bias of a sampling method, separated by several runs.
 #pragma once
 
 #include <vector>
@@ -28,7 +28,7 @@ public:
 
     /// Over the points that both planes define. Of K runs' mean M, (M - reference)^2 is expected to be bias^2 +
     /// variance / K; the second is taken off with the variance found, and what is left is no less than 0. So over n
-    /// points, a bias below about noise / sqrt(K) (2 / n)^(1/4) cannot be told from none. At least two runs.
+    /// points, a bias below about noise / sqrt(K) (2 / n)^(1/4) cannot be distinguished from none. At least two runs.
     [[nodiscard]] Noise result(const ClassPlane& classes, const VisibilityPlane& reference) const;
 
 private:

@@ -49,7 +49,7 @@ std::vector<Piece> boundary(const PointBatch& points, const ClassPlane& classes,
     return pieces;
 }
 
-/// Pieces by the pixel that they lie in, for looking around a place.
+/// Pieces by the pixel that they lie in, for searching around a position.
 class Pieces {
 public:
     Pieces(std::vector<Piece> pieces, int width, int height)

@@ -1,4 +1,4 @@
-// What an image file claims, held against what it holds, before a decoder believes it.
+// What an image file declares, compared with what it contains, before a decoder believes it.
 #pragma once
 
 #include <filesystem>

@@ -7,7 +7,7 @@
 
 namespace umbra {
 
-/// How the numbers of a file stand for light.
+/// How the numbers of a file represent light.
 enum class Encoding : std::uint8_t { linear, srgb };
 
 struct LoadedImage {

@@ -9,7 +9,7 @@
 
 namespace umbra {
 
-/// At most this many triangles, evenly spread over their list, stand for the scene.
+/// At most this many triangles, evenly spread over their list, represent the scene.
 inline constexpr std::size_t kArrivingSamples = 4096;
 [[nodiscard]] std::vector<TriangleId> sample_triangles(const Scene& scene);
 

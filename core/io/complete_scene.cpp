@@ -128,7 +128,7 @@ Scene complete_scene(SceneFile&& read, const std::filesystem::path& file) {
     scene.source = file.generic_string();
     if (scene.title.empty()) scene.title = scene.name;
 
-    for (vec3& n : scene.normals) n = unit(n);  // zero stands for the face normal
+    for (vec3& n : scene.normals) n = unit(n);  // zero means the face normal
     warn_of_geometry(scene);
     warn_of_bright_materials(scene);
     if (!read.has_camera) {

@@ -12,7 +12,7 @@
 
 namespace umbra {
 
-/// Normals that are not finite or have no length are replaced by zero, which stands for the normal of the face, and
+/// Normals that are not finite or have no length are replaced by zero, which means the normal of the face, and
 /// counted. Exporters write them for triangles without area; positions beside them are usually sound.
 class FileNormals {
 public:

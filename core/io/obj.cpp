@@ -33,7 +33,7 @@ struct Corner {
 };
 
 // One face: its corners lie in a common array. Indices from the file's beginning may name what comes later in it, so
-// they are checked at the end, and need the place for that.
+// they are checked at the end, and need the position for that.
 struct Face {
     std::size_t offset  = 0;
     std::uint32_t first = 0;

@@ -198,7 +198,7 @@ void add_strips(MeshPart& part, const std::vector<std::int64_t>& strip) {
     }
 }
 
-// What the properties of an element mean here: for "vertex" the place of each coordinate in x y z nx ny nz, for faces
+// What the properties of an element mean here: for "vertex" the index of each coordinate in x y z nx ny nz, for faces
 // and strips 0 for the list of vertices; kUnused elsewhere.
 constexpr int kUnused = -1;
 struct Roles {

@@ -36,7 +36,7 @@ void SourceText::fail(std::size_t offset, std::string_view message) const {
     const auto column = 1 + std::count_if(text.begin() + std::ptrdiff_t(begin), text.begin() + std::ptrdiff_t(offset),
                                           starts_character);
 
-    // Of a long line the part around the place is shown; control characters would garble a terminal.
+    // Of a long line the part around the position is shown; control characters would garble a terminal.
     const std::size_t first = offset - begin > kShown - 30 ? offset - (kShown - 30) : begin;
     std::string shown       = text.substr(first, std::min(end - first, kShown));
     for (char& c : shown)

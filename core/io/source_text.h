@@ -1,4 +1,4 @@
-// A text file and places in it: messages with line, column, the line itself and a caret. Internal to core.
+// A text file and positions in it: messages with line, column, the line itself and a caret. Internal to core.
 #pragma once
 
 #include <cstddef>

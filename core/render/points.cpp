@@ -78,9 +78,9 @@ PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which) {
 
 namespace {
 
-/// Where an area light stands to the plane of triangle (a, b, c), seen from the side `turn` (+1 the winding's, -1 the
-/// other). Rectangles by their corners, exactly but for the corners' own rounding; disks and spheres by centre and
-/// extent.
+/// The side of an area light relative to the plane of triangle (a, b, c), seen from the side `turn` (+1 the winding's,
+/// -1 the other). Rectangles by their corners, exactly except for the corners' own rounding; disks and spheres by
+/// centre and extent.
 Facing area_facing(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
     if (light.kind == LightKind::rectangle) {
         int front = 0;

@@ -189,7 +189,7 @@ bool tangent_disk(dvec3 p, dvec3 centre, double radius, TangentDisk& disk) {
     if (!(d2 > r2)) return false;
     const double d = std::sqrt(d2);
     const dvec3 n  = to_p / d;
-    // Two perpendiculars to n, without a branch but for the sign [Tom Duff et al., Building an Orthonormal Basis,
+    // Two perpendiculars to n, without a branch except for the sign [Tom Duff et al., Building an Orthonormal Basis,
     // Revisited, 2017].
     const double sign = std::copysign(1.0, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
     const double size = radius * std::sqrt(d2 - r2) / d;

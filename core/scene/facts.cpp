@@ -38,7 +38,7 @@ std::uint32_t count_nonmanifold_vertices(const Topology& topology) {
             fans.unite(corner(topology.uses[e.first], false), corner(topology.uses[u], false));
         }
     }
-    std::vector<std::uint8_t> count(topology.position.size(), 0);  // fans, 2 standing for more than one
+    std::vector<std::uint8_t> count(topology.position.size(), 0);  // fans; 2 means more than one
     for (std::uint32_t t = 0; t < topology.triangles.size(); ++t) {
         if (topology.repeats_a_corner(t)) continue;
         for (std::uint32_t k = 0; k < 3; ++k)
@@ -132,7 +132,7 @@ bool holds(const Box& box, vec3 p) {
     return glm::all(glm::greaterThanEqual(p, box.min)) && glm::all(glm::lessThanEqual(p, box.max));
 }
 
-/// Area lights stand where their centre stands. The eye of an orthographic view is at infinity, as is a directional
+/// The position of an area light is its centre. The eye of an orthographic view is at infinity, as is a directional
 /// light that shines along the view.
 LightPlace place_of(const Light& light, const Scene& scene) {
     const CameraFrame view  = frame(scene.camera, std::max(1, scene.width), std::max(1, scene.height));
@@ -205,12 +205,12 @@ std::vector<Trait> traits(const SceneFacts& facts) {
         {facts.has_one_sided, "one-sided lighting"},
         {facts.has_transparency, "transparency"},
         {facts.has_mirrors, "mirrors"},
-        {!facts.hard_lights_only, "penumbra (a light with an area)"},
+        {!facts.hard_lights_only, "penumbra (area light)"},
         {facts.open_objects + facts.nonmanifold_objects + facts.misoriented_objects > 0,
-         "shadow volumes of meshes that are open, non-manifold or badly oriented"},
+         "shadow volumes of open, non-manifold or inconsistently oriented meshes"},
         {count_places(facts, LightPlace::inside_view) > 0, "shadows in all directions around a light inside the view"},
-        {facts.eye_inside_closed_object, "an eye inside a closed object"},
-        {facts.degenerate_triangles + facts.duplicate_triangles > 0, "care with degenerate or duplicate triangles"},
+        {facts.eye_inside_closed_object, "eye inside a closed object"},
+        {facts.degenerate_triangles + facts.duplicate_triangles > 0, "degenerate or duplicate triangles"},
     };
 }
 
@@ -281,11 +281,12 @@ std::vector<std::string> requires_list(const SceneFacts& facts) {
                                    100 * facts.planar_area_share));
     if (facts.planar_area_share < 1 - 1e-9)
         list.push_back(
-            fmt::format("receivers off all planes with {:.3g} % of the area", 100 * (1 - facts.planar_area_share)));
+            fmt::format("non-planar receivers with {:.3g} % of the area", 100 * (1 - facts.planar_area_share)));
     if (facts.closed_objects > 0) list.push_back(counted(facts.closed_objects, "closed occluder"));
     if (facts.open_objects > 0) list.push_back(counted(facts.open_objects, "open occluder"));
     if (facts.nonmanifold_objects > 0) list.push_back(counted(facts.nonmanifold_objects, "non-manifold occluder"));
-    if (facts.misoriented_objects > 0) list.push_back(counted(facts.misoriented_objects, "badly oriented occluder"));
+    if (facts.misoriented_objects > 0)
+        list.push_back(counted(facts.misoriented_objects, "inconsistently oriented occluder"));
     for (const Trait& trait : traits(facts))
         if (trait.present) list.emplace_back(trait.what);
     return list;

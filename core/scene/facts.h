@@ -23,16 +23,16 @@ struct ObjectFacts {
     std::uint32_t components           = 0;     ///< connected over shared welded vertices
     bool manifold = false;  ///< closed 2-manifold, zero area allowed: two triangles an edge, in opposite directions,
                             ///< one fan a vertex, no corner repeated; what a halfedge mesh can hold without a border
-    bool closed  = false;         ///< manifold, and none of the faults above, duplicates included
-    bool outward = false;         ///< closed and of positive volume
-    bool solid   = false;         ///< manifold, and each of its connected parts is of positive volume
-    bool planar  = false;         ///< all its triangles lie in one plane
+    bool closed  = false;   ///< manifold, and none of the faults above, duplicates included
+    bool outward = false;   ///< closed and of positive volume
+    bool solid   = false;   ///< manifold, and each of its connected parts is of positive volume
+    bool planar  = false;   ///< all its triangles lie in one plane
     double area = 0, volume = 0;  ///< volume by the divergence theorem; where the object is not closed,
                                   ///< that of the cones from the world's origin to its triangles
     Box box;
 };
 
-/// Where a light stands to the eye, the lecture's four cases.
+/// The position of a light relative to the eye, the lecture's four cases.
 enum class LightPlace : std::uint8_t { at_infinity, outside_view, inside_view, at_eye };
 [[nodiscard]] std::string_view to_string(LightPlace place);
 

@@ -58,8 +58,8 @@ double area_of(const Scene& scene, std::span<const TriangleId> triangles) {
     return area;
 }
 
-/// A seed's plane, and how wrong it may be anywhere: the corners' rounding, extrapolated with the barycentric
-/// coordinates of the place.
+/// A seed's plane, and its largest error anywhere: the corners' rounding, extrapolated with the barycentric
+/// coordinates of the position.
 struct Seed {
     Plane plane;
     std::array<dvec3, 3> weight;   ///< dot(weight[k], x - origin) + (k == 0) is barycentric coordinate k
@@ -123,7 +123,7 @@ Plane fit(const Scene& scene, std::span<const TriangleId> triangles, const Plane
     return {glm::normalize(n - slope1 * e1 - slope2 * e2), mean, wobble};
 }
 
-/// The plane that the seed stands for, judged by `candidates` (the seed is one of them). Where the seed's own plane
+/// The plane that the seed represents, fitted to `candidates` (the seed is one of them). Where the seed's own plane
 /// holds them all, as in axis-parallel floors, it is taken as it is.
 Plane settle(const Scene& scene, const Seed& seed, std::span<const TriangleId> candidates) {
     if (std::all_of(candidates.begin(), candidates.end(), [&](TriangleId t) { return lies_in(scene, t, seed.plane); }))

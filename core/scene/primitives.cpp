@@ -252,7 +252,7 @@ Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees) {
             vertex[c]           = static_cast<std::uint32_t>(result.positions.size());
             const double length = glm::length(sum[c]);
             result.positions.push_back(mesh.positions[corner_of(c)]);
-            // Faces that cancel each other out have no common normal; zero stands for each face's own.
+            // Faces that cancel each other out have no common normal; zero means each face's own.
             result.normals.push_back(length > 1e-6 ? vec3(sum[c] / length) : vec3(0));
         } else {
             vertex[c] = vertex[set];

@@ -85,7 +85,7 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
 
 private:
-    /// The places p + t d, 0 < t < end.
+    /// The points p + t d, 0 < t < end.
     struct Segment {
         dvec3 p, d;
         double end;

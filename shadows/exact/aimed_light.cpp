@@ -5,7 +5,7 @@
 namespace umbra::exact_detail {
 namespace {
 
-/// How far a place that lies within the reach of edges (kCutReach, 1.0625) may be from the light's centre along an
+/// How far a point that lies within the reach of edges (kCutReach, 1.0625) may be from the light's centre along an
 /// axis: of a flat light, in half axes, that much; of a sphere sqrt(2) times that, 1.503 radii, since the tangent disk
 /// with its rim lies within the sphere. Rounded up.
 constexpr double kFlatReach = 1.2, kSphereReach = 1.6;

@@ -148,7 +148,7 @@ private:
     std::vector<Active> active_, by_top_;
 };
 
-/// Sorts by insertion: rows differ little from the one below. Calls swapped(left, right) for pairs that change places.
+/// Sorts by insertion: rows differ little from the one below. Calls swapped(left, right) for each swapped pair.
 template <class Range, class Less, class Swapped>
 void insertion_sort(Range& range, const Less& less, const Swapped& swapped) {
     for (std::size_t i = 1; i < range.size(); ++i)
@@ -178,8 +178,8 @@ bool Covering<T>::find_crossings(const T& lo, const T& hi) {
     return any;
 }
 
-/// Width of the light in a row where D is 0. `x` gives the place of an edge; edges are in order. Calls gap(left, right)
-/// for each pair of edges between which that is.
+/// Width of the light in a row where D is 0. `x` gives the position of an edge; edges are in order. Calls gap(left,
+/// right) for each pair of edges between which that is.
 template <class T>
 template <class X, class Gap>
 T Covering<T>::open_width(int layers, const X& x, std::span<ChordState> chords, const Gap& gap) const {

@@ -2,7 +2,7 @@
 //
 //        b'----b         Move the ends of an edge from where they belong, a and b, to where they came to lie, a' and
 //        b'.
-//       /     /          The number of layers over a place changes only while an edge passes over the place, so the
+//       /     /          The number of layers over a point changes only while an edge passes over it, so the
 //       area
 //      /     /           is wrong by no more than what all edges pass over. An edge whose ends move by at most delta in
 //      x

@@ -73,7 +73,7 @@ Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerat
         if (!(w > 16 * error)) return kUnsure;
         off = 8 * error / w + 2 * kUnit;
     } else {
-        if (low.w == 0 || high.w == 0) return ClippedEdge<T>{};  // through the point itself: seen as one place
+        if (low.w == 0 || high.w == 0) return ClippedEdge<T>{};  // through the surface point: projected to one point
     }
     return ClippedEdge<T>{
         false, {low.x / low.w, low.y / low.w}, {high.x / high.w, high.y / high.w}, cut_from == 0, cut_to == 0, off};

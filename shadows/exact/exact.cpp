@@ -97,8 +97,8 @@ public:
             see_area(points, light, out);
     }
 
-    /// The nearest of the triangles that the way to the light crosses. Of an area light the way to one of its places,
-    /// the first of a fixed list that is hidden.
+    /// The nearest of the triangles that the segment to the light crosses. For an area light, the segment to one of its
+    /// points, the first of a fixed list that is occluded.
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override {
         const Light& lamp = scene_->lights[light];
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -7,12 +7,12 @@
 
 namespace umbra::exact_detail {
 
-/// The place (x, y) of the light is at height lx x + ly y + l over the plane, in some positive unit.
+/// The point (x, y) of the light is at height lx x + ly y + l over the plane, in some positive unit.
 template <class T>
 struct Horizon {
     T lx, ly, l;
     double error  = 0;  ///< of a height where |x|, |y| <= 1; 0 in rationals
-    double normal = 0;  ///< height of a place one unit of length before the plane
+    double normal = 0;  ///< height of a point one unit of length before the plane
 
     [[nodiscard]] T height(const T& x, const T& y) const { return T(lx * x + ly * y + l); }
     [[nodiscard]] double slope() const { return std::hypot(as_double(lx), as_double(ly)); }

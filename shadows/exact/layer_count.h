@@ -1,4 +1,4 @@
-// How many triangles lie over one place of the light, counted with a segment from the point to it.
+// How many triangles lie over one point of the light, counted with a segment from the surface point to it.
 #pragma once
 
 #include "umbra/shadows/exact/sight.h"
@@ -13,8 +13,8 @@ public:
     /// `projection` must outlive this object.
     explicit LayerCount(const Projection<Space>& projection) : projection_(projection) {}
 
-    /// At the place (x, y). In doubles `blocker` becomes a triangle that hides the whole light, if the segment meets
-    /// one.
+    /// At the point (x, y) of the light. In doubles `blocker` becomes a triangle that hides the whole light, if the
+    /// segment meets one.
     [[nodiscard]] Filtered<int> at(double x, double y, TriangleId& blocker) const;
 
     /// Whether triangle t surely hides the whole light.
@@ -27,8 +27,8 @@ private:
     const Projection<Space>& projection_;
 };
 
-/// Whether the segment from the point to the place (x, y) of the light passes through triangle t. With `before_light`
-/// no where not all of the triangle is before the light's plane.
+/// Whether the segment from the surface point to the point (x, y) of the light passes through triangle t. With
+/// `before_light`: no, where not all of the triangle is in front of the light's plane.
 template <class Space>
 Filtered<bool> LayerCount<Space>::lies_over(TriangleId t, double x, double y, Extent extent) const {
     const Sight& sight = projection_.sight();

@@ -35,7 +35,7 @@ std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoi
     // What follows is of first order in off.
     if (!(d - 4 * off > r) || !tangent_disk(p.from_corner().value, centre.value, r, disk))
         return LightPlane{.rounding = double(kInfinity)};
-    // The disk's place depends on d, from p to the sphere's centre. What d is off moves its centre, and its radius
+    // The disk's position depends on d, from p to the sphere's centre. The error of d moves its centre, and its radius
     // r sqrt(d^2 - r^2) / d, whose derivative is below r d / (d^2 - r^2) times the radius over d.
     const double rounding = off * (1 + r * d / ((d - r) * (d + r))) / glm::length(disk.axis_u);
     return LightPlane{disk.axis_u, disk.axis_v, {disk.centre, 0}, std::nullopt, rounding};

@@ -15,9 +15,8 @@ namespace umbra::exact_detail {
 /// Centre and half axes. For a sphere they are rounded to double once.
 struct LightPlane {
     dvec3 u{1, 0, 0}, v{0, 0, 1};
-    Entries centre_from_corner{};  ///< centre less the first corner of the point's triangle
-    std::optional<Rational3>
-        exact_centre{};   ///< in rationals; without, the corner and centre_from_corner as they stand
+    Entries centre_from_corner{};             ///< centre less the first corner of the point's triangle
+    std::optional<Rational3> exact_centre{};  ///< in rationals; if absent, corner + centre_from_corner
     double rounding = 0;  ///< how far the light's rim may lie from where it is meant to be, in units
                           ///< of the half axes
 };

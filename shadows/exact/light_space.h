@@ -1,6 +1,6 @@
 // A rectangle or disk light seen from one surface point, in coordinates in which the light is fixed: a point q is
-// q - p = X u + Y v + W (c - p), with c the light's centre and u, v its half axes. Seen from p, q lies over the place
-// (X/W, Y/W) of the light; the light is |x|, |y| <= 1 or the unit disk, and what stands before it has 0 < W < 1.
+// q - p = X u + Y v + W (c - p), with c the light's centre and u, v its half axes. Seen from p, q lies over the point
+// (X/W, Y/W) of the light; the light is |x|, |y| <= 1 or the unit disk, and what is in front of it has 0 < W < 1.
 //
 // X, Y and W are quotients of determinants over one denominator, det(u, v, c - p) squared apart: x, y and signs need
 // the numerators alone.
@@ -57,7 +57,7 @@ public:
         if (!(std::abs(over) > error)) return kUnsure;
         return over > 0;
     }
-    /// The place (x, y) of the light itself.
+    /// The point (x, y) of the light itself.
     [[nodiscard]] Numerators<double> on_light(double x, double y) const {
         return {x * height_, y * height_, height_, height_error_ + 2 * kUnit * height_};
     }

@@ -35,7 +35,7 @@ bool NormalCone::one_sided(const Box& box, dvec3 p) const {
     const dvec3 to_box    = 0.5 * (lo + hi) - p;
     const double distance = glm::length(to_box), radius = 0.5 * glm::length(hi - lo);
     if (!(distance > radius)) return false;
-    // The angle between the axis and a segment to any place of the box differs from that of the segment to its centre,
+    // The angle between the axis and a segment to any point of the box differs from that of the segment to its centre,
     // and the normal's from the axis: together by at most half_angle + asin(radius / distance).
     const double box_sine = radius / distance, box_cosine = std::sqrt(1 - box_sine * box_sine);
     if (!(box_cosine > sine)) return false;  // together a right angle or more

@@ -53,7 +53,7 @@ double ReceivedLight::least_distance(bool round) const {
 
 template <int kPoints>
 double ReceivedLight::gauss(const Trapezoid& t) const {
-    // Boost states the nodes of [0, 1]; each but 0 stands for its negative, too.
+    // Boost states the nodes of [0, 1]; each except 0 also represents its negative.
     const auto& nodes   = boost::math::quadrature::gauss<double, kPoints>::abscissa();
     const auto& weights = boost::math::quadrature::gauss<double, kPoints>::weights();
     const auto each     = [&](const auto& body) {
@@ -104,7 +104,7 @@ Bracket ReceivedLight::cap(int k, bool visible) const {
     constexpr double kHalf = kPi / DiskCaps::kChords;  // half the angle
     static const double from_centre =
         2 * std::sin(kHalf) * squared(std::sin(kHalf)) / (3 * (kHalf - std::sin(kHalf) * std::cos(kHalf)));
-    static const double extent = 1.01 * std::sin(kHalf);  // no place of the cap is farther from the centre of gravity
+    static const double extent = 1.01 * std::sin(kHalf);  // no point of the cap is farther from the centre of gravity
     const double angle = 2 * kHalf * (k + 0.5), x = from_centre * std::cos(angle), y = from_centre * std::sin(angle);
     const double radius = glm::length(u_), away = extent * radius, middle = glm::length(to(x, y)), near = middle - away;
     const double slope = horizon_.slope() / radius, tall = height(x, y) + slope * away;

@@ -1,16 +1,16 @@
 // How much of what a light sends to a surface point comes from one part of the light's plane: irradiance.
 //
-//            c        A place q of the light, seen from p in the direction d = q - p, adds to the irradiance at p
+//            c        A point q of the light, seen from p in the direction d = q - p, adds to the irradiance at p
 //       .----+----.           cos(a) cos(b) / |d|^2 dA = (n . d) (m . d) / (|n| |m| |d|^4) dA,
 //        '.   \b|m     with n and m the normals of the surface and of the light. In the light's plane m . d is the
 //          '.  \|      same everywhere and dA a multiple of dx dy: up to a factor the weight is
 //          d '. +             w(x, y) = h(x, y) / |d|^4,      h = n . d, linear: the height over the point's plane.
 //              '.|n
-//        --------p----  A disk that stands for a sphere subtends the same directions, so that the same holds.
+//        --------p----  A disk that replaces a sphere subtends the same directions, so that the same holds.
 //
 // Where h > 0, nothing here cancels: the weight is positive, and it is summed by a Gauss rule over trapezoids that are
 // split until they are small beside their distance from p. With L the half length of a line in such a piece and D >= 4
-// L the distance of its middle, 1 / |d|^4 is analytic within D of the middle (|d|^2 vanishes at two complex places at
+// L the distance of its middle, 1 / |d|^4 is analytic within D of the middle (|d|^2 vanishes at two complex points at
 // exactly that distance). On the ellipse around the line whose half axes sum up to rho L = 6.24 L it exceeds its least
 // value on the line by less than M = 1530. A polynomial of degree k then is off by less than 2 M rho^-k / (rho - 1) of
 // it. A rule of 10 points is exact to degree 19, of which h and a trapezoid's width take 2: since both are positive, as
@@ -45,9 +45,9 @@ public:
     /// Over the caps that are visible, and those that are left open.
     [[nodiscard]] Bracket of(const DiskCaps& caps) const;
 
-    /// At least as large as the weight at every place of the light.
+    /// At least as large as the weight at every point of the light.
     [[nodiscard]] double most() const { return most_; }
-    /// By which the weight may be off: of itself, and of places with an area of 1.
+    /// Bound of the error of the weight, by its own rounding and by that of the positions, for an area of 1.
     [[nodiscard]] double weight_error() const { return weight_error_; }
     [[nodiscard]] double height_error() const { return height_error_; }
 

@@ -1,12 +1,12 @@
 // The part of an area light that one point sees, in one arithmetic.
 //
 // Over the light's plane lie the projected triangles, here two that overlap. All that is kept of them is where the
-// number of layers over a place changes: the silhouette edges, and the chords, where a triangle passes through the
+// number of layers over a point changes: the silhouette edges, and the chords, where a triangle passes through the
 // light's plane and its part before the plane ends.
 //
 //        ^ y       0           .
-//        |   .----------------/-\-----.      1. COUNT. At one place (#) a segment from the point to the light meets so
-//        |   | light    0    / 1 \    |         many triangles: here 2.
+//        |   .----------------/-\-----.      1. COUNT. At one point (#) of the light, count the triangles that the
+//        |   | light    0    / 1 \    |         segment to it meets: here 2.
 //        |   |        ------/-----\---|---   2. FOLLOW. From there to the far left of the lowest row, through the edges
 //        |   |        \  1 /   #2  \  |         in between (Covering::relative_layers): the base layers, here 0.
 //    row =   | visible \  /         \ | 1    3. SWEEP. Row by row, from the base layers on, edges change the number;
@@ -82,14 +82,14 @@ private:
     PartialCovering<T>& covering_;
 };
 
-/// Place k to count layers at, spread over most of the square without a pattern that a scene could share
+/// Point k of the light to count layers at, spread over most of the square without a pattern that a scene could share
 /// [Martin Roberts, The Unreasonable Effectiveness of Quasirandom Sequences, 2018].
 inline dvec2 counting_place(int k) {
     const double x = (k + 1) * 0.7548776662466927, y = (k + 1) * 0.5698402909980532;
     return 1.9 * (dvec2(x, y) - glm::floor(dvec2(x, y))) - 0.95;
 }
 
-/// Whether no edge lies so close to the place that its rounding, `widest` at most, could put it on the other side.
+/// Whether no edge lies so close to the point that its rounding, `widest` at most, could put it on the other side.
 template <class Space>
 bool VisiblePart<Space>::is_clear(double x, double y, double widest) const {
     const double near = 4 * widest + 0x1p-40;  // two coordinates, twice; and the rounding of what follows

@@ -1,5 +1,5 @@
-// Surface points seen from one place, sorted into a tree so that all points within a cone of half-spaces can be counted
-// at once: what a stencil buffer does for pixels, for points anywhere between them.
+// Surface points seen from one position, sorted into a tree so that all points within a cone of half-spaces can be
+// counted at once: what a stencil buffer does for pixels, for points anywhere between them.
 #pragma once
 
 #include <array>

@@ -1,9 +1,9 @@
 // Shadow volumes: every point counts how many volumes it lies in; it is lit where that is none.
 //
 // A triangle that occludes light bounds a volume: the triangle itself, its near cap, and from each of its edges a side
-// that runs away from the light to infinity; with a light at a finite place a far cap at infinity closes it. Sides
+// that runs away from the light to infinity; with a light at a finite position a far cap at infinity closes it. Sides
 // between neighbouring triangles cancel, so that only silhouette edges extrude one. A point finds its count along the
-// line from a place of known count, the view's origin O (depth-pass), or from infinity (depth-fail):
+// line from a point of known count, the view's origin O (depth-pass), or from infinity (depth-fail):
 //
 //     O ------- p ---[F====B]-->     depth-pass: nothing between O and p,    count(p) = count(O)      lit
 //     O --[F==== p ====B]------>     one face entered between,               count(p) = count(O) + 1  umbra
@@ -67,10 +67,10 @@ public:
             return {How::approximately, "area lights are taken as points at their centres: umbra only, no penumbra"};
         if (options.edges == Edges::silhouette && facts.closed_objects > 0)
             return {How::approximately,
-                    "silhouettes of closed meshes are right unless one turns inside out where it crosses itself"};
+                    "silhouettes of closed meshes are correct unless one turns inside out where it crosses itself"};
         return {How::to_rounding,
-                "counts volumes at the points themselves, with weighted edges for meshes that are open, "
-                "non-manifold or badly oriented"};
+                "counts volumes at the points themselves, with weighted edges for open, "
+                "non-manifold or inconsistently oriented meshes"};
     }
 
     void build(const Scene& scene, const SceneFacts& facts) override {

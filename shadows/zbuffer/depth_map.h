@@ -56,7 +56,7 @@ public:
               std::span<const std::span<const uvec3>> runs, Faces faces);
 
     /// Which triangle each sample shows: draws the same once more and names the one whose depth the map kept, the first
-    /// of several, by its place in `all`, of which the runs are parts; kNoOwner where there is none. As costly as
+    /// of several, by its index in `all`, of which the runs are parts; kNoOwner where there is none. As costly as
     /// drawing: for explaining a map.
     [[nodiscard]] std::vector<std::uint32_t> owners(const dmat4& clip_from_world, std::span<const vec3> positions,
                                                     std::span<const uvec3> all,

@@ -117,7 +117,7 @@ TEST(LadderTruth, LightFallsBetweenSolidsWhereBothEndsOfTheGapLetIt) {
 }
 
 TEST(LadderTruth, SliversCoverWhatTheSheetInOnePieceCovers) {
-    // The lamp is straight above the sheet's end at x = 0.
+    // The light is straight above the sheet's end at x = 0.
     expect_formula(ladder("sliver_occluder"), [](const Scene&, dvec3 p) { return lit_where(p.x); });
 }
 
@@ -216,7 +216,7 @@ TEST(LadderTruth, NoLightComesThroughTheLatticeBesideItsVertices) {
     }
 }
 
-/// The points that both pictures show at one place have one S_j.
+/// Points that both pictures show at the same pixel and position have the same S_j.
 void expect_same(const RungStage& a, const RungStage& b, double rung) {
     ASSERT_EQ(a.points.size(), b.points.size());
     std::size_t same_place = 0, differ = 0;

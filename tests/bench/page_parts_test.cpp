@@ -26,7 +26,7 @@ TEST(ErrorTimeChart, PlacesZeroErrorsBelowTheAxisAndSurvivesOddNumbers) {
     EXPECT_LE(chart["y_ticks"].size(), 8u);
     for (const json& mark : chart["marks"])
         for (const char* key : {"x", "camera_x", "y", "label_x", "label_y"}) {
-            if (mark[key] == "") continue;  // a label that has no place
+            if (mark[key] == "") continue;  // a label that has no position
             const double at = number(mark, key);
             EXPECT_TRUE(std::isfinite(at) && at >= 0 && at <= 440) << key << " " << at;
         }

@@ -51,7 +51,7 @@ inline std::vector<std::string> attributes(const std::string& html, const std::v
     return values;
 }
 
-/// The addresses that a page links to or shows; pictures that stand in the page itself are none.
+/// The addresses that a page links to or shows; pictures inside the page itself have none.
 inline std::vector<std::string> links(const std::string& html) {
     std::vector<std::string> found = attributes(html, {"href", "src"});
     std::erase_if(found, [](const std::string& link) { return link.starts_with("data:"); });
@@ -169,7 +169,7 @@ inline json sample(const std::string& name) {
             {"methods", {unserved, method("shadow_zbuffer", lights), method("ray_traced", lights)}}};
 }
 
-/// Every file name in a results.json: what stands below `files`, but for the names of the lights.
+/// Every file name in a results.json: what is below `files`, except the names of the lights.
 inline void each_file(const json& value, const std::function<void(const std::string&)>& visit) {
     if (value.is_string() && (value.get<std::string>().ends_with(".png") || value.get<std::string>().ends_with(".exr")))
         visit(value.get<std::string>());

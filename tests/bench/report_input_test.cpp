@@ -34,24 +34,25 @@ TEST_F(Report, RefusesAPlaceThatIsWrong) {
         const char* message;
     };
     for (const Case& c :
-         {Case{"/schema", 2, "results.json:/schema: found 2 (1, "},
-          Case{"/schema", "1", "results.json:/schema: found \"1\" (a number"},
-          Case{"/scene/name", nullptr, "results.json:/scene/name: found nothing (a string"},
-          Case{"/scene/title", 7, "results.json:/scene/title: found 7 (a string"},
-          Case{"/scene/warnings", "one", "results.json:/scene/warnings: found \"one\" (an array"},
-          Case{"/methods", 1, "results.json:/methods: found 1 (an array"},
-          Case{"/methods", nullptr, "results.json:/methods: found nothing (an array"},
-          Case{"/methods/1/serves/how", "maybe", "results.json:/methods/1/serves/how: found \"maybe\" (\"exactly\""},
-          Case{"/methods/1/errors/0/mae", "0", "results.json:/methods/1/errors/0/mae: found \"0\" (a number"},
+         {Case{"/schema", 2, "results.json:/schema: found 2, expected 1, "},
+          Case{"/schema", "1", "results.json:/schema: found \"1\", expected a number"},
+          Case{"/scene/name", nullptr, "results.json:/scene/name: found nothing, expected a string"},
+          Case{"/scene/title", 7, "results.json:/scene/title: found 7, expected a string"},
+          Case{"/scene/warnings", "one", "results.json:/scene/warnings: found \"one\", expected an array"},
+          Case{"/methods", 1, "results.json:/methods: found 1, expected an array"},
+          Case{"/methods", nullptr, "results.json:/methods: found nothing, expected an array"},
+          Case{"/methods/1/serves/how", "maybe",
+               "results.json:/methods/1/serves/how: found \"maybe\", expected \"exactly\""},
+          Case{"/methods/1/errors/0/mae", "0", "results.json:/methods/1/errors/0/mae: found \"0\", expected a number"},
           Case{"/methods/1/times/aim_ms", json::array(),
-               "results.json:/methods/1/times/aim_ms: found an array (an object"},
+               "results.json:/methods/1/times/aim_ms: found an array, expected an object"},
           Case{"/methods/1/files/png", "gone.tiff",
-               "results.json:/methods/1/files/png: found \"gone.tiff\" (a file that is there"},
+               "results.json:/methods/1/files/png: found \"gone.tiff\", expected an existing file"},
           Case{"/methods/1/files/png", "../../secret",
-               "results.json:/methods/1/files/png: found \"../../secret\" (a file in the same folder"},
+               "results.json:/methods/1/files/png: found \"../../secret\", expected a file in the same folder"},
           Case{"/methods/1/files/png", "/etc/passwd",
-               "results.json:/methods/1/files/png: found \"/etc/passwd\" (a file in the same folder"},
-          Case{"/methods/1/files/png", "javascript:alert(1)", "(a file that is there"},
+               "results.json:/methods/1/files/png: found \"/etc/passwd\", expected a file in the same folder"},
+          Case{"/methods/1/files/png", "javascript:alert(1)", ", expected an existing file"},
           Case{"/size/width", 1e300, "results.json:/size/width: found 1e+300"}}) {
         json results = sample("court");
         put(out / "court", results);
@@ -66,7 +67,7 @@ TEST_F(Report, RefusesWhatIsNotJsonWithLineAndColumn) {
                                         {"", "results.json:1:1: not JSON"},
                                         {"{\"schema\": 1", "not JSON, or cut off here"},
                                         {"{\"schema\": 1e999}", "a number is out of range"},
-                                        {"[1]", "found an array (an object"},
+                                        {"[1]", "found an array, expected an object"},
                                         {"\xff\xfe", "results.json:1:1: not JSON"}}) {
         write(out / "court/results.json", text);
         expect_refusal(message);

@@ -10,7 +10,7 @@ namespace {
 
 using namespace report_fixture;
 
-/// 640 x 360, lit and right but for one leak.
+/// 640 x 360, lit and correct except for one leak.
 Image class_picture() {
     Image image(640, 360, {"R", "G", "B"});
     std::fill(image.data.begin(), image.data.end(), 0xf2 / 255.0f);

@@ -248,7 +248,7 @@ TEST_P(Contract, PhasesMayBeCalledAgain) {
     EXPECT_NE(moved.s, once.s);
     MethodCase fresh(info(), known.scene);
     fresh.prepare(1);
-    EXPECT_EQ(moved.s, fresh.visibility(points, 1).s) << "aimed anew";
+    EXPECT_EQ(moved.s, fresh.visibility(points, 1).s) << "aimed again";
 
     // An object moves: build and aim.
     for (std::size_t p = 4; p < 12; ++p) known.scene.positions[p] += vec3(0.3f, 0, 0.2f);
@@ -258,7 +258,7 @@ TEST_P(Contract, PhasesMayBeCalledAgain) {
     run.method->aim(1);
     MethodCase again(info(), known.scene);
     again.prepare(1);
-    EXPECT_EQ(run.visibility(points, 1).s, again.visibility(points, 1).s) << "built anew";
+    EXPECT_EQ(run.visibility(points, 1).s, again.visibility(points, 1).s) << "built again";
 }
 
 TEST_P(Contract, AnEmptyBatchIsServed) {
@@ -285,7 +285,7 @@ PointBatch dark_points(const Scene& scene, const PointBatch& from, LightId light
     return points;
 }
 
-/// How far the way to the light passes outside the triangle, as a share of the scene: 0 where it crosses it.
+/// How far the segment to the light passes outside the triangle, as a fraction of the scene: 0 where it crosses it.
 double miss(const Scene& scene, const PointBatch& points, std::size_t i, const Light& light, TriangleId t) {
     const dvec3 p   = place(scene, points, i);
     const dvec3 way = light.kind == LightKind::directional ? -dvec3(light.direction) : dvec3(light.position) - p;

@@ -5,8 +5,8 @@
 // of what was found is printed:
 //     UMBRA_METAMORPHIC_SCENES="a.obj b.gltf" metamorphic_test
 //
-// Points at which the way to the light touches an edge or a vertex and nothing more (`exact` knows) are on a shadow's
-// boundary: arithmetic that rounds may answer either way there.
+// Points at which the segment to the light touches an edge or a vertex and nothing more (`exact` knows) are on a
+// shadow's boundary: arithmetic that rounds may answer either way there.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -37,9 +37,9 @@ enum class Same : std::uint8_t {
     /// on it.
     sides,
     /// Vertices and lights were rounded by 2^-25 of their size. A shadow's boundary moves by that, times at most
-    /// (1 + way to the receiver / way to the light) / sine of incidence: a fraction 2^-10 of a pixel at the factor 2^8.
-    /// So few points change, kRoundedShare of all and two more, and all in the edge band if the method says that it is
-    /// exact. (A ray that starts at a crease may start on the other side.)
+    /// (1 + distance to the receiver / distance to the light) / sine of incidence: a fraction 2^-10 of a pixel at the
+    /// factor 2^8. So few points change, kRoundedShare of all and two more, and all in the edge band if the method says
+    /// that it is exact. (A ray that starts at a crease may start on the other side.)
     rounded,
     /// The light's map of depth lies otherwise over the scene: its samples, a hundredth of the picture's pixels, move
     /// boundaries by a pixel at most, and nothing else. Points may change in the edge bands of both answers, and some
@@ -49,9 +49,8 @@ enum class Same : std::uint8_t {
     /// larger than two independent estimates of the worst variance make it.
     samples,
     /// Other, fixed points of the same light, 16 of them: a straight shadow edge leaves some 16^-3/4 = 0.13 more or
-    /// fewer
-    /// on one side than its area says, and two edges twice that, before and after. Over the places of an edge that sums
-    /// up to how far the points' centroid is off the light's, less than 1/32 of its size.
+    /// fewer on one side than its area says, and two edges twice that, before and after. Over the positions of an edge
+    /// that sums up to the distance between the centroids of the points and the light, less than 1/32 of its size.
     pattern,
     /// Within the sum of the brackets' half-widths, and the rounding of float.
     brackets,
@@ -64,8 +63,9 @@ enum class Same : std::uint8_t {
 constexpr double kRoundedShare = 0x1p-12;
 constexpr double kMapShare     = 0.03;
 constexpr double kMapOutside   = 0.002;
-/// Triangles that lie in one plane but for the rounding of their file make one plane or several, as the largest among
-/// them tell: planar_projection may cover other points when they are cut or turned. What it covers must be the same.
+/// Triangles that lie in one plane except for the rounding of their file make one plane or several, as the largest
+/// among them tell: planar_projection may cover other points when they are cut or turned. What it covers must be the
+/// same.
 constexpr double kCoverageShare = 0.05;
 constexpr double kZ             = 5;  ///< two-sided false alarms of a normal variable: 6e-7 a plane
 
@@ -76,14 +76,14 @@ struct Relation {
     Same exact, planar_projection, shadow_volumes, shadow_zbuffer, ray_traced;
 };
 
-// Scale by a power of two: all arithmetic is the same but for exponents, so that only thresholds that are no lengths of
-//     the scene, and samples that depend on anything but the point's number, could tell.
+// Scale by a power of two: all arithmetic is the same except for exponents, so that only thresholds that are not
+//     lengths of the scene, and samples that depend on anything but the point's number, could tell.
 // Other motions and scales, exact in themselves: `exact` decides exact signs, which stay. Rays and planes are rounded
-//     elsewhere. A map moves and grows with the scene; where the scene turns, its window is laid anew.
-// Order: what blocks does not depend on who is asked first. planar_projection fits planes with sums, and shadow_volumes
-//     runs edges from the lower vertex, so that both round otherwise; a map keeps the nearest of many.
-//     With lights in another order, samples are others.
-// Cut triangles: the same surface. A way through one of the new edges touches where it crossed before.
+//     elsewhere. A map moves and grows with the scene; where the scene turns, its window is computed again.
+// Order: what occludes does not depend on which triangle is tested first. planar_projection fits planes with
+//     sums, and shadow_volumes runs edges from the lower vertex, so that both round otherwise; a map keeps the nearest
+//     of many. With lights in another order, samples are others.
+// Cut triangles: the same surface. A segment through one of the new edges touches where it crossed before.
 // Area lights cut: S is a mean over the light's area. Methods that take the light's centre cannot know; for them S is
 //     that of a point light at the centre, and 0 where the centre is behind the point's plane ("grown").
 // Shrunk: every part of the light tends to its centre.
@@ -187,7 +187,7 @@ public:
         const MethodChoice parsed = parse_method(choice);
         return parsed.make()->serves(facts_).how == How::exactly;
     }
-    /// Does the way to the light (to an area light's centre) touch an edge or a vertex, and nothing more?
+    /// Does the segment to the light (to an area light's centre) touch an edge or a vertex, and nothing more?
     [[nodiscard]] bool touches(LightId j, std::size_t i) {
         if (touching_.empty()) {
             const Asked hard = with_point_lights(asked_);
@@ -223,7 +223,7 @@ struct Difference {
     [[nodiscard]] double rms() const { return partial > 0 ? std::sqrt(squares / double(partial)) : 0; }
 };
 
-/// The edge bands of the answers before and after, in places before.
+/// The edge bands of the answers before and after, at indices before the change.
 std::vector<std::uint8_t> bands(Answered& before, Answered& after, const Changed& changed, LightId j,
                                 const std::string& choice, Same same) {
     const float tolerance          = visibility_tolerance(before.asked().scene.lights[j].kind);
@@ -472,9 +472,9 @@ TEST_P(Metamorphic, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-// A point's answer does not depend on the others of its batch, nor on the raster: bit for bit, but for shadow_volumes,
-// which looks at the points from a place chosen by all of them and so rounds otherwise: for it, where nothing touches.
-// (Samples are numbered by the point's place in the batch, which is kept.)
+// A point's answer does not depend on the others of its batch, nor on the raster: bit for bit, except for
+// shadow_volumes, which looks at the points from a position that depends on all of them and so rounds otherwise: for
+// it, where nothing touches. (Samples are numbered by the point's index in the batch, which is kept.)
 TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
     Answered scene(asked());
     const PointBatch& points = scene.asked().points;

@@ -9,7 +9,8 @@
 namespace umbra {
 namespace {
 
-// Several methods have a struct of this name in an unnamed namespace with a member of this name, each at another place.
+// Several methods have a struct of this name in an unnamed namespace with a member of this name, each at another
+// offset.
 struct Options {
     double before[4]{};
     int samples = 3;

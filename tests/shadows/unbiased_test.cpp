@@ -1,4 +1,4 @@
-// Sampling methods are right on average: held against closed forms and against `exact` by a test whose rate of false
+// Sampling methods are correct on average: compared with closed forms and with `exact` by a test whose rate of false
 // alarms is known. And the test itself: it keeps to that rate, and it sees biases of stated size.
 #include "umbra/tests/support/unbiased.h"
 #include "umbra/core/render/gbuffer.h"

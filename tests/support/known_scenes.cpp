@@ -61,7 +61,7 @@ KnownScene square_under_sun() {
     return known;
 }
 
-/// The lamp at height 2 over a unit square at height 1: on the floor its shadow is a 2 by 2 square.
+/// The light at height 2 over a unit square at height 1: on the floor its shadow is a 2 by 2 square.
 KnownScene square_under_lamp() {
     KnownScene known{floor_scene(), {}, 0};
     add(known.scene, "square", moved(make_plane(1, 1), {0, 1, 0}));
@@ -118,7 +118,7 @@ KnownScene box_orthographic() {
     return known;
 }
 
-/// The eye stands in the shadow of the slab over it.
+/// The eye is in the shadow of the slab over it.
 KnownScene eye_in_umbra() {
     KnownScene known{floor_scene(20), {}, 0};
     add(known.scene, "slab", moved(make_box({4, 0.2f, 4}), {0, 4, 0}));
@@ -169,7 +169,7 @@ KnownScene interpenetrating() {
     return known;
 }
 
-/// The lamp stands in the plane of a wall: edge-on, the wall has no shadow but a line.
+/// The light is in the plane of a wall: edge-on, the shadow of the wall is only a line.
 KnownScene light_over_wall() {
     KnownScene known{floor_scene(), [](dvec3, LightId) { return 1; }, 0};
     add(known.scene, "wall", Mesh{{{-1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 1, 0}}, {}, {{0, 1, 2}, {0, 2, 3}}});
@@ -177,14 +177,14 @@ KnownScene light_over_wall() {
     return known;
 }
 
-/// The lamp stands exactly above an edge of a box, in the plane of one of its sides.
+/// The light is exactly above an edge of a box, in the plane of one of its sides.
 KnownScene light_over_edge() {
     KnownScene known{floor_scene(), {}, 0};
     add(known.scene, "box", moved(make_box({2, 1, 2}), {0, 0.5f, 0}));
     add_lamp(known.scene, {1, 3, 0.25f});
     known.closed_form = [](dvec3 p, LightId) -> std::optional<double> {
         if (p.y > 1e-9) return std::nullopt;
-        // The top, from the lamp at height 3: x from 1 - 2 * 1.5 to 1, z from 0.25 -+ ... in the same way.
+        // The top, from the light at height 3: x from 1 - 2 * 1.5 to 1, z from 0.25 -+ ... in the same way.
         const double z = 0.25 * (1 - 1.5);
         return outside_rectangle(p.x + 0.5, p.z - z, 1.5, 1.5);
     };
@@ -254,7 +254,7 @@ KnownScene far_from_origin() {
     return known;
 }
 
-/// What lies behind the lamp, and what lies under the floor, casts no shadow on it.
+/// What lies behind the light, and what lies under the floor, casts no shadow on it.
 KnownScene no_anti_shadows() {
     KnownScene known{floor_scene(), {}, 0};
     add(known.scene, "lamp shade", moved(make_cone(0.5f, 0.4f, 16), {0.5f, 2.4f, 0}));
@@ -266,7 +266,7 @@ KnownScene no_anti_shadows() {
     return known;
 }
 
-/// A long triangle that passes through the floor and beyond the lamp's height.
+/// A long triangle that passes through the floor and reaches above the light.
 KnownScene beyond_light_and_floor() {
     KnownScene known{floor_scene(), {}, 0};
     add(known.scene, "sail", Mesh{{{-2, -1, -0.5f}, {1, -0.5f, 0.5f}, {2, 5, -1}}, {}, {{0, 1, 2}}});
@@ -285,7 +285,7 @@ KnownScene spot_light() {
     return known;
 }
 
-/// A room seen from within, its lamp under the ceiling: six receivers, all around.
+/// A room seen from within, its light under the ceiling: six receivers, all around.
 KnownScene room() {
     KnownScene known{floor_scene(), {}, 0};
     add(known.scene, "walls", moved(make_box({6, 3, 6}), {0, 1.6f, 0}));
@@ -317,7 +317,7 @@ KnownScene penumbra_of_half_plane() {
     return known;
 }
 
-/// What is left of a circle, of its area, on one side of a chord, which lies so many radii from the centre.
+/// The fraction of a disk's area on one side of a chord; `chord` is its distance from the centre, in radii.
 double left_of_chord(double chord) {
     const double t = std::clamp(chord, -1.0, 1.0);
     return 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / kPi;

@@ -12,7 +12,7 @@
 
 namespace umbra {
 
-/// S_j at a place of a surface by a formula, where the formula speaks of that place.
+/// S_j at a position of a surface by a formula, where the formula holds there.
 using ClosedForm = std::function<std::optional<double>(dvec3 place, LightId light)>;
 
 struct KnownScene {

@@ -128,7 +128,7 @@ Changed mapped(const Asked& from, const Map& map) {
     camera.height  = static_cast<float>(map.scale * static_cast<double>(camera.height));
     if (!mirror) return std::move(d).finished(from);
 
-    // Seen from outside a mirrored triangle runs the other way: its last two corners change places, and with them u and
+    // Seen from outside a mirrored triangle runs the other way: its last two corners are swapped, and with them u and
     // v. The mirrored camera's picture runs from right to left.
     for (uvec3& t : d.scene.triangles) std::swap(t[1], t[2]);
     std::swap(d.names.u, d.names.v);

@@ -1,6 +1,6 @@
 // Scenes changed in ways that leave every S_j as it was, or change it by a known rule: metamorphic relations.
 //
-// Nothing is rendered anew. A surface point is named exactly by its triangle and barycentrics, and the same points are
+// Nothing is rendered again. A surface point is named exactly by its triangle and barycentrics, and the same points are
 // asked for in the changed scene, by the names they have there.
 // [T. Y. Chen, S. C. Cheung, S. M. Yiu, Metamorphic Testing: A New Approach for Generating Next Test Cases, 1998]
 #pragma once
@@ -75,7 +75,7 @@ struct Changed {
 /// centre wide. Others stay.
 [[nodiscard]] Changed lights_grown(const Asked& from, double share);
 
-/// The same scene, asked for only the points for which `keep` says so, each in its old place among entries that are no
+/// The same scene, asked for only the points for which `keep` says so, each at its old index among entries that are no
 /// point. With the raster or without.
 [[nodiscard]] Asked asked_for_some(const Asked& from, const std::vector<std::uint8_t>& keep, bool with_raster);
 

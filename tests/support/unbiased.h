@@ -8,7 +8,7 @@
 
 namespace umbra {
 
-/// The penumbra's points are taken in groups of like S_j and place. One run with one seed gives each group a mean
+/// The penumbra's points are taken in groups of similar S_j and position. One run with one seed gives each group a mean
 /// residual s - expected; runs with different seeds are independent, whatever the points of one run have to do with
 /// each other. Where the method is unbiased, the mean of K of these over its standard error follows Student's t with
 /// K - 1 degrees of freedom. [Student, The Probable Error of a Mean, 1908]

@@ -8,14 +8,14 @@
 
 namespace umbra {
 
-/// Where the lamp of a close view stands, and halfway to it, above the origin, the occluder: what is w wide there casts
-/// a shadow 2 w wide. Along no axis, and all of it exact in float.
+/// The position of the light of a close view, and of its occluder, halfway between the light and the origin: what is w
+/// wide there casts a shadow 2 w wide. Not along an axis, and exact in float.
 inline constexpr dvec3 kCloseLamp{1, 2, 0.5};
 inline constexpr dvec3 kHalfway = 0.5 * kCloseLamp;
 
-/// A floor of 8 x 8 in y = 0, but around the origin a tile, four times the window wide, and nothing else near: so that
-/// barycentrics are fine there and eye rays, whose tolerance grows with a triangle, meet no other. The camera sees
-/// `window` world units from top to bottom of the picture, from close by, below the occluder.
+/// A floor of 8 x 8 in y = 0, except around the origin: there is a tile, four times the window wide, and nothing else
+/// near it, so that barycentrics are fine there and eye rays, whose tolerance grows with a triangle, meet no other. The
+/// camera sees `window` world units from top to bottom of the picture, from close by, below the occluder.
 inline void add_close_floor(Scene& scene, double window) {
     const float w = static_cast<float>(std::min(window, 0.375));
     const float t = 2 * w, n = std::max(t, 0.5f), r = 4;

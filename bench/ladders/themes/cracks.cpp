@@ -41,8 +41,8 @@ Scene t_junction_scene(double gap) {
 
 constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0};
 
-/// A hilly sheet of right-angled triangles, whose vertices the lamp casts onto a square grid in the floor; the eye,
-/// below it and looking straight down, has its pixels there, but for a share of the grid's spacing.
+/// A hilly sheet of right-angled triangles, whose vertices the light projects onto a square grid in the floor; the eye,
+/// below it and looking straight down, has its pixels there, except for a fraction of the grid's spacing.
 Scene lattice_scene(double beside) {
     constexpr int kCells      = 60;
     constexpr double kSpacing = 1.0 / 32;
@@ -50,7 +50,7 @@ Scene lattice_scene(double beside) {
     Scene scene = empty_stage();
     scene.width = scene.height = 64;
     add_body(scene, "floor", make_plane(2, 2));
-    // Lines through pixels, but the first and the last between them: the shadow's border is at none.
+    // Lines through pixels, except the first and the last, which are between them: the shadow's border is at none.
     const auto line = [](int k) { return kSpacing * (k - 0.5 * kCells + (k == 0 ? 0.0 : k == kCells ? 1.0 : 0.5)); };
     Mesh sheet;
     for (int j = 0; j <= kCells; ++j)
@@ -81,9 +81,9 @@ const Ladder crack_ladder{
     .name  = "crack",
     .title = "Crack in a sheet",
     .about =
-        "Two halves of a sheet leave a crack between them, which lets a stripe of light through; in the end they "
-        "share an edge and the sheet is closed. The picture shows the stripe alone.",
-    .unit  = "of the sheet",
+        "Two halves of a sheet leave a crack between them, which lets a stripe of light through; on the last rung they "
+        "share an edge and the sheet is closed. The picture shows only the stripe.",
+    .unit  = "of the sheet's half width",
     .rungs = kGaps,
     .scene = crack_scene};
 
@@ -91,20 +91,20 @@ const Ladder t_junction_ladder{
     .name  = "t_junction",
     .title = "T-junction",
     .about =
-        "A vertex in the middle of a longer edge lies off it by so much, in the end by its own rounding alone, and "
-        "leaves a slit. Beside the slit all is dark.",
-    .unit  = "of the sheet",
+        "A vertex in the middle of a longer edge lies at this distance from it, on the last rung only at its rounding "
+        "error, and leaves a slit. Everything beside the slit is in shadow.",
+    .unit  = "of the sheet's half width",
     .rungs = kGaps,
     .scene = t_junction_scene};
 
-const Ladder beside_edges_ladder{
-    .name  = "beside_edges",
-    .title = "Light that passes beside edges and vertices",
-    .about =
-        "Of a closed sheet of small triangles the way to the lamp meets each a vertex but for this share of an "
-        "edge, in the end but for rounding. Users of ray tracers report rays that slip through there.",
-    .unit  = "of an edge",
-    .rungs = kBesides,
-    .scene = lattice_scene};
+const Ladder beside_edges_ladder{.name  = "beside_edges",
+                                 .title = "Light that passes close to edges and vertices",
+                                 .about =
+                                     "The sheet of small triangles is closed. The segments to the light pass its "
+                                     "vertices at this fraction of an edge length, on the last rung at the rounding "
+                                     "error. Users of ray tracers report rays that slip through there.",
+                                 .unit  = "of an edge length",
+                                 .rungs = kBesides,
+                                 .scene = lattice_scene};
 
 }  // namespace umbra

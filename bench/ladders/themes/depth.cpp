@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kThicknesses = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
 
-/// A closed room, 4 wide, with walls of this share of it, the sun outside, a lamp and the eye within.
+/// A closed room, 4 wide, with walls of this fraction of it, the sun outside, a point light and the eye inside.
 Scene thin_walls_scene(double thickness) {
     Scene scene = empty_stage();
     Mesh walls  = make_box({4, 3, 4});
@@ -66,7 +66,7 @@ Scene layers_scene(double count) {
 
 constexpr std::array kLeaves = {1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4};
 
-/// Triangles that hang anyhow: every edge is a silhouette.
+/// Triangles of random orientation: every edge is a silhouette.
 Scene leaves_scene(double count) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(6, 6));
@@ -89,36 +89,34 @@ const Ladder thin_walls_ladder{
     .name  = "thin_walls",
     .title = "Thin walls",
     .about =
-        "A closed room has walls of this thickness, with the sun outside, a lamp and the eye within: no sunlight comes "
-        "in. What keeps surfaces from shadowing themselves lets light through walls.",
-    .unit  = "of the room",
+        "A closed room has walls of this thickness, the sun is outside, a point light and the eye are inside: no "
+        "sunlight may enter. A bias that keeps surfaces from shadowing themselves can let light through walls.",
+    .unit  = "of the room's width",
     .rungs = kThicknesses,
     .scene = thin_walls_scene};
 
-const Ladder needles_ladder{
-    .name  = "needles",
-    .title = "Needles",
-    .about =
-        "Five rods lie side by side, this thick and as far apart. The picture shows the stripes of their shadow "
-        "alone, however thin.",
-    .unit  = "of their half length",
-    .rungs = kWidths,
-    .scene = needles_scene};
+const Ladder needles_ladder{.name  = "needles",
+                            .title = "Needles",
+                            .about =
+                                "Five parallel rods; this is their width and the distance between them. The picture "
+                                "shows only the stripes of their shadow, however thin.",
+                            .unit  = "of their half length",
+                            .rungs = kWidths,
+                            .scene = needles_scene};
 
-const Ladder depth_complexity_ladder{
-    .name  = "depth_complexity",
-    .title = "Layers over one another",
-    .about =
-        "So many sheets lie one over the other, and as many volumes hold the floor beneath them: counters of eight "
-        "bits overflow at 256.",
-    .unit  = "layers",
-    .rungs = kLayers,
-    .scene = layers_scene};
+const Ladder depth_complexity_ladder{.name  = "depth_complexity",
+                                     .title = "Layers above one another",
+                                     .about =
+                                         "N sheets lie above one another, and the floor below them is inside N shadow "
+                                         "volumes: 8-bit counters overflow at 256.",
+                                     .unit  = "layers",
+                                     .rungs = kLayers,
+                                     .scene = layers_scene};
 
 const Ladder silhouette_edges_ladder{
     .name  = "silhouette_edges",
     .title = "Silhouette edges",
-    .about = "So many triangles hang anyhow over a floor, and all their edges are silhouettes.",
+    .about = "N triangles with random orientation hang over a floor, and all their edges are silhouettes.",
     .unit  = "triangles",
     .rungs = kLeaves,
     .scene = leaves_scene};

@@ -13,7 +13,7 @@ constexpr std::array kDownTo0 = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
 constexpr std::array kUp      = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 constexpr std::array kCells   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 96.0, 192.0};
 
-/// The eye under a stack of sheets, which a lamp lights from above: it is in as many volumes as there are sheets.
+/// The eye under a stack of sheets, lit from above: it is in as many shadow volumes as there are sheets.
 Scene eye_in_volumes(double rung) {
     Scene scene = empty_stage();
     const int n = int(rung);
@@ -30,7 +30,7 @@ Scene eye_in_volumes(double rung) {
     return scene;
 }
 
-/// The eye so far from the side of a box's shadow volume, on its outer side; on the last rung in it.
+/// The eye at this distance from the side of a box's shadow volume, outside it; on the last rung in its plane.
 Scene eye_near_volume_side(double rung) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(8, 8));
@@ -77,8 +77,8 @@ Scene near_to_far(double rung) {
     return scene;
 }
 
-/// A wall that floats so far above the floor, seen from so close that the gap is some pixels high at every rung; the
-/// sun sends its light through.
+/// A wall that floats at this height above the floor, with a view in which the gap is some pixels high at every rung;
+/// sunlight passes through the gap.
 Scene gap(double rung) {
     Scene scene       = empty_stage();
     const dvec3 foot  = {3.3, 1.7, 2.1};  // nothing is at 0, where floats are finer
@@ -102,8 +102,8 @@ Scene gap(double rung) {
     return scene;
 }
 
-/// A closed sheet of cells whose corners and edges lie over the points of the picture, but for rounding: whoever
-/// takes a ray between two triangles that share an edge lets light through.
+/// A closed sheet of cells whose corners and edges lie over the points of the picture, except for
+/// rounding: a method that lets a ray pass between two triangles that share an edge lets light through.
 Scene aligned_lattice(double rung) {
     Scene scene = empty_stage();
     scene.width = 96, scene.height = 96;
@@ -124,7 +124,7 @@ Scene aligned_lattice(double rung) {
     return scene;
 }
 
-/// The same for a lamp at twice the sheet's height, under which the sheet's shadow is twice as large.
+/// The same for a point light at twice the sheet's height, under which the sheet's shadow is twice as large.
 Scene aligned_lamp(double rung) {
     Scene scene = aligned_lattice(1);
     Scene made  = empty_stage();
@@ -138,72 +138,67 @@ Scene aligned_lamp(double rung) {
 
 }  // namespace
 
-const Ladder eye_in_volumes_ladder{
-    .name  = "eye_in_volumes",
-    .title = "Eye inside shadow volumes",
-    .about =
-        "The eye stands in the shadow of ever more sheets. A count that starts at the eye must start with all of "
-        "them, and hardware counters overflow at 255.",
-    .unit  = "sheets",
-    .rungs = kSheets,
-    .scene = eye_in_volumes};
+const Ladder eye_in_volumes_ladder{.name  = "eye_in_volumes",
+                                   .title = "Eye inside shadow volumes",
+                                   .about =
+                                       "The eye is in the shadow of more and more sheets. A count that starts at the "
+                                       "eye must start with their number, and hardware counters overflow at 255.",
+                                   .unit  = "sheets",
+                                   .rungs = kSheets,
+                                   .scene = eye_in_volumes};
 
 const Ladder eye_near_volume_side_ladder{
     .name  = "eye_near_volume_side",
     .title = "Eye close to the side of a shadow volume",
     .about =
-        "The eye comes close to the side of a shadow volume, and on the last rung lies in its plane: it sees that "
-        "side edge-on, and may count it on one side of a pixel and not on the other.",
+        "The eye approaches the side of a shadow volume; on the last rung it lies in the plane of that side. It sees "
+        "the side edge-on, and a method may count it at one side of a pixel and not at the other.",
     .unit  = "scene sizes",
     .rungs = kDownTo0,
     .scene = eye_near_volume_side};
 
-const Ladder far_eye_ladder{
-    .name  = "far_eye",
-    .title = "Distant eye",
-    .about =
-        "The camera moves away while its angle narrows, so that the picture stays: directions of neighbouring "
-        "pixels differ by ever fewer float steps.",
-    .unit  = "scene sizes",
-    .rungs = kUp,
-    .scene = far_eye};
+const Ladder far_eye_ladder{.name  = "far_eye",
+                            .title = "Distant eye",
+                            .about =
+                                "The camera moves away while its field of view narrows, so that the picture stays the "
+                                "same: the directions of neighbouring pixels differ by fewer and fewer float steps.",
+                            .unit  = "scene sizes",
+                            .rungs = kUp,
+                            .scene = far_eye};
 
-const Ladder near_to_far_ladder{
-    .name  = "near_to_far",
-    .title = "Near to far",
-    .about =
-        "Boxes as large as they are far away, on one floor, from in front of the eye to the horizon: one light "
-        "serves shadows of very different size.",
-    .unit  = "farthest to nearest",
-    .rungs = kUp,
-    .scene = near_to_far};
+const Ladder near_to_far_ladder{.name  = "near_to_far",
+                                .title = "Near to far",
+                                .about =
+                                    "Boxes on one floor, from close to the eye to the horizon, with sizes proportional "
+                                    "to their distances: one light casts shadows of very different sizes.",
+                                .unit  = "farthest to nearest distance",
+                                .rungs = kUp,
+                                .scene = near_to_far};
 
-const Ladder gap_ladder{
-    .name  = "gap",
-    .title = "Gap between occluder and receiver",
-    .about =
-        "A wall comes down to the floor while the picture is drawn closer, so that the light through the gap stays "
-        "visible; on the last rung it stands on the floor. Bias closes or opens gaps.",
-    .unit  = "scene sizes",
-    .rungs = kDownTo0,
-    .scene = gap};
+const Ladder gap_ladder{.name  = "gap",
+                        .title = "Gap between occluder and receiver",
+                        .about =
+                            "A wall approaches the floor while the camera zooms in, so that the light through the gap "
+                            "stays visible; on the last rung the wall touches the floor. Bias closes or opens gaps.",
+                        .unit  = "scene sizes",
+                        .rungs = kDownTo0,
+                        .scene = gap};
 
 const Ladder aligned_lattice_ladder{
     .name  = "aligned_lattice",
     .title = "Sun exactly above edges and vertices",
     .about =
-        "A sheet of ever more cells whose edges and corners lie above the points of the picture, but for rounding: "
-        "rays go exactly through them or miss them by the last digit, which is where ray tracers are reported to "
-        "leak.",
-    .unit  = "cells a side",
+        "The edges and vertices of a sheet of cells lie above the points of the picture, except for rounding. Rays "
+        "pass exactly through them or miss them by the last digit; leaks of ray tracers are reported there.",
+    .unit  = "cells per side",
     .rungs = kCells,
     .scene = aligned_lattice};
 
 const Ladder aligned_lamp_ladder{
     .name  = "aligned_lamp",
-    .title = "Lamp exactly above edges and vertices",
-    .about = "The same sheet under a lamp: rays slant, and meet edges and corners at every angle.",
-    .unit  = "cells a side",
+    .title = "Point light exactly above edges and vertices",
+    .about = "The same sheet under a point light: the rays are oblique and meet edges and vertices at every angle.",
+    .unit  = "cells per side",
     .rungs = kCells,
     .scene = aligned_lamp};
 

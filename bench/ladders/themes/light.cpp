@@ -1,4 +1,4 @@
-// Ladders over where lamps stand: close to what they light, close to what blocks them, far away, grazing, and many.
+// Ladders over positions of lights (close to receivers or occluders, far away, grazing) and over their number.
 #include <array>
 #include <cmath>
 
@@ -54,7 +54,7 @@ Scene lamp_near_receiver(double rung) {
     return scene;
 }
 
-/// A lid so close beneath the lamp, and just so far under it, that half of the floor is dark whatever the distance.
+/// A lid at a distance below the light with its rim 0.1 times that beside the light: half of the floor is always dark.
 Scene lamp_near_occluder(double rung) {
     Scene scene      = empty_stage();
     const vec3 lamp  = {0.31f, 6.13f, 0.17f};
@@ -69,7 +69,7 @@ Scene lamp_near_occluder(double rung) {
     return scene;
 }
 
-/// One lamp within a closed box, which lets nothing out, and one beside it that lights the room.
+/// One light inside a closed box, which occludes it on all sides, and one outside it that lights the floor.
 Scene lamp_in_box(double rung) {
     Scene scene       = empty_stage();
     const dvec3 place = {0.37, 3.11, 0.23};
@@ -84,7 +84,7 @@ Scene lamp_in_box(double rung) {
     return scene;
 }
 
-/// The lamp stands so far above the plane of the box's lid and of the step's; on the last rung it lies in it.
+/// The light is at this height above the plane of the box's lid; on the last rung it lies in the plane.
 Scene lamp_near_face_plane(double rung) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(9, 9));
@@ -143,7 +143,7 @@ Scene many_lamps(double rung) {
     scene.height = 48;
     scene.lights.clear();
     for (int i = 0; i < int(rung); ++i) {
-        // A spiral that leaves no two at the same place. [Helmut Vogel, A Better Way to Construct the Sunflower Head,
+        // A spiral without two lights at one position. [Helmut Vogel, A Better Way to Construct the Sunflower Head,
         // 1979]
         const double angle = 2.399963229728653 * i, radius = 5 * std::sqrt((i + 0.5) / rung);
         add_point_light(scene, vec3(dvec3(radius * std::cos(angle), 6 + i % 3, radius * std::sin(angle))));
@@ -157,8 +157,8 @@ const Ladder grazing_sun_ladder{
     .name  = "grazing_sun",
     .title = "Grazing light",
     .about =
-        "A sun that sinks to the horizon of a floor, beside a post. The rays run along the floor that they start "
-        "on, and the shadow of the post's top moves away without end.",
+        "The sun sinks to the horizon of a floor with a post. The shadow rays run along the floor on which they start, "
+        "and the shadow of the post's top moves away without limit.",
     .unit  = "radians above the floor",
     .rungs = kFineDown,
     .scene = grazing_sun};
@@ -167,82 +167,83 @@ const Ladder grazing_tilted_ladder{
     .name  = "grazing_tilted",
     .title = "Grazing light over a tilted floor",
     .about =
-        "A lamp that sinks to the plane of a floor of cells which floats have rounded one by one: in the end the "
-        "light grazes the unevenness that rounding left, and cells shade their neighbours.",
+        "A light sinks to the plane of a floor of cells, each rounded to floats. In the end the light grazes the "
+        "unevenness that rounding leaves, and cells shadow their neighbours.",
     .unit  = "radians above the floor",
     .rungs = kDown,
     .scene = grazing_tilted};
 
-const Ladder lamp_near_receiver_ladder{
-    .name  = "lamp_near_receiver",
-    .title = "Lamp close to the receiver",
-    .about =
-        "A lamp sinks onto the floor that it lights: from close by at one end of the picture, grazing at the other.",
-    .unit  = "scene sizes above the floor",
-    .rungs = kDown,
-    .scene = lamp_near_receiver};
+const Ladder lamp_near_receiver_ladder{.name  = "lamp_near_receiver",
+                                       .title = "Light close to the receiver",
+                                       .about =
+                                           "A point light sinks onto the floor that it lights: it is close to the "
+                                           "floor at one end of the picture, and grazing at the other.",
+                                       .unit  = "scene sizes above the floor",
+                                       .rungs = kDown,
+                                       .scene = lamp_near_receiver};
 
 const Ladder lamp_near_occluder_ladder{
     .name  = "lamp_near_occluder",
-    .title = "Lamp close to an occluder",
+    .title = "Light close to an occluder",
     .about =
-        "A lid comes close to the lamp above it, and its rim with it, so that half of the floor stays dark. Rays "
-        "that end before the lamp, and depths that start behind it, miss the lid.",
-    .unit  = "of the lamp's height",
+        "A lid approaches the light above it, and its rim moves with it, so that half of the floor stays in shadow. "
+        "Rays that end before the light, and depths that start behind the lid, miss it.",
+    .unit  = "of the light's height",
     .rungs = kFineDown,
     .scene = lamp_near_occluder};
 
-const Ladder lamp_in_box_ladder{
-    .name  = "lamp_in_box",
-    .title = "Lamp inside a closed occluder",
-    .about =
-        "A closed box shrinks around the lamp within it. Nothing of that lamp may reach the floor; a second lamp "
-        "beside it shows what is lit.",
-    .unit  = "scene sizes",
-    .rungs = kDown,
-    .scene = lamp_in_box};
+const Ladder lamp_in_box_ladder{.name  = "lamp_in_box",
+                                .title = "Light inside a closed occluder",
+                                .about =
+                                    "A closed box shrinks around the light inside it. None of that light may reach the "
+                                    "floor; a second light outside the box shows what is lit.",
+                                .unit  = "scene sizes",
+                                .rungs = kDown,
+                                .scene = lamp_in_box};
 
 const Ladder lamp_near_face_plane_ladder{
     .name  = "lamp_near_face_plane",
-    .title = "Lamp almost in the plane of a face",
+    .title = "Light almost in the plane of a face",
     .about =
-        "A lamp sinks to the plane of a box's lid, and on the last rung lies in it: faces turn from seen to unseen, "
-        "silhouettes jump, and volumes become flat.",
+        "A light sinks to the plane of a box's lid; on the last rung it lies in that plane. Faces turn from lit to "
+        "unlit, silhouettes jump, and shadow volumes become flat.",
     .unit  = "scene sizes above the plane",
     .rungs = kDownTo0,
     .scene = lamp_near_face_plane};
 
-const Ladder far_lamp_ladder{
-    .name  = "far_lamp",
-    .title = "Distant lamp",
-    .about = "A point light moves away until it is a sun in all but name: depths lose the scene in the distance.",
-    .unit  = "scene sizes",
-    .rungs = kUp,
-    .scene = far_lamp};
+const Ladder far_lamp_ladder{.name  = "far_lamp",
+                             .title = "Distant light",
+                             .about =
+                                 "A point light moves away until it acts as a sun: depths measured from the light lose "
+                                 "the differences inside the scene.",
+                             .unit  = "scene sizes",
+                             .rungs = kUp,
+                             .scene = far_lamp};
 
-const Ladder shrinking_lamp_ladder{
-    .name  = "shrinking_lamp",
-    .title = "Area light that shrinks to a point",
-    .about = "A square lamp shrinks until its penumbra is thinner than any pixel: it must end as the point light does.",
-    .unit  = "side of the lamp, of 8 of the floor",
-    .rungs = kLampShrinks,
-    .scene = rectangle_lamp};
+const Ladder shrinking_lamp_ladder{.name  = "shrinking_lamp",
+                                   .title = "Area light that shrinks to a point",
+                                   .about =
+                                       "A square light shrinks until its penumbra is narrower than a pixel: the result "
+                                       "must converge to that of the point light.",
+                                   .unit  = "light side (floor side = 8)",
+                                   .rungs = kLampShrinks,
+                                   .scene = rectangle_lamp};
 
-const Ladder growing_lamp_ladder{
-    .name  = "growing_lamp",
-    .title = "Area light that becomes huge",
-    .about =
-        "A square lamp grows far beyond the scene: the umbra vanishes, and most of the lamp is seen at grazing "
-        "angles.",
-    .unit  = "side of the lamp, of 8 of the floor",
-    .rungs = kLampGrows,
-    .scene = rectangle_lamp};
+const Ladder growing_lamp_ladder{.name  = "growing_lamp",
+                                 .title = "Area light that becomes huge",
+                                 .about =
+                                     "A square light grows far beyond the scene: the umbra vanishes, and most of the "
+                                     "light is seen at grazing angles.",
+                                 .unit  = "light side (floor side = 8)",
+                                 .rungs = kLampGrows,
+                                 .scene = rectangle_lamp};
 
-const Ladder many_lamps_ladder{.name  = "many_lamps",
-                               .title = "Number of lamps",
-                               .about = "Ever more lamps in a spiral above the scene, each with shadows of its own.",
-                               .unit  = "lamps",
-                               .rungs = kLamps,
-                               .scene = many_lamps};
+const Ladder many_lamps_ladder{
+    .name  = "many_lamps",
+    .title = "Number of lights",
+    .about = "More and more point lights in a spiral above the scene, each with its own shadows.",
+    .unit  = "lights",
+    .rungs = kLamps,
+    .scene = many_lamps};
 
 }  // namespace umbra

@@ -40,8 +40,8 @@ const Ladder far_from_origin_ladder{
     .name  = "far_from_origin",
     .title = "Distance from the origin",
     .about =
-        "The whole scene moves away from the origin, lights and camera with it. Float coordinates there are coarse: "
-        "the shape itself is rounded, and differences of coordinates lose their digits.",
+        "The whole scene moves away from the origin, with its lights and the camera. Float coordinates are coarse "
+        "there: the shape itself is rounded, and differences of coordinates lose significant digits.",
     .unit  = "scene sizes",
     .rungs = kDistances,
     .scene = far_scene};
@@ -50,20 +50,19 @@ const Ladder tiny_scene_ladder{
     .name  = "tiny_scene",
     .title = "Tiny scene",
     .about =
-        "The whole scene shrinks, lights and camera with it. Constants in world units become large beside it, and "
-        "squares and products of its lengths underflow in floats.",
+        "The whole scene shrinks, with its lights and the camera. Constants in world units become large compared with "
+        "it, and squares and products of its lengths underflow in floats.",
     .unit  = "",
     .rungs = kSmaller,
     .scene = scaled_scene};
 
-const Ladder huge_scene_ladder{
-    .name  = "huge_scene",
-    .title = "Huge scene",
-    .about =
-        "The whole scene grows, lights and camera with it. Constants in world units become small beside it, and "
-        "products of its lengths overflow in floats.",
-    .unit  = "",
-    .rungs = kLarger,
-    .scene = scaled_scene};
+const Ladder huge_scene_ladder{.name  = "huge_scene",
+                               .title = "Huge scene",
+                               .about =
+                                   "The whole scene grows, with its lights and the camera. Constants in world units "
+                                   "become small compared with it, and products of its lengths overflow in floats.",
+                               .unit  = "",
+                               .rungs = kLarger,
+                               .scene = scaled_scene};
 
 }  // namespace umbra

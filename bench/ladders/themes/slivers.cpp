@@ -14,7 +14,8 @@ namespace {
 constexpr std::array kAspects = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
 constexpr int kStrips         = 4;
 
-/// Lines along z, so long, one at each coordinate x; from each to the next a strip of two triangles. In y = height.
+/// Lines along z of this length in y = height, one at each coordinate x; from each to the next a strip of two
+/// triangles.
 Mesh strips(const std::vector<double>& x, double length, double height) {
     Mesh mesh;
     for (const double from : x) {
@@ -28,8 +29,8 @@ Mesh strips(const std::vector<double>& x, double length, double height) {
     return mesh;
 }
 
-/// The last strips of a sheet that ends at x = 0 are slivers. The lamp stands straight above, where floats are fine
-/// enough to tell them apart.
+/// The last strips of a sheet that ends at x = 0 are slivers. The light is straight above x = 0, where floats
+/// are fine enough to separate them.
 Scene sliver_occluder_scene(double aspect) {
     Scene scene = empty_stage();
     add_close_floor(scene, 4 * kStrips / aspect);
@@ -119,8 +120,8 @@ const Ladder sliver_occluder_ladder{
     .name  = "sliver_occluder",
     .title = "Slivers in the occluder",
     .about =
-        "The edge of a sheet is made of triangles so many times as long as wide. The picture shows the end of "
-        "their shadow alone; it is the shadow of the sheet in one piece.",
+        "The edge of a sheet consists of triangles with this ratio of length to width. The picture shows only the end "
+        "of their shadow, which must equal the shadow of an undivided sheet.",
     .unit  = "length to width",
     .rungs = kAspects,
     .scene = sliver_occluder_scene};
@@ -129,18 +130,18 @@ const Ladder sliver_receiver_ladder{
     .name  = "sliver_receiver",
     .title = "Slivers in the receiver",
     .about =
-        "The floor is made of triangles so many times as long as wide where the edge of a shadow runs across it: "
-        "barycentrics, and normals from short sides, lose their digits.",
+        "Where the edge of a shadow crosses the floor, the floor consists of triangles with this ratio of length to "
+        "width: barycentrics, and normals computed from short sides, lose significant digits.",
     .unit  = "length to width",
     .rungs = kAspects,
     .scene = sliver_receiver_scene};
 
 const Ladder edge_on_slivers_ladder{
     .name  = "edge_on_slivers",
-    .title = "Skinny triangles, almost edge-on to the light",
+    .title = "Thin triangles, almost edge-on to the light",
     .about =
-        "Two thousand triangles with sides as 8 : 7 : 1 make this angle with the sun's direction, in the end but "
-        "for rounding none. Users of ray tracers report hits far from such triangles: shadows that are not there.",
+        "Two thousand triangles with sides 8 : 7 : 1 make this angle with the sun's direction, on the last rung 0 "
+        "except for rounding. Users of ray tracers report hits far from such triangles, which are false shadows.",
     .unit  = "radians",
     .rungs = kAngles,
     .scene = edge_on_scene};
@@ -149,8 +150,8 @@ const Ladder zero_area_ladder{
     .name  = "zero_area",
     .title = "Triangles without area",
     .about =
-        "So many points, repeated corners and corners on a line lie among the triangles of a ball and around it. "
-        "They are no surface and change nothing.",
+        "Triangles that are points, repeat a corner or have their corners on one line lie among the triangles of a "
+        "ball and around it. They are not a surface and must not change anything.",
     .unit  = "triangles",
     .rungs = kCounts,
     .scene = zero_area_scene};

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::array kCounts = {1e0, 2e0, 5e0, 1e1, 2e1, 5e1, 1e2};
 
-/// Every triangle of a mesh so many times, each copy with corners of its own and every second one turned over.
+/// `count` copies of every triangle of a mesh, each with its own corners and every second one flipped.
 Mesh repeated(const Mesh& mesh, double count) {
     Mesh all;
     for (int copy = 0; copy < count; ++copy) {
@@ -23,7 +23,7 @@ Mesh repeated(const Mesh& mesh, double count) {
     return all;
 }
 
-/// A tilted floor with a tilted box over it, every face so many times.
+/// A tilted floor with a tilted box over it, with `count` copies of every face.
 Scene duplicate_scene(double count) {
     Scene scene       = empty_stage();
     const mat4 tilted = glm::rotate(mat4(1), 0.3f, {0.8f, 0, 0.6f});
@@ -36,7 +36,8 @@ Scene duplicate_scene(double count) {
 
 constexpr std::array kGaps = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
 
-/// Two solids whose facing sides the lamp's rays run along: light that falls between them meets the floor in a stripe.
+/// Two solids whose facing sides the rays of light run along: light that falls between them meets the floor in a
+/// stripe.
 Scene touching_scene(double gap) {
     Scene scene = empty_stage();
     add_close_floor(scene, gap > 0 ? 8 * gap : 1e-3);
@@ -49,7 +50,7 @@ Scene touching_scene(double gap) {
 
 constexpr std::array kHeights = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
-/// A slab is sunk into a tilted floor and stands out of it by so much.
+/// A slab is sunk into a tilted floor, except for this height.
 Scene sunken_scene(double height) {
     Scene scene   = empty_stage();
     const dvec3 x = glm::normalize(dvec3(1, 0.3, -0.2)), n = glm::normalize(glm::cross(dvec3(-0.1, -0.2, 1), x)),
@@ -65,7 +66,7 @@ Scene sunken_scene(double height) {
 
 constexpr std::array kSolids = {5e0, 1e1, 2e1, 5e1, 1e2, 2e2, 5e2, 1e3};
 
-/// Boxes that stand anyhow in one place, through each other and the floor.
+/// Boxes of random orientation at one position, which interpenetrate each other and the floor.
 Scene interpenetrating_scene(double count) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(4, 4));
@@ -88,8 +89,8 @@ const Ladder duplicate_faces_ladder{
     .name  = "duplicate_faces",
     .title = "Coplanar duplicates",
     .about =
-        "Every triangle of a tilted floor and of a box is there so many times, bit-equal, turned either way. Nothing "
-        "may change: a surface does not shadow its own twin.",
+        "Every triangle of a tilted floor and of a box exists N times, bit-equal, with either orientation. The result "
+        "must not change: a surface does not shadow its own copy.",
     .unit  = "copies",
     .rungs = kCounts,
     .scene = duplicate_scene};
@@ -98,30 +99,28 @@ const Ladder touching_solids_ladder{
     .name  = "touching_solids",
     .title = "Gap between solids",
     .about =
-        "Two solids stand so far apart, in the end they share a face. The light runs along their facing sides and "
-        "through the gap: a stripe on the floor, which is all the picture shows.",
-    .unit  = "of their length",
+        "Two solids are at this distance; on the last rung they share a face. The light runs along their facing sides "
+        "and through the gap, and the picture shows only the stripe that it makes on the floor.",
+    .unit  = "of their width",
     .rungs = kGaps,
     .scene = touching_scene};
 
-const Ladder sunken_slab_ladder{
-    .name  = "sunken_slab",
-    .title = "A slab that hardly stands out of the floor",
-    .about =
-        "A slab is sunk into a tilted floor but for this height. The floor passes so close beneath its upper side "
-        "and must not shadow it.",
-    .unit  = "of its length",
-    .rungs = kHeights,
-    .scene = sunken_scene};
+const Ladder sunken_slab_ladder{.name  = "sunken_slab",
+                                .title = "A slab slightly above the floor",
+                                .about =
+                                    "A slab is sunk into a tilted floor except for this height. The floor passes at "
+                                    "this distance below the top of the slab and must not shadow it.",
+                                .unit  = "of its length",
+                                .rungs = kHeights,
+                                .scene = sunken_scene};
 
-const Ladder interpenetrating_solids_ladder{
-    .name  = "interpenetrating_solids",
-    .title = "Solids through each other",
-    .about =
-        "So many boxes stand in one place, through each other: at each crease the surfaces come as close as pixels "
-        "tell, with no edge in any mesh.",
-    .unit  = "boxes",
-    .rungs = kSolids,
-    .scene = interpenetrating_scene};
+const Ladder interpenetrating_solids_ladder{.name  = "interpenetrating_solids",
+                                            .title = "Interpenetrating solids",
+                                            .about =
+                                                "N boxes interpenetrate at one position: at each crease, surfaces come "
+                                                "closer than a pixel, and no mesh has an edge there.",
+                                            .unit  = "boxes",
+                                            .rungs = kSolids,
+                                            .scene = interpenetrating_scene};
 
 }  // namespace umbra

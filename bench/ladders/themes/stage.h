@@ -37,7 +37,7 @@ inline void look(Scene& scene, vec3 eye, vec3 target, float fov_y = 45) {
     scene.camera.fov_y  = fov_y;
 }
 
-/// A floor of 8 x 8, on it a box of 2 x 2 x 2 and above it a tetrahedron in the air, one lamp; all coordinates are
+/// A floor of 8 x 8, on it a box of 2 x 2 x 2 and above it a tetrahedron in the air, one light; all coordinates are
 /// multiples of 1/2, so that the shape survives rough rounding.
 inline Scene harmless_stage() {
     Scene scene = empty_stage();

@@ -14,7 +14,7 @@ namespace {
 
 enum class Falls : std::uint8_t { never_rises, always };
 
-/// Walks from the middle pixel to the picture's four sides. `peak` is what the middle shows, to a share of 1e-4. Where
+/// Walks from the middle pixel to the picture's four sides. `peak` is the middle pixel's value, to 1e-4 of it. Where
 /// it falls always, neighbours are not equal either, down to a millionth of the peak.
 std::string wrong_around_middle(const Image& linear, double peak, Falls falls) {
     const int x0 = linear.width / 2, y0 = linear.height / 2;
@@ -24,17 +24,18 @@ std::string wrong_around_middle(const Image& linear, double peak, Falls falls) {
     };
     for (std::size_t i = 0; i < linear.pixels(); ++i)
         if (!std::isfinite(linear.at(i, 0)) || linear.at(i, 0) < 0)
-            return fmt::format("pixel {} {} is {}", i % static_cast<std::size_t>(linear.width),
-                               i / static_cast<std::size_t>(linear.width), linear.at(i, 0));
+            return fmt::format("pixel {}, {} is {}, expected a finite number >= 0",
+                               i % static_cast<std::size_t>(linear.width), i / static_cast<std::size_t>(linear.width),
+                               linear.at(i, 0));
     if (!(std::abs(static_cast<double>(value(x0, y0)) - peak) <= 1e-4 * peak))
-        return fmt::format("the middle is {} and not {}", value(x0, y0), peak);
+        return fmt::format("the middle pixel is {}, expected {}", value(x0, y0), peak);
     for (const ivec2 step : {ivec2(1, 0), ivec2(-1, 0), ivec2(0, 1), ivec2(0, -1)})
         for (ivec2 p(x0, y0), q = p + step; q.x >= 0 && q.y >= 0 && q.x < linear.width && q.y < linear.height;
              p = q, q += step)
             if (value(q.x, q.y) > value(p.x, p.y) || (falls == Falls::always && value(q.x, q.y) == value(p.x, p.y) &&
                                                       static_cast<double>(value(p.x, p.y)) > 1e-6 * peak))
-                return fmt::format("pixel {} {} is {}, nearer to the middle it is {}", q.x, q.y, value(q.x, q.y),
-                                   value(p.x, p.y));
+                return fmt::format("pixel {}, {} is {}, expected {} its neighbour nearer to the middle, {}", q.x, q.y,
+                                   value(q.x, q.y), falls == Falls::always ? "less than" : "at most", value(p.x, p.y));
     return "";
 }
 
@@ -116,44 +117,43 @@ std::string wrong_coefficients(double c, const Scene&, const Image& linear) {
 
 }  // namespace
 
-const Ladder shininess_ladder{
-    .name  = "shininess",
-    .title = "Shininess",
-    .about =
-        "The exponent of a highlight. A cosine near 1 that is off by one float step is off by a twentieth once it "
-        "is raised to a million.",
-    .unit      = "",
-    .rungs     = kExponents,
-    .scene     = shininess_scene,
-    .wrong_sum = wrong_lobe};
+const Ladder shininess_ladder{.name  = "shininess",
+                              .title = "Shininess",
+                              .about =
+                                  "The exponent of a highlight. If a cosine near 1 has an error of one float step, its "
+                                  "power with exponent 1000000 has an error of 5 %.",
+                              .unit      = "",
+                              .rungs     = kExponents,
+                              .scene     = shininess_scene,
+                              .wrong_sum = wrong_lobe};
 
-const Ladder spot_exponent_ladder{
-    .name      = "spot_exponent",
-    .title     = "Exponent of a spot light",
-    .about     = "How fast a spot light falls off with the angle from its axis: the same power of a cosine near 1.",
-    .unit      = "",
-    .rungs     = kExponents,
-    .scene     = spot_scene,
-    .wrong_sum = wrong_lobe};
+const Ladder spot_exponent_ladder{.name  = "spot_exponent",
+                                  .title = "Exponent of a spot light",
+                                  .about =
+                                      "The intensity of a spot light falls off with the angle from its axis: this is "
+                                      "the same power of a cosine near 1.",
+                                  .unit      = "",
+                                  .rungs     = kExponents,
+                                  .scene     = spot_scene,
+                                  .wrong_sum = wrong_lobe};
 
-const Ladder attenuation_distance_ladder{
-    .name  = "attenuation_distance",
-    .title = "Attenuation close to the light",
-    .about =
-        "A lamp that falls off with the square of its distance comes so close to the floor: the factor grows "
-        "without bound.",
-    .unit      = "from the lamp",
-    .rungs     = kDistances,
-    .scene     = near_lamp_scene,
-    .wrong_sum = wrong_near_lamp};
+const Ladder attenuation_distance_ladder{.name  = "attenuation_distance",
+                                         .title = "Attenuation close to the light",
+                                         .about =
+                                             "A light whose intensity falls off with the square of the distance is at "
+                                             "this distance from the floor: the factor grows without limit.",
+                                         .unit      = "from the light",
+                                         .rungs     = kDistances,
+                                         .scene     = near_lamp_scene,
+                                         .wrong_sum = wrong_near_lamp};
 
 const Ladder attenuation_coefficients_ladder{
-    .name      = "attenuation_coefficients",
-    .title     = "Attenuation by next to nothing",
-    .about     = "All three coefficients of the attenuation are so small, and what is divided by them grows.",
-    .unit      = "",
-    .rungs     = kCoefficients,
-    .scene     = coefficients_scene,
+    .name  = "attenuation_coefficients",
+    .title = "Attenuation with coefficients near 0",
+    .about = "All three coefficients of the attenuation have this value; the factor, 1 divided by their sum, grows.",
+    .unit  = "",
+    .rungs = kCoefficients,
+    .scene = coefficients_scene,
     .wrong_sum = wrong_coefficients};
 
 }  // namespace umbra

@@ -23,7 +23,7 @@ Scene ball_scene(double longitudes) {
 
 constexpr std::array kPages = {1e0, 2e0, 3e0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3};
 
-/// So many triangles that share one edge.
+/// `count` triangles that share one edge.
 Scene pages_scene(double count) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(6, 6));
@@ -43,7 +43,7 @@ Scene pages_scene(double count) {
 
 constexpr std::array kSizes = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
 
-/// A box on a floor of two triangles that is so many times as large.
+/// A box on a floor of two triangles, which is scaled by `size`.
 Scene large_floor_scene(double size) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(static_cast<float>(8 * size), static_cast<float>(8 * size)));
@@ -59,28 +59,27 @@ const Ladder sphere_tessellation_ladder{
     .name  = "sphere_tessellation",
     .title = "Tessellation of a ball",
     .about =
-        "A ball with smooth normals is made of facets, so many around: coarse ones stand out at the terminator, fine "
-        "ones are many, small, and edge-on to the light there.",
+        "A ball with smooth normals has N facets around it: with few facets the terminator is visibly stepped; with "
+        "many, they are small and edge-on to the light there.",
     .unit  = "facets around",
     .rungs = kLongitudes,
     .scene = ball_scene};
 
-const Ladder shared_edge_ladder{
-    .name  = "shared_edge",
-    .title = "Triangles that share one edge",
-    .about =
-        "So many triangles meet in one edge, as pages in a spine, wound either way: no 2-manifold, and no silhouette "
-        "in the usual sense.",
-    .unit  = "triangles",
-    .rungs = kPages,
-    .scene = pages_scene};
+const Ladder shared_edge_ladder{.name  = "shared_edge",
+                                .title = "Triangles that share one edge",
+                                .about =
+                                    "N triangles share one edge, like pages at a spine, with either orientation: this "
+                                    "is not a 2-manifold and has no silhouette in the usual sense.",
+                                .unit  = "triangles",
+                                .rungs = kPages,
+                                .scene = pages_scene};
 
 const Ladder large_floor_ladder{
     .name  = "large_floor",
     .title = "Large triangles under small ones",
     .about =
-        "The floor's two triangles are so many times as large as what stands on them. Barycentrics name coarse "
-        "points there, and what is sized by the scene overlooks the rest.",
+        "The floor, two triangles, is scaled by this factor; the box on it is not. Barycentrics are coarse there, and "
+        "tolerances relative to the scene size miss the small objects.",
     .unit  = "times",
     .rungs = kSizes,
     .scene = large_floor_scene};

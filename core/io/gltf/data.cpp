@@ -17,7 +17,7 @@ namespace {
 
 using std::filesystem::path;
 
-// Accessors without bytes stand for zeros: their length is a mere number in the file. Beyond this many (and as many
+// Accessors without bytes are all zeros: their length is a mere number in the file. Beyond this many (and as many
 // as the file has bytes) they are refused.
 constexpr std::uint64_t kFreeZeros = 4096;
 

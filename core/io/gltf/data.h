@@ -41,7 +41,7 @@ public:
     GltfData(const JsonText& json, const std::filesystem::path& file, std::optional<std::string_view> bin);
 
     [[nodiscard]] const std::vector<GltfAccessor>& accessors() const { return accessors_; }
-    /// Any vector type; normalised integers as the fractions that they stand for.
+    /// Any vector type; normalised integers as the fractions that they represent.
     [[nodiscard]] std::vector<vec3> vectors(const GltfAccessor& accessor) const;
     [[nodiscard]] std::vector<std::uint32_t> indices(const GltfAccessor& accessor) const;
 

@@ -20,7 +20,7 @@
 //                     attenuation, clamp       [c1, c2, c3]; true or false
 //                     range                    a positive number
 //                     falloff, exponent        spots: "cosine", "zachmann" or "smooth"
-//   nodes             light                    an area light with the node's place:
+//   nodes             light                    an area light with the node's position:
 //                       type                   "rectangle", "disk" or "sphere"
 //                       size                   rectangle: [width, height] along the node's x and y
 //                       radius                 disk, sphere

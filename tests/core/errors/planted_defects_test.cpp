@@ -21,7 +21,7 @@ std::uint32_t add(Scene& scene, std::string_view name, const Mesh& mesh, bool sm
 
 constexpr std::size_t kLeftHalf = 2, kRightHalf = 3, kMole = 4;  // objects
 
-/// A thin wall that stands on a floor, and a board of two halves that hangs high over it, under a sun.
+/// A thin wall on a floor, and a board of two halves that hangs high over it, under a sun.
 Scene wall_and_board() {
     Scene scene;
     scene.materials.emplace_back();
@@ -196,7 +196,7 @@ TEST(PlantedDefects, ABoundaryMovedByThreePixelsIsThreePixelsOff) {
 TEST(PlantedDefects, AcneAndHolesMoveNoBoundary) {
     const Stage stage(wall_and_board());
     MethodRun run = stage.truth;
-    // One in 37 points turned over, but for those near a boundary, whose pieces it would touch.
+    // One in 37 points flipped, except for those near a boundary, whose pieces it would touch.
     const auto band      = edge_band(stage.points, 0, stage.truth.planes[0], kHardTolerance);
     std::uint64_t turned = 0;
     for (std::size_t i = 0; i < run.planes[0].s.size(); i += 37)

@@ -97,7 +97,7 @@ TEST(ShadowEdges, WithoutABoundaryThereIsNothing) {
 
 TEST(ShadowEdges, TheOutlineOfAnObjectIsNoBoundary) {
     PointBatch points = wall();
-    // The left half stands 30 pixels in front of the right one, whose left end lies in shadow.
+    // The left half is 30 pixels in front of the right one, whose left end lies in shadow.
     for (std::size_t i = 0; i < points.size(); ++i)
         if (i % kWidth < 60) points.pz[i] = 30;
     const VisibilityPlane truth = plane([](double x, double) { return x >= 60 && x < 80 ? 0.0 : 1.0; });

@@ -1,4 +1,4 @@
-// Properties of FLIP; its values on image files are held against the reference implementation's in image_io_test.
+// Properties of FLIP; its values on image files are compared with the reference implementation's in image_io_test.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -169,7 +169,7 @@ TEST(Gltf, InterleavedQuantisedSparseAndMissingData) {
         buffers(bytes) + "}");
     ASSERT_EQ(scene.triangles.size(), 2u);
     EXPECT_EQ(scene.vertex(0, 0), vec3(-1, -1, 0));
-    EXPECT_EQ(scene.vertex(0, 2), vec3(-1, 1, 0)) << "-128 stands for -1 too";
+    EXPECT_EQ(scene.vertex(0, 2), vec3(-1, 1, 0)) << "-128 means -1 too";
     EXPECT_EQ(scene.vertex(1, 0), vec3(0));
     EXPECT_EQ(scene.vertex(1, 2), vec3(0, 1, 0));
     EXPECT_FALSE(warns(scene, "KHR_mesh_quantization"));
@@ -215,7 +215,7 @@ TEST(Gltf, NormalsThatAreNotFiniteOrHaveNoLengthBecomeTheFaces) {
             ++kept;
             EXPECT_EQ(scene.normals[i], vec3(0, 0, 1)) << "the sound one stays";
         } else {
-            EXPECT_EQ(scene.normals[i], vec3(0)) << "zero stands for the face's normal";
+            EXPECT_EQ(scene.normals[i], vec3(0)) << "zero means the face's normal";
         }
     EXPECT_EQ(kept, 1);
     const auto counts = [](const std::string& w) { return w.find("3 of 4 vertex normals") != std::string::npos; };

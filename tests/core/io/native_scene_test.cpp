@@ -1,4 +1,4 @@
-// The native format: what its keys mean, and where and how its faults are told.
+// The native format: what its keys mean, and where and how its errors are reported.
 #include <cmath>
 #include <random>
 
@@ -257,7 +257,7 @@ TEST(NativeScene, DegenerateTrianglesWarn) {
     EXPECT_NE(s.warnings[0].find("2 of 3"), std::string::npos) << s.warnings[0];
 }
 
-// A fault each: '@' stands where the message must point to.
+// A fault each: '@' is where the message must point to.
 struct Fault {
     std::string_view text;
     std::string_view message;

@@ -110,7 +110,7 @@ TEST(CompleteScene, NormalsBecomeUnit) {
     read.scene.normals[1] = {0, 0, 0};
     const Scene s         = finish(std::move(read));
     EXPECT_NEAR(s.normals[0].y, 0.6, 1e-6);
-    EXPECT_EQ(s.normals[1], vec3(0)) << "zero stands for the face normal";
+    EXPECT_EQ(s.normals[1], vec3(0)) << "zero means the face normal";
 }
 
 TEST(CheckScene, CamerasThatCannotSeeAreRefused) {

@@ -17,7 +17,7 @@ Scene scene_of(const std::vector<vec3>& positions, const std::vector<uvec3>& tri
     return scene;
 }
 
-/// `count` triangles of random size and place in the unit cube.
+/// `count` triangles of random size and position in the unit cube.
 Scene random_triangles(int count, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> place(-1, 1), size(-0.3f, 0.3f);

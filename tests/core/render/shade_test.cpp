@@ -66,7 +66,7 @@ Material glossy(float shininess, Lobe lobe = Lobe::phong) {
     return m;
 }
 
-/// Angle of the view away from the mirror direction at which the highlight has fallen to one half: the light stands
+/// Angle of the view away from the mirror direction at which the highlight has fallen to one half: the light is
 /// 30 degrees from the normal, the eye is turned in the plane of the two.
 double half_width(Lobe lobe, float shininess) {
     const auto radiance = [&](double degrees) {
@@ -217,7 +217,7 @@ TEST(Shade, InfiniteViewerSeesOneDirection) {
     for (const bool local : {true, false}) {
         Table table(glossy(5), {sun}, {0, 6, 0});
         table.scene.local_viewer = local;
-        table.points.eye         = {0, 6, 0.001f};  // looks down, but for a hair
+        table.points.eye         = {0, 6, 0.001f};  // looks almost straight down
         table.add(1.0f / 3, 1.0f / 3);              // beneath the eye
         table.add(0.4f, 1.0f / 3);                  // p = (4, 0, -0) away from it
         const Image image = table.shaded();

@@ -190,7 +190,7 @@ LightPlace place(const Light& light, Projection projection = Projection::perspec
     return find_facts(scene).lights.at(0).place;
 }
 
-TEST(LightPlaces, TheFourCases) {  // the camera stands at (0, 1, 5) and looks at the origin
+TEST(LightPlaces, TheFourCases) {  // the camera is at (0, 1, 5) and looks at the origin
     EXPECT_EQ(place(light_at({0, 1, 5})), LightPlace::at_eye);
     EXPECT_EQ(place(light_at({0, 1, 0})), LightPlace::inside_view);
     EXPECT_EQ(place(light_at({0, 30, 0})), LightPlace::outside_view);

@@ -64,7 +64,7 @@ double brute_force(const Scene& scene, const Light& light, const PointBatch& poi
     const Rational3 n = cross(eu, ev), to_centre = centre - p;
     const Rational height = dot(n, to_centre);
 
-    // Places of the light: centre + x eu + y ev.
+    // Points of the light: centre + x eu + y ev.
     const Rational half(1, 2);
     Polygon light_polygon       = {{-half, -half}, {half, -half}, {half, half}, {-half, half}};
     const Rational3 up          = cross(b - a, c - a);
@@ -85,7 +85,7 @@ double brute_force(const Scene& scene, const Light& light, const PointBatch& poi
             hidden.push_back({s * dot(d, xu), s * dot(d, xv), s * dot(d, n)});
         }
         const Rational far = height > 0 ? height : Rational(-height);
-        // What stands in the light's plane, as a lamp's own faces do, is not before it.
+        // What lies in the light's plane, as the faces of its mesh do, is not in front of it.
         if (std::all_of(hidden.begin(), hidden.end(), [&](const Rational3& q) { return q[2] >= far; })) continue;
         hidden = cut(hidden, [&](const Rational3& q) -> Rational { return far - q[2]; });
         hidden = cut(hidden, [&](const Rational3& q) -> Rational { return half * q[2] - q[0]; });
@@ -164,7 +164,7 @@ Scene random_scene(unsigned seed) {
     scene.camera.eye = vec3(1, 9, 3);
     add(scene, make_plane(8, 8));
     const Mesh box = make_box(vec3(0.8f, 0.8f, 0.8f));
-    add(scene, moved(box, vec3(0, 0.4f, 0)));         // stands on the floor
+    add(scene, moved(box, vec3(0, 0.4f, 0)));         // on the floor
     add(scene, moved(box, vec3(0.8f, 0.4f, 0.25f)));  // touches the first with a face
     add(scene, moved(transformed(box, glm::rotate(mat4(1), 0.7f, anywhere() + vec3(0, 0, 2))), vec3(0.5f, 1, 0.5f)));
     Mesh soup;

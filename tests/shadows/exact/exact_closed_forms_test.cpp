@@ -1,5 +1,5 @@
-// exact for area lights where a formula knows the share: lights that stand askew, that the point's own plane cuts, that
-// occluders touch, enclose or pass through.
+// exact for area lights with visible fractions from a formula: lights that are tilted, that the point's own plane cuts,
+// that occluders touch, enclose or pass through.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ Real area(const Polygon& p) {
 const Polygon kWhole{
     {-0.5L, -0.5L}, {0.5L, -0.5L}, {0.5L, 0.5L}, {-0.5L, 0.5L}};  // area 1: centre + x edge_u + y edge_v
 
-/// Positive at the places of the light that lie, seen from p, on one side of the edge from a to b.
+/// Positive at the points of the light that lie, seen from p, on one side of the edge from a to b.
 /// Seen from a point below, an edge that runs anticlockwise from above has its inside there.
 std::function<Real(Place)> beside(const Light& light, Real3 p, Real3 a, Real3 b) {
     const Real3 n        = cross(a - p, b - p);
@@ -226,7 +226,7 @@ TEST(ExactClosedForms, LightsThatThePlaneOfThePointCuts) {
             };
             const Polygon above = clip(kWhole, height);
             if (!blocked) return area(above);
-            // Hidden is what stands above 0.5 and right of the edge.
+            // Hidden is what is above 0.5 and right of the edge.
             const Polygon high = clip(above, [&](Place q) { return height(q) - 0.5L; });
             const Polygon over = clip(high, beside(light, p, {0, 0.5L, -1}, {0, 0.5L, 1}));
             return area(above) - area(over);
@@ -269,7 +269,7 @@ TEST(ExactClosedForms, AWallThatStandsOnThePoint) {
 
 TEST(ExactClosedForms, ALightInAClosedBox) {
     Scene scene = floor_scene();
-    Mesh lamp   = make_box(vec3(2, 2, 2));  // stands above the floor
+    Mesh lamp   = make_box(vec3(2, 2, 2));  // above the floor
     for (vec3& q : lamp.positions) q += vec3(0, 3, 0);
     add(scene, lamp);
     // Within it, a board, which is all that hides anything there.
@@ -308,7 +308,7 @@ TEST(ExactClosedForms, ALightInAClosedBox) {
 
 TEST(ExactClosedForms, AWallThatPassesThroughTheLight) {
     // The wall x = 0.25 from y = 3.875 on, through lights that hang at about 4 and 5. It hides what is on its other
-    // side, but for what is seen below its edge.
+    // side, except for what is visible below its edge.
     Scene scene = floor_scene();
     add(scene, quad({0.25f, 3.875f, -64}, {0.25f, 3.875f, 64}, {0.25f, 9, 64}, {0.25f, 9, -64}));
     scene.lights      = {rectangle({0, 4, 0}, {1.5f, 0, 0}, {0, 0, -1}), askew({0, 4, 0.25f}, 2, 1, 0.5, 0.3, 0.4),

@@ -155,7 +155,7 @@ TEST(ExactIrradiance, MeetsLambertsFormulaOfALightThatTheFloorCuts) {
                    points, 30, kNarrow);
 }
 
-/// So close that the light's nearest place weighs 1e7 times what its farthest does, the light is cut into many pieces.
+/// So close that the light's nearest point weighs 1e7 times what its farthest does, the light is cut into many pieces.
 TEST(ExactIrradiance, MeetsLambertsFormulaJustBelowALight) {
     const Scene scene       = floor_scene(1.0f / 256);
     const PointBatch points = floor_points(scene, random_places(200, -1.0 / 64, 1.0 / 64));
@@ -190,8 +190,8 @@ TEST(ExactIrradiance, MeetsTheClosedFormOfAHalvedSphere) {
     }
 }
 
-/// Sums over N x N places of a round light, N on each of N rings of equal area, each ring turned by the golden ratio so
-/// that no edge follows the places. Along an edge a part of 1 / N of them is in doubt, of which most cancels.
+/// Sums over N x N points of a round light, N on each of N rings of equal area, each ring turned by the golden ratio so
+/// that no edge follows the points. Along an edge a part of 1 / N of them is in doubt, of which most cancels.
 TEST(ExactIrradiance, AgreesWithSumsOverRoundLights) {
     constexpr int kSide = 2400;
     for (const LightKind kind : {LightKind::disk, LightKind::sphere}) {
@@ -246,7 +246,7 @@ TEST(ExactIrradiance, IsAllOfALightThatNothingHides) {
         }
 }
 
-/// Seen from afar all places of a light weigh alike: to 8 times its size over its distance.
+/// Seen from afar all points of a light have equal weight: to 8 times its size over its distance.
 TEST(ExactIrradiance, OfASmallLightIsItsVisibleArea) {
     for (const LightKind kind : {LightKind::rectangle, LightKind::disk, LightKind::sphere})
         for (const float size : {1e-2f, 1e-4f, 1e-7f}) {

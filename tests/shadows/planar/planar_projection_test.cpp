@@ -76,7 +76,7 @@ TEST(PlanarProjection, LeavesSmallerPlanesOpenWhereTheShareIsRaised) {
         }
 }
 
-/// Scenes of any size and place give what brute force gives.
+/// Scenes of any size and position give what brute force gives.
 TEST(PlanarProjection, IsExactAtEveryScale) {
     for (const float scale : {1e-6f, 1e-3f, 1e4f, 1e9f}) {
         Scene scene = known_scene("beyond_light_and_floor").scene;

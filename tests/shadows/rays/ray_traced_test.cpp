@@ -299,7 +299,7 @@ TEST(RayTraced, ALampsOwnTrianglesDoNotBlockIt) {
 }
 
 TEST(RayTraced, WhatIsCloseToALampButDoesNotTouchItCasts) {
-    // A plate of 1 x 1 so close beneath a lamp at height 4, or above it.
+    // A plate of 1 x 1 close below a light at height 4, or above it.
     for (const float gap : {1e-2f, 1e-4f, 1e-5f, 4e-6f})
         for (const bool beneath : {true, false}) {
             Scene scene;
@@ -408,7 +408,7 @@ TEST(Offset, CoplanarDuplicatesDoNotBlock) {
     EXPECT_GT(without, 1000);
 }
 
-/// A wall stands on the floor: behind it the shadow begins at its foot.
+/// A wall on the floor: behind it the shadow begins at its foot.
 TEST(Offset, ContactShadowsReachTheContact) {
     Scene scene;
     add_quad(scene, vec3(-1, 0, 1), vec3(1, 0, 1), vec3(1, 0, -1), vec3(-1, 0, -1));

@@ -33,7 +33,7 @@ struct Truth {
 };
 
 /// The segment from the point, as it is named, to the light against every triangle but its own, in long double.
-/// What cannot be told beyond the rounding of doubles is `boundary`.
+/// What cannot be decided beyond the rounding of doubles is `boundary`.
 Truth truth_at(const Scene& scene, const PointBatch& points, std::size_t i, const Light& light) {
     using Real           = long double;
     using dvec3l         = glm::vec<3, Real>;

@@ -413,7 +413,7 @@ TEST(ShadowZBuffer, AFloorAloneIsLit) {
 }
 
 TEST(ShadowZBuffer, FittingToCastersLosesNoShadow) {
-    // A floor forty times as wide as what stands on it, and reaches a little into it; walls; and what lies under it.
+    // A floor forty times as wide as what is on it, and reaches a little into it; walls; and what lies under it.
     Scene scene;
     add_mesh(scene, "floor", make_plane(40, 40));
     add_mesh(
