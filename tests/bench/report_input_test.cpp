@@ -36,7 +36,7 @@ TEST_F(Report, RefusesAPlaceThatIsWrong) {
     for (const Case& c :
          {Case{"/schema", 2, "results.json:/schema: found 2, expected 1, "},
           Case{"/schema", "1", "results.json:/schema: found \"1\", expected a number"},
-          Case{"/scene/name", nullptr, "results.json:/scene/name: found nothing, expected a string"},
+          Case{"/scene/name", nullptr, "results.json:/scene/name: found nothing, expected a non-empty string"},
           Case{"/scene/title", 7, "results.json:/scene/title: found 7, expected a string"},
           Case{"/scene/warnings", "one", "results.json:/scene/warnings: found \"one\", expected an array"},
           Case{"/methods", 1, "results.json:/methods: found 1, expected an array"},
