@@ -404,6 +404,10 @@ bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, co
     return true;
 }
 
+/// Stands for S_j where the point's plane leaves so little of the light that no sample is in front of it: there is no
+/// irradiance to take a fraction of.
+constexpr float kNoSample = -1;
+
 /// The fraction of the light's irradiance that arrives at the point. Towards a flat light the cosine at the light is
 /// the same height over the distance for all samples, so that one of direction d counts n.d / |d|^4; the disk that a
 /// point sees of a sphere spans the directions that the sphere does.
@@ -424,7 +428,8 @@ float RayTraced::visible_irradiance(const Starts& starts, int lane, PointKey key
         }
         return true;
     });
-    return outside && all > 0 ? static_cast<float>(seen / all) : outside ? 0.0f : 1.0f;
+    if (!outside) return 1;
+    return all > 0 ? static_cast<float>(seen / all) : kNoSample;
 }
 
 /// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
@@ -486,6 +491,9 @@ void RayTraced::visibility(const PointBatch& points, LightId light, Visibility o
         else
             trace_hard_light(points, light, tile, out.s);
     });
+    if (options.measure == Measure::area) return;
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (out.s[i] == kNoSample) out.s[i] = 0, out.answer[i] = Answer::undefined;
 }
 
 TriangleId RayTraced::first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const {
