@@ -16,10 +16,10 @@ Lens read_lens(const JsonText& json, const JsonValue& v, std::size_t index, std:
     Lens lens;
     const JsonValue* type = find_member(v, "type");
     if (!type) json.fail(v, what + " has no type, expected perspective or orthographic");
-    lens.camera.projection     = json.choice<Projection>(*type, "type");
-    const bool perspective     = lens.camera.projection == Projection::perspective;
+    lens.camera.projection      = json.choice<Projection>(*type, "type");
+    const bool perspective      = lens.camera.projection == Projection::perspective;
     const std::string_view kind = name_of(lens.camera.projection);
-    const JsonValue* p         = find_member(v, kind);
+    const JsonValue* p          = find_member(v, kind);
     if (!p) json.fail(v, fmt::format("{} has no \"{}\"", what, kind));
     (void)json.object(*p, what);
     const auto need = [&](std::string_view key, const Range& range) {
