@@ -145,9 +145,10 @@ TEST_F(ExrLayersOf, GeometryNamesEveryPointExactly) {
         const vec3 p(value("P.x", i), value("P.y", i), value("P.z", i));
         ASSERT_EQ(p, points.position(i));
         ASSERT_EQ(vec3(value("N.x", i), value("N.y", i), value("N.z", i)), points.normal(i));
+        const std::size_t column = i % 96, row = i / 96;
         const dvec3 ndc = transformed("worldToNDC", p), camera = transformed("worldToCamera", p);
-        ASSERT_NEAR(ndc.x * 96, double(i % 96) + 0.5, 1e-3);
-        ASSERT_NEAR(ndc.y * 54, double(i / 96) + 0.5, 1e-3);
+        ASSERT_NEAR(ndc.x * 96, double(column) + 0.5, 1e-3);
+        ASSERT_NEAR(ndc.y * 54, double(row) + 0.5, 1e-3);
         ASSERT_NEAR(camera.z, double(value("Z", i)), 1e-4);
         ASSERT_NEAR(ndc.z, 1 / camera.z, 1e-4);
         ASSERT_GT(camera.x * (ndc.x - 0.5), -1e-6) << "x to the right";
