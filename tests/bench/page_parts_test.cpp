@@ -16,6 +16,9 @@ namespace {
 
 using nlohmann::json;
 
+// Whether a view has no text there (json::empty() would call "" a value).
+bool is_blank(const json& text) { return text.get<std::string>().empty(); }
+
 double number(const json& view, const char* key) { return std::stod(view[key].get<std::string>()); }
 
 TEST(ErrorTimeChart, PlacesZeroErrorsBelowTheAxisAndSurvivesOddNumbers) {
@@ -26,7 +29,7 @@ TEST(ErrorTimeChart, PlacesZeroErrorsBelowTheAxisAndSurvivesOddNumbers) {
     EXPECT_LE(chart["y_ticks"].size(), 8u);
     for (const json& mark : chart["marks"])
         for (const char* key : {"x", "camera_x", "y", "label_x", "label_y"}) {
-            if (mark[key] == "") continue;  // a label that has no position
+            if (is_blank(mark[key])) continue;  // a label that has no position
             const double at = number(mark, key);
             EXPECT_TRUE(std::isfinite(at) && at >= 0 && at <= 440) << key << " " << at;
         }
@@ -69,7 +72,7 @@ TEST(ErrorTimeChart, LabelsCoverNoLabelNoMarkAndNoLineAndStandBesideTheirOwn) {
     const json chart   = error_time_chart(points);
     std::size_t labels = 0;
     for (const json& mark : chart["marks"]) {
-        if (mark["label_x"] == "") continue;
+        if (is_blank(mark["label_x"])) continue;
         ++labels;
         const Box label = label_box(mark);
         for (const json& other : chart["marks"]) {
@@ -77,7 +80,7 @@ TEST(ErrorTimeChart, LabelsCoverNoLabelNoMarkAndNoLineAndStandBesideTheirOwn) {
             for (const Box& box : {Box{x - 7, y - 7, x + 7, y + 7}, Box{camera - 7, y - 7, camera + 7, y + 7},
                                    Box{camera, y - 1, x, y + 1}})
                 EXPECT_FALSE(label.meets(box)) << mark << other;
-            if (&other != &mark && other["label_x"] != "") {
+            if (&other != &mark && !is_blank(other["label_x"])) {
                 EXPECT_FALSE(label.meets(label_box(other))) << mark << other;
             }
         }
@@ -129,7 +132,8 @@ TEST(ErrorRings, EncloseFewWrongPointsAndLeaveOutTheEdgeBand) {
     const ErrorRings found = error_rings(image);
     EXPECT_EQ(found.points, 4u);
     ASSERT_EQ(found.rings.size(), 3u);
-    for (const auto& [x, y] : wrong) {
+    for (const auto& point : wrong) {
+        const int x = point.first, y = point.second;
         const auto around = std::count_if(found.rings.begin(), found.rings.end(), [&](const Ring& r) {
             return r.x < x && x + 1 < r.x + r.width && r.y < y && y + 1 < r.y + r.height;
         });

@@ -9,7 +9,7 @@ namespace umbra {
 namespace {
 
 template <class Enum>
-void expect_table(std::vector<std::string_view> names) {
+void expect_table(const std::vector<std::string_view>& names) {
     std::set<std::string_view> different;
     std::vector<std::string_view> found;
     for (const Enum value : values_of<Enum>()) {
