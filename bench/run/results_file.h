@@ -45,6 +45,6 @@ private:
 [[nodiscard]] Field read_results(const std::filesystem::path& file);
 
 /// The version of the schema, as in the member `schema`.
-inline constexpr int kResultsSchema = 1;
+inline constexpr int kResultsSchema = 2;
 
 }  // namespace umbra

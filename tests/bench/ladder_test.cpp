@@ -221,7 +221,7 @@ TEST_F(LadderCommand, ReplacesItsOwnResultsAndNothingElse) {
     EXPECT_FALSE(fs::exists(options_.out / "breaks/stale.json"));
 
     for (const auto& [name, text] :
-         {std::pair{"results.json", R"({"schema": 1, "methods": []})"}, {"notes.txt", "mine"}}) {
+         {std::pair{"results.json", R"({"schema": 2, "methods": []})"}, {"notes.txt", "mine"}}) {
         fs::remove_all(options_.out);
         fs::create_directories(options_.out);
         std::ofstream(options_.out / name) << text;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/report/report.h"
+#include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -121,7 +122,7 @@ inline json sample(const std::string& name) {
                      {"name", "planar_projection"},
                      {"title", "Planar projection"},
                      {"serves", {{"how", "not"}, {"why", "\"blue sky\" is an area light"}}}};
-    return {{"schema", 1},
+    return {{"schema", kResultsSchema},
             {"version", "0.1.0"},
             {"command", "umbra compare scenes/court.json -o results"},
             {"machine",

@@ -7,8 +7,8 @@ namespace {
 using namespace report_fixture;
 
 TEST_F(Report, ToleratesWhatIsOptional) {
-    put(out / "bare", {{"schema", 1}, {"scene", {{"name", "bare_scene"}}}, {"methods", json::array()}});
-    put(out / "thin", {{"schema", 1},
+    put(out / "bare", {{"schema", kResultsSchema}, {"scene", {{"name", "bare_scene"}}}, {"methods", json::array()}});
+    put(out / "thin", {{"schema", kResultsSchema},
                        {"scene", {{"name", "thin"}, {"title", nullptr}}},
                        {"lights", {{{"name", "lamp"}}}},
                        {"methods",
@@ -34,7 +34,7 @@ TEST_F(Report, RefusesAPlaceThatIsWrong) {
         const char* message;
     };
     for (const Case& c :
-         {Case{"/schema", 2, "results.json:/schema: found 2, expected 1, "},
+         {Case{"/schema", 1, "results.json:/schema: found 1, expected 2, "},
           Case{"/schema", "1", "results.json:/schema: found \"1\", expected a number"},
           Case{"/scene/name", nullptr, "results.json:/scene/name: found nothing, expected a non-empty string"},
           Case{"/scene/title", 7, "results.json:/scene/title: found 7, expected a string"},
