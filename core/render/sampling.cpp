@@ -53,16 +53,6 @@ constexpr float kBelowOne = 1 - 0x1p-24f;
 
 }  // namespace
 
-Sampler sampler_named(std::string_view name) {
-    std::string_view rest = kSamplers;
-    for (int k = 0; !rest.empty(); ++k) {
-        const std::size_t bar = rest.find('|');
-        if (rest.substr(0, bar) == name) return static_cast<Sampler>(k);
-        rest = bar == std::string_view::npos ? std::string_view() : rest.substr(bar + 1);
-    }
-    throw std::invalid_argument("no sampler is named " + std::string(name));
-}
-
 SampleSet::SampleSet(Sampler sampler, int count, std::uint32_t seed) : sampler_(sampler), count_(count), seed_(seed) {
     if (count < 1) throw std::invalid_argument("a sample set needs samples");
     const auto blocks = static_cast<std::size_t>(count + 7) / 8;

@@ -25,7 +25,6 @@ enum class Sampler : std::uint8_t {
                  ///< [Art Owen, Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences, 1995]
 };
 inline constexpr std::string_view kSamplers = "random|stratified|regular|r2|sobol";
-[[nodiscard]] Sampler sampler_named(std::string_view name);  ///< throws std::invalid_argument
 
 /// Eight points of the unit square, [0, 1) each way.
 struct Samples8 {

@@ -237,7 +237,7 @@ const MethodInfo planar_projection{
         "scene sizes from the origin float coordinates merge faces into planes that are none.",
     .parameters = kParameters,
     .presets    = {{"textbook", "light_samples=16", "Sixteen points of an area light."},
-                   {"fast", "light_samples=16", "Sixteen points of an area light."},
+                   {"fast", "light_samples=4", "Four points of an area light."},
                    {"best", "light_samples=1024", "1024 points of an area light."}},
     .create     = create<PlanarProjection>,
 };

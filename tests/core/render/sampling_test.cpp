@@ -30,13 +30,6 @@ std::string name_of(Sampler sampler) {
 class EverySampler : public testing::TestWithParam<Sampler> {};
 INSTANTIATE_TEST_SUITE_P(All, EverySampler, testing::ValuesIn(kAll), [](const auto& p) { return name_of(p.param); });
 
-TEST_P(EverySampler, IsFoundByItsName) { EXPECT_EQ(sampler_named(name_of(GetParam())), GetParam()); }
-
-TEST(SamplerNames, OthersAreRefused) {
-    EXPECT_THROW(static_cast<void>(sampler_named("sobo")), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(sampler_named("")), std::invalid_argument);
-}
-
 /// Chi-square over 16 x 16 boxes, all points' samples together: 255 degrees of freedom. Well spread samples fall below
 /// the mean of 255, none may lie far above it (7 standard deviations of 22.6).
 TEST_P(EverySampler, CoversTheSquareEvenly) {
