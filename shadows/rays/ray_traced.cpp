@@ -9,30 +9,24 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <optional>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/base/predicates.h"
-#include "umbra/core/render/ray.h"
 #include "umbra/core/render/sampling.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/shared/light_points.h"
+#include "umbra/shadows/rays/near_light.h"
+#include "umbra/shadows/rays/starts.h"
+#include "umbra/shadows/rays/target.h"
 
 namespace umbra {
 namespace {
 
-/// How a shadow ray keeps from hitting the surface that it starts on.
-enum class OffsetPolicy : std::uint8_t {
-    skip_triangle,   ///< starts at the point; its own triangle, by id, is no hit, nor is what lies within the point's
-                     ///< rounding
-    integer_offset,  ///< moves the start along the normal by a few float steps
-                     ///< [Carsten Waechter, Nikolaus Binder, A Fast and Robust Method for Avoiding Self-Intersection,
-                     ///< 2019]
-    epsilon          ///< starts at a constant distance (a share of the scene's diagonal) along the normal
-};
+using namespace rays;
+
+/// Rays end before the light; what is beyond is NearLight's.
+constexpr float kTraced = 1 - static_cast<float>(kUntraced);
 
 struct Options {
     OffsetPolicy offset = OffsetPolicy::skip_triangle;
@@ -78,119 +72,9 @@ const std::vector<Parameter> kParameters{
                                   .choices = "area|irradiance"}),
 };
 
-/// Rays end this fraction of the segment to the light before it, so that triangles on which the light lies, as those of
-/// its own shape, do not block it. 256 float steps: enough for incidence down to about a degree. Triangles in that last
-/// part before a hard light that do not touch it are tested apart.
-constexpr double kUntraced = 0x1p-16;
-constexpr float kTraced    = 1 - 0x1p-16f;
-
-/// A triangle near a hard light, in the part of some segment to it that rays do not trace: its corners less the light's
-/// position, which is exact in double for any two floats within 2^29 of each other, and the side of its plane that the
-/// light is on.
-struct NearLight {
-    TriangleId triangle = kNoTriangle;
-    dvec3 a{0}, b{0}, c{0};
-    int light_side = 0;
-};
-
-/// The squared distance from the origin to a triangle, from below: to its box.
-double squared_distance(const NearLight& t) {
-    const dvec3 low = glm::min(glm::min(t.a, t.b), t.c), high = glm::max(glm::max(t.a, t.b), t.c);
-    const dvec3 gap = glm::max(glm::max(low, -high), dvec3(0));
-    return glm::dot(gap, gap);
-}
-
-/// The triangles in the untraced part of some segment to the light. Those whose plane holds the light, as those of its
-/// own shape, are not among them: a segment that ends in a plane does not pass through it.
-std::vector<NearLight> near_light(const Scene& scene, vec3 light) {
-    const Box box          = bounds(scene);
-    const dvec3 farthest   = glm::max(glm::abs(dvec3(box.min) - dvec3(light)), glm::abs(dvec3(box.max) - dvec3(light)));
-    const double untraced2 = kUntraced * kUntraced * glm::dot(farthest, farthest);
-    std::vector<NearLight> near;
-    for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
-        const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
-        NearLight n{t, dvec3(a) - dvec3(light), dvec3(b) - dvec3(light), dvec3(c) - dvec3(light), 0};
-        if (squared_distance(n) > untraced2) continue;
-        n.light_side = side_of_plane(a, b, c, light);
-        if (n.light_side != 0) near.push_back(n);
-    }
-    return near;
-}
-
-/// Whether the segment from the light to `p` (less the light's position) passes through the triangle.
-bool passes_through(const NearLight& t, dvec3 p) {
-    const dvec3 normal = glm::cross(t.b - t.a, t.c - t.a);
-    if (glm::dot(normal, p - t.a) * t.light_side >= 0) return false;  // both ends on one side
-    const double ab = glm::dot(glm::cross(t.a, t.b), p), bc = glm::dot(glm::cross(t.b, t.c), p),
-                 ca = glm::dot(glm::cross(t.c, t.a), p);
-    return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
-}
-
-/// The light in ray space. Rays to a light at distance D run in units of `unit`, a power of two near D where D is far
-/// beyond the scene and 1 else, so that nothing over- or underflows.
-struct Target {
-    LightKind kind = LightKind::point;
-    float unit     = 1;
-    vec3 centre{0};             ///< in units; directional: the unit vector to the light
-    vec3 axis_u{0}, axis_v{0};  ///< in units: rectangle: half edges; disk: perpendicular radii
-    dvec3 sphere{0};            ///< sphere: centre and radius, not in units
-    double radius = 0;
-};
-
-Target make_target(const Light& light, const RaySpace& space) {
-    Target target;
-    target.kind = light.kind;
-    if (light.kind == LightKind::directional) {
-        target.centre = vec3(-glm::normalize(dvec3(light.direction)));
-        return target;
-    }
-    const double scale    = space.scale;
-    const dvec3 centre    = (dvec3(light.position) - dvec3(space.centre)) * scale;
-    const double distance = glm::length(centre);
-    if (distance > 0x1p20) target.unit = static_cast<float>(std::exp2(std::floor(std::log2(distance))));
-    target.centre = vec3(centre / static_cast<double>(target.unit));
-    target.sphere = centre;
-    target.radius = static_cast<double>(light.radius) * scale;
-    DiskAxes axes{dvec3(light.edge_u) * 0.5, dvec3(light.edge_v) * 0.5};
-    if (light.kind == LightKind::disk) axes = disk_axes(light);
-    target.axis_u = vec3(axes.u * (scale / static_cast<double>(target.unit)));
-    target.axis_v = vec3(axes.v * (scale / static_cast<double>(target.unit)));
-    return target;
-}
-
-/// Where the rays of up to eight points start, in ray space.
-struct Starts {
-    float x[8]{}, y[8]{}, z[8]{};
-    float nx[8]{}, ny[8]{}, nz[8]{};
-    float height[8]{};  ///< what the ray meets before it has risen so far above the point's plane is no hit
-    TriangleId id[8]{};
-};
-
-/// Lane `lane` as lane 0; the other lanes are zero.
-Starts lane_alone(const Starts& starts, int lane) {
-    Starts alone;
-    for (const auto member :
-         {&Starts::x, &Starts::y, &Starts::z, &Starts::nx, &Starts::ny, &Starts::nz, &Starts::height})
-        (alone.*member)[0] = (starts.*member)[lane];
-    alone.id[0] = starts.id[lane];
-    return alone;
-}
-
 /// Whether any of `count` points asks for S_j, by their facing.
 bool any_asks(const Facing* facing, std::size_t count) {
     return std::any_of(facing, facing + count, [](Facing f) { return f >= Facing::partly; });
-}
-
-/// Moves p along n by float steps, which grow with the distance from the origin as the rounding of p does, or by a
-/// constant close to the origin, where they would vanish.
-vec3 integer_offset(vec3 p, vec3 n) {
-    constexpr float near = 1 / 32.0f, constant = 1 / 65536.0f, steps = 256;
-    for (int k = 0; k < 3; ++k) {
-        const auto step = static_cast<std::int32_t>(steps * n[k]);
-        const auto bits = std::bit_cast<std::int32_t>(p[k]);
-        p[k] = std::abs(p[k]) < near ? p[k] + constant * n[k] : std::bit_cast<float>(bits + (p[k] < 0 ? -step : step));
-    }
-    return p;
 }
 
 class RayTraced final : public MethodWith<Options> {
@@ -216,7 +100,7 @@ public:
 
     void aim(LightId light) override {
         target_     = make_target(scene_->lights[light], rays_->space());
-        near_light_ = find_near_light(light);
+        near_light_ = NearLight(*scene_, *rays_, light);
         set_.emplace(options.sampler, is_area(target_.kind) ? options.samples : 1,
                      static_cast<std::uint32_t>(options.seed) + 0x9e3779b9u * light);
     }
@@ -228,15 +112,13 @@ public:
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override;
 
     [[nodiscard]] std::size_t memory_bytes() const override {
-        return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0) +
-               near_light_.capacity() * sizeof(NearLight);
+        return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0) + near_light_.memory_bytes();
     }
 
 private:
-    [[nodiscard]] std::vector<NearLight> find_near_light(LightId light) const;
-    [[nodiscard]] vec3 exact_start(const PointBatch& points, std::size_t i) const;
-    [[nodiscard]] TriangleId blocker_near_light(const PointBatch& points, LightId light, std::size_t i) const;
-    void load_starts(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
+    [[nodiscard]] StartPlaces start_places() const {
+        return {*scene_, rays_->space(), options.offset, static_cast<float>(options.epsilon) * diagonal_};
+    }
     std::size_t hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
     void trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
     template <class Body>
@@ -251,93 +133,8 @@ private:
     std::optional<RayScene> rays_;
     Target target_;
     std::optional<SampleSet> set_;
-    std::vector<NearLight> near_light_;
+    NearLight near_light_;
 };
-
-/// The triangles in the untraced part of some segment to a hard light. Mostly there are none, and the tree finds that
-/// at once.
-std::vector<NearLight> RayTraced::find_near_light(LightId light) const {
-    const double distance = glm::length(target_.sphere);
-    if (target_.kind != LightKind::point && target_.kind != LightKind::spot) return {};
-    // Ray space holds the scene within 2 each way. What is farther than that from it is far from every triangle, too.
-    constexpr double scene_radius = 4;
-    if (distance > 2 * scene_radius) return {};
-    const double stretch = kUntraced * (distance + scene_radius);
-    if (rays_->clearance(target_.sphere, stretch) >= stretch) return {};
-    return near_light(*scene_, scene_->lights[light].position);
-}
-
-/// The point from its name, rounded in ray space only: where that is moved, its floats are finer than the world's.
-vec3 RayTraced::exact_start(const PointBatch& points, std::size_t i) const {
-    const TriangleId t    = points.triangle[i];
-    const RaySpace& space = rays_->space();
-    const dvec3 a(space.point(scene_->vertex(t, 0))), b(space.point(scene_->vertex(t, 1))),
-        c(space.point(scene_->vertex(t, 2)));
-    return vec3(a + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a));
-}
-
-/// Which triangle close before a hard light hides it from the point; kNoTriangle where none does.
-TriangleId RayTraced::blocker_near_light(const PointBatch& points, LightId light, std::size_t i) const {
-    if (near_light_.empty()) return kNoTriangle;
-    const TriangleId t = points.triangle[i];
-    const dvec3 a(scene_->vertex(t, 0)), b(scene_->vertex(t, 1)), c(scene_->vertex(t, 2));
-    const dvec3 p =
-        (a - dvec3(scene_->lights[light].position)) + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a);
-    for (const NearLight& n : near_light_)
-        if (n.triangle != t && passes_through(n, p)) return n.triangle;
-    return kNoTriangle;
-}
-
-/// Where the rays of the points first .. first + count - 1 start, at most eight. Lanes from `count` on stay as they
-/// were.
-void RayTraced::load_starts(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
-    const RaySpace& space = rays_->space();
-    const auto load       = [&](const auto& from, auto& to) {
-        if (count == 8)
-            std::copy_n(from.data() + first, 8, to);
-        else
-            std::copy_n(from.data() + first, count, to);
-    };
-    load(points.px, starts.x), load(points.py, starts.y), load(points.pz, starts.z);
-    load(points.nx, starts.nx), load(points.ny, starts.ny), load(points.nz, starts.nz);
-    load(points.triangle, starts.id);
-    if (options.offset != OffsetPolicy::skip_triangle) {
-        const float lift = static_cast<float>(options.epsilon) * diagonal_;
-        for (int k = 0; k < 8; ++k) {
-            const vec3 p(starts.x[k], starts.y[k], starts.z[k]), n(starts.nx[k], starts.ny[k], starts.nz[k]);
-            const vec3 q = options.offset == OffsetPolicy::epsilon ? p + lift * n : integer_offset(p, n);
-            starts.x[k] = q.x, starts.y[k] = q.y, starts.z[k] = q.z;
-            starts.id[k] = kNoTriangle;
-        }
-    }
-    for (int k = 0; k < 8; ++k) {
-        starts.x[k] = (starts.x[k] - space.centre.x) * space.scale;
-        starts.y[k] = (starts.y[k] - space.centre.y) * space.scale;
-        starts.z[k] = (starts.z[k] - space.centre.z) * space.scale;
-    }
-    if (options.offset != OffsetPolicy::skip_triangle) return;
-    if (space.centre != vec3(0)) {
-        for (std::size_t k = 0; k < count; ++k) {
-            if (starts.id[k] == kNoTriangle) continue;
-            const vec3 p = exact_start(points, first + k);
-            starts.x[k] = p.x, starts.y[k] = p.y, starts.z[k] = p.z;
-        }
-    }
-    // How far the start may lie below its plane, with u = 2^-24 and unit normal n:
-    //   p's coordinates are rounded once, each by at most u |p_k|: together by sum |n_k| u |p_k| along n;
-    //   a triangle in that plane (a neighbour, a duplicate) is met where Embree's (v - p).N vanishes, v a vertex, N its
-    //   normal. v - p lies in the plane, so |v_k - p_k| <= E sqrt(1 - n_k^2), E <= 2 the scene's extent; the
-    //   difference, N's coordinates, the products and their sums are rounded, each by a few u of that.
-    // Both vanish for planes that the axes span: a floor at y = 0 needs no tolerance. It gets a billionth of the scene,
-    // since a ray that starts after 0 need not visit the floor's flat box.
-    constexpr float u = 0x1p-24f, least = 0x1p-30f;
-    for (int k = 0; k < 8; ++k) {
-        const float nx = starts.nx[k], ny = starts.ny[k], nz = starts.nz[k];
-        const auto term  = [](float n) { return std::abs(n) * std::sqrt(std::max(0.0f, 1 - n * n)); };
-        starts.height[k] = u * (std::abs(nx * starts.x[k]) + std::abs(ny * starts.y[k]) + std::abs(nz * starts.z[k])) +
-                           (4 * u) * (term(nx) + term(ny) + term(nz)) + least;
-    }
-}
 
 /// Writes one ray for each of the `count` points that faces the light, from `rays` on. Returns how many.
 std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count,
@@ -448,13 +245,14 @@ float RayTraced::visible_fraction(const Starts& starts, int lane, PointKey key) 
 void RayTraced::trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile,
                                  std::span<float> s) const {
     const FlushDenormals flush;
-    const Facing* facing = points.facing[light].data();
+    const StartPlaces places = start_places();
+    const Facing* facing     = points.facing[light].data();
     Starts starts;
     ShadowRay rays[PointTile::kPoints];
     std::size_t traced = 0;
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         if (!any_asks(facing + first, count)) return;
-        load_starts(points, first, count, starts);
+        places.load(points, first, count, starts);
         traced += hard_light_rays(starts, facing + first, count, rays + traced);
     });
     if (traced == 0) return;
@@ -463,7 +261,7 @@ void RayTraced::trace_hard_light(const PointBatch& points, LightId light, const 
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         for (std::size_t i = first; i < first + count; ++i) {
             if (!points.asks(light, i)) continue;
-            const bool blocked = rays[next++].tfar < 0 || blocker_near_light(points, light, i) != kNoTriangle;
+            const bool blocked = rays[next++].tfar < 0 || near_light_.blocker(points, i) != kNoTriangle;
             s[i]               = blocked ? 0.0f : 1.0f;
         }
     });
@@ -473,11 +271,12 @@ void RayTraced::trace_hard_light(const PointBatch& points, LightId light, const 
 void RayTraced::trace_area_light(const PointBatch& points, LightId light, const PointTile& tile,
                                  std::span<float> s) const {
     const FlushDenormals flush;
-    const Facing* facing = points.facing[light].data();
+    const StartPlaces places = start_places();
+    const Facing* facing     = points.facing[light].data();
     Starts starts;
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         if (!any_asks(facing + first, count)) return;
-        load_starts(points, first, count, starts);
+        places.load(points, first, count, starts);
         for (std::size_t k = 0; k < count; ++k)
             if (points.asks(light, first + k))
                 s[first + k] = visible_fraction(starts, static_cast<int>(k), set_->key(first + k));
@@ -518,18 +317,19 @@ TriangleId RayTraced::first_blocker(const Starts& starts, int lane, Facing facin
 
 void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
     const std::vector<Facing>& facing = points.facing[light];
+    const StartPlaces places          = start_places();
     parallel_ranges((points.size() + 7) / 8, 8, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         Starts starts;
         for (std::size_t first = 8 * begin; first < std::min(8 * end, points.size()); first += 8) {
             const std::size_t count = std::min<std::size_t>(8, points.size() - first);
-            load_starts(points, first, count, starts);
+            places.load(points, first, count, starts);
             for (std::size_t k = 0; k < count; ++k) {
                 TriangleId& blocker = blockers[first + k];
                 blocker             = kNoTriangle;
                 if (facing[first + k] < Facing::partly) continue;
                 blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], first + k);
-                if (blocker == kNoTriangle) blocker = blocker_near_light(points, light, first + k);
+                if (blocker == kNoTriangle) blocker = near_light_.blocker(points, first + k);
             }
         }
     });

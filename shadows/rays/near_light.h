@@ -1,0 +1,50 @@
+// Triangles so close before a hard light that no ray reaches them.
+//
+// Rays end a fraction of the segment before the light, so that triangles on which the light lies, as those of its own
+// shape, do not block it. Triangles in that last part of a segment that do not touch the light are tested here.
+#pragma once
+
+#include <vector>
+
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/ray.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra::rays {
+
+/// The fraction of the segment to the light that rays do not trace: 256 float steps, enough for incidence down to about
+/// a degree.
+inline constexpr double kUntraced = 0x1p-16;
+
+/// The triangles in the untraced part of some segment to one hard light. Empty for other lights, and for most scenes.
+/// Const members may be called from many threads.
+class NearLight {
+public:
+    NearLight() = default;
+
+    /// The scene must outlive this object.
+    NearLight(const Scene& scene, const RayScene& rays, LightId light);
+
+    /// Which of them hides the light from point i; kNoTriangle where none does.
+    [[nodiscard]] TriangleId blocker(const PointBatch& points, std::size_t i) const;
+
+    [[nodiscard]] std::size_t memory_bytes() const { return near_.capacity() * sizeof(Occluder); }
+
+private:
+    /// Corners less the light's position, which is exact in double for any two floats within 2^29 of each other, and
+    /// the side of the triangle's plane that the light is on, not 0.
+    struct Occluder {
+        TriangleId triangle = kNoTriangle;
+        dvec3 a{0}, b{0}, c{0};
+        int light_side = 0;
+    };
+
+    static double squared_distance(const Occluder& t);
+    static bool passes_through(const Occluder& t, dvec3 p);
+
+    const Scene* scene_ = nullptr;
+    dvec3 light_{0};
+    std::vector<Occluder> near_;
+};
+
+}  // namespace umbra::rays
