@@ -126,11 +126,13 @@ bool passes_through(const NearLight& t, dvec3 p) {
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
 }
 
-/// The light in ray space. Rays to a light at distance D run in units of `unit`, a power of two near D where D is far
-/// beyond the scene and 1 else, so that nothing over- or underflows.
+/// The light in ray space. Rays to a light whose farthest point is at distance D run in units of `unit`, a power of two
+/// near D where D is far beyond the scene and 1 else, so that nothing over- or underflows.
 struct Target {
     LightKind kind = LightKind::point;
-    float unit     = 1;
+    double unit    = 1;
+    float per_unit = 1;         ///< 1 / unit; 0 where the scene is a point for the light
+    float reach    = kTraced;   ///< tfar: where rays end, in ray space
     vec3 centre{0};             ///< in units; directional: the unit vector to the light
     vec3 axis_u{0}, axis_v{0};  ///< in units: rectangle: half edges; disk: perpendicular radii
     dvec3 sphere{0};            ///< sphere: centre and radius, not in units
@@ -144,17 +146,21 @@ Target make_target(const Light& light, const RaySpace& space) {
         target.centre = vec3(-glm::normalize(dvec3(light.direction)));
         return target;
     }
-    const double scale    = space.scale;
-    const dvec3 centre    = (dvec3(light.position) - dvec3(space.centre)) * scale;
-    const double distance = glm::length(centre);
-    if (distance > 0x1p20) target.unit = static_cast<float>(std::exp2(std::floor(std::log2(distance))));
-    target.centre = vec3(centre / static_cast<double>(target.unit));
-    target.sphere = centre;
-    target.radius = static_cast<double>(light.radius) * scale;
+    const double scale = space.scale;
+    const dvec3 centre = (dvec3(light.position) - dvec3(space.centre)) * scale;
     DiskAxes axes{dvec3(light.edge_u) * 0.5, dvec3(light.edge_v) * 0.5};
     if (light.kind == LightKind::disk) axes = disk_axes(light);
-    target.axis_u = vec3(axes.u * (scale / static_cast<double>(target.unit)));
-    target.axis_v = vec3(axes.v * (scale / static_cast<double>(target.unit)));
+    double farthest = glm::length(centre);
+    if (light.kind == LightKind::rectangle || light.kind == LightKind::disk)
+        farthest = std::max({farthest, glm::length(axes.u) * scale, glm::length(axes.v) * scale});
+    if (farthest > 0x1p20) target.unit = std::exp2(std::floor(std::log2(farthest)));
+    target.per_unit = static_cast<float>(1 / target.unit);
+    target.reach    = kTraced * static_cast<float>(std::min(target.unit, 0x1p100));
+    target.centre   = vec3(centre / target.unit);
+    target.sphere   = centre;
+    target.radius   = static_cast<double>(light.radius) * scale;
+    target.axis_u   = vec3(axes.u * (scale / target.unit));
+    target.axis_v   = vec3(axes.v * (scale / target.unit));
     return target;
 }
 
@@ -343,7 +349,7 @@ void RayTraced::load_starts(const PointBatch& points, std::size_t first, std::si
 std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count,
                                        ShadowRay* rays) const {
     const bool parallel  = target_.kind == LightKind::directional;
-    const float per_unit = parallel ? 0 : 1 / target_.unit;
+    const float per_unit = parallel ? 0 : target_.per_unit;
     float dx[8], dy[8], dz[8], tnear[8];
     for (int k = 0; k < 8; ++k) {
         dx[k]            = target_.centre.x - per_unit * starts.x[k];
@@ -352,7 +358,7 @@ std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facin
         const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
         tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
     }
-    const float tfar    = parallel ? kInfinity : kTraced * target_.unit;
+    const float tfar    = parallel ? kInfinity : target_.reach;
     std::size_t written = 0;
     for (std::size_t k = 0; k < count; ++k) {
         if (facing[k] < Facing::partly) continue;
@@ -368,11 +374,11 @@ std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facin
 template <class Body>
 bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const {
     const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]), n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
-    vec3 to_centre = target_.centre - o * (1 / target_.unit), axis_u = target_.axis_u, axis_v = target_.axis_v;
+    vec3 to_centre = target_.centre - o * target_.per_unit, axis_u = target_.axis_u, axis_v = target_.axis_v;
     if (target_.kind == LightKind::sphere) {
         TangentDisk disk;
         if (!tangent_disk(dvec3(o), target_.sphere, target_.radius, disk)) return false;
-        const double per_unit = 1 / static_cast<double>(target_.unit);
+        const double per_unit = 1 / target_.unit;
         to_centre             = vec3((disk.centre - dvec3(o)) * per_unit);
         axis_u                = vec3(disk.axis_u * per_unit);
         axis_v                = vec3(disk.axis_v * per_unit);
@@ -396,7 +402,7 @@ bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, co
             const float rise = n.x * dx + n.y * dy + n.z * dz;
             packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
             packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
-            packet.tfar[k]  = kTraced * target_.unit;
+            packet.tfar[k]  = target_.reach;
             packet.valid[k] = rise > 0 && first + k < options.samples ? -1 : 0;
         }
         if (!body(packet)) return true;
