@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
+#include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/embree_api.h"
 
@@ -17,12 +20,28 @@ struct Hits8 {
     float u[8], v[8];
 };
 
+// In ray space the scene is about 1 wide and lies within kScene of the origin. Eye rays that begin farther than kFar
+// away, where floats are coarse, are moved along themselves to the scene; beyond kFarthest doubles cannot tell any more
+// where in the scene, or whether, a ray passes it.
+constexpr double kScene = 4, kFar = 0x1p20, kFarthest = 0x1p52;
+
+/// The largest distance from the origin of ray space at which eye rays of the raster begin.
+double farthest_start(const CameraFrame& f, const RaySpace& space) {
+    const double scale  = static_cast<double>(space.scale);
+    const double window = f.projection == Projection::orthographic ? std::hypot(f.half_width, f.half_height) : 0;
+    return (glm::length(f.eye - dvec3(space.centre)) + window) * scale;
+}
+
 /// Eye rays as the camera defines them, split into what varies with the column and with the row of the raster.
 class EyeRays {
 public:
     EyeRays(const CameraFrame& f, const RaySpace& space)
-        : window_(f.projection == Projection::orthographic), eye_(space.point(f.eye)), forward_(f.forward) {
+        : window_(f.projection == Projection::orthographic),
+          far_(farthest_start(f, space) > kFar),
+          eye_(space.point(f.eye)),
+          forward_(f.forward) {
         const double scale = static_cast<double>(space.scale);
+        still_             = window_ ? f.forward : (f.eye - dvec3(space.centre)) * scale;
         middle_            = window_ ? (f.eye - dvec3(space.centre)) * scale : f.forward;
         // Beyond the right and bottom edge up to whole packets; those lanes are not traced.
         for (int x = 0; x < f.width + kTileWidth; ++x) {
@@ -40,7 +59,9 @@ public:
         std::fill_n(ray.mask, 8, ~0u);
     }
 
-    void aim(RTCRay8& ray, int x, int y) const {
+    /// Clears `valid` of rays that pass far from the scene.
+    void aim(RTCRay8& ray, int x, int y, int* valid) const {
+        if (far_) return aim_from_afar(ray, x, y, valid);
         lanes(0, x, y, window_ ? ray.org_x : ray.dir_x);
         lanes(1, x, y, window_ ? ray.org_y : ray.dir_y);
         lanes(2, x, y, window_ ? ray.org_z : ray.dir_z);
@@ -57,8 +78,28 @@ private:
             for (int k = 0; k < 4; ++k) to[4 * r + k] = static_cast<float>(middle_[d] + (column[k] - row_[y + r][d]));
     }
 
-    bool window_;
+    void aim_from_afar(RTCRay8& ray, int x, int y, int* valid) const {
+        for (int k = 0; k < 8; ++k) {
+            const int column = x + k % 4, row = y + k / 4;
+            dvec3 moving;
+            for (int d = 0; d < 3; ++d) moving[d] = middle_[d] + (column_[d][column] - row_[row][d]);
+            const dvec3 direction = window_ ? still_ : moving, eye = window_ ? moving : still_;
+            // From the place nearest to the origin of ray space, which is in the scene, back until before the scene.
+            const double nearest = -glm::dot(eye, direction) / glm::dot(direction, direction);
+            const dvec3 place    = eye + nearest * direction;
+            const double start   = std::max(0.0, nearest - 2 * kScene / glm::length(direction));
+            const dvec3 origin   = eye + start * direction;
+            if (!(glm::length(place) < kScene && glm::length(origin) < 4 * kScene)) valid[k] = 0;
+            const vec3 o(valid[k] != 0 ? origin : dvec3(0)), r(direction);
+            ray.org_x[k] = o.x, ray.org_y[k] = o.y, ray.org_z[k] = o.z;
+            ray.dir_x[k] = r.x, ray.dir_y[k] = r.y, ray.dir_z[k] = r.z;
+        }
+        std::fill_n(ray.tfar, 8, kInfinity);
+    }
+
+    bool window_, far_;
     vec3 eye_, forward_;
+    dvec3 still_{0};   ///< what all rays have alike, in ray space: the eye, or the direction of an orthographic view
     dvec3 middle_{0};  ///< perspective: forward; orthographic: the eye, in ray space
     std::vector<double> column_[3];
     std::vector<dvec3> row_;
@@ -74,7 +115,7 @@ void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, i
         for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4) {
             alignas(32) int valid[8];
             for (int k = 0; k < 8; ++k) valid[k] = x + (k & 3) < width && y + (k >> 2) < height ? -1 : 0;
-            eye.aim(rays.ray, x, y);
+            eye.aim(rays.ray, x, y, valid);
             std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
             intersect_coherent(scene, valid, rays);
             Hits8& hit = hits[(y - y0) / 2][(x - x0) / 4];
@@ -198,6 +239,24 @@ private:
     bool all_two_sided_ = true;
 };
 
+double widest(const Box& box) {
+    const dvec3 size = dvec3(box.max) - dvec3(box.min);
+    return std::max({size.x, size.y, size.z});
+}
+
+/// Throws InputError where eye rays cannot be placed in the scene.
+void check_reach(const CameraFrame& frame, const RaySpace& space, const Scene& scene) {
+    if (!(farthest_start(frame, space) > kFarthest)) return;
+    const Box box = bounds(scene);
+    if (box.empty() || box.min == box.max) return;  // nothing has an area, so nothing is seen
+    const std::string_view what = frame.projection == Projection::perspective ? "the eye is" : "eye or window reach";
+    throw InputError(
+        fmt::format("{}: camera: {} {:.2g} from the scene, which is {:.2g} wide: beyond {:.1g} times that, "
+                    "rounding decides what a pixel sees",
+                    scene.source.empty() ? scene.name : scene.source, what,
+                    farthest_start(frame, space) / static_cast<double>(space.scale), widest(box), kFarthest / 2));
+}
+
 }  // namespace
 
 void primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height,
@@ -205,6 +264,7 @@ void primary_points(const RayScene& rays, const Scene& scene, const Camera& came
     batch.raster = frame(camera, width, height);
     batch.eye    = camera.eye;
     batch.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    check_reach(*batch.raster, rays.space(), scene);
     const EyeRays eye(*batch.raster, rays.space());
     const PointWriter writer(scene, batch);
     const int across = (width + kTileWidth - 1) / kTileWidth, down = (height + kTileHeight - 1) / kTileHeight;

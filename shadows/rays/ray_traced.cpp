@@ -25,9 +25,6 @@ namespace {
 
 using namespace rays;
 
-/// Rays end before the light; what is beyond is NearLight's.
-constexpr float kTraced = 1 - static_cast<float>(kUntraced);
-
 struct Options {
     OffsetPolicy offset = OffsetPolicy::skip_triangle;
     double epsilon      = 1e-4;
@@ -140,7 +137,7 @@ private:
 std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count,
                                        ShadowRay* rays) const {
     const bool parallel  = target_.kind == LightKind::directional;
-    const float per_unit = parallel ? 0 : 1 / target_.unit;
+    const float per_unit = parallel ? 0 : target_.per_unit;
     float dx[8], dy[8], dz[8], tnear[8];
     for (int k = 0; k < 8; ++k) {
         dx[k]            = target_.centre.x - per_unit * starts.x[k];
@@ -149,7 +146,7 @@ std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facin
         const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
         tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
     }
-    const float tfar    = parallel ? kInfinity : kTraced * target_.unit;
+    const float tfar    = parallel ? kInfinity : target_.reach;
     std::size_t written = 0;
     for (std::size_t k = 0; k < count; ++k) {
         if (facing[k] < Facing::partly) continue;
@@ -165,11 +162,11 @@ std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facin
 template <class Body>
 bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const {
     const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]), n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
-    vec3 to_centre = target_.centre - o * (1 / target_.unit), axis_u = target_.axis_u, axis_v = target_.axis_v;
+    vec3 to_centre = target_.centre - o * target_.per_unit, axis_u = target_.axis_u, axis_v = target_.axis_v;
     if (target_.kind == LightKind::sphere) {
         TangentDisk disk;
         if (!tangent_disk(dvec3(o), target_.sphere, target_.radius, disk)) return false;
-        const double per_unit = 1 / static_cast<double>(target_.unit);
+        const double per_unit = 1 / target_.unit;
         to_centre             = vec3((disk.centre - dvec3(o)) * per_unit);
         axis_u                = vec3(disk.axis_u * per_unit);
         axis_v                = vec3(disk.axis_v * per_unit);
@@ -193,7 +190,7 @@ bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, co
             const float rise = n.x * dx + n.y * dy + n.z * dz;
             packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
             packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
-            packet.tfar[k]  = kTraced * target_.unit;
+            packet.tfar[k]  = target_.reach;
             packet.valid[k] = rise > 0 && first + k < options.samples ? -1 : 0;
         }
         if (!body(packet)) return true;
