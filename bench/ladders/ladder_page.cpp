@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "report_assets.h"
+#include "umbra/bench/ladders/interior_points.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"
@@ -65,6 +66,7 @@ json fared(const Field& ladder, const Field& method) {
     };
     from("not_served_from", "not served");
     from("silent_from", "mostly undefined");
+    from("not_judged_from", "not judged");
     const bool breaks = method["breaks_at"].present();
     std::string words = breaks ? rung_value(*method["breaks_at"].number()) : note.empty() ? "holds" : "";
     return {{"words", words},   {"kind", method["kind"].text()},   {"note", note}, {"why", method["why"].text()},
@@ -73,15 +75,20 @@ json fared(const Field& ladder, const Field& method) {
 
 json chart_of(const Field& ladder, double limit) {
     std::vector<std::string> rungs;
-    for (const Field& rung : ladder["rungs"].items())
-        if (!rung["unjudged"].present()) rungs.push_back(rung_value(rung["value"].number().value_or(0)));
+    std::vector<double> judged;
+    for (const Field& rung : ladder["rungs"].items()) {
+        if (rung["unjudged"].present()) continue;
+        judged.push_back(rung["value"].number().value_or(0));
+        rungs.push_back(rung_value(judged.back()));
+    }
     std::vector<RungSeries> series;
     for (const Field& method : ladder["methods"].items()) {
         RungSeries s;
         s.label = label_of(method);
         for (const Field& rung : method["rungs"].items()) s.shares.push_back(rung["interior_share"].number());
-        s.breaks_at = rung_of(ladder, method["breaks_at"]);
-        s.style     = series.size();
+        if (rung_of(ladder, method["breaks_at"]))
+            s.breaks_at = std::find(judged.begin(), judged.end(), *method["breaks_at"].number()) - judged.begin();
+        s.style = series.size();
         series.push_back(std::move(s));
     }
     return rung_chart(rungs, series, limit);
@@ -140,16 +147,19 @@ json ladder_view(const Field& ladder, double limit) {
     const bool sum = ladder["methods"].items().size() == 1 && ladder["methods"].items()[0]["name"].text() == "sum";
     view["chart"]  = sum ? json(false) : chart_of(ladder, limit);
     if (!sum) view["chart"]["unit_words"] = ladder["unit"].text();
-    std::string truth, end;
+    view["rungs"] = json::array();
+    std::string truth;
     for (const Field& rung : ladder["rungs"].items()) {
         if (const std::string by = rung["truth"].text(); truth.find(by) == std::string::npos)
             truth += (truth.empty() ? "" : ", then ") + by;
-        if (rung["unjudged"].present())
-            end = fmt::format("Nothing is compared from {}: {}.", rung_value(rung["value"].number().value_or(0)),
-                              rung["unjudged"].text());
+        if (!sum)
+            view["rungs"].push_back({{"value", rung_value(rung["value"].number().value_or(0))},
+                                     {"lit", count(rung["interior_lit"].number())},
+                                     {"shadow", count(rung["interior_shadow"].number())},
+                                     {"unjudged", rung["unjudged"].text()}});
     }
-    view["truth"] = truth;
-    view["end"]   = end;
+    view["truth"]     = truth;
+    view["has_rungs"] = !view["rungs"].empty();
     for (const Field& method : ladder["methods"].items()) {
         json row      = fared(ladder, method);
         row["label"]  = label_of(method);
@@ -168,18 +178,18 @@ json ladder_table_view(const Field& root, const std::string& page) {
     json view                        = {{"columns", json::array()}, {"rows", json::array()}};
     for (const Field& method : methods) view["columns"].push_back(label_of(method));
     for (const Field& ladder : root["ladders"].items()) {
-        json row = {{"title", ladder["title"].required_text()},
-                    {"unit", ladder["unit"].text()},
-                    {"href", page + "#" + ladder["name"].required_text()},
-                    {"cells", json::array()}};
-        std::string range;
-        const auto rungs = ladder["rungs"].items();
-        if (!rungs.empty()) {
-            const bool cut    = rungs.back()["unjudged"].present() && rungs.size() > 1;
-            const Field& last = rungs[rungs.size() - (cut ? 2 : 1)];
-            range             = fmt::format("{} to {}", rung_value(rungs[0]["value"].number().value_or(0)),
-                                            rung_value(last["value"].number().value_or(0)));
-        }
+        json row          = {{"title", ladder["title"].required_text()},
+                             {"unit", ladder["unit"].text()},
+                             {"href", page + "#" + ladder["name"].required_text()},
+                             {"cells", json::array()}};
+        std::string range = "not judged";
+        std::optional<double> first, last;
+        for (const Field& rung : ladder["rungs"].items())
+            if (!rung["unjudged"].present()) {
+                last  = rung["value"].number().value_or(0);
+                first = first.value_or(*last);
+            }
+        if (first) range = fmt::format("{} to {}", rung_value(*first), rung_value(*last));
         row["range"] = range;
         for (const Field& column : methods) {
             json cell = {{"absent", true}};
@@ -214,9 +224,14 @@ json ladder_showcase_view(const Field& root, const std::string& page) {
 
 void write_ladder_page(const Field& root, const fs::path& folder, const std::string& report, StagedFiles& staged) {
     const double limit = root["breaking_share"].number().value_or(0);
-    json view          = {{"report", report},         {"table", ladder_table_view(root, "")},
-                          {"run", run_view(root)},    {"share", fmt::format("{:g}", 100 * limit)},
-                          {"legend", class_legend()}, {"ladders", json::array()}};
+    json view          = {{"report", report},
+                          {"table", ladder_table_view(root, "")},
+                          {"run", run_view(root)},
+                          {"share", fmt::format("{:g}", 100 * limit)},
+                          {"least", count(double(kLeastOfAKind))},
+                          {"least_share", fmt::format("{:g}", 100 * kLeastShareOfAKind)},
+                          {"legend", class_legend()},
+                          {"ladders", json::array()}};
     int broken         = 0;
     for (const Field& ladder : root["ladders"].items()) {
         view["ladders"].push_back(ladder_view(ladder, limit));

@@ -11,21 +11,29 @@ Json outcome_json(const RungOutcome& o) {
     Json j = {{"serves", service_json(o.service)}};
     if (!o.stopped.empty()) j["stopped"] = o.stopped;
     if (!o.ran()) return j;
-    j["points"]         = o.points;
-    j["undefined"]      = o.undefined;
-    j["false_shadow"]   = {{"interior", o.false_shadow.interior}, {"edge", o.false_shadow.edge}};
-    j["false_light"]    = {{"interior", o.false_light.interior}, {"edge", o.false_light.edge}};
-    j["interior_share"] = number(o.interior_share());
-    j["mae"]            = number(o.mae);
-    j["broken"]         = o.broken();
-    j["kind"]           = o.kind.empty() ? Json(nullptr) : Json(o.kind);
+    j["points"]          = o.points;
+    j["undefined"]       = o.undefined;
+    j["false_shadow"]    = {{"interior", o.false_shadow.interior}, {"edge", o.false_shadow.edge}};
+    j["false_light"]     = {{"interior", o.false_light.interior}, {"edge", o.false_light.edge}};
+    j["interior_lit"]    = o.can_show.lit;
+    j["interior_shadow"] = o.can_show.shadow;
+    j["interior_share"]  = number(o.interior_share());
+    j["mae"]             = number(o.mae);
+    j["broken"]          = o.broken();
+    j["kind"]            = o.kind.empty() ? Json(nullptr) : Json(o.kind);
     return j;
 }
 
 Json rung_json(const Rung& rung) {
-    Json j = {
-        {"value", rung.value}, {"truth", rung.truth},       {"surface_points", rung.surface_points}, {"lit", rung.lit},
-        {"umbra", rung.umbra}, {"penumbra", rung.penumbra}, {"on_boundary", rung.on_boundary}};
+    Json j = {{"value", rung.value},
+              {"truth", rung.truth},
+              {"surface_points", rung.surface_points},
+              {"lit", rung.lit},
+              {"umbra", rung.umbra},
+              {"penumbra", rung.penumbra},
+              {"on_boundary", rung.on_boundary},
+              {"interior_lit", rung.can_show.lit},
+              {"interior_shadow", rung.can_show.shadow}};
     if (!rung.unjudged.empty()) j["unjudged"] = rung.unjudged;
     return j;
 }
@@ -44,6 +52,7 @@ Json method_climb_json(const LadderRun& run, std::size_t m) {
                      {"kind", nullptr},
                      {"silent_from", value_of(run, c.silent_from)},
                      {"not_served_from", value_of(run, c.not_served_from)},
+                     {"not_judged_from", value_of(run, c.not_judged_from)},
                      {"why", c.why},
                      {"rungs", Json::array()}};
     if (c.breaks_at) {
@@ -81,14 +90,13 @@ std::string climb_in_words(const Json& method, const Json& ladder) {
     std::string words;
     if (!method["breaks_at"].is_null())
         words = fmt::format("{:g} {}", value("breaks_at"), method["kind"].get<std::string>());
-    if (!method["not_served_from"].is_null()) {
-        const bool never = value("not_served_from") == ladder["rungs"][0]["value"].get<double>();
+    for (const auto& [key, what] : {std::pair("not_served_from", "not served"),
+                                    {"silent_from", "mostly undefined"},
+                                    {"not_judged_from", "not judged"}}) {
+        if (method[key].is_null()) continue;
+        const bool never = value(key) == ladder["rungs"][0]["value"].get<double>();
         if (!words.empty()) words += "; ";
-        words += never ? "not served" : fmt::format("not served from {:g}", value("not_served_from"));
-    }
-    if (!method["silent_from"].is_null()) {
-        if (!words.empty()) words += "; ";
-        words += fmt::format("mostly undefined from {:g}", value("silent_from"));
+        words += never ? what : fmt::format("{} from {:g}", what, value(key));
     }
     return words.empty() ? "holds" : words;
 }
@@ -112,10 +120,11 @@ std::string ladder_table(const Json& ladders) {
                 if (method["text"] == column) cell = climb_in_words(method, ladder);
             row.push_back(cell);
         }
-        double last = ladder["rungs"][0]["value"];
+        std::string last = "no rung";
         for (const Json& rung : ladder["rungs"])
-            if (!rung.contains("unjudged")) last = rung["value"];
-        row.push_back(fmt::format("{:g} {}", last, ladder["unit"].get<std::string>()));
+            if (!rung.contains("unjudged"))
+                last = fmt::format("{:g} {}", rung["value"].get<double>(), ladder["unit"].get<std::string>());
+        row.push_back(last);
         rows.push_back(std::move(row));
     }
     std::vector<std::size_t> widths(rows[0].size(), 0);

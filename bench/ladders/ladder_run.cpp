@@ -43,6 +43,7 @@ void describe_truth(const RungStage& stage, Rung& rung) {
         const VisibilityError e =
             visibility_error(stage.points, j, truth, truth, visibility_tolerance(stage.scene.lights[j].kind));
         rung.lit += e.lit, rung.umbra += e.umbra, rung.penumbra += e.penumbra, rung.on_boundary += e.on_boundary;
+        rung.can_show += interior_points(stage.scene, stage.points, j, truth, truth);
     }
 }
 
@@ -55,24 +56,32 @@ bool RungOutcome::broken() const {
 
 Climb climb(const LadderRun& run, std::size_t method) {
     Climb c;
+    // Only what lasts to the last rung is said to be so "from here on".
+    const auto lasts = [](bool now, std::size_t r, std::optional<std::size_t>& from) {
+        if (!now)
+            from.reset();
+        else if (!from)
+            from = r;
+    };
     for (std::size_t r = 0; r < run.rungs.size(); ++r) {
-        if (!run.rungs[r].unjudged.empty()) break;
+        if (!run.rungs[r].unjudged.empty()) {
+            lasts(true, r, c.not_judged_from);
+            if (!c.breaks_at && c.not_judged_from == r) c.why = run.rungs[r].unjudged;
+            continue;
+        }
         const RungOutcome& o = run.rungs[r].outcomes[method];
         if (!c.breaks_at && (o.broken() || !o.stopped.empty())) {
             c.breaks_at = r;
             if (!o.stopped.empty()) c.why = o.stopped;
         }
-        // Only what lasts to the last rung is said to be so "from here on".
-        if (!o.silent())
-            c.silent_from.reset();
-        else if (!c.silent_from)
-            c.silent_from = r;
-        if (o.service)
-            c.not_served_from.reset();
-        else if (!c.not_served_from)
-            c.not_served_from = r;
+        const bool counted = run.ladder->wrong_sum == nullptr;  // the sum has no lit and shadow points
+        lasts(o.silent(), r, c.silent_from);
+        lasts(!o.service, r, c.not_served_from);
+        lasts(counted && o.unjudged() && !o.silent(), r, c.not_judged_from);
         if (!o.service && !c.breaks_at) c.why = o.service.why;
+        if (!c.breaks_at && c.not_judged_from == r) c.why = o.can_show.lacking();
     }
+    if (c.breaks_at) c.not_judged_from.reset();  // it is known how the climb ended
     return c;
 }
 
@@ -108,6 +117,7 @@ RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vec
             sum.penumbra_error.false_light += e.penumbra_error.false_light;
             sum.leak += e.leak, sum.detachment += e.detachment, sum.unnamed += e.unnamed;
             absolute += e.mae * double(e.points);
+            o.can_show += interior_points(stage.scene, stage.points, j, stage.truth.planes[j], ran.planes[j]);
             if (explained != nullptr) explained->push_back(std::move(light));
         }
         if (o.points > 0) o.mae = absolute / double(o.points);
@@ -141,6 +151,10 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
             rung.unjudged = fmt::format("the eye sees {} surface points, on the first rung {}", rung.surface_points,
                                         run.rungs[0].surface_points);
             break;
+        }
+        if (!ladder.wrong_sum && !rung.can_show.enough()) {
+            rung.unjudged = rung.can_show.lacking();
+            continue;
         }
         if (ladder.wrong_sum) {
             RungOutcome o;

@@ -7,18 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/ladders/interior_points.h"
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/run.h"
 
 namespace umbra {
 
-/// A method that serves a scene approximately breaks where more than this fraction of the compared points is wrong in
-/// the interior; one that serves it exactly or to rounding where any is.
-inline constexpr double kBreakingShare = 0.005;
-
-/// A rung is judged where the eye still sees at least this fraction of the points that it sees on the first rung: below
-/// it, the scene itself has come apart in its float coordinates, or the eye rays have.
+/// The ladder ends where the eye no longer sees at least this fraction of the points that it sees on the first rung:
+/// below it, the scene itself has come apart in its float coordinates, or the eye rays have.
 inline constexpr double kLeastPoints = 0.1;
 
 /// A method that leaves undefined more than this fraction of the points that it is asked for no longer answers.
@@ -30,6 +27,7 @@ struct RungOutcome {
     std::string stopped;  ///< the message of the exception that ended it; empty where it ran to its end
     std::uint64_t points = 0, undefined = 0;
     VisibilityError::Kind false_shadow, false_light;
+    InteriorPoints can_show;  ///< of the points that the method answers
     double mae = 0;
     std::string kind;  ///< of most of the interior errors; empty where there are none
 
@@ -37,6 +35,8 @@ struct RungOutcome {
     [[nodiscard]] double interior_share() const { return points == 0 ? 0 : double(interior()) / double(points); }
     [[nodiscard]] bool ran() const { return service && stopped.empty(); }
     [[nodiscard]] bool broken() const;
+    /// Not broken, and its answers hold too few interior points of a kind to conclude anything from that.
+    [[nodiscard]] bool unjudged() const { return ran() && !broken() && !can_show.enough(); }
     [[nodiscard]] bool silent() const {
         return ran() && double(undefined) > kMostUndefined * double(points + undefined);
     }
@@ -45,16 +45,17 @@ struct RungOutcome {
 /// One rung: the scene's truth, and each method's outcome in the order of LadderRun::methods.
 struct Rung {
     double value = 0;
-    std::string unjudged;  ///< why no method is judged on it and on those after it; empty where they are
+    std::string unjudged;  ///< why no method is judged on it; empty where they are
     std::string truth;     ///< the reference, as typed
     std::uint64_t surface_points = 0, lit = 0, umbra = 0, penumbra = 0, on_boundary = 0;
-    std::vector<RungOutcome> outcomes;
+    InteriorPoints can_show;
+    std::vector<RungOutcome> outcomes;  ///< none where it is not judged
 };
 
 struct LadderRun {
     const Ladder* ladder = nullptr;
     std::vector<MethodChoice> methods;  ///< empty for ladders over the sum
-    std::vector<Rung> rungs;            ///< up to and including the first that is not judged
+    std::vector<Rung> rungs;            ///< up to the first without points or truth, which is included
 };
 
 /// How one method fared on one ladder. Rungs are indices into LadderRun::rungs.
@@ -62,7 +63,8 @@ struct Climb {
     std::optional<std::size_t> breaks_at;        ///< the first rung where it ran and is broken, or where it stopped
     std::optional<std::size_t> silent_from;      ///< the first from which on it leaves most points undefined
     std::optional<std::size_t> not_served_from;  ///< the first from which on it says that it does not serve
-    std::string why;                             ///< of not serving, or of having stopped
+    std::optional<std::size_t> not_judged_from;  ///< the first from which on no rung is judged, for this method
+    std::string why;                             ///< of not serving, of having stopped, or of not being judged
 };
 [[nodiscard]] Climb climb(const LadderRun& run, std::size_t method);
 

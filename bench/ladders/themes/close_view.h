@@ -62,6 +62,10 @@ inline void add_sun(Scene& scene, vec3 direction) {
 
 inline void add_close_lamp(Scene& scene) { add_point_light(scene, vec3(kCloseLamp)); }
 
+/// A light beyond `rim`, a point on the outer edge of an occluder: the shadow of that edge runs through the middle of
+/// the close view, which is lit on one side of it. For rungs on which the other light is blocked everywhere.
+inline void add_rim_light(Scene& scene, dvec3 rim) { add_point_light(scene, vec3(2.0 * rim)); }
+
 /// Two directions in the plane of an occluder, perpendicular, each 1 long, along no axis.
 inline const dvec3 kAlong  = dvec3(12, 0, 5) / 13.0;
 inline const dvec3 kAcross = dvec3(-5, 0, 12) / 13.0;

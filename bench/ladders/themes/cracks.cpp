@@ -21,6 +21,7 @@ Scene crack_scene(double width) {
     sheet.positions.insert(sheet.positions.end(), another.positions.begin(), another.positions.end());
     add_body(scene, "sheet", sheet);
     add_close_lamp(scene);
+    if (width == 0) add_rim_light(scene, kHalfway + kAcross);
     return scene;
 }
 
@@ -36,20 +37,22 @@ Scene t_junction_scene(double gap) {
               {},
               {{0, 1, 3}, {0, 4, 2}, {2, 4, 1}}});
     add_close_lamp(scene);
+    if (gap == 0) add_rim_light(scene, 0.5 * (on_edge + kAcross + b));
     return scene;
 }
 
 constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0};
 
 /// A hilly sheet of right-angled triangles, whose vertices the light projects onto a square grid in the floor; the eye,
-/// below it and looking straight down, has its pixels there, except for a fraction of the grid's spacing.
+/// below it and looking straight down, has its pixels there, except for a fraction of the grid's spacing. Ten pixels at
+/// each side of the picture are lit.
 Scene lattice_scene(double beside) {
     constexpr int kCells      = 60;
     constexpr double kSpacing = 1.0 / 32;
     const dvec3 lamp(vec3(1.7f, 2.9f, 1.3f));
     Scene scene = empty_stage();
-    scene.width = scene.height = 64;
-    add_body(scene, "floor", make_plane(2, 2));
+    scene.width = scene.height = 80;
+    add_body(scene, "floor", make_plane(3, 3));
     // Lines through pixels, except the first and the last, which are between them: the shadow's border is at none.
     const auto line = [](int k) { return kSpacing * (k - 0.5 * kCells + (k == 0 ? 0.0 : k == kCells ? 1.0 : 0.5)); };
     Mesh sheet;
@@ -68,7 +71,7 @@ Scene lattice_scene(double beside) {
     add_body(scene, "sheet", sheet);
     add_point_light(scene, vec3(lamp));
     scene.camera.projection = Projection::orthographic;
-    scene.camera.height     = 2;
+    scene.camera.height     = 2.5f;
     scene.camera.eye        = {0, 0.5f, 0};
     scene.camera.target     = vec3(0);
     scene.camera.up         = {0, 0, -1};
@@ -82,7 +85,8 @@ const Ladder crack_ladder{
     .title = "Crack in a sheet",
     .about =
         "Two halves of a sheet leave a crack between them, which lets a stripe of light through; on the last rung they "
-        "share an edge and the sheet is closed. The picture shows only the stripe.",
+        "share an edge and the sheet is closed. The picture shows only the stripe, and on the last rung what a second "
+        "light throws past the sheet's rim.",
     .unit  = "of the sheet's half width",
     .rungs = kGaps,
     .scene = crack_scene};
@@ -92,7 +96,8 @@ const Ladder t_junction_ladder{
     .title = "T-junction",
     .about =
         "A vertex in the middle of a longer edge lies at this distance from it, on the last rung only at its rounding "
-        "error, and leaves a slit. Everything beside the slit is in shadow.",
+        "error, and leaves a slit. Everything beside the slit is in shadow, except what a second light throws past the "
+        "sheet's rim on the last rung.",
     .unit  = "of the sheet's half width",
     .rungs = kGaps,
     .scene = t_junction_scene};

@@ -1,4 +1,5 @@
 // Ladders over what is thin, and over how much lies behind one another.
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -72,9 +73,10 @@ Scene leaves_scene(double count) {
     add_body(scene, "floor", make_plane(6, 6));
     Chance chance;
     Mesh leaves;
+    const double half = 0.3 * std::max(1.0, std::sqrt(100 / count));  // few cover as much as a hundred
     for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
         const dvec3 middle = dvec3(0, 1.1, 0) + chance.in_box({1.5, 0.6, 1.5});
-        for (int k = 0; k < 3; ++k) leaves.positions.emplace_back(middle + chance.in_box(dvec3(0.3)));
+        for (int k = 0; k < 3; ++k) leaves.positions.emplace_back(middle + chance.in_box(dvec3(half)));
         leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     add_body(scene, "leaves", leaves);

@@ -55,30 +55,38 @@ Scene far_eye(double rung) {
     return scene;
 }
 
-/// Boxes at distances 1, 4, 16 ... from the eye, each as large as it is far, up to `rung`.
+/// Boxes at distances 1.5, 6, 24 ... from the eye, each as large as it is far, up to `rung`.
 Scene near_to_far(double rung) {
-    Scene scene     = empty_stage();
-    const auto side = float(rung);
-    // The floor begins behind the eye.
-    add_object(scene, "floor", {{-side, 0, 1}, {side, 0, 1}, {side, 0, -2 * side}, {-side, 0, -2 * side}}, {},
-               {{0, 1, 2}, {0, 2, 3}}, 0);
+    Scene scene = empty_stage();
+    // The floor begins behind the eye. It is cut into strips as long as they are far, so that barycentrics near the eye
+    // are as fine on the last rung as on the first: coarse ones are the subject of large_floor.
+    Mesh floor{{{-4, 0, 1}, {4, 0, 1}}, {}, {}};
+    for (double distance = 1; distance < 8 * rung; distance *= 4) {
+        const auto d     = float(distance);
+        const auto first = static_cast<unsigned>(floor.positions.size()) - 2;
+        floor.positions.emplace_back(-4 * d, 0, -d);
+        floor.positions.emplace_back(4 * d, 0, -d);
+        floor.triangles.push_back({first, first + 1, first + 3});
+        floor.triangles.push_back({first, first + 3, first + 2});
+    }
+    add_body(scene, "floor", floor);
     int i = 0;
     for (double distance = 1.5; distance <= rung; distance *= 4, ++i) {
         const auto d = float(distance);
-        add_body(scene, "box " + std::to_string(i + 1), make_box({0.2f * d, 0.4f * d, 0.2f * d}),
+        add_body(scene, "box " + std::to_string(i + 1), make_box({0.4f * d, 0.4f * d, 0.2f * d}),
                  at({(i % 2 ? 0.35f : -0.35f) * d, 0.2f * d, -d}));
     }
     Light sun;
     sun.name      = "sun";
     sun.kind      = LightKind::directional;
-    sun.direction = {0.8f, -1, 0.3f};
+    sun.direction = {0.8f, -0.6f, 0.3f};
     scene.lights.push_back(sun);
     look(scene, {0, 0.8f, 0.5f}, {0, 0, -1.5f}, 60);
     return scene;
 }
 
 /// A wall that floats at this height above the floor, with a view in which the gap is some pixels high at every rung;
-/// sunlight passes through the gap.
+/// sunlight passes through the gap, and past the end of the wall, which is in the picture.
 Scene gap(double rung) {
     Scene scene       = empty_stage();
     const dvec3 foot  = {3.3, 1.7, 2.1};  // nothing is at 0, where floats are finer
@@ -88,7 +96,10 @@ Scene gap(double rung) {
                {{0, 1, 2}, {0, 2, 3}}, 0);
     const double low = 8 * rung;
     Mesh wall        = make_box(vec3(1));
-    for (vec3& p : wall.positions) p = place(6 * double(p.x), low + 1 + 2 * double(p.y), -0.25 + 0.5 * double(p.z));
+    // As thin as a part of the gap: light that falls by 0.55 of its way would not get through below a thick one.
+    for (vec3& p : wall.positions)
+        p = place(0.3 + 2 * wide + 6 * (double(p.x) - 0.5), low + 1 + 2 * double(p.y),
+                  0.25 * wide * (double(p.z) - 0.5));
     add_body(scene, "wall", wall);
     Light sun;
     sun.name      = "sun";
@@ -102,14 +113,15 @@ Scene gap(double rung) {
     return scene;
 }
 
-/// A closed sheet of cells whose corners and edges lie over the points of the picture, except for
+/// A closed sheet of cells over most of the picture, whose corners and edges lie over its points, except for
 /// rounding: a method that lets a ray pass between two triangles that share an edge lets light through.
 Scene aligned_lattice(double rung) {
     Scene scene = empty_stage();
     scene.width = 96, scene.height = 96;
     add_body(scene, "floor", make_plane(12, 12));
     Mesh sheet = make_plane(9.6f, 9.6f, int(rung));
-    add_body(scene, "sheet", sheet, at({0.05f, 2, 0.05f}));
+    // Aside by 24 pixels: the left quarter of the picture is lit.
+    add_body(scene, "sheet", sheet, at({2.45f, 2, 0.05f}));
     Light sun;
     sun.name      = "sun";
     sun.kind      = LightKind::directional;
@@ -131,7 +143,7 @@ Scene aligned_lamp(double rung) {
     made.width = 96, made.height = 96;
     made.camera = scene.camera;
     add_body(made, "floor", make_plane(12, 12));
-    add_body(made, "sheet", make_plane(4.8f, 4.8f, int(rung)), at({0.025f, 2, 0.025f}));
+    add_body(made, "sheet", make_plane(4.8f, 4.8f, int(rung)), at({1.225f, 2, 0.025f}));
     add_point_light(made, {0, 4, 0});
     return made;
 }

@@ -79,6 +79,8 @@ Scene edge_on_scene(double angle) {
         leaves.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
     add_body(scene, "leaves", leaves);
+    // Under the triangles, so that part of the floor is in shadow: theirs are thinner than a pixel.
+    add_body(scene, "board", make_box({2.7f, 0.25f, 2.9f}), at({0.35f, 1.1f, 0.55f}));
     add_sun(scene, vec3(sun));
     look(scene, {1, 6, 8}, {0, 0, 0});
     return scene;
@@ -141,7 +143,9 @@ const Ladder edge_on_slivers_ladder{
     .title = "Thin triangles, almost edge-on to the light",
     .about =
         "Two thousand triangles with sides 8 : 7 : 1 make this angle with the sun's direction, on the last rung 0 "
-        "except for rounding. Users of ray tracers report hits far from such triangles, which are false shadows.",
+        "except for rounding. Users of ray tracers report hits far from such triangles, which are false shadows. A "
+        "board below them throws "
+        "the shadow that they are too thin for.",
     .unit  = "radians",
     .rungs = kAngles,
     .scene = edge_on_scene};

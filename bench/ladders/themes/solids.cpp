@@ -45,6 +45,7 @@ Scene touching_scene(double gap) {
     add_body(scene, "this side", parallelepiped(near - kAlong - kAcross, 2.0 * kAlong, away, kAcross));
     add_body(scene, "that side", parallelepiped(far - kAlong, 2.0 * kAlong, away, kAcross));
     add_close_lamp(scene);
+    if (gap == 0) add_rim_light(scene, kHalfway + kAcross);
     return scene;
 }
 
@@ -58,7 +59,7 @@ Scene sunken_scene(double height) {
     add_body(scene, "floor", quad(-2.0 * x - 2.0 * z, -2.0 * x + 2.0 * z, 2.0 * x + 2.0 * z, 2.0 * x - 2.0 * z));
     const dvec3 u = 0.8 * x + 0.6 * z, v = -0.6 * x + 0.8 * z;
     add_body(scene, "slab", parallelepiped((height - 0.2) * n - 0.5 * (u + v), u, 0.2 * n, v));
-    add_body(scene, "post", make_cylinder(0.15f, 0.8f, 12), at({0.9f, 0.7f, 0.3f}));
+    add_body(scene, "post", make_cylinder(0.25f, 1.1f, 12), at({0.9f, 0.85f, 0.3f}));
     add_point_light(scene, {1.5f, 3, 1});
     look(scene, {1.5f, 2.5f, 3}, {0.2f, 0, 0});
     return scene;
@@ -78,7 +79,7 @@ Scene interpenetrating_scene(double count) {
         const mat4 turned = glm::rotate(at(place), static_cast<float>(chance.between(0, 3)), axis);
         add_body(scene, "box " + std::to_string(i + 1), make_box(size), turned);
     }
-    add_point_light(scene, {-1.5f, 4, 2});
+    add_point_light(scene, {-2.5f, 3, 2});
     look(scene, {0.5f, 3.5f, 4}, {0, 0.3f, 0});
     return scene;
 }
@@ -100,7 +101,9 @@ const Ladder touching_solids_ladder{
     .title = "Gap between solids",
     .about =
         "Two solids are at this distance; on the last rung they share a face. The light runs along their facing sides "
-        "and through the gap, and the picture shows only the stripe that it makes on the floor.",
+        "and through the gap, and the picture shows only the stripe that it makes on the floor; on the last rung a "
+        "second "
+        "light falls past the outer rim.",
     .unit  = "of their width",
     .rungs = kGaps,
     .scene = touching_scene};

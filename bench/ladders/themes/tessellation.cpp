@@ -32,7 +32,7 @@ Scene pages_scene(double count) {
     Mesh book{{vec3(low), vec3(high)}, {}, {}};
     for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
         const double turn = 0.3 + 2 * kPi * i / count;
-        book.positions.emplace_back(0.5 * (low + high) + 0.7 * (std::cos(turn) * u + std::sin(turn) * v));
+        book.positions.emplace_back(0.5 * (low + high) + 0.9 * (std::cos(turn) * u + std::sin(turn) * v));
         book.triangles.push_back(i % 2 == 0 ? uvec3(0, 1, i + 2) : uvec3(1, 0, i + 2));
     }
     add_body(scene, "book", book);
