@@ -132,7 +132,7 @@ constexpr Telling kTelling[] = {
     {"needles", "shadow_zbuffer",
      "The occluders are thinner than a texel of the map: their shadow breaks into pieces, and the thinnest occluders "
      "are hit by chance only."},
-    {"growing_lamp", "shadow_volumes",
+    {"growing_light", "shadow_volumes",
      "The light grows, and the method treats it as a point at its centre: it draws an umbra with a sharp edge where "
      "the reference has a wide penumbra."},
 };

@@ -130,13 +130,13 @@ TEST(LadderTruth, TheEdgeOfAShadowRunsStraightOverSlivers) {
 
 TEST(LadderTruth, NeedlesShadowIsTheHullOfTheirCornersShadows) {
     expect_formula(ladder("needles"), [](const Scene& scene, dvec3 p) {
-        const dvec3 lamp(scene.lights[0].position);
+        const dvec3 light(scene.lights[0].position);
         bool near = false;
         for (std::size_t rod = 1; rod < scene.objects.size(); ++rod) {
             std::array<dvec3, 8> shadow;
             for (std::size_t k = 0; k < 8; ++k) {
                 const dvec3 v = vertex(scene, rod, k);
-                shadow[k]     = v + (v - lamp) * (v.y / (lamp.y - v.y));
+                shadow[k]     = v + (v - light) * (v.y / (light.y - v.y));
             }
             // A point is in the hull where it is in a triangle of three of the corners.
             for (std::size_t i = 0; i < 8; ++i)

@@ -10,8 +10,8 @@ namespace umbra {
 
 /// The position of the light of a close view, and of its occluder, halfway between the light and the origin: what is w
 /// wide there casts a shadow 2 w wide. Not along an axis, and exact in float.
-inline constexpr dvec3 kCloseLamp{1, 2, 0.5};
-inline constexpr dvec3 kHalfway = 0.5 * kCloseLamp;
+inline constexpr dvec3 kCloseLight{1, 2, 0.5};
+inline constexpr dvec3 kHalfway = 0.5 * kCloseLight;
 
 /// A floor of 8 x 8 in y = 0, except around the origin: there is a tile, four times the window wide, and nothing else
 /// near it, so that barycentrics are fine there and eye rays, whose tolerance grows with a triangle, meet no other. The
@@ -60,7 +60,7 @@ inline void add_sun(Scene& scene, vec3 direction) {
     sun.direction = direction;
 }
 
-inline void add_close_lamp(Scene& scene) { add_point_light(scene, vec3(kCloseLamp)); }
+inline void add_close_light(Scene& scene) { add_point_light(scene, vec3(kCloseLight)); }
 
 /// A light beyond `rim`, a point on the outer edge of an occluder: the shadow of that edge runs through the middle of
 /// the close view, which is lit on one side of it. For rungs on which the other light is blocked everywhere.

@@ -20,7 +20,7 @@ Scene crack_scene(double width) {
     for (const uvec3& t : another.triangles) sheet.triangles.push_back(t + 4u);
     sheet.positions.insert(sheet.positions.end(), another.positions.begin(), another.positions.end());
     add_body(scene, "sheet", sheet);
-    add_close_lamp(scene);
+    add_close_light(scene);
     if (width == 0) add_rim_light(scene, kHalfway + kAcross);
     return scene;
 }
@@ -36,7 +36,7 @@ Scene t_junction_scene(double gap) {
              {{vec3(a), vec3(b), vec3(on_edge + gap * kAcross), vec3(on_edge - kAcross), vec3(on_edge + kAcross)},
               {},
               {{0, 1, 3}, {0, 4, 2}, {2, 4, 1}}});
-    add_close_lamp(scene);
+    add_close_light(scene);
     if (gap == 0) add_rim_light(scene, 0.5 * (on_edge + kAcross + b));
     return scene;
 }
@@ -49,7 +49,7 @@ constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0};
 Scene lattice_scene(double beside) {
     constexpr int kCells      = 60;
     constexpr double kSpacing = 1.0 / 32;
-    const dvec3 lamp(vec3(1.7f, 2.9f, 1.3f));
+    const dvec3 light(vec3(1.7f, 2.9f, 1.3f));
     Scene scene = empty_stage();
     scene.width = scene.height = 80;
     add_body(scene, "floor", make_plane(3, 3));
@@ -60,7 +60,7 @@ Scene lattice_scene(double beside) {
         for (int i = 0; i <= kCells; ++i) {
             const double height = 1 + ((5 * i + 3 * j + i * j) % 16) / 64.0;
             const dvec3 shadow(line(i) + kSpacing * beside, 0, line(j) + 0.5 * kSpacing * beside);
-            sheet.positions.emplace_back(shadow + (height / lamp.y) * (lamp - shadow));
+            sheet.positions.emplace_back(shadow + (height / light.y) * (light - shadow));
         }
     for (unsigned j = 0; j < kCells; ++j)
         for (unsigned i = 0; i < kCells; ++i) {
@@ -69,7 +69,7 @@ Scene lattice_scene(double beside) {
             sheet.triangles.push_back({first, below + 1, first + 1});
         }
     add_body(scene, "sheet", sheet);
-    add_point_light(scene, vec3(lamp));
+    add_point_light(scene, vec3(light));
     scene.camera.projection = Projection::orthographic;
     scene.camera.height     = 2.5f;
     scene.camera.eye        = {0, 0.5f, 0};

@@ -37,7 +37,7 @@ Scene needles_scene(double width) {
         add_body(scene, "rod " + std::to_string(i + 3),
                  parallelepiped(corner, 2.0 * kAlong, {0, width, 0}, width * kAcross));
     }
-    add_close_lamp(scene);
+    add_close_light(scene);
     return scene;
 }
 constexpr std::array kWidths = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};

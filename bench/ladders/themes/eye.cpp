@@ -137,7 +137,7 @@ Scene aligned_lattice(double rung) {
 }
 
 /// The same for a point light at twice the sheet's height, under which the sheet's shadow is twice as large.
-Scene aligned_lamp(double rung) {
+Scene aligned_light(double rung) {
     Scene scene = aligned_lattice(1);
     Scene made  = empty_stage();
     made.width = 96, made.height = 96;
@@ -206,12 +206,12 @@ const Ladder aligned_lattice_ladder{
     .rungs = kCells,
     .scene = aligned_lattice};
 
-const Ladder aligned_lamp_ladder{
-    .name  = "aligned_lamp",
+const Ladder aligned_light_ladder{
+    .name  = "aligned_light",
     .title = "Point light exactly above edges and vertices",
     .about = "The same sheet under a point light: the rays are oblique and meet edges and vertices at every angle.",
     .unit  = "cells per side",
     .rungs = kCells,
-    .scene = aligned_lamp};
+    .scene = aligned_light};
 
 }  // namespace umbra

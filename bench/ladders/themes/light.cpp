@@ -13,7 +13,7 @@ constexpr std::array kDownTo0  = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0}
 constexpr std::array kFineDown = {1e-1, 3.2e-2, 1e-2, 3.2e-3, 1e-3, 3.2e-4, 1e-4, 3.2e-5,
                                   1e-5, 3.2e-6, 1e-6, 3.2e-7, 1e-7, 3.2e-8, 1e-8};
 constexpr std::array kUp       = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12};
-constexpr std::array kLamps    = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
+constexpr std::array kLights   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
 
 /// A floor of cells with a post on its left half, for light that comes along x: the right half stays lit.
 Scene streak_stage() {
@@ -43,34 +43,34 @@ Scene grazing_tilted(double rung) {
     for (vec3& p : scene.positions) move(p);
     for (vec3& n : scene.normals) move(n);
     move(scene.camera.eye), move(scene.camera.target), move(scene.camera.up);
-    Light& lamp   = add_point_light(scene, vec3(0));
-    lamp.position = vec3(turn * dvec4(-40, 40 * rung, 0.3, 1));
+    Light& light   = add_point_light(scene, vec3(0));
+    light.position = vec3(turn * dvec4(-40, 40 * rung, 0.3, 1));
     return scene;
 }
 
-Scene lamp_near_receiver(double rung) {
+Scene light_near_receiver(double rung) {
     Scene scene = streak_stage();
     add_point_light(scene, {-3.71f, float(8 * rung), -0.93f});
     return scene;
 }
 
 /// A lid at a distance below the light with its rim 0.1 times that beside the light: half of the floor is always dark.
-Scene lamp_near_occluder(double rung) {
+Scene light_near_occluder(double rung) {
     Scene scene      = empty_stage();
-    const vec3 lamp  = {0.31f, 6.13f, 0.17f};
-    const double gap = 6 * rung, low = double(lamp.y) - gap;
+    const vec3 light = {0.31f, 6.13f, 0.17f};
+    const double gap = 6 * rung, low = double(light.y) - gap;
     add_body(scene, "floor", make_plane(8, 8));
     add_object(scene, "lid",
-               {vec3(dvec3(-3.1, low, -3.3)), vec3(dvec3(double(lamp.x) + 0.1 * gap, low, -3.3)),
-                vec3(dvec3(double(lamp.x) + 0.1 * gap, low, 3.2)), vec3(dvec3(-3.1, low, 3.2))},
+               {vec3(dvec3(-3.1, low, -3.3)), vec3(dvec3(double(light.x) + 0.1 * gap, low, -3.3)),
+                vec3(dvec3(double(light.x) + 0.1 * gap, low, 3.2)), vec3(dvec3(-3.1, low, 3.2))},
                {}, {{0, 2, 1}, {0, 3, 2}}, 0);
-    add_point_light(scene, lamp);
+    add_point_light(scene, light);
     look(scene, {0.3f, 4.5f, 9}, {0.2f, 0, 0.1f}, 42);
     return scene;
 }
 
 /// One light inside a closed box, which occludes it on all sides, and one outside it that lights the floor.
-Scene lamp_in_box(double rung) {
+Scene light_in_box(double rung) {
     Scene scene       = empty_stage();
     const dvec3 place = {0.37, 3.11, 0.23};
     const dvec3 half  = 10 * rung * dvec3(1, 0.8, 0.9);
@@ -85,7 +85,7 @@ Scene lamp_in_box(double rung) {
 }
 
 /// The light is at this height above the plane of the box's lid; on the last rung it lies in the plane.
-Scene lamp_near_face_plane(double rung) {
+Scene light_near_face_plane(double rung) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(9, 9));
     add_body(scene, "wall", make_box({0.3f, 5.3f, 6.1f}), at({-3.9f, 2.65f, 0}));
@@ -118,13 +118,13 @@ Scene lamp_near_face_plane(double rung) {
     return scene;
 }
 
-Scene far_lamp(double rung) {
+Scene far_light(double rung) {
     Scene scene              = harmless_stage();
     scene.lights[0].position = vec3(8 * rung * glm::normalize(dvec3(4, 6, 1.5)));
     return scene;
 }
 
-Scene rectangle_lamp(double rung) {
+Scene rectangle_light(double rung) {
     Scene scene     = harmless_stage();
     Light& light    = scene.lights[0];
     light.kind      = LightKind::rectangle;
@@ -134,10 +134,10 @@ Scene rectangle_lamp(double rung) {
     return scene;
 }
 
-constexpr std::array kLampShrinks = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
-constexpr std::array kLampGrows   = {1e0, 3.2, 1e1, 3.2e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
+constexpr std::array kLightShrinks = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
+constexpr std::array kLightGrows   = {1e0, 3.2, 1e1, 3.2e1, 1e2, 1e4, 1e6, 1e9};
 
-Scene many_lamps(double rung) {
+Scene many_lights(double rung) {
     Scene scene  = harmless_stage();
     scene.width  = 64;
     scene.height = 48;
@@ -173,77 +173,80 @@ const Ladder grazing_tilted_ladder{
     .rungs = kDown,
     .scene = grazing_tilted};
 
-const Ladder lamp_near_receiver_ladder{.name  = "lamp_near_receiver",
-                                       .title = "Light close to the receiver",
-                                       .about =
-                                           "A point light sinks onto the floor that it lights: it is close to the "
-                                           "floor at one end of the picture, and grazing at the other.",
-                                       .unit  = "scene sizes above the floor",
-                                       .rungs = kDown,
-                                       .scene = lamp_near_receiver};
+const Ladder light_near_receiver_ladder{.name  = "light_near_receiver",
+                                        .title = "Light close to the receiver",
+                                        .about =
+                                            "A point light sinks onto the floor that it lights: it is close to the "
+                                            "floor at one end of the picture, and grazing at the other.",
+                                        .unit  = "scene sizes above the floor",
+                                        .rungs = kDown,
+                                        .scene = light_near_receiver};
 
-const Ladder lamp_near_occluder_ladder{
-    .name  = "lamp_near_occluder",
+const Ladder light_near_occluder_ladder{
+    .name  = "light_near_occluder",
     .title = "Light close to an occluder",
     .about =
         "A lid approaches the light above it, and its rim moves with it, so that half of the floor stays in shadow. "
         "Rays that end before the light, and depths that start behind the lid, miss it.",
     .unit  = "of the light's height",
     .rungs = kFineDown,
-    .scene = lamp_near_occluder};
+    .scene = light_near_occluder};
 
-const Ladder lamp_in_box_ladder{.name  = "lamp_in_box",
-                                .title = "Light inside a closed occluder",
-                                .about =
-                                    "A closed box shrinks around the light inside it. None of that light may reach the "
-                                    "floor; a second light outside the box shows what is lit.",
-                                .unit  = "scene sizes",
-                                .rungs = kDown,
-                                .scene = lamp_in_box};
+const Ladder light_in_box_ladder{
+    .name  = "light_in_box",
+    .title = "Light inside a closed occluder",
+    .about =
+        "A closed box shrinks around the light inside it. None of that light may reach the "
+        "floor; a second light outside the box shows what is lit.",
+    .unit  = "scene sizes",
+    .rungs = kDown,
+    .scene = light_in_box};
 
-const Ladder lamp_near_face_plane_ladder{
-    .name  = "lamp_near_face_plane",
+const Ladder light_near_face_plane_ladder{
+    .name  = "light_near_face_plane",
     .title = "Light almost in the plane of a face",
     .about =
         "A light sinks to the plane of a box's lid; on the last rung it lies in that plane. Faces turn from lit to "
         "unlit, silhouettes jump, and shadow volumes become flat.",
     .unit  = "scene sizes above the plane",
     .rungs = kDownTo0,
-    .scene = lamp_near_face_plane};
+    .scene = light_near_face_plane};
 
-const Ladder far_lamp_ladder{.name  = "far_lamp",
-                             .title = "Distant light",
-                             .about =
-                                 "A point light moves away until it acts as a sun: depths measured from the light lose "
-                                 "the differences inside the scene.",
-                             .unit  = "scene sizes",
-                             .rungs = kUp,
-                             .scene = far_lamp};
+const Ladder far_light_ladder{
+    .name  = "far_light",
+    .title = "Distant light",
+    .about =
+        "A point light moves away until it acts as a sun: depths measured from the light lose "
+        "the differences inside the scene.",
+    .unit  = "scene sizes",
+    .rungs = kUp,
+    .scene = far_light};
 
-const Ladder shrinking_lamp_ladder{.name  = "shrinking_lamp",
-                                   .title = "Area light that shrinks to a point",
-                                   .about =
-                                       "A square light shrinks until its penumbra is narrower than a pixel: the result "
-                                       "must converge to that of the point light.",
-                                   .unit  = "light side (floor side = 8)",
-                                   .rungs = kLampShrinks,
-                                   .scene = rectangle_lamp};
+const Ladder shrinking_light_ladder{
+    .name  = "shrinking_light",
+    .title = "Area light that shrinks to a point",
+    .about =
+        "A square light shrinks until its penumbra is narrower than a pixel: the result "
+        "must converge to that of the point light.",
+    .unit  = "light side (floor side = 8)",
+    .rungs = kLightShrinks,
+    .scene = rectangle_light};
 
-const Ladder growing_lamp_ladder{.name  = "growing_lamp",
-                                 .title = "Area light that becomes huge",
-                                 .about =
-                                     "A square light grows far beyond the scene: the umbra vanishes, and most of the "
-                                     "light is seen at grazing angles.",
-                                 .unit  = "light side (floor side = 8)",
-                                 .rungs = kLampGrows,
-                                 .scene = rectangle_lamp};
+const Ladder growing_light_ladder{.name  = "growing_light",
+                                  .title = "Area light that becomes huge",
+                                  .about =
+                                      "A square light grows far beyond the scene: the umbra vanishes, and most of the "
+                                      "light is seen at grazing angles.",
+                                  .unit  = "light side (floor side = 8)",
+                                  .rungs = kLightGrows,
+                                  .scene = rectangle_light};
 
-const Ladder many_lamps_ladder{
-    .name  = "many_lamps",
+const Ladder many_lights_ladder{
+    .name  = "many_lights",
     .title = "Number of lights",
     .about = "More and more point lights in a spiral above the scene, each with its own shadows.",
     .unit  = "lights",
-    .rungs = kLamps,
-    .scene = many_lamps};
+    .rungs = kLights,
+    .scene = many_lights};
 
 }  // namespace umbra

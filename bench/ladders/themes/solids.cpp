@@ -41,10 +41,10 @@ constexpr std::array kGaps = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
 Scene touching_scene(double gap) {
     Scene scene = empty_stage();
     add_close_floor(scene, gap > 0 ? 8 * gap : 1e-3);
-    const dvec3 away = 0.25 * kCloseLamp, near = kHalfway - 0.5 * gap * kAcross, far = kHalfway + 0.5 * gap * kAcross;
+    const dvec3 away = 0.25 * kCloseLight, near = kHalfway - 0.5 * gap * kAcross, far = kHalfway + 0.5 * gap * kAcross;
     add_body(scene, "this side", parallelepiped(near - kAlong - kAcross, 2.0 * kAlong, away, kAcross));
     add_body(scene, "that side", parallelepiped(far - kAlong, 2.0 * kAlong, away, kAcross));
-    add_close_lamp(scene);
+    add_close_light(scene);
     if (gap == 0) add_rim_light(scene, kHalfway + kAcross);
     return scene;
 }

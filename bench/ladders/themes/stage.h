@@ -26,7 +26,7 @@ inline mat4 at(vec3 place) { return glm::translate(mat4(1), place); }
 
 inline Light& add_point_light(Scene& scene, vec3 position) {
     Light light;
-    light.name     = scene.lights.empty() ? "lamp" : "lamp_" + std::to_string(scene.lights.size() + 1);
+    light.name     = scene.lights.empty() ? "light" : "light_" + std::to_string(scene.lights.size() + 1);
     light.position = position;
     return scene.lights.emplace_back(light);
 }

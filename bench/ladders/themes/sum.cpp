@@ -90,14 +90,14 @@ constexpr std::array kDistances = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-
 /// The most that f_att may be, where it is not limited to 1 (core/lights.h).
 constexpr double kMostAttenuation = 1e30;
 
-Scene near_lamp_scene(double distance) {
+Scene near_light_scene(double distance) {
     Scene scene = middle_stage(0.75, 0);
     add_close_floor(scene, 4 * distance);
-    Light& lamp      = add_point_light(scene, {0, static_cast<float>(distance), 0});
-    lamp.attenuation = {.c1 = 0, .c2 = 0, .c3 = 1, .clamp = false};
+    Light& light      = add_point_light(scene, {0, static_cast<float>(distance), 0});
+    light.attenuation = {.c1 = 0, .c2 = 0, .c3 = 1, .clamp = false};
     return scene;
 }
-std::string wrong_near_lamp(double distance, const Scene&, const Image& linear) {
+std::string wrong_near_light(double distance, const Scene&, const Image& linear) {
     return wrong_around_middle(linear, 0.75 / (distance * distance), Falls::always);
 }
 
@@ -107,8 +107,8 @@ Scene coefficients_scene(double c) {
     Scene scene = middle_stage(0.75, 0);
     add_close_floor(scene, 0.375);
     const auto coefficient = static_cast<float>(c);
-    Light& lamp            = add_point_light(scene, {0, 1, 0});
-    lamp.attenuation       = {coefficient, coefficient, coefficient, false};
+    Light& light           = add_point_light(scene, {0, 1, 0});
+    light.attenuation      = {coefficient, coefficient, coefficient, false};
     return scene;
 }
 std::string wrong_coefficients(double c, const Scene&, const Image& linear) {
@@ -144,8 +144,8 @@ const Ladder attenuation_distance_ladder{.name  = "attenuation_distance",
                                              "this distance from the floor: the factor grows without limit.",
                                          .unit      = "from the light",
                                          .rungs     = kDistances,
-                                         .scene     = near_lamp_scene,
-                                         .wrong_sum = wrong_near_lamp};
+                                         .scene     = near_light_scene,
+                                         .wrong_sum = wrong_near_light};
 
 const Ladder attenuation_coefficients_ladder{
     .name  = "attenuation_coefficients",
