@@ -97,7 +97,7 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
         "umbra list).\n"
         "Exit codes: 0 done, 1 the answer is no, 4 input unreadable, 5 a method failed or internal error, 64 wrong "
         "usage; diff: 0 same, 1 close, 2 differs, 3 size or channels differ, 4 unreadable.\n"
-        "The script ./umbra also has: setup, test, bench, check.");
+        "The script ./umbra also has: setup, test, bench, check, fuzz.");
     return actions;
 }
 
