@@ -10,11 +10,23 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/off_pixel.h"
 
 namespace umbra {
 namespace {
 
 constexpr long kMaxArea = 1L << 26;
+
+void warn_of_points_off_their_pixels(Scene& scene, const PointBatch& points) {
+    const OffPixel off = off_pixel(scene, points);
+    if (off.points == 0) return;
+    const auto surface = points.size() - static_cast<std::size_t>(std::ranges::count(points.triangle, kNoTriangle));
+    scene.warnings.push_back(
+        fmt::format("{} of {} surface points lie more than half a pixel off their pixels, up to {:.3g} pixels: their "
+                    "triangles are so large that the floats that name a point on them step over pixels. All methods "
+                    "answer for the same points, but edge bands and displacements in pixels are not to be trusted.",
+                    off.points, surface, off.worst));
+}
 
 }  // namespace
 
@@ -46,6 +58,7 @@ PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pi
     const auto& seen = p.points.triangle;
     if (std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; }))
         p.scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
+    warn_of_points_off_their_pixels(p.scene, p.points);
     return p;
 }
 
