@@ -6,6 +6,7 @@
 
 #include "umbra/bench/bias/bias_page.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/run/record_text.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
@@ -78,7 +79,7 @@ Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOpt
     for (const BiasStudy& study : studies) record["bias"].push_back(study_json(study, grid));
 
     StagedFiles staged;
-    staged.write(options.out / "results.json", record.dump(1) + "\n");
+    staged.write(options.out / "results.json", record_text(record));
     write_bias_page(record, options.out, staged);
     staged.commit();
     return record;

@@ -10,6 +10,7 @@
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/record_text.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
@@ -58,7 +59,7 @@ Json climb_ladders(const LadderOptions& options) {
         }
         record["ladders"].push_back(std::move(entry));
     }
-    write_text(staged.folder() / "results.json", record.dump(1) + "\n");
+    write_text(staged.folder() / "results.json", record_text(record));
     write_ladder_page(staged.folder());
     staged.commit();
     return record;

@@ -12,6 +12,7 @@
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
+#include "umbra/bench/run/record_text.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
@@ -249,7 +250,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                        {"rays_build_ms", prepared.rays_build_ms},
                        {"gbuffer_ms", prepared.gbuffer_ms},
                        {"shade_ms", shade_ms}};
-    write_text(staging / "results.json", record.dump(1) + "\n");
+    write_text(staging / "results.json", record_text(record));
     stage.commit();
     return record;
 }
@@ -285,7 +286,7 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
         }
     }
     if (files.size() == 1 && done.names.size() == 1)
-        write_text(options.out / "results.json", with_prefix(last, done.names[0] + "/").dump(1) + "\n");
+        write_text(options.out / "results.json", record_text(with_prefix(last, done.names[0] + "/")));
     return done;
 }
 

@@ -38,9 +38,10 @@ bool read_colour(Tokens& tokens, std::string_view what, vec3& colour) {
     if (first.text == "spectral" || first.text == "xyz") return false;
     colour             = vec3(tokens.as_real(first, what));
     const Token second = tokens.next_on_line();
-    if (!second) return true;
-    colour.g = tokens.as_real(second, what);
-    colour.b = tokens.real_on_line(what);
+    if (second) {
+        colour.g = tokens.as_real(second, what);
+        colour.b = tokens.real_on_line(what);
+    }
     for (int k = 0; k < 3; ++k)
         if (colour[k] < 0) tokens.fail(first, fmt::format("{} is negative, expected at least 0", what));
     return true;

@@ -6,6 +6,7 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/run/record_text.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
@@ -20,7 +21,7 @@ struct InspectLine {
 int inspect(const InspectLine& line) {
     const Scene scene = load_scene(scene_file(line.scene));
     const Json record = inspect_json(scene, find_facts(scene), line.silhouettes);
-    fmt::print("{}\n", line.as_json ? record.dump(1) : inspect_text(record));
+    fmt::print("{}", line.as_json ? record_text(record) : inspect_text(record) + "\n");
     return kDone;
 }
 

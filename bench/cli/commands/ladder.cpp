@@ -6,6 +6,7 @@
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/ladders/ladder_record.h"
+#include "umbra/bench/run/record_text.h"
 
 namespace umbra {
 namespace {
@@ -19,7 +20,7 @@ int ladder(LadderLine line, const Common& common) {
     return_ladders(line.options.methods, line.options.names);
     const Json record = climb_on_terminal(line.options, common);
     if (line.as_json)
-        fmt::print("{}\n", record.dump(1));
+        fmt::print("{}", record_text(record));
     else if (!common.quiet)
         fmt::print("{}", ladder_table(record["ladders"]));
     return kDone;

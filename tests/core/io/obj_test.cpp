@@ -177,6 +177,15 @@ TEST(Obj, SeveralMtlFilesOnOneLineAndMissingOnes) {
     EXPECT_EQ(windows.materials[0].k_d, vec3(1, 0, 0)) << "looked for beside the OBJ too";
 }
 
+TEST(Obj, NegativeColoursOfAnMtlFileAreRefusedWhereTheyStand) {
+    const TemporaryFolder folder;
+    const auto mesh = folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
+    for (const char* colour : {"-1e18", "-0.1 0 0", "0 0 -1e-9"}) {
+        (void)folder.write("a.mtl", std::string("newmtl a\nKd ") + colour + "\n");
+        EXPECT_NE(refusal(mesh).find("a.mtl:2:4: Kd is negative"), std::string::npos) << refusal(mesh);
+    }
+}
+
 TEST(Obj, WhatIsNotReadIsToldOnce) {
     const TemporaryFolder folder;
     const Scene scene = load_scene(folder.write("t.obj", kBox + "l 1 2\nl 2 3\np 1\ncurv 0 1 1 2\nvp 0 0\nvp 1 1\n"));

@@ -1,0 +1,45 @@
+// Names in files need not be UTF-8, and results.json must be all the same.
+#include "umbra/bench/run/record_text.h"
+
+#include <gtest/gtest.h>
+
+#include "umbra/bench/compare/compare.h"
+#include "umbra/bench/report/report.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+TEST(RecordText, ReplacesWhatIsNotUtf8) {
+    EXPECT_EQ(record_text({{"name",
+                            "K\xfc"
+                            "che"}}),
+              "{\n \"name\": \"K\xef\xbf\xbd"
+              "che\"\n}\n");
+    EXPECT_EQ(record_text({{"name",
+                            "K\xc3\xbc"
+                            "che"}}),
+              "{\n \"name\": \"K\xc3\xbc"
+              "che\"\n}\n");
+}
+
+TEST(RecordText, AMeshWithNamesInLatin1IsComparedAndReported) {
+    const TemporaryFolder folder;
+    const auto file = folder.write(
+        "K\xfc"
+        "che.obj",
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\no T\xfcr\xff\nusemtl r\xe9\nf 1 2 3\n");
+    CompareOptions options;
+    options.methods       = {"shadow_volumes"};
+    options.size          = {8, 6};
+    options.out           = folder.path() / "out";
+    options.command       = "umbra compare " + file.string();
+    const ScenesDone done = compare_scenes({file}, options);
+    EXPECT_TRUE(done.failed.empty()) << done.failed.front();
+    ASSERT_EQ(done.names.size(), 1u);
+    write_report({options.out}, folder.path() / "report");
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "report/index.html"));
+}
+
+}  // namespace
+}  // namespace umbra
