@@ -9,8 +9,10 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdlib>
 #include <span>
 #include <stdexcept>
+#include <string>
 
 #include "umbra/core/render/ray.h"
 
@@ -84,8 +86,10 @@ struct RayScene::Impl {
     std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
     std::span<const uvec3> triangles;
 
-    Impl() : device(rtcNewDevice(nullptr)) {
-        if (!device) throw std::runtime_error("Embree gives no device");
+    /// UMBRA_EMBREE configures Embree's device: "isa=sse4.2" limits it to instructions that other machines have.
+    Impl() : device(rtcNewDevice(std::getenv("UMBRA_EMBREE"))) {
+        if (!device)
+            throw std::runtime_error("Embree gives no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
         rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);
         scene = rtcNewScene(device);
     }

@@ -1,0 +1,91 @@
+// What stays the same where Embree runs with other instructions, as it does on other machines. Its kernels fuse
+// multiply and add from AVX2 on, and sum in another order with AVX-512: the last bits of barycentrics differ.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/off_pixel.h"
+#include "umbra/core/scene/facts.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+namespace {
+
+std::vector<std::string> instruction_sets() {
+    std::vector<std::string> all{"sse2"};
+    if (__builtin_cpu_supports("sse4.2")) all.emplace_back("sse4.2");
+    if (__builtin_cpu_supports("avx2")) all.emplace_back("avx2");
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl")) all.emplace_back("avx512");
+    return all;
+}
+
+/// While it lives, Embree's new devices have these instructions and no later ones.
+class Limit {
+public:
+    explicit Limit(const std::string& instructions) { setenv("UMBRA_EMBREE", ("isa=" + instructions).c_str(), 1); }
+    ~Limit() { unsetenv("UMBRA_EMBREE"); }
+    Limit(const Limit&)            = delete;
+    Limit& operator=(const Limit&) = delete;
+};
+
+PointBatch seen_with(const std::string& instructions, const Scene& scene) {
+    const Limit limit(instructions);
+    return primary_points(RayScene(scene), scene, scene.camera, 320, 180);
+}
+
+std::vector<VisibilityPlane> answers_with(const std::string& instructions, const MethodInfo& info, const Scene& scene,
+                                          const PointBatch& points) {
+    const Limit limit(instructions);
+    const SceneFacts facts = find_facts(scene);
+    const auto method      = info.make();
+    std::vector<VisibilityPlane> planes;
+    if (!method->serves(facts)) return planes;
+    method->build(scene, facts);
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        method->aim(light);
+        method->visibility(points, light, planes.emplace_back(points.size()).out());
+    }
+    return planes;
+}
+
+class InstructionSets : public ::testing::TestWithParam<const char*> {
+protected:
+    const Scene scene = load_scene(std::string(UMBRA_SCENES) + "/" + GetParam() + ".json");
+};
+
+TEST_P(InstructionSets, SeeTheSameTrianglesAndAreOnTheirPixels) {
+    const PointBatch first = seen_with("sse2", scene);
+    for (const std::string& instructions : instruction_sets()) {
+        const PointBatch points = seen_with(instructions, scene);
+        EXPECT_EQ(points.triangle, first.triangle) << instructions;
+        EXPECT_EQ(off_pixel(scene, points).points, 0u) << instructions;
+        // Else the limit limits nothing, and the test compares one thing with itself.
+        if (instructions == "avx2") {
+            EXPECT_NE(points.u, first.u);
+        }
+    }
+}
+
+TEST_P(InstructionSets, GiveTheSameBitsOfVisibilityAtTheSamePoints) {
+    const PointBatch points = seen_with("sse2", scene);
+    for (const MethodInfo* info : methods()) {
+        if (info->reference || !info->by_default) continue;  // slow, and without Embree
+        const std::vector<VisibilityPlane> first = answers_with("sse2", *info, scene, points);
+        for (const std::string& instructions : instruction_sets()) {
+            const std::vector<VisibilityPlane> planes = answers_with(instructions, *info, scene, points);
+            ASSERT_EQ(planes.size(), first.size());
+            for (std::size_t j = 0; j < planes.size(); ++j)
+                EXPECT_EQ(planes[j].s, first[j].s) << info->name << ", light " << j << ", " << instructions;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, InstructionSets, ::testing::Values("six_lights", "interpenetrating"),
+                         [](const auto& of) { return std::string(of.param); });
+
+}  // namespace
+}  // namespace umbra
