@@ -47,7 +47,8 @@ std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p
     }
 
     Receiver receiver;
-    const dvec2 at = ndc(v);
+    // Beyond the window and the widest kernel nothing is looked up, wherever it is; coordinates become ints later.
+    const dvec2 at = glm::clamp(ndc(v), -4.0, 4.0);
     receiver.x     = (at.x + 1) * 0.5 * view.map.width();
     receiver.y     = (at.y + 1) * 0.5 * view.map.height();
     receiver.r     = f.nearness(v.z);

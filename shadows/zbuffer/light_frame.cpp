@@ -58,7 +58,8 @@ bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest) {
     frame.near    = depth.min;
     frame.far     = depth.max;
     frame.reach   = kInfinity;
-    // Scenes that the light sees edge-on have no area, those that it sees flat no depth.
+    // Scenes that the light sees edge-on have no area, those that it sees flat no depth, and a point casts nothing.
+    if (frame.half == dvec2(0)) frame.half = dvec2(1);
     frame.half = glm::max(frame.half, dvec2(1e-6 * std::max(frame.half.x, frame.half.y)));
     return true;
 }

@@ -412,6 +412,25 @@ TEST(ShadowZBuffer, AFloorAloneIsLit) {
         }
 }
 
+// A triangle without area casts nothing, and leaves a map that is fitted to it no width.
+TEST(ShadowZBuffer, WindowsHaveAWidthWhateverTheyAreFittedTo) {
+    Scene scene;
+    scene.materials.emplace_back();
+    add_object(scene, "floor", {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+    add_object(scene, "point", {{0, 1, 0}}, {}, {{0, 0, 0}}, 0);
+    Light sun;
+    sun.kind      = LightKind::directional;
+    sun.direction = {0, -1, 0};
+    scene.lights  = {sun};
+    Casters casters(scene, find_facts(scene), true);
+    casters.select(sun);
+    LightFrame frame = looking_along({0, 0, 0}, {0, -1, 0}, false);
+    ASSERT_TRUE(fit_to_scene(frame, casters, 1));
+    EXPECT_EQ(casters.box().size(), vec3(0)) << "else the floor is fitted to, and this tests nothing";
+    EXPECT_GT(frame.half.x, 0);
+    EXPECT_GT(frame.half.y, 0);
+}
+
 TEST(ShadowZBuffer, FittingToCastersLosesNoShadow) {
     // A floor forty times as wide as what is on it, and reaches a little into it; walls; and what lies under it.
     Scene scene;
