@@ -22,7 +22,9 @@ bool is_exact(dvec3 difference, dvec3 b, dvec3 a) { return b - difference == a &
 
 int side_of_plane(vec3 a, vec3 b, vec3 c, vec3 q) { return CGAL::orientation(point(a), point(b), point(c), point(q)); }
 
-int side_of_direction(vec3 a, vec3 b, vec3 c, vec3 d) {
+int side_of_direction(vec3 a, vec3 b, vec3 c, vec3 d) { return side_of_direction(a, b, c, dvec3(d)); }
+
+int side_of_direction(vec3 a, vec3 b, vec3 c, dvec3 d) {
     const dvec3 p = dvec3(b) - dvec3(a), q = dvec3(c) - dvec3(a);
     // CGAL has static bounds for four points, not for three points and a direction: the sides can replace points
     // where they are exact, as almost all differences of floats are in double.

@@ -10,5 +10,6 @@ namespace umbra {
 
 /// Sign of dot(cross(b - a, c - a), d). Exact.
 [[nodiscard]] int side_of_direction(vec3 a, vec3 b, vec3 c, vec3 d);
+[[nodiscard]] int side_of_direction(vec3 a, vec3 b, vec3 c, dvec3 d);
 
 }  // namespace umbra

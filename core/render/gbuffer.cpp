@@ -8,6 +8,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/embree_api.h"
+#include "umbra/core/render/seen_side.h"
 
 namespace umbra {
 namespace {
@@ -128,7 +129,7 @@ void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, i
 }
 
 /// set_point for eight hits at once, to the same bits: all but the loads are loops over lanes. Leaves to set_point what
-/// needs a second look: barycentrics at or over an edge, triangles without area.
+/// needs a second look: barycentrics at or over an edge, slivers, triangles that the eye sees edge-on.
 class PointWriter {
 public:
     PointWriter(const Scene& scene, PointBatch& batch) : scene_(scene), batch_(batch) {
@@ -183,9 +184,10 @@ private:
             two_sided[k] = all_two_sided_ || both() ? 1 : 0;
         }
         // To the eye: eye - p, or against an orthographic view.
-        const double pull = window_ ? 0 : 1;
-        const dvec3 eye   = window_ ? -batch_.raster->forward : dvec3(batch_.eye);
-        double towards[8], length[8];
+        const double pull      = window_ ? 0 : 1;
+        const dvec3 eye        = window_ ? -batch_.raster->forward : dvec3(batch_.eye);
+        const double eye_reach = sum_of_magnitudes(eye);
+        double towards[8], length[8], sides[8], reach[8];
         for (int k = 0; k < 8; ++k) {
             const double u = static_cast<double>(hits.u[k]), v = static_cast<double>(hits.v[k]);
             const double ax = static_cast<double>(a[0][k]), ay = static_cast<double>(a[1][k]),
@@ -198,6 +200,8 @@ private:
             const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
             const double ex = eye.x - pull * px, ey = eye.y - pull * py, ez = eye.z - pull * pz;
             length[k]           = std::sqrt(nx * nx + ny * ny + nz * nz);
+            sides[k]            = sum_of_magnitudes(bx, by, bz) * sum_of_magnitudes(cx, cy, cz);
+            reach[k]            = eye_reach + sum_of_magnitudes(ax, ay, az);
             towards[k]          = (nx * ex + ny * ey + nz * ez) * two_sided[k];
             const double factor = (towards[k] < 0 ? -1.0 : 1.0) / length[k];
             out.px[k] = static_cast<float>(px), out.py[k] = static_cast<float>(py), out.pz[k] = static_cast<float>(pz);
@@ -208,7 +212,8 @@ private:
         for (int k = 0; k < 8; ++k) {
             const double sum = static_cast<double>(hits.u[k]) + static_cast<double>(hits.v[k]);
             out.flipped[k]   = towards[k] < 0;
-            out.done[k]      = (hits.u[k] >= 0) & (hits.v[k] >= 0) & (sum < 1) & (length[k] > 0);
+            const bool sure  = keeps_sign(towards[k], sides[k], reach[k]) | (two_sided[k] == 0);
+            out.done[k] = (hits.u[k] >= 0) & (hits.v[k] >= 0) & (sum < 1) & keeps_direction(length[k], sides[k]) & sure;
         }
         std::copy_n(hits.triangle, 8, out.triangle);
         std::copy_n(hits.u, 8, out.u);

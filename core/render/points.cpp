@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/heights.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/seen_side.h"
 
 namespace umbra {
 
@@ -14,6 +16,16 @@ void PointBatch::resize(std::size_t n) {
     flipped.resize(n, 0);
     for (std::vector<Facing>& plane : facing) plane.resize(n, Facing::none);
 }
+
+namespace {
+
+/// Exact; of an eye in the triangle's plane, false.
+bool sees_the_back(const PointBatch& batch, const Scene& scene, TriangleId t, bool window) {
+    const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
+    return (window ? side_of_direction(a, b, c, -batch.raster->forward) : side_of_plane(a, b, c, batch.eye)) < 0;
+}
+
+}  // namespace
 
 void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, float u, float v) {
     // u + v <= 1 must hold exactly. 1 - u is exact in double for any float u >= 2^-29, and rounds to at most 1 below
@@ -29,17 +41,28 @@ void set_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId 
     if (u2 + v2 > 1 || (u2 > 0 && u2 < 0x1p-29 && v == 1)) v = std::nextafter(v, 0.0f);  // tiny u beside v = 1
 
     const dvec3 a(scene.vertex(t, 0)), b(scene.vertex(t, 1)), c(scene.vertex(t, 2));
-    const dvec3 normal  = glm::cross(b - a, c - a);
-    const double length = glm::length(normal);
-    if (!(length > 0)) {
+    dvec3 normal       = glm::cross(b - a, c - a);
+    double length      = glm::length(normal);
+    const double sides = sum_of_magnitudes(b - a) * sum_of_magnitudes(c - a);
+    const bool thin    = !keeps_direction(length, sides);
+    if (thin) {
+        normal = unit_normal(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+        length = 1;
+    }
+    if (normal == dvec3(0)) {
         batch.triangle[i] = kNoTriangle;
         return;
     }
     const dvec3 p       = a + u2 * (b - a) + static_cast<double>(v) * (c - a);
     const auto material = scene.objects[scene.triangle_object[t]].material;
-    const bool window   = batch.raster && batch.raster->projection == Projection::orthographic;
-    const dvec3 to_eye  = window ? -batch.raster->forward : dvec3(batch.eye) - p;
-    const bool flip     = scene.materials[material].two_sided && glm::dot(normal, to_eye) < 0;
+    bool flip           = false;
+    if (scene.materials[material].two_sided) {
+        const bool window    = batch.raster && batch.raster->projection == Projection::orthographic;
+        const dvec3 to_eye   = window ? -batch.raster->forward : dvec3(batch.eye) - p;
+        const double towards = glm::dot(normal, to_eye);
+        const double reach   = sum_of_magnitudes(window ? to_eye : dvec3(batch.eye)) + sum_of_magnitudes(a);
+        flip = !thin && keeps_sign(towards, sides, reach) ? towards < 0 : sees_the_back(batch, scene, t, window);
+    }
     const vec3 n(normal * ((flip ? -1 : 1) / length));
 
     batch.triangle[i] = t;
@@ -79,25 +102,15 @@ PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which) {
 namespace {
 
 /// The side of an area light relative to the plane of triangle (a, b, c), seen from the side `turn` (+1 the winding's,
-/// -1 the other). Rectangles by their corners, exactly except for the corners' own rounding; disks and spheres by
-/// centre and extent.
+/// -1 the other).
 Facing area_facing(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
-    if (light.kind == LightKind::rectangle) {
-        int front = 0;
-        for (int k = 0; k < 4; ++k) {
-            const vec3 corner =
-                light.position + (k & 1 ? 0.5f : -0.5f) * light.edge_u + (k & 2 ? 0.5f : -0.5f) * light.edge_v;
-            front += turn * side_of_plane(a, b, c, corner) > 0;
-        }
-        return front == 4 ? Facing::front : front == 0 ? Facing::away : Facing::partly;
-    }
-    const dvec3 normal    = glm::cross(dvec3(b) - dvec3(a), dvec3(c) - dvec3(a)) * static_cast<double>(turn);
-    const double length   = glm::length(normal);
-    const double distance = glm::dot(normal, dvec3(light.position) - dvec3(a));  // times length
-    double extent         = light.radius * length;
-    if (light.kind == LightKind::disk)  // how far the rim reaches along the normal
-        extent = light.radius * glm::length(glm::cross(normal, glm::normalize(dvec3(light.direction))));
-    return distance >= extent ? Facing::front : distance <= -extent ? Facing::away : Facing::partly;
+    const HeightSigns heights =
+        light.kind == LightKind::rectangle ? heights_of_rectangle(a, b, c, light.position, light.edge_u, light.edge_v)
+        : light.kind == LightKind::disk    ? heights_of_disk(a, b, c, light.position, light.direction, light.radius)
+                                           : heights_of_sphere(a, b, c, light.position, light.radius);
+    const int low  = turn > 0 ? heights.low : -heights.high;
+    const int high = turn > 0 ? heights.high : -heights.low;
+    return high <= 0 ? Facing::away : low >= 0 ? Facing::front : Facing::partly;
 }
 
 Facing facing_of(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
