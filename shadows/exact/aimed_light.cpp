@@ -15,21 +15,21 @@ constexpr double kBoxRounding = 1e-12;  ///< relative: more than the rounding of
 }  // namespace
 
 std::optional<LightPlane> AimedLight::plane_from(const ExactPoint& p) const {
-    return light_.kind == LightKind::sphere ? sphere_light_plane(light_, p) : flat_light_plane(light_, half_, p);
+    return light_.kind == LightKind::sphere ? sphere_light_plane(light_, p)
+                                            : flat_light_plane(light_, half_, exact_half_, p);
 }
 
 void AimedLight::find_sides(const Occluders& occluders) {
     side_.resize(occluders.topology.position.size());
     const dvec3 centre(light_.position);
-    const Entries u{half_.u, 0}, v{half_.v, 0};
+    const Entries u{half_.u, axis_error(light_)}, v{half_.v, axis_error(light_)};
     parallel_ranges(side_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const vec3 q          = occluders.position(static_cast<std::uint32_t>(k));
             const dvec3 d         = dvec3(q) - centre;
             const Filtered<int> s = sign_of_determinant(u, v, Entries{d, kUnit * largest(d)});
             side_[k]              = static_cast<std::int8_t>(
-                s ? *s
-                               : sign_of_determinant(rational(half_.u), rational(half_.v), rational(q) - rational(light_.position)));
+                s ? *s : sign_of_determinant(exact_half_.u, exact_half_.v, rational(q) - rational(light_.position)));
         }
     });
 }
@@ -44,7 +44,10 @@ void AimedLight::aim(const Light& light, const Occluders& occluders) {
     half_  = half_axes(light);
     side_.clear();
     across_.clear();
-    if (light.kind != LightKind::sphere) find_sides(occluders);
+    if (light.kind != LightKind::sphere) {
+        exact_half_ = exact_axes(light, half_);
+        find_sides(occluders);
+    }
     const dvec3 centre(light.position), wide = reach();
     const Topology& topology = occluders.topology;
     for (TriangleId t = 0; t < topology.triangles.size(); ++t) {

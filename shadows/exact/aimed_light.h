@@ -17,7 +17,8 @@ public:
     /// The light's plane as p sees it. Nothing where p is within a sphere light.
     [[nodiscard]] std::optional<LightPlane> plane_from(const ExactPoint& p) const;
 
-    /// Sign of det(u, v, q - centre) for the welded vertex q, exact. Nothing for a sphere, whose plane moves.
+    /// Sign of det(u, v, q - centre) for the welded vertex q, exact, with the axes in the light's own plane. Nothing
+    /// for a sphere, whose plane moves.
     [[nodiscard]] std::optional<int> side_of_vertex(std::uint32_t vertex) const {
         if (side_.empty()) return std::nullopt;
         return side_[vertex];
@@ -33,6 +34,7 @@ private:
 
     Light light_;
     DiskAxes half_{};
+    ExactAxes exact_half_{};
     std::vector<std::int8_t> side_;  ///< one a welded vertex; a sphere has none
     std::vector<TriangleId> across_;
 };

@@ -1,5 +1,7 @@
 #include "umbra/shadows/exact/exact_point.h"
 
+#include "umbra/core/base/predicates.h"
+
 namespace umbra::exact_detail {
 
 Rational dot(const Rational3& a, const Rational3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
@@ -35,6 +37,10 @@ const Rational3& ExactPoint::exact() const {
     }
     return *exact_;
 }
+
+int ExactPoint::side_of_own(vec3 x) const { return side_of_plane(a_, b_, c_, x); }
+
+int ExactPoint::side_of_own_direction(vec3 d) const { return side_of_direction(a_, b_, c_, d); }
 
 int ExactPoint::exact_side(vec3 x, vec3 y, vec3 z) const {
     return sign_of_determinant(rational(x) - exact(), rational(y) - exact(), rational(z) - exact());

@@ -76,6 +76,11 @@ public:
     }
     [[nodiscard]] int exact_side(vec3 x, vec3 y, vec3 z) const;
 
+    /// On which side of the plane of the point's own triangle x is, and to which the direction d leads: +1 where its
+    /// normal points to. Exact.
+    [[nodiscard]] int side_of_own(vec3 x) const;
+    [[nodiscard]] int side_of_own_direction(vec3 d) const;
+
     /// In rationals.
     [[nodiscard]] const Rational3& exact() const;
 

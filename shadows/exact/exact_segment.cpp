@@ -42,17 +42,34 @@ int Segment::edge_side(vec3 x, vec3 y) const {
                                infinite_ ? rational(end_) : rational(end_) - start_.exact());
 }
 
-/// A segment in the plane of a triangle: the light sees the triangle edge-on, so the segment may touch it but not cross
-/// it. Rare, so in rationals throughout: in the two coordinates other than `axis`, is there a line between segment and
-/// triangle?
-Segment::Meeting Segment::meeting_in_plane(vec3 x, vec3 y, vec3 z) const {
-    const dvec3 n  = glm::abs(glm::cross(dvec3(y) - dvec3(x), dvec3(z) - dvec3(x)));
-    const int axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
-    const auto i = static_cast<std::size_t>((axis + 1) % 3), j = static_cast<std::size_t>((axis + 2) % 3);
+/// Whether some of the triangle is in front of the plane of the surface point's triangle, where the light is.
+bool Segment::rises(vec3 x, vec3 y, vec3 z) const {
+    const int front = infinite_ ? start_.side_of_own_direction(end_) : start_.side_of_own(end_);
+    return start_.side_of_own(x) == front || start_.side_of_own(y) == front || start_.side_of_own(z) == front;
+}
 
+/// A segment that begins in the plane of the triangle, which it may touch but not cross. Where it ends there, too, the
+/// light sees the triangle edge-on. Rare, so in rationals throughout, in the two coordinates other than `axis`.
+Segment::Meeting Segment::meeting_from_plane(vec3 x, vec3 y, vec3 z, bool ends_in_plane) const {
+    if (!rises(x, y, z)) return Meeting::none;
     const std::array<Rational3, 3> corner = {rational(x), rational(y), rational(z)};
-    const Rational3& start                = start_.exact();
-    Rational3 end                         = rational(end_);
+    const Rational3 normal                = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    std::size_t axis                      = 0;
+    for (std::size_t k = 1; k < 3; ++k)
+        if (CGAL::abs(normal[k]) > CGAL::abs(normal[axis])) axis = k;
+    const std::size_t i = (axis + 1) % 3, j = (axis + 2) % 3;
+    const auto side = [&](const Rational3& p, const Rational3& q, const Rational3& r) {
+        return static_cast<int>(CGAL::sign((q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i])));
+    };
+    const int inside       = side(corner[0], corner[1], corner[2]);
+    const Rational3& start = start_.exact();
+    if (!ends_in_plane) {
+        for (std::size_t e = 0; e < 3; ++e)
+            if (inside * side(corner[e], corner[(e + 1) % 3], start) < 0) return Meeting::none;
+        return Meeting::touches;
+    }
+
+    Rational3 end = rational(end_);
     if (infinite_) {  // far enough along the direction to have passed every corner
         Rational reach = 1;
         for (const Rational3& c : corner)
@@ -60,15 +77,12 @@ Segment::Meeting Segment::meeting_in_plane(vec3 x, vec3 y, vec3 z) const {
                 if (end[k] != 0) reach = std::max(reach, CGAL::abs(Rational((c[k] - start[k]) / end[k])) + 1);
         for (std::size_t k = 0; k < 3; ++k) end[k] = start[k] + reach * end[k];
     }
-    const auto side = [&](const Rational3& p, const Rational3& q, const Rational3& r) {
-        return static_cast<int>(CGAL::sign((q[i] - p[i]) * (r[j] - p[j]) - (q[j] - p[j]) * (r[i] - p[i])));
-    };
+    // Is there a line between the segment and the triangle, on which the end may lie?
     const int a = side(start, end, corner[0]), b = side(start, end, corner[1]), c = side(start, end, corner[2]);
     if ((a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0)) return Meeting::none;
     for (std::size_t e = 0; e < 3; ++e) {
-        const Rational3 &p = corner[e], &q = corner[(e + 1) % 3], &r = corner[(e + 2) % 3];
-        const int inside = side(p, q, r);
-        if (inside * side(p, q, start) < 0 && inside * side(p, q, end) < 0) return Meeting::none;
+        const Rational3 &p = corner[e], &q = corner[(e + 1) % 3];
+        if (inside * side(p, q, start) < 0 && inside * side(p, q, end) <= 0) return Meeting::none;
     }
     return Meeting::touches;
 }
@@ -81,10 +95,9 @@ Segment::Meeting Segment::meeting(vec3 x, vec3 y, vec3 z) const {
     if (surely_left && surely_right) return Meeting::none;
 
     const int end = end_side(x, y, z), start = start_.side(x, y, z);
-    if (start == 0 && end == 0) return meeting_in_plane(x, y, z);
-    // A segment that begins or ends on the triangle's plane does not pass through it: nothing lies on both of its
-    // sides.
-    if (start == 0 || end == 0 || start == end) return Meeting::none;
+    if (start == 0) return meeting_from_plane(x, y, z, end == 0);
+    // A segment that ends on the triangle's plane does not pass through it: nothing lies on both of its sides.
+    if (end == 0 || start == end) return Meeting::none;
     const int e0         = q0 ? *q0 : edge_side(x, y);
     const int e1         = q1 ? *q1 : edge_side(y, z);
     const int e2         = q2 ? *q2 : edge_side(z, x);

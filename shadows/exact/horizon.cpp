@@ -13,7 +13,8 @@ Horizon<double> horizon_of(const Sight& sight) {
     // m's components are off by their products' entries and roundings; a height is a sum of nine products with m.
     const double m_size = largest(m), m_error = 10 * kUnit * largest(ab) * largest(ac);
     const double reach = largest(u) + largest(v) + largest(centre.value);
-    const double error = 3 * (m_error * reach + m_size * centre.error) + 15 * kUnit * m_size * reach;
+    const double error =
+        3 * (m_error * reach + m_size * (centre.error + 2 * sight.plane.axis_error)) + 15 * kUnit * m_size * reach;
     return {glm::dot(m, u), glm::dot(m, v), glm::dot(m, centre.value), error, glm::length(m)};
 }
 
@@ -26,9 +27,10 @@ Horizon<Rational> horizon_of(const Sight& sight) {
         sight.plane.exact_centre ? *sight.plane.exact_centre - a : rational(sight.plane.centre_from_corner.value);
     const Rational3 m = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
     const Rational turn(sight.turn);
+    const Rational3 u   = sight.plane.exact_axes ? sight.plane.exact_axes->u : rational(sight.plane.u);
+    const Rational3 v   = sight.plane.exact_axes ? sight.plane.exact_axes->v : rational(sight.plane.v);
     const double length = glm::length(dvec3(CGAL::to_double(m[0]), CGAL::to_double(m[1]), CGAL::to_double(m[2])));
-    return {turn * dot(m, rational(sight.plane.u)), turn * dot(m, rational(sight.plane.v)), turn * dot(m, centre), 0,
-            length};
+    return {turn * dot(m, u), turn * dot(m, v), turn * dot(m, centre), 0, length};
 }
 
 }  // namespace umbra::exact_detail

@@ -18,9 +18,32 @@ DiskAxes half_axes(const Light& light) {
     return {dvec3(light.edge_u) * 0.5, dvec3(light.edge_v) * 0.5};
 }
 
-LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactPoint& p) {
-    LightPlane plane{half.u, half.v, centre_from_corner(light, p), rational(light.position), 0};
+double axis_error(const Light& light) {
     // Two normalizations and two cross products: fewer than 16 roundings a component.
+    return light.kind == LightKind::disk ? 16 * kUnit * static_cast<double>(light.radius) : 0;
+}
+
+ExactAxes exact_axes(const Light& light, const DiskAxes& half) {
+    Rational3 u = rational(half.u), v = rational(half.v);
+    if (light.kind == LightKind::disk) {
+        const Rational3 n      = rational(light.direction);
+        const auto put_into_it = [&](Rational3& axis) {
+            const Rational over = dot(axis, n) / dot(n, n);
+            for (std::size_t k = 0; k < 3; ++k) axis[k] -= over * n[k];
+        };
+        put_into_it(u);
+        put_into_it(v);
+    }
+    return {std::move(u), std::move(v)};
+}
+
+LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactAxes& exact, const ExactPoint& p) {
+    LightPlane plane{.u                  = half.u,
+                     .v                  = half.v,
+                     .exact_axes         = &exact,
+                     .axis_error         = axis_error(light),
+                     .centre_from_corner = centre_from_corner(light, p),
+                     .exact_centre       = rational(light.position)};
     if (light.kind == LightKind::disk) plane.rounding = 16 * kUnit;
     return plane;
 }
@@ -38,7 +61,7 @@ std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoi
     // The disk's position depends on d, from p to the sphere's centre. The error of d moves its centre, and its radius
     // r sqrt(d^2 - r^2) / d, whose derivative is below r d / (d^2 - r^2) times the radius over d.
     const double rounding = off * (1 + r * d / ((d - r) * (d + r))) / glm::length(disk.axis_u);
-    return LightPlane{disk.axis_u, disk.axis_v, {disk.centre, 0}, std::nullopt, rounding};
+    return LightPlane{.u = disk.axis_u, .v = disk.axis_v, .centre_from_corner = {disk.centre, 0}, .rounding = rounding};
 }
 
 }  // namespace umbra::exact_detail

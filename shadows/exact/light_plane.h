@@ -12,17 +12,30 @@ namespace umbra::exact_detail {
 /// point.
 [[nodiscard]] DiskAxes half_axes(const Light& light);
 
+/// By how much each component of them may be off from the light's plane, and from their length.
+[[nodiscard]] double axis_error(const Light& light);
+
+/// Half axes in rationals: of a disk, whose axes in double leave its plane by a rounding, in the plane itself. From a
+/// point in that plane, or next to it, no rounding of the plane is small.
+struct ExactAxes {
+    Rational3 u, v;
+};
+[[nodiscard]] ExactAxes exact_axes(const Light& light, const DiskAxes& half);
+
 /// Centre and half axes. For a sphere they are rounded to double once.
 struct LightPlane {
     dvec3 u{1, 0, 0}, v{0, 0, 1};
+    const ExactAxes* exact_axes = nullptr;    ///< null: u and v are exact
+    double axis_error           = 0;          ///< of each component of u and v
     Entries centre_from_corner{};             ///< centre less the first corner of the point's triangle
     std::optional<Rational3> exact_centre{};  ///< in rationals; if absent, corner + centre_from_corner
     double rounding = 0;  ///< how far the light's rim may lie from where it is meant to be, in units
                           ///< of the half axes
 };
 
-/// Of a rectangle or a disk with these half axes.
-[[nodiscard]] LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactPoint& p);
+/// Of a rectangle or a disk with these half axes; `exact` must outlive the plane.
+[[nodiscard]] LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactAxes& exact,
+                                          const ExactPoint& p);
 
 /// Of a sphere. Nothing where p is surely within it; a plane of infinite `rounding` where rounding hides whether it is.
 [[nodiscard]] std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoint& p);

@@ -25,9 +25,12 @@ public:
         gy_               = glm::cross(r.value, u);
         gw_               = glm::cross(u, v);
         // A component is a difference of two products: off by twice the entry's error, and by three roundings.
-        g_error_             = side * (2 * r.error + 6 * kUnit * std::max(largest(r.value), side));
+        // Where the axes are off, by twice that, too.
+        const double axis_error = 2.01 * frame.axis_error;
+        g_error_                = side * (2 * r.error + 6 * kUnit * std::max(largest(r.value), side)) +
+                   axis_error * (largest(r.value) + r.error + 2 * side);
         g_size_              = std::max({largest(gx_), largest(gy_), largest(gw_)});
-        const double gw_size = largest(gw_), gw_error = 6 * kUnit * side * side;
+        const double gw_size = largest(gw_), gw_error = 6 * kUnit * side * side + 2 * axis_error * side;
         height_ = glm::dot(gw_, r.value);
         height_error_ =
             3 * (gw_size * r.error + gw_error * (largest(r.value) + r.error)) + 12 * kUnit * gw_size * largest(r.value);
@@ -82,7 +85,8 @@ public:
     using Number = Rational;
 
     RationalSpace(const ExactPoint& p, const LightPlane& frame) : p_(p.exact()) {
-        const Rational3 u = rational(frame.u), v = rational(frame.v);
+        const Rational3 u = frame.exact_axes ? frame.exact_axes->u : rational(frame.u);
+        const Rational3 v = frame.exact_axes ? frame.exact_axes->v : rational(frame.v);
         const Rational3 c =
             frame.exact_centre ? *frame.exact_centre : rational(p.corner()) + rational(frame.centre_from_corner.value);
         const Rational3 r = c - p_;

@@ -18,8 +18,8 @@
 // The signs of triangles and the count are exact. In between is a chain of edges that closes whatever the rounding of
 // its corners, since each corner is projected by itself alone.
 //
-// The area is off by what displacement.h bounds, and by the roundings of the sweep. Where the sum is not below
-// kTrusted, or a sign remains open, doubles cannot tell.
+// The area is off by what displacement.h and depth_doubt.h bound, and by the roundings of the sweep. Where the sum is
+// not below kTrusted, or a sign remains open, doubles cannot tell.
 //
 // This work is based on:
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
@@ -27,6 +27,7 @@
 
 #include "umbra/core/render/visibility.h"
 #include "umbra/shadows/exact/covering_edges.h"
+#include "umbra/shadows/exact/depth_doubt.h"
 #include "umbra/shadows/exact/horizon.h"
 #include "umbra/shadows/exact/layer_count.h"
 #include "umbra/shadows/exact/received_light.h"
@@ -61,7 +62,9 @@ public:
         : sight_(sight), projection_(sight, space), measure_(measure), covering_(covering) {}
 
     /// Whether triangle t surely hides the whole light.
-    [[nodiscard]] bool is_hidden_by(TriangleId t) const { return LayerCount<Space>(projection_).covers_all(t); }
+    [[nodiscard]] bool is_hidden_by(TriangleId t) const {
+        return LayerCount<Space>(projection_).covers_all(t) && surely_before_light(sight_, t);
+    }
 
     /// `blocker` becomes a triangle that hides the whole light, where one is found, else kNoTriangle.
     [[nodiscard]] Filtered<VisibleArea> find(const std::vector<SilhouetteEdge>& silhouette, TriangleId& blocker) const;
@@ -171,6 +174,10 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
 
     const Filtered<int> base = base_layers(displacement.widest, blocker);
     if (!base) return kUnsure;
+    if (blocker != kNoTriangle && surely_before_light(sight_, blocker)) return result;
+    const double in_doubt = area_in_doubt(sight_);
+    if (std::is_same_v<T, double> && !(in_doubt <= kTrusted)) return kUnsure;
+    result.error        = in_doubt;
     const bool no_edges = covering_.edges.empty();
     if (blocker != kNoTriangle || (no_edges && *base > 0)) return result;
     if (no_edges) result.irradiance = {1, 1};
@@ -202,7 +209,7 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     }
     const auto [area, rows] = area_and_rows;
     result.visible          = area;
-    result.error            = displacement.swept + 16 * kUnit * (rows + 4);
+    result.error            = in_doubt + displacement.swept + 16 * kUnit * (rows + 4);
     if (std::is_same_v<T, double> && !(result.error <= kTrusted)) return kUnsure;
     if (round()) {
         const DiskCaps::Area with_caps = covering_.caps.with_caps(area);

@@ -25,9 +25,13 @@ Int3 cross(const Int3& a, const Int3& b) {
 
 /// 0 lit, 1 touched, 2 blocked, by a way of its own: the crossing point as a fraction of the segment, then its
 /// barycentrics; in the plane of a triangle, the interval of the segment that lies inside (Cyrus and Beck 1978).
-int meeting(const Int3& p, const Int3& d, bool infinite, const Int3& a, const Int3& b, const Int3& c) {
+/// `front`: the normal of the point's own triangle, to the side of the light. What does not rise over its plane is not
+/// counted, nor what is met at the light alone.
+int meeting(const Int3& p, const Int3& d, bool infinite, const Int3& front, const Int3& a, const Int3& b,
+            const Int3& c) {
     const Int3 n = cross(b - a, c - a);
-    if (dot(n, n) == 0) return 0;                       // no area: no surface
+    if (dot(n, n) == 0) return 0;  // no area: no surface
+    if (dot(front, a - p) <= 0 && dot(front, b - p) <= 0 && dot(front, c - p) <= 0) return 0;
     const Int top = dot(n, a - p), bottom = dot(n, d);  // crossing at s = top / bottom
     const auto corner = [&](int k) { return k % 3 == 0 ? a : k % 3 == 1 ? b : c; };
     if (bottom == 0) {
@@ -44,10 +48,11 @@ int meeting(const Int3& p, const Int3& d, bool infinite, const Int3& a, const In
             if (slope > 0 && s_n * lo_d > lo_n * s_d) lo_n = s_n, lo_d = s_d;
             if (slope < 0 && s_n * hi_d < hi_n * s_d) hi_n = s_n, hi_d = s_d;
         }
-        return lo_n * hi_d <= hi_n * lo_d ? 1 : 0;
+        const bool at_the_light = !infinite && lo_n == lo_d;
+        return lo_n * hi_d <= hi_n * lo_d && !at_the_light ? 1 : 0;
     }
     const Int s_n = bottom > 0 ? top : -top, s_d = bottom > 0 ? bottom : -bottom;
-    if (s_n <= 0 || (!infinite && s_n >= s_d)) return 0;
+    if (s_n < 0 || (!infinite && s_n >= s_d)) return 0;
     Int3 hit;  // times s_d
     for (std::size_t k = 0; k < 3; ++k) hit[k] = p[k] * s_d + d[k] * s_n;
     int on_edge = 0;
@@ -58,7 +63,7 @@ int meeting(const Int3& p, const Int3& d, bool infinite, const Int3& a, const In
         if (inside < 0) return 0;
         on_edge += inside == 0;
     }
-    return on_edge > 0 ? 1 : 2;
+    return on_edge > 0 || s_n == 0 ? 1 : 2;
 }
 
 struct Counts {
@@ -129,10 +134,14 @@ Counts compare_with_brute_force(unsigned seed) {
             const dvec3 a(scene.vertex(own, 0)), b(scene.vertex(own, 1)), c(scene.vertex(own, 2));
             const Int3 p = whole(a + double(batch.u[i]) * (b - a) + double(batch.v[i]) * (c - a));
             const Int3 d = infinite ? whole(-dvec3(light.direction)) : whole(dvec3(light.position)) - p;
-            int met      = 0;
+            const Int3 n = cross(whole(b) - whole(a), whole(c) - whole(a));
+            Int3 front   = n;
+            if (dot(n, d) < 0)
+                for (Int& x : front) x = -x;
+            int met = 0;
             for (TriangleId t = 0; t < scene.triangles.size(); ++t)
                 if (t != own)
-                    met = std::max(met, meeting(p, d, infinite, whole(dvec3(scene.vertex(t, 0))),
+                    met = std::max(met, meeting(p, d, infinite, front, whole(dvec3(scene.vertex(t, 0))),
                                                 whole(dvec3(scene.vertex(t, 1))), whole(dvec3(scene.vertex(t, 2)))));
             EXPECT_EQ(s[i], met == 2 ? 0.0f : 1.0f) << "seed " << seed << " light " << j << " point " << i;
             EXPECT_EQ(plane.answer[i], met == 1 ? Answer::on_boundary : Answer::given)
