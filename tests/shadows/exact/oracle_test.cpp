@@ -1,0 +1,213 @@
+// `exact` compared with an oracle of other mathematics (tests/support/oracle.h), on random adversarial scenes: every
+// decision about hard lights must agree, and every visible fraction of an area light within the half width that `exact`
+// states. Also the facing of points, on which all methods build.
+//
+// UMBRA_ORACLE_HARD, UMBRA_ORACLE_AREA: how many decisions; UMBRA_ORACLE_SEED: where the scenes begin;
+// UMBRA_ORACLE_OUT: a folder for the scenes of mismatches. `./umbra oracle` sets them.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "umbra/core/io/scene_writer.h"
+#include "umbra/core/scene/primitives.h"
+#include "umbra/tests/support/adversarial_scenes.h"
+#include "umbra/tests/support/method_case.h"
+#include "umbra/tests/support/oracle.h"
+
+namespace umbra {
+namespace {
+
+using oracle::Oracle;
+using oracle::SurfacePoint;
+using oracle::Verdict;
+
+constexpr double kRectangleHalfWidth = 1e-9;     ///< as `exact` states it (Service::why)
+constexpr double kFloatRounding      = 0x1p-25;  ///< half an ulp of an S_j in [0.5, 1)
+constexpr double kOracleRounding     = 1e-12;
+
+std::uint64_t from_environment(const char* name, std::uint64_t otherwise) {
+    const char* text = std::getenv(name);
+    return text && *text ? std::strtoull(text, nullptr, 10) : otherwise;
+}
+
+SurfacePoint name_of(const PointBatch& points, std::size_t i) {
+    return {points.triangle[i], points.u[i], points.v[i], points.flipped[i] != 0};
+}
+
+/// What became of the decisions.
+struct Tally {
+    std::uint64_t decisions = 0, lit = 0, umbra = 0, penumbra = 0, on_boundary = 0, away = 0, unknown = 0;
+    std::uint64_t mismatches = 0;
+    double beyond            = -1;  ///< the largest difference less the stated half width
+    double widest            = 0;   ///< the largest half width below 0.5
+
+    void mismatch(const AdversarialScene& made, LightId light, std::size_t i, const std::string& what) {
+        ++mismatches;
+        const SurfacePoint p = name_of(made.points, i);
+        const std::string message =
+            fmt::format("{} ({}), light {}, triangle {}, u {:a}, v {:a}{}: {}", made.scene.name, made.pattern,
+                        made.scene.lights[light].name, p.triangle, p.u, p.v, p.flipped ? ", flipped" : "", what);
+        if (mismatches <= 20) ADD_FAILURE() << message;
+        if (const char* folder = std::getenv("UMBRA_ORACLE_OUT"); folder && *folder) {
+            std::filesystem::create_directories(folder);
+            Scene one = made.scene;
+            one.shows = message;
+            one.lights.assign(1, made.scene.lights[light]);
+            std::ofstream(fmt::format("{}/{}_{}.json", folder, one.name, one.lights[0].name)) << native_text(one);
+            std::ofstream(fmt::format("{}/mismatches.txt", folder), std::ios::app) << message << '\n';
+        }
+    }
+    [[nodiscard]] std::string text() const {
+        return fmt::format("{} decisions: {} lit, {} umbra, {} penumbra, {} on boundary; {} points away; {} mismatches",
+                           decisions, lit, umbra, penumbra, on_boundary, away, mismatches);
+    }
+};
+
+/// The facing of a point, and the side that sees. False where it is away.
+bool judge_facing(const AdversarialScene& made, const Oracle& truth, LightId light, std::size_t i, Tally& tally) {
+    const SurfacePoint point = name_of(made.points, i);
+    const Facing facing = made.points.facing[light][i], right = truth.facing(point, made.scene.lights[light]);
+    if (facing != right) tally.mismatch(made, light, i, fmt::format("facing {}, expected {}", int(facing), int(right)));
+    const auto flipped = truth.flipped(point.triangle, made.points.eye);
+    if (flipped && point.flipped != (*flipped && made.scene.materials[0].two_sided))
+        tally.mismatch(made, light, i, "sees from the wrong side");
+    if (facing == right && made.points.asks(light, i)) return true;
+    ++tally.away;
+    return false;
+}
+
+void judge_hard(const AdversarialScene& made, Tally& tally) {
+    const Oracle truth(made.scene);
+    MethodCase exact("exact", made.scene);
+    for (LightId light = 0; light < made.scene.lights.size(); ++light) {
+        exact.prepare(light);
+        const VisibilityPlane plane = exact.visibility(made.points, light);
+        for (std::size_t i = 0; i < made.points.size(); ++i) {
+            if (made.points.triangle[i] == kNoTriangle || !judge_facing(made, truth, light, i, tally)) continue;
+            const Verdict right = truth.verdict(name_of(made.points, i), made.scene.lights[light]);
+            const Verdict found = plane.answer[i] == Answer::on_boundary ? Verdict::on_boundary
+                                  : plane.s[i] == 0                      ? Verdict::umbra
+                                                                         : Verdict::lit;
+            ++tally.decisions;
+            ++(right == Verdict::lit ? tally.lit : right == Verdict::umbra ? tally.umbra : tally.on_boundary);
+            if (found != right)
+                tally.mismatch(made, light, i, fmt::format("verdict {}, expected {}", int(found), int(right)));
+        }
+    }
+}
+
+void judge_area(const AdversarialScene& made, Tally& tally) {
+    const Oracle truth(made.scene);
+    MethodCase exact("exact", made.scene);
+    for (LightId light = 0; light < made.scene.lights.size(); ++light) {
+        exact.prepare(light);
+        const VisibilityPlane plane = exact.visibility(made.points, light);
+        const bool round            = made.scene.lights[light].kind != LightKind::rectangle;
+        for (std::size_t i = 0; i < made.points.size(); ++i) {
+            if (made.points.triangle[i] == kNoTriangle || !judge_facing(made, truth, light, i, tally)) continue;
+            const oracle::Fraction right = truth.fraction(name_of(made.points, i), made.scene.lights[light]);
+            ++tally.decisions;
+            if (plane.answer[i] == Answer::on_boundary || right.undefined) {
+                ++tally.on_boundary;
+                const bool sphere = made.scene.lights[light].kind == LightKind::sphere;
+                if (!sphere && (plane.answer[i] == Answer::on_boundary) != right.undefined)
+                    tally.mismatch(made, light, i, right.undefined ? "edge-on, but judged" : "not edge-on");
+                continue;
+            }
+            const double half = round ? double(plane.half_width[i]) : kRectangleHalfWidth;
+            const double off  = std::abs(plane.s[i] - right.visible);
+            ++(right.visible > 1 - 1e-6 ? tally.lit : right.visible < 1e-6 ? tally.umbra : tally.penumbra);
+            tally.beyond = std::max(tally.beyond, off - half);
+            if (half >= 0.5)
+                ++tally.unknown;
+            else
+                tally.widest = std::max(tally.widest, half);
+            if (!(off <= half + kFloatRounding + kOracleRounding))
+                tally.mismatch(made, light, i,
+                               fmt::format("{} within {:.3g}, expected {:.12g}{}", plane.s[i], half, right.visible,
+                                           right.touched ? ", touched" : ""));
+        }
+    }
+}
+
+TEST(Oracle, AreaOfPolygonsInTheUnitDisk) {
+    const auto square = [](double s) { return std::vector<dvec2>{{-s, -s}, {s, -s}, {s, s}, {-s, s}}; };
+    EXPECT_NEAR(oracle::area_in_unit_disk(square(2)), kPi, 1e-14);
+    EXPECT_NEAR(oracle::area_in_unit_disk(square(0.5)), 1, 1e-14);
+    EXPECT_NEAR(oracle::area_in_unit_disk({{0, -2}, {2, -2}, {2, 2}, {0, 2}}), kPi / 2, 1e-14);
+    EXPECT_NEAR(oracle::area_in_unit_disk({{0.5, -2}, {2, -2}, {2, 2}, {0.5, 2}}), kPi / 3 - std::sqrt(3.0) / 4, 1e-14);
+    EXPECT_NEAR(oracle::area_in_unit_disk({{2, 2}, {3, 2}, {3, 3}}), 0, 1e-14);
+}
+
+/// A half plane between a point and lights: what is hidden is known.
+TEST(Oracle, BehindHalfAPlane) {
+    Scene scene;
+    scene.materials.resize(1);
+    add_object(scene, "floor", {{-4, 0, -4}, {0, 0, 8}, {4, 0, -4}}, {}, {{0, 1, 2}}, 0);
+    add_object(scene, "sheet", {{0.25f, 1, -40}, {0.25f, 1, 40}, {60, 1, 0}}, {}, {{0, 1, 2}}, 0);
+    const Oracle truth(scene);
+    const SurfacePoint origin{0, 1.0f / 3, 1.0f / 3};  // nearly
+    Light light;
+    light.kind     = LightKind::rectangle;
+    light.position = {0, 2, 0};
+    light.edge_u   = {2, 0, 0};
+    light.edge_v   = {0, 0, 2};
+    EXPECT_NEAR(truth.fraction(origin, light).visible, 0.75, 1e-6);
+    light.kind      = LightKind::disk;
+    light.direction = {0, -1, 0};
+    light.radius    = 1;
+    EXPECT_NEAR(truth.fraction(origin, light).visible, 1 - (kPi / 3 - std::sqrt(3.0) / 4) / kPi, 1e-6);
+    light.kind     = LightKind::point;
+    light.position = {0.625f, 2, 0};
+    EXPECT_EQ(truth.verdict(origin, light), Verdict::umbra);
+    light.position = {0.375f, 2, 0};
+    EXPECT_EQ(truth.verdict(origin, light), Verdict::lit);
+}
+
+constexpr int kLights = 4, kPoints = 24;
+
+TEST(ExactAgainstOracle, HardLights) {
+    const std::uint64_t wanted = from_environment("UMBRA_ORACLE_HARD", 6000);
+    std::uint64_t seed         = from_environment("UMBRA_ORACLE_SEED", 1);
+    Tally tally;
+    for (; tally.decisions < wanted; ++seed)
+        judge_hard(adversarial_scene(seed, LightsWanted::hard, kLights, kPoints), tally);
+    fmt::print("hard lights, {}; next seed {}\n", tally.text(), seed);
+    if (wanted == 0) return;
+    EXPECT_EQ(tally.mismatches, 0u);
+    EXPECT_GT(tally.lit, wanted / 20);
+    EXPECT_GT(tally.umbra, wanted / 20);
+    EXPECT_GT(tally.on_boundary, wanted / 200);
+}
+
+TEST(ExactAgainstOracle, AreaLights) {
+    const std::uint64_t wanted = from_environment("UMBRA_ORACLE_AREA", 600);
+    std::uint64_t seed         = from_environment("UMBRA_ORACLE_SEED", 1);
+    Tally tally;
+    for (; tally.decisions < wanted; ++seed) judge_area(adversarial_scene(seed, LightsWanted::area, kLights, 8), tally);
+    fmt::print(
+        "area lights, {}; {} with nothing known; largest difference beyond the half width {:.3g}, largest half "
+        "width {:.3g}; next seed {}\n",
+        tally.text(), tally.unknown, tally.beyond, tally.widest, seed);
+    if (wanted == 0) return;
+    EXPECT_EQ(tally.mismatches, 0u);
+    EXPECT_GT(tally.penumbra, wanted / 4);
+}
+
+/// Disks and spheres of any size in bad positions: an answer for every point, whatever it is worth.
+TEST(ExactAgainstOracle, RoundLightsInBadPositions) {
+    const std::uint64_t wanted = from_environment("UMBRA_ORACLE_ROUND", 20);
+    const std::uint64_t first  = from_environment("UMBRA_ORACLE_SEED", 1);
+    Tally tally;
+    for (std::uint64_t seed = first; seed < first + wanted; ++seed)
+        judge_area(adversarial_scene(seed, LightsWanted::round, 2, 8), tally);
+    fmt::print("round lights in {} scenes, {}; {} with nothing known; largest half width {:.3g}\n", wanted,
+               tally.text(), tally.unknown, tally.widest);
+    EXPECT_EQ(tally.mismatches, 0u);
+}
+
+}  // namespace
+}  // namespace umbra
