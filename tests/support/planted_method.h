@@ -1,0 +1,77 @@
+// A method for tests that is wrong in a way that the test chooses: it stands for any method whose answers are known.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// What it answers at one pixel.
+struct PlantedAnswer {
+    float s      = 0;
+    bool defined = true;
+};
+
+/// Set by a test before a run and read by every object of the method.
+struct PlantedBehaviour {
+    /// At the pixel in column x, row y from the top.
+    std::function<PlantedAnswer(LightId light, std::size_t x, std::size_t y, int seed)> answer;
+    std::function<void(Phase phase, LightId light)> work;  ///< called in each phase; may be empty
+    std::function<bool(vec3 position)> blames_own;         ///< its shadow there comes from the point's own triangle
+    TriangleId blamed        = kNoTriangle;                ///< for its shadow elsewhere
+    std::size_t memory_bytes = 0;
+};
+inline PlantedBehaviour planted_behaviour;
+
+struct PlantedOptions {
+    int seed = 0;
+};
+
+class PlantedMethod final : public MethodWith<PlantedOptions> {
+public:
+    [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "planted"}; }
+    void build(const Scene&, const SceneFacts&) override { work(Phase::build, 0); }
+    void aim(LightId light) override { work(Phase::aim, light); }
+    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
+        work(Phase::visibility, light);
+        const auto width = static_cast<std::size_t>(points.raster->width);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!points.asks(light, i)) continue;
+            const PlantedAnswer a = planted_behaviour.answer(light, i % width, i / width, options.seed);
+            out.s[i]              = a.defined ? a.s : 0;
+            out.answer[i]         = a.defined ? Answer::given : Answer::undefined;
+        }
+    }
+    void blame(const PointBatch& points, LightId, std::span<TriangleId> blockers) const override {
+        for (std::size_t i = 0; i < points.size(); ++i)
+            blockers[i] = planted_behaviour.blames_own && planted_behaviour.blames_own(points.position(i))
+                              ? points.triangle[i]
+                              : planted_behaviour.blamed;
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override { return planted_behaviour.memory_bytes; }
+
+private:
+    static void work(Phase phase, LightId light) {
+        if (planted_behaviour.work) planted_behaviour.work(phase, light);
+    }
+};
+
+/// The method as `CompareOptions::choices` takes it; `seed`: "seed" where its answers depend on one.
+inline MethodInfo planted_method(std::string_view seed = {}) {
+    MethodInfo info;
+    info.name       = "planted";
+    info.title      = "Planted";
+    info.paper      = "Nobody, Wrong on Purpose";
+    info.summary    = "Wrong where a test says so.";
+    info.parameters = {
+        parameter<&PlantedOptions::seed>({.name = "seed", .doc = "Noise.", .min = 0, .max = 2147483647})};
+    info.seed   = seed;
+    info.create = create<PlantedMethod>;
+    return info;
+}
+
+}  // namespace umbra
