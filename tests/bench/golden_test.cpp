@@ -11,7 +11,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "umbra/bench/golden/golden_planes.h"
 #include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/support/temporary_folder.h"

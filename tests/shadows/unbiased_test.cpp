@@ -10,7 +10,7 @@
 #include <cmath>
 #include <random>
 
-#include "umbra/bench/golden/golden.h"
+#include "umbra/bench/golden/golden_planes.h"
 #include "umbra/bench/run/canonical.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/tests/support/known_scenes.h"

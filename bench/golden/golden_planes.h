@@ -1,0 +1,43 @@
+// S_j planes as images that keep every bit, and what differs between two of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/run.h"
+#include "umbra/core/image/image.h"
+
+namespace umbra {
+
+/// The method's answer is an estimate that depends on a seed.
+[[nodiscard]] bool is_sampled(const MethodChoice& choice, const Light& light);
+
+/// A channel S.<light> for each light: S_j, NaN where undefined, -1 on a shadow boundary. Lights whose answers are
+/// sampled have none, unless `sampled_too`.
+[[nodiscard]] Image coded_planes(const PreparedScene& prepared, const MethodRun& run, bool sampled_too = false);
+
+/// The plane of one channel, as methods write it.
+[[nodiscard]] VisibilityPlane decoded_plane(const Image& image, std::size_t channel);
+
+/// Equal, or both NaN.
+[[nodiscard]] bool same_value(float a, float b);
+
+struct ChangedPlane {
+    LightId light           = 0;
+    std::size_t old_channel = 0, new_channel = 0;
+};
+
+struct Changes {
+    std::vector<std::string> lines;
+    std::vector<ChangedPlane> planes;
+    bool at_edges_alone = true;
+    void add(std::string line, bool at_edges) {
+        lines.push_back(std::move(line));
+        at_edges_alone &= at_edges;
+    }
+};
+
+[[nodiscard]] Changes plane_changes(const Image& before, const Image& now, const PreparedScene& prepared);
+
+}  // namespace umbra
