@@ -18,9 +18,10 @@ OffPixel off_pixel(const Scene& scene, const PointBatch& points) {
         OffPixel here;
         for (std::size_t i = begin; i < end; ++i) {
             if (points.triangle[i] == kNoTriangle) continue;
+            const std::size_t column = i % width, row = i / width;
             const dvec3 seen = frame.project(exact_position(scene, points, i));
-            const double x   = std::abs(seen.x - (static_cast<double>(i % width) + 0.5)),
-                         y   = std::abs(seen.y - (static_cast<double>(i / width) + 0.5));
+            const double x   = std::abs(seen.x - (static_cast<double>(column) + 0.5)),
+                         y   = std::abs(seen.y - (static_cast<double>(row) + 0.5));
             const double off = seen.z > 0 || frame.projection == Projection::orthographic
                                    ? std::max(x, y)
                                    : std::numeric_limits<double>::infinity();
