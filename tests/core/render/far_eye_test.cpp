@@ -51,9 +51,9 @@ std::size_t off_centre(const Scene& scene, const PointBatch& points, double shar
     std::size_t off = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.triangle[i] == kNoTriangle) continue;
-        const dvec3 pixel = points.raster->project(exact_position(scene, points, i));
-        const auto width  = static_cast<std::size_t>(points.raster->width);
-        const auto x = static_cast<double>(i % width) + 0.5, y = static_cast<double>(i / width) + 0.5;
+        const dvec3 pixel       = points.raster->project(exact_position(scene, points, i));
+        const std::size_t width = static_cast<std::size_t>(points.raster->width), column = i % width, row = i / width;
+        const double x = static_cast<double>(column) + 0.5, y = static_cast<double>(row) + 0.5;
         off += !(std::abs(pixel.x - x) <= share && std::abs(pixel.y - y) <= share);
     }
     return off;
