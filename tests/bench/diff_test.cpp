@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <regex>
 
 #include "umbra/bench/diff/diff_page.h"
@@ -68,7 +69,12 @@ TEST_F(Diff, EqualsIdiff) {
     EXPECT_NE(text.find("\n  max     0.5\n  worst   (5, 17), channel G: A 0.1, B 0.6\n"), std::string::npos) << text;
     EXPECT_EQ(diff_line(result),
               "differs    a.exr: largest difference 0.5 is above 0.1; worst (5, 17), channel G: A 0.1, B 0.6");
-    EXPECT_NE(text.find("121 beyond the limit"), std::string::npos) << text;
+    EXPECT_NE(text.find("  pixels  121 differ (2.95 %), 121 beyond the limit (2.95 %)\n"), std::string::npos) << text;
+    const nlohmann::json& flip = json["flip"];
+    EXPECT_LT(flip["first_quartile"], flip["third_quartile"]);
+    EXPECT_LE(flip["first_quartile"], flip["weighted_median"]);
+    EXPECT_LE(flip["weighted_median"], flip["third_quartile"]);
+    EXPECT_LE(flip["third_quartile"], flip["max"]);
     EXPECT_NE(text.find("\ndiffers: largest difference 0.5 is above 0.1\n"), std::string::npos) << text;
 }
 
@@ -331,6 +337,38 @@ TEST_F(Diff, FoldersAreComparedImageByImage) {
     EXPECT_THROW(static_cast<void>(diff_set(folder / "empty", folder / "empty", {}, {})), InputError);
     EXPECT_EQ(diff_set(a, folder / "empty", {}, {}).count(Verdict::differs), 3u);
     EXPECT_THROW(static_cast<void>(diff_set(a, page, {}, {})), UsageError);
+}
+
+/// One image the same, one within the limit, one beyond: 121 pixels of one channel in three differ by 0.5.
+TEST_F(Diff, PageShowsFiguresAndPictures) {
+    for (const char* side : {"a", "b"}) fs::create_directories(folder / side);
+    for (const auto& [name, green] : {std::pair{"a/same.exr", 0.2f},
+                                      {"b/same.exr", 0.2f},
+                                      {"a/close.exr", 0.1f},
+                                      {"b/close.exr", 0.15f},
+                                      {"a/differs.exr", 0.1f},
+                                      {"b/differs.exr", 0.6f}})
+        static_cast<void>(box(name, green));
+    DiffOptions options{.fail = 0.1};
+    options.pictures = diff_pictures_folder(folder / "page.html");
+    write_diff_page(folder / "page.html", diff_set(folder / "a", folder / "b", options, {}));
+    std::ifstream in(folder / "page.html");
+    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    const auto has = [&](const char* text) { return page.find(text) != std::string::npos; };
+    EXPECT_TRUE(has("1 of 3 images differ"));
+    // Largest difference, RMSE, MAE, ... pixels that differ, beyond the limit.
+    EXPECT_TRUE(has("<td class=\"differs\">differs</td><td>0.500</td><td>0.0496</td><td>0.00492</td><td>26.09 dB</td>"))
+        << page;
+    EXPECT_TRUE(has("<td>121</td><td>121</td><td>largest difference 0.5 is above 0.1</td>"));
+    EXPECT_TRUE(has("<td>121</td><td>0</td><td></td>")) << "close";
+    EXPECT_TRUE(
+        has("<a href=\"page.files/differs.exr.a.png\"><img src=\"page.files/differs.exr.a.png\" width=\"64\" "
+            "height=\"64\" loading=\"lazy\" alt=\"A\">"));
+    EXPECT_TRUE(
+        has("<img src=\"page.files/differs.exr.b.png\" width=\"64\" height=\"64\" loading=\"lazy\" alt=\"B\">"));
+    // A is dark where B has the bright box.
+    EXPECT_LT(read_image(folder / "page.files/differs.exr.a.png").image.at(20 * 64 + 10, 1),
+              read_image(folder / "page.files/differs.exr.b.png").image.at(20 * 64 + 10, 1));
 }
 
 TEST_F(Diff, JunitOfAPairAndNamesThatAreNoText) {
