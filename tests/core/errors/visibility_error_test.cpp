@@ -49,6 +49,17 @@ TEST(VisibilityError, EqualPlanesHaveNone) {
     EXPECT_EQ(e.mae + e.rmse + e.max + e.bias, 0);
 }
 
+/// The reference's own doubt, 0.25, adds to the tolerance: 0.5 + 0.25 is allowed, more is not.
+TEST(VisibilityError, TheReferencesHalfWidthIsAllowed) {
+    Half half;
+    half.reference.half_width[Half::at(3, 3)] = half.reference.half_width[Half::at(4, 3)] = 0.25f;
+    half.s.s[Half::at(3, 3)]                                                              = 0.3f;
+    EXPECT_EQ(wrong(half.error()), (Counts{0, 0, 0, 0}));
+    half.s.s[Half::at(4, 3)] = 0.2f;
+    EXPECT_EQ(wrong(half.error()), (Counts{1, 0, 0, 0}));
+    EXPECT_EQ(half.error().max_half_width, 0.25);
+}
+
 TEST(VisibilityError, BandIsTwoPixelsOnEitherSideOfAStraightBoundary) {
     const Half half;
     const auto band = edge_band(half.points, 0, half.reference, kHardTolerance);

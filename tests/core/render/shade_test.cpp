@@ -170,6 +170,17 @@ TEST(Shade, LightBehindThePlaneGivesNothingWhateverTheVertexNormalsSay) {
     EXPECT_EQ(rgb(table.shaded(), 0), vec3(0));
 }
 
+/// The facet faces the light, the vertex normals do not: N.L < 0 is no negative light.
+TEST(Shade, NormalsThatFaceAwayTakeNoLightAway) {
+    Table table(glossy(1), {point_light({9, 1, 0})});
+    table.scene.materials[0].k_d      = vec3(1);
+    table.scene.materials[0].emission = vec3(0.5f);
+    const vec3 leaning                = glm::normalize(vec3(-1, 0.05f, 0));
+    table.scene.normals               = {leaning, leaning, leaning};
+    table.add(1.0f / 3, 1.0f / 3, 1);
+    EXPECT_EQ(rgb(table.shaded(), 0), vec3(0.5f));
+}
+
 TEST(Shade, TwoSidedMaterialIsLitWhereTheEyeIs) {
     Material m;
     m.k_a = vec3(0);
@@ -335,6 +346,13 @@ TEST(Displayed, HueKeepsRatiosAndOrder) {
         EXPECT_GT(r, before);
         before = r;
     }
+}
+
+/// Above the knee at 0.8: 0.9 is t = 1/2 beyond it, and becomes 0.8 + 0.2 t / (1 + t).
+TEST(Displayed, HueBendsAtItsKnee) {
+    EXPECT_NEAR(displayed(picture({0.9f, 0.9f, 0.9f}), ToneMap::hue, 1).data[0], srgb_from_linear(0.8f + 0.2f / 3),
+                1e-6);
+    EXPECT_NEAR(displayed(picture({0.8f, 0.8f, 0.8f}), ToneMap::hue, 1).data[0], srgb_from_linear(0.8f), 1e-6);
 }
 
 TEST(Displayed, ExposureComesFirst) { EXPECT_EQ(displayed(picture({0.5f, 0.25f, 0}), ToneMap::clamp, 4).data[1], 1); }

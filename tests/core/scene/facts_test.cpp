@@ -224,6 +224,38 @@ bool lists(const std::vector<std::string>& list, const std::string& what) {
     return std::any_of(list.begin(), list.end(), [&](const std::string& s) { return s.find(what) != s.npos; });
 }
 
+/// One property at a time: its trait is required with it and not required without it.
+TEST(Lists, EachPropertyOfMaterialsAndLightsIsATrait) {
+    Scene plain = scene_of(make_box({1, 1, 1}));
+    plain.lights.push_back(light_at({0, 30, 0}));
+    plain.lights[0].attenuation = {};
+    const auto expect           = [&](const Scene& with, const std::string& trait) {
+        EXPECT_TRUE(lists(not_required_list(find_facts(plain)), trait)) << trait;
+        EXPECT_TRUE(lists(requires_list(find_facts(with)), trait)) << trait;
+    };
+    Scene scene                = plain;
+    scene.materials[0].opacity = 0.5f;
+    expect(scene, "transparency");
+    scene                       = plain;
+    scene.materials[0].transmit = 0.5f;
+    expect(scene, "transparency");
+    scene                      = plain;
+    scene.materials[0].reflect = 0.5f;
+    expect(scene, "mirrors");
+    scene                       = plain;
+    scene.materials[0].emission = vec3(0.5f);
+    expect(scene, "emission");
+    scene                        = plain;
+    scene.materials[0].two_sided = false;
+    expect(scene, "one-sided lighting");
+    scene                 = plain;
+    scene.lights[0].range = 5;
+    expect(scene, "attenuation");
+    scene                          = plain;
+    scene.lights[0].attenuation.c2 = 1;
+    expect(scene, "attenuation");
+}
+
 TEST(Lists, EveryTraitIsInOneOfThem) {
     Scene scene = scene_of(make_box({1, 1, 1}));
     scene.lights.push_back(light_at({0, 30, 0}));
