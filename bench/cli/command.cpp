@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <filesystem>
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
@@ -109,6 +110,9 @@ int run_command_line(int argc, const char* const* argv) {
         fmt::print(stderr, "umbra: {}\nTry: umbra {}\n", e.what(), help);
         return kUsage;
     } catch (const InputError& e) {
+        fmt::print(stderr, "{}\n", e.what());
+        return kUnreadable;
+    } catch (const std::filesystem::filesystem_error& e) {  // a name that is too long, a folder that is not ours
         fmt::print(stderr, "{}\n", e.what());
         return kUnreadable;
     } catch (const std::exception& e) {

@@ -14,12 +14,12 @@
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 
 namespace umbra {
 
 Json climb_ladders(const LadderOptions& options) {
-    if (std::filesystem::exists(options.out / "results.json") &&
-        !read_results(options.out / "results.json")["ladders"].present())
+    if (is_there(options.out / "results.json") && !read_results(options.out / "results.json")["ladders"].present())
         throw InputError(
             fmt::format("{}: holds the results of another command and is not replaced, expected another folder "
                         "with -o",

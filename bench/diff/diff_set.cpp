@@ -9,6 +9,7 @@
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 
 namespace umbra {
 
@@ -43,8 +44,8 @@ DiffResult missing(const fs::path& a, const fs::path& b, const std::string& wher
 }
 
 DiffResult pair_of_folders(const fs::path& a, const fs::path& b, const fs::path& name, const DiffOptions& options) {
-    if (!fs::exists(a / name)) return missing(a / name, b / name, a.string());
-    if (!fs::exists(b / name)) return missing(a / name, b / name, b.string());
+    if (!is_there(a / name)) return missing(a / name, b / name, a.string());
+    if (!is_there(b / name)) return missing(a / name, b / name, b.string());
     DiffOptions of = options;
     if (!options.map.empty()) of.map = (options.map / name) += ".png";
     if (!options.pictures.empty()) of.pictures = options.pictures / name;
@@ -89,8 +90,8 @@ std::size_t DiffSet::count(Verdict verdict) const {
 
 DiffSet diff_set(const fs::path& a, const fs::path& b, const DiffOptions& options,
                  const std::function<void(const std::string&)>& progress) {
-    DiffSet set{a.string(), b.string(), fs::is_directory(a), {}};
-    if (fs::exists(a) && fs::exists(b) && fs::is_directory(b) != set.folders)
+    DiffSet set{a.string(), b.string(), is_folder(a), {}};
+    if (is_there(a) && is_there(b) && is_folder(b) != set.folders)
         throw UsageError(fmt::format("{} is a folder and {} is not, expected two files or two folders",
                                      set.folders ? set.a : set.b, set.folders ? set.b : set.a));
     if (!set.folders) {
@@ -103,7 +104,7 @@ DiffSet diff_set(const fs::path& a, const fs::path& b, const DiffOptions& option
         return set;
     }
     std::set<fs::path> names = images_in(a);
-    if (fs::exists(b)) names.merge(images_in(b));
+    if (is_there(b)) names.merge(images_in(b));
     if (names.empty()) throw InputError(fmt::format("{}: holds no images, nor does {}", set.a, set.b));
     for (const fs::path& name : names) {
         if (progress) progress(name.string());

@@ -8,6 +8,7 @@
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/error_rings.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/core/base/paths.h"
 #include "umbra/core/image/image_io.h"
 
 namespace umbra {
@@ -29,7 +30,7 @@ std::string SceneFiles::link(const Field& file, const fs::path& from) const {
     const fs::path path = scene_.data / name;
     if (name.is_absolute() || *path.lexically_normal().lexically_relative(scene_.data).begin() == "..")
         file.refuse("a file in the same folder");
-    if (!fs::is_regular_file(path)) file.refuse("an existing file");
+    if (!is_file(path)) file.refuse("an existing file");
     if (scene_.page != scene_.data) staged_.copy(path, (scene_.page / name).lexically_normal());
     return url((scene_.page / name).lexically_normal().lexically_relative(from));
 }
@@ -80,7 +81,7 @@ json SceneFiles::rings(const Field& classes) const {
 
 json SceneFiles::exr(const Field& files) const {
     const Field file = files["exr"];
-    if (!file.present() || !fs::is_regular_file(scene_.data / file.required_text())) return false;
+    if (!file.present() || !is_file(scene_.data / file.required_text())) return false;
     return link(file, scene_.page);
 }
 

@@ -20,6 +20,7 @@
 #include "umbra/bench/report/report_index.h"
 #include "umbra/bench/report/report_scene.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 
 namespace umbra {
 namespace {
@@ -40,7 +41,7 @@ std::vector<fs::path> results_files(const fs::path& dir) {
         throw InputError(
             fmt::format("{}: {}, expected a folder that umbra compare wrote", dir.string(), error.message()));
     std::sort(files.begin(), files.end());
-    if (files.empty() && fs::exists(dir / "results.json")) files.push_back(dir / "results.json");
+    if (files.empty() && is_there(dir / "results.json")) files.push_back(dir / "results.json");
     if (files.empty())
         throw InputError(fmt::format(
             "{}: holds no results.json, nor does any folder in it, expected a folder that umbra compare wrote",

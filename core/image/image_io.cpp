@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 #include "umbra/core/image/image_headers.h"
 
 namespace umbra {
@@ -265,7 +266,7 @@ void write_image(const std::filesystem::path& file, const Image& image) {
         !whole)
         throw std::logic_error("write_image: the image is empty, or its size and its data disagree");
     const std::filesystem::path folder = file.parent_path();
-    if (!folder.empty() && !std::filesystem::is_directory(folder))
+    if (!folder.empty() && !is_folder(folder))
         throw InputError(fmt::format("{}: cannot write image: no folder {}", file.string(), folder.string()));
     try {
         const Partial partial{beside(file)};

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string>
 
 #include "umbra/core/base/parallel.h"
@@ -39,7 +38,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
         std::mt19937 random(seed);
         const auto changed = umbra::mutated_json({reinterpret_cast<const char*>(data), size}, random);
         if (changed && changed->size() <= max_size) {
-            std::memcpy(data, changed->data(), changed->size());
+            std::copy(changed->begin(), changed->end(), data);
             return changed->size();
         }
     }

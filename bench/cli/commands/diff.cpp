@@ -10,6 +10,7 @@
 #include "umbra/bench/diff/diff_set.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 
 namespace umbra {
 namespace {
@@ -24,7 +25,7 @@ struct DiffLine {
 int diff(DiffLine line, const Common& common) {
     DiffOptions& options     = line.options;
     const std::string ending = options.map.extension().string();
-    if (!std::filesystem::is_directory(line.a) && !options.map.empty() && ending != ".png" && ending != ".exr")
+    if (!is_folder(line.a) && !options.map.empty() && ending != ".png" && ending != ".exr")
         throw UsageError(
             fmt::format("-o {}: not a picture format, expected FILE.png or FILE.exr", options.map.string()));
     if (!line.html.empty()) options.pictures = diff_pictures_folder(line.html);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 
 namespace umbra {
 namespace {
@@ -55,7 +56,7 @@ const SceneFile& MeshFiles::file(const JsonValue& v) {
         try {
             json_.fail(v, fmt::format("the mesh cannot be read: {}", e.what()));
         } catch (const InputError& with_place) {
-            if (!std::filesystem::exists(folder_ / written)) throw MissingMesh(with_place.what());
+            if (!is_there(folder_ / written)) throw MissingMesh(with_place.what());
             throw;
         }
     }
