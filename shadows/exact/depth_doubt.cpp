@@ -16,16 +16,16 @@ struct DepthOfPlane {
     double error = 0;  ///< of 1/W on the light
 };
 
-std::optional<DepthOfPlane> depth_of(const Entries (&d)[3], const Entries& r, dvec3 u, dvec3 v) {
-    const dvec3 along = d[1].value - d[0].value, beside = d[2].value - d[0].value, n = glm::cross(along, beside);
-    const double off   = std::max({d[0].error, d[1].error, d[2].error, r.error});
-    const double reach = std::max(largest(r.value), largest(d[0].value)) + largest(u) + largest(v);
-    const double P = largest(along), Q = largest(beside);
-    // n is off by what its factors are, and by their products' roundings; the heights are sums of three products.
-    const double error  = 100 * ((P + Q) * (off + kUnit * (P + Q)) * reach + P * Q * (off + kUnit * reach));
-    const double bottom = glm::dot(n, d[0].value);
+/// `d` leads to the first corner, `along` and `beside` from there to the two others.
+std::optional<DepthOfPlane> depth_of(const Entries& d, dvec3 along, dvec3 beside, const Entries& r, dvec3 u, dvec3 v) {
+    const dvec3 n      = glm::cross(along, beside);
+    const double reach = std::max(largest(r.value), largest(d.value)) + largest(u) + largest(v);
+    // A component of n, a difference of two products of rounded sides, is off by 8 roundings; a height, a sum of three
+    // products with it, by 24 for that, by 6 times what d and r are off, and by 12 for its own roundings.
+    const double error  = 36 * largest(along) * largest(beside) * (d.error + r.error + kUnit * reach);
+    const double bottom = glm::dot(n, d.value);
     if (!(std::abs(bottom) > 4 * error)) return std::nullopt;
-    return DepthOfPlane{glm::dot(n, r.value - d[0].value) / bottom,
+    return DepthOfPlane{glm::dot(n, r.value - d.value) / bottom,
                         std::hypot(glm::dot(n, u), glm::dot(n, v)) / std::abs(bottom), 4 * error / std::abs(bottom)};
 }
 
@@ -34,7 +34,7 @@ struct Disk {
     explicit Disk(const Sight& sight) : p(sight.viewpoint.point()), to_centre(p.to(sight.plane.centre_from_corner)) {
         squared  = glm::dot(to_centre.value, to_centre.value);
         distance = std::sqrt(squared);
-        doubt    = 2 * sight.plane.rounding * glm::length(sight.plane.u) / distance + 16 * kUnit;
+        doubt    = sight.plane.depth_error / distance + 128 * kUnit;
     }
 
     enum class Place : std::uint8_t { before, in_doubt, beyond };
@@ -42,7 +42,7 @@ struct Disk {
     [[nodiscard]] Place place(const Entries& d) const {
         const double w   = glm::dot(d.value, to_centre.value) / squared;
         const double off = 2 * doubt + 4 * (d.error + (std::abs(w) + 1) * to_centre.error) / distance +
-                           16 * kUnit * largest(d.value) / distance;
+                           128 * kUnit * largest(d.value) / distance;
         return w < 1 - off ? Place::before : w > 1 + off ? Place::beyond : Place::in_doubt;
     }
 
@@ -69,16 +69,20 @@ double area_in_doubt(const Sight& sight) {
     for (const TriangleId t : sight.light.across()) {
         if (t == sight.viewpoint.own()) continue;
         Entries d[3];
+        dvec3 corner[3];
         bool all_before = true, all_beyond = true;
         for (int k = 0; k < 3; ++k) {
-            d[k]                    = disk.p.to(sight.occluders.scene->vertex(t, k));
+            const vec3 position     = sight.occluders.scene->vertex(t, k);
+            corner[k]               = dvec3(position);
+            d[k]                    = disk.p.to(position);
             const Disk::Place place = disk.place(d[k]);
             all_before              = all_before && place == Disk::Place::before;
             all_beyond              = all_beyond && place == Disk::Place::beyond;
         }
         if (all_before || all_beyond || sight.viewpoint.side_of(t) == 0) continue;
         constexpr double kWhole = kPi * kAround * kAround;
-        const auto depth        = depth_of(d, disk.to_centre, sight.plane.u, sight.plane.v);
+        const auto depth =
+            depth_of(d[0], corner[1] - corner[0], corner[2] - corner[0], disk.to_centre, sight.plane.u, sight.plane.v);
         if (!depth || !(disk.doubt < 0.1)) return kWhole;
         const double half = 1.2 * disk.doubt + depth->error;  // |W - 1| <= doubt, in terms of 1/W
         if (std::abs(depth->f) - kAround * depth->slope > half) continue;

@@ -15,14 +15,16 @@
 namespace umbra::exact_detail {
 
 struct Displacement {
-    double swept  = 0;  ///< area that the edges pass over
-    double widest = 0;  ///< the most that an end moves by itself
+    double swept    = 0;  ///< area that the edges pass over
+    double by_frame = 0;  ///< the part of it that no other arithmetic changes
+    double widest   = 0;  ///< the most that an end moves by itself
 
     /// The ends move by `own` each by itself, and by `frame` since the light's plane itself is rounded. The layers are
     /// counted and the edges projected in that one plane, so that the two agree whatever `frame` is.
     void move_edge(double own, double frame, double length) {
         const double delta = own + frame;
         swept += 3 * delta * length + 8 * delta * delta;
+        by_frame += 3 * frame * length + 8 * frame * frame;
         widest = std::max(widest, own);
     }
 };

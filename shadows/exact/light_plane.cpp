@@ -61,7 +61,13 @@ std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoi
     // The disk's position depends on d, from p to the sphere's centre. The error of d moves its centre, and its radius
     // r sqrt(d^2 - r^2) / d, whose derivative is below r d / (d^2 - r^2) times the radius over d.
     const double rounding = off * (1 + r * d / ((d - r) * (d + r))) / glm::length(disk.axis_u);
-    return LightPlane{.u = disk.axis_u, .v = disk.axis_v, .centre_from_corner = {disk.centre, 0}, .rounding = rounding};
+    // Along its normal, the disk moves by less: its centre is at r^2 / d from the sphere's, which changes by no more
+    // than d does, and its normal turns by off / d.
+    return LightPlane{.u                  = disk.axis_u,
+                      .v                  = disk.axis_v,
+                      .centre_from_corner = {disk.centre, 0},
+                      .rounding           = rounding,
+                      .depth_error        = 4 * off};
 }
 
 }  // namespace umbra::exact_detail

@@ -29,8 +29,9 @@ struct LightPlane {
     double axis_error           = 0;          ///< of each component of u and v
     Entries centre_from_corner{};             ///< centre less the first corner of the point's triangle
     std::optional<Rational3> exact_centre{};  ///< in rationals; if absent, corner + centre_from_corner
-    double rounding = 0;  ///< how far the light's rim may lie from where it is meant to be, in units
-                          ///< of the half axes
+    double rounding = 0;     ///< how far the light's rim may lie from where it is meant to be, in units
+                             ///< of the half axes
+    double depth_error = 0;  ///< how far the plane may lie from there along its normal, in units of length
 };
 
 /// Of a rectangle or a disk with these half axes; `exact` must outlive the plane.

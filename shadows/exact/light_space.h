@@ -17,7 +17,7 @@ class FloatSpace {
 public:
     using Number = double;
 
-    FloatSpace(const ExactPoint& p, const LightPlane& frame) : p_(p) {
+    FloatSpace(const ExactPoint& p, const LightPlane& frame) : p_(p), moves_(!frame.exact_axes) {
         const dvec3 &u = frame.u, &v = frame.v;
         const Entries r   = p.to(frame.centre_from_corner);
         const double side = std::max(largest(u), largest(v));
@@ -57,6 +57,8 @@ public:
     /// Whether q is in or beyond the light's plane, not before it.
     [[nodiscard]] Filtered<bool> beyond(const Numerators<double>& q) const {
         const double over = q.w - height_, error = q.error + height_error_;
+        // The plane of a sphere's disk is rounded itself: area_in_doubt() holds what either answer may change.
+        if (moves_) return over >= 0;
         if (!(std::abs(over) > error)) return kUnsure;
         return over > 0;
     }
@@ -74,6 +76,7 @@ public:
 
 private:
     const ExactPoint& p_;
+    bool moves_;  ///< the plane differs from point to point
     Entries to_centre_;
     dvec3 gx_{0}, gy_{0}, gw_{0};
     double g_error_ = 0, g_size_ = 0, height_ = 0, height_error_ = 0;

@@ -18,8 +18,8 @@
 // The signs of triangles and the count are exact. In between is a chain of edges that closes whatever the rounding of
 // its corners, since each corner is projected by itself alone.
 //
-// The area is off by what displacement.h and depth_doubt.h bound, and by the roundings of the sweep. Where the sum is
-// not below kTrusted, or a sign remains open, doubles cannot tell.
+// The area is off by what displacement.h and depth_doubt.h bound, and by the roundings of the sweep. Where rationals
+// would do much better, or a sign remains open, doubles cannot tell.
 //
 // This work is based on:
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
@@ -176,9 +176,8 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     if (!base) return kUnsure;
     if (blocker != kNoTriangle && surely_before_light(sight_, blocker)) return result;
     const double in_doubt = area_in_doubt(sight_);
-    if (std::is_same_v<T, double> && !(in_doubt <= kTrusted)) return kUnsure;
-    result.error        = in_doubt;
-    const bool no_edges = covering_.edges.empty();
+    result.error          = in_doubt;
+    const bool no_edges   = covering_.edges.empty();
     if (blocker != kNoTriangle || (no_edges && *base > 0)) return result;
     if (no_edges) result.irradiance = {1, 1};
     if (no_edges && !sight_.partly) {
@@ -210,7 +209,9 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     const auto [area, rows] = area_and_rows;
     result.visible          = area;
     result.error            = in_doubt + displacement.swept + 16 * kUnit * (rows + 4);
-    if (std::is_same_v<T, double> && !(result.error <= kTrusted)) return kUnsure;
+    // What rationals are not free of. They are worth their time where they more than halve the bound.
+    const double of_frame = in_doubt + displacement.by_frame;
+    if (std::is_same_v<T, double> && !(result.error - of_frame <= std::max(kTrusted, of_frame))) return kUnsure;
     if (round()) {
         const DiskCaps::Area with_caps = covering_.caps.with_caps(area);
         result.visible                 = with_caps.visible;
