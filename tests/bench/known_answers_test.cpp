@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/compare/record.h"
 #include "umbra/bench/diff/diff.h"
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/report/report.h"
@@ -352,6 +353,34 @@ TEST_F(Wall, RecordHoldsTheScoresOfThePicture) {
     EXPECT_NE(scores["flip"], scores["flip_hdr"]);
 }
 
+/// Every figure of an `errors` entry from its own place: figures that no scene has, all different.
+TEST_F(Wall, RecordTellsItsFiguresApart) {
+    const PreparedScene prepared = prepare_scene(folder_.write("wall.json", kWall), {40, 20});
+    const MethodRun run = run_method(MethodChoice(info_), prepared.scene, prepared.facts, prepared.points, {1, 0});
+    Explained one;
+    VisibilityError& e = one.error;
+    e.points = 1, e.undefined = 2, e.away = 3, e.on_boundary = 4, e.not_judged = 5, e.lit = 6, e.umbra = 7;
+    e.penumbra = 8, e.false_shadow = {9, 10}, e.false_light = {11, 12}, e.interior = {13, 14, 15};
+    e.penumbra_error = {16, 17}, e.noise_error = {18, 19}, e.acne = 20, e.detachment = 21, e.leak = 22;
+    e.terminator = {23, 24, 25}, e.max_half_width = 26, e.mae = 27, e.rmse = 28, e.max = 29, e.bias = 30;
+    one.displacement   = EdgeDisplacement{.mean = 31, .p95 = 32, .max = 33, .pieces = 34, .unmatched = 35};
+    one.penumbra_width = PenumbraWidth{.method = 36, .reference = 37};
+    one.noise          = Noise{.runs = 38, .rms = 39, .bias = 40};
+    const std::vector<Explained> explained(3, one);
+    const json found    = json::parse(served_json("planted", prepared, run, explained, "truth").dump())["errors"][1];
+    const json expected = json::parse(R"({"light": "top", "points": 1, "undefined": 2, "away": 3, "on_boundary": 4,
+        "not_judged": 5, "lit": 6, "umbra": 7, "penumbra": 8, "false_shadow": {"interior": 9, "edge": 10, "acne": 20},
+        "false_light": {"interior": 11, "edge": 12, "detachment": 21, "leak": 22},
+        "interior": {"lit": 13, "umbra": 14, "penumbra": 15},
+        "penumbra_error": {"false_shadow": 16, "false_light": 17}, "noise_error": {"false_shadow": 18, "false_light": 19},
+        "terminator": {"facet_away": 23, "normal_away": 24, "wrong": 25}, "bracket": {"max_half_width": 26.0},
+        "mae": 27.0, "rmse": 28.0, "max": 29.0, "bias": 30.0,
+        "noise": {"runs": 38, "noise_rmse": 39.0, "bias_rmse": 40.0},
+        "edge_displacement_px": {"mean": 31.0, "p95": 32.0, "max": 33.0, "pieces": 34, "unmatched": 35},
+        "penumbra_width_px": {"method": 36.0, "reference": 37.0}})");
+    EXPECT_EQ(found, expected) << found.dump(1);
+}
+
 TEST_F(Wall, ImagesSayWhatMadeThem) {
     MethodChoice choice(info_);
     choice.settings.set("seed", 7.0);
@@ -461,6 +490,19 @@ TEST_F(Wall, RecordTellsThePhasesApart) {
         EXPECT_DOUBLE_EQ(times[phase]["median"], sum) << phase;
     }
     EXPECT_EQ(times["build_ms"]["runs"], 1);
+}
+
+/// Repetitions are for the clock: what the last one answers is the answer, whatever those before it wrote.
+TEST_F(Wall, RepetitionsLeaveNothingBehind) {
+    int run                  = 0;
+    planted_behaviour.work   = [&](Phase phase, LightId light) { run += phase == Phase::visibility && light == kSun; };
+    planted_behaviour.answer = [&](LightId, std::size_t x, std::size_t, int) {
+        return run == 1 ? PlantedAnswer{1, x < 20} : PlantedAnswer{0};
+    };
+    (void)compare(kWall, "wall", info_, {2, 1e9});
+    EXPECT_EQ(run, 2);
+    const Exr planted = read_exr(file("planted.exr"));
+    for (const float s : planted.floats.at("S.sun")) ASSERT_EQ(s, 0);
 }
 
 /// Three runs that sleep 0, 10 and 600 ms: the median is the second of them, far from their mean.

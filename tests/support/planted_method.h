@@ -42,8 +42,11 @@ public:
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (!points.asks(light, i)) continue;
             const PlantedAnswer a = planted_behaviour.answer(light, i % width, i / width, options.seed);
-            out.s[i]              = a.defined ? a.s : 0;
-            out.answer[i]         = a.defined ? Answer::given : Answer::undefined;
+            // As sparing as a method may be: what is 0 and given is there already.
+            if (!a.defined)
+                out.answer[i] = Answer::undefined;
+            else if (a.s > 0)
+                out.s[i] = a.s;
         }
     }
     void blame(const PointBatch& points, LightId, std::span<TriangleId> blockers) const override {
