@@ -3,6 +3,7 @@
 // `render`, `report` and `diff` write, read by readers that share nothing with the writers.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -623,6 +624,19 @@ TEST_F(Board, NoiseIsToldFromBias) {
     const HtmlTable causes(page("board"), "causes-caption");
     EXPECT_EQ(causes.at("panel / Planted", "Sampling / Noise"), "0.0379");
     EXPECT_EQ(causes.at("panel / Planted", "Sampling / Bias"), "0.0454");
+}
+
+/// A disk in the place of the rectangle: exact visibility states a half width, the largest of which is the record's.
+TEST_F(KnownAnswers, TheBracketOfARoundLightIsTheSameEverywhere) {
+    std::string scene(kBoard);
+    const std::string edges = R"("rectangle", "position": [-5, 2, 0], "edge_u": [2, 0, 0], "edge_v": [0, 0, 2])";
+    scene.replace(scene.find(edges), edges.size(), R"("disk", "position": [-5, 2, 0], "radius": 1)");
+    planted_behaviour.answer = [](LightId, std::size_t, std::size_t, int) { return PlantedAnswer{1}; };
+    const json e             = compare(scene, "disk", planted_method())["methods"][0]["errors"][0];
+    const auto half_widths   = read_exr(out() / "disk/reference.exr").floats.at("half_width.panel");
+    const float largest      = *std::ranges::max_element(half_widths);
+    EXPECT_GT(largest, 0);
+    EXPECT_EQ(e["bracket"]["max_half_width"], static_cast<double>(largest));
 }
 
 // ---- a lamp before a screen

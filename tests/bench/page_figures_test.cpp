@@ -9,6 +9,7 @@
 #include "report_fixture.h"
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/report_chart.h"
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/support/html_table.h"
 
@@ -27,7 +28,7 @@ json distinct(const std::string& name) {
     json results     = sample(name);
     results["size"]  = {{"width", 640}, {"height", 360}};
     results["times"] = {{"load_ms", 11}, {"facts_ms", 12}, {"rays_build_ms", 13}, {"gbuffer_ms", 14}, {"shade_ms", 15}};
-    results["machine"]["memory_bytes"] = std::int64_t{5} << 30;
+    results["machine"]["memory_bytes"] = std::int64_t{50} << 30;
     results["reference"]["judged"]     = {{"points", 1234}, {"of", 5678}, {"guess", "ray_traced:samples=256"}};
     results["facts"]["objects"][0]     = {{"name", "ring"},   {"triangles", 21}, {"vertices", 22},
                                           {"components", 23}, {"closed", true},  {"outward", true},
@@ -192,7 +193,7 @@ TEST_F(PageFigures, TablesOfPicturesMethodsAndObjects) {
 
 TEST_F(PageFigures, WordsAroundThePictures) {
     EXPECT_TRUE(contains(page, "640 × 360 pixels"));
-    EXPECT_TRUE(contains(page, "2 cores, 2 threads used, 5 GiB"));
+    EXPECT_TRUE(contains(page, "2 cores, 2 threads used, 50 GiB"));
     EXPECT_TRUE(contains(page, "Area lights are compared at 1\u202f234 of 5\u202f678 points"));
     EXPECT_TRUE(contains(page, "shadow edges but are not compared"));
     EXPECT_TRUE(contains(page, "come from ray_traced:samples=256"));
@@ -341,6 +342,12 @@ TEST(ChartFigures, MarksAreWhereTheirValuesAre) {
         if (tick["label"] == "1") {
             EXPECT_EQ(tick["at"], chart["marks"][0]["camera_x"]);
         }
+}
+
+TEST(TextFigures, ShortTimesHaveDigitsUntilAClockHasNone) {
+    EXPECT_EQ(milliseconds(0.05), "0.0500");
+    EXPECT_EQ(milliseconds(0.0005), "< 0.001");
+    EXPECT_EQ(milliseconds(0), "0");
 }
 
 TEST_F(PageFigures, ChartDrawsTheRebuildFilled) {
