@@ -14,11 +14,9 @@ Json parameters_json(const Settings& settings) {
 
 Json displacement_json(const std::optional<EdgeDisplacement>& d) {
     if (!d) return {};
-    return {{"mean", number(d->mean)},
-            {"p95", number(d->p95)},
-            {"max", number(d->max)},
-            {"pieces", d->pieces},
-            {"unmatched", d->unmatched}};
+    const auto of_matched = [&](double value) { return d->unmatched < d->pieces ? number(value) : Json(); };
+    return {{"mean", of_matched(d->mean)}, {"p95", of_matched(d->p95)}, {"max", of_matched(d->max)},
+            {"pieces", d->pieces},         {"unmatched", d->unmatched}, {"reach", kFarthest}};
 }
 
 Json penumbra_json(const std::optional<PenumbraWidth>& w) {

@@ -138,6 +138,7 @@ json cause_view(const Field& root, const std::vector<Field>& methods) {
                              {"off_mean", score(off["mean"].number())},
                              {"off_p95", score(off["p95"].number())},
                              {"off_max", score(off["max"].number())},
+                             {"off_lost", count(off["unmatched"].number())},
                              {"width", score(width["method"].number())},
                              {"width_reference", score(width["reference"].number())},
                              {"noise", score(noise["noise_rmse"].number())},

@@ -27,23 +27,25 @@ void mark_acne(ClassPlane& classes, const Scene& scene, const PointBatch& points
                std::span<const TriangleId> who);
 
 /// `who[k]` is the triangle that the reference names as the occluder nearest to point which[k], a `false_light`. The
-/// point lies at a contact where that triangle is no farther than kContact pixels: detachment, else a leak. Points
-/// whose occluder has no name stay `false_light`.
+/// point lies at a contact where that occluder is low over it: detachment, else a leak. Points whose occluder has no
+/// name stay `false_light`.
 ///
-/// The distance is in units of what a pixel spans at the point's depth, across the line of sight. To a light without an
-/// area it is taken along the segment to the light, so that it does not change where a triangle is split; a depth bias
-/// of that much is what loses the shadow. Area lights have many such segments, and the triangle's own distance is
-/// taken.
+/// Low means: where the segment to the light meets the triangle, it is no higher above the plane of the point's own
+/// triangle than kContact times the occluder's height: that of the highest vertex of the triangle's object, or of the
+/// light where that is lower. To an area light there are many segments, and the triangle's distance from the point is
+/// compared instead.
 ///
-///          light \         occluder on its receiver: along the segment to the light the occluder is near where
-///                 \   |    the receiver is near to where they touch. What a bias of b takes off the shadow are points
-///                  \  |    with d < b, next to the contact; a hole in the occluder, or a shadow that is not where it
-///        ___________\_|___ should be, shows at any d.
-///             p |--d--|
+///          light \         The shadow's root is what the occluder's foot throws, its tip what the top throws, and
+///                 \   |    the height h at which a segment meets the occluder grows evenly from one to the other.
+///                  \  |h   A bias takes the shadow off from the root on. A hole in the occluder, or a shadow that
+///        ___________\_|___ is not where it should be, shows at any h; an occluder in the air has no small h.
+///                   p
+/// Both heights are lengths in the world, so that a class does not depend on the size of the picture, the distance of
+/// the eye or the unit of lengths.
 void mark_detachment(ClassPlane& classes, const Scene& scene, const PointBatch& points, LightId light,
                      std::span<const std::uint32_t> which, std::span<const TriangleId> who);
 
-/// What is farther from its occluder than this reads as a hole in the shadow, and not as a gap at its root.
-inline constexpr double kContact = 16;  // pixels
+/// The part of a shadow, from its root, that reads as a gap there when it is lost, and not as a hole in the shadow.
+inline constexpr double kContact = 0.5;
 
 }  // namespace umbra

@@ -140,7 +140,8 @@ std::optional<EdgeDisplacement> edge_displacement(const PointBatch& points, cons
         else
             ++e.unmatched;
     }
-    if (distances.empty()) return {};
+    if (truth.empty()) return {};
+    if (distances.empty()) return e;
     std::sort(distances.begin(), distances.end());
     for (const double d : distances) e.mean += d / static_cast<double>(distances.size());
     e.p95 = distances[(distances.size() - 1) * 95 / 100];

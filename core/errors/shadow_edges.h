@@ -19,7 +19,11 @@ namespace umbra {
 /// Measured from each piece of the reference to the nearest of the method's that does not have its light on the other
 /// side. Acne and holes make pieces of their own, but none of the reference's looks for them unless they lie nearer
 /// than the true boundary. A piece of the reference with nothing nearer than kFarthest is `unmatched` and part of no
-/// mean: a shadow that is not there is no displaced one.
+/// mean: a shadow that is not there is no displaced one. So a shift by more than kFarthest is not read at all.
+///
+/// On boundaries oblique to the pixels of hard lights the mean is low: the pieces lie up to half a pixel off the
+/// boundary, on either side, and the nearest of them is measured. The loss is below 10 % for shifts of 2 pixels and
+/// more (shadow_edges_test measures it).
 struct EdgeDisplacement {
     double mean = 0, p95 = 0, max = 0;  ///< pixels, of the matched pieces
     std::uint64_t pieces    = 0;        ///< of the reference's boundary
@@ -27,7 +31,8 @@ struct EdgeDisplacement {
 };
 inline constexpr double kFarthest = 8;  // pixels
 
-/// Nothing where the reference has no boundary, or the method none near it.
+/// Nothing where the reference has no boundary. Where the method has none near it, all pieces are unmatched, and mean,
+/// p95 and max are 0.
 [[nodiscard]] std::optional<EdgeDisplacement> edge_displacement(const PointBatch& points, const ClassPlane& classes,
                                                                 const VisibilityPlane& s,
                                                                 const VisibilityPlane& reference);

@@ -126,6 +126,32 @@ TEST(PlantedDefects, TooMuchBiasIsDetachment) {
     EXPECT_GT(before, 50u);
 }
 
+TEST(PlantedDefects, DetachmentIsTheFirstHalfOfAShadowAtEverySize) {
+    // All shadow is lost. The wall is 1.6 high and ends at x = -1.485; the sun moves 0.5 to the side on 1 down, so that
+    // what is below half of the height is within 0.4. A segment may enter the wall, 0.03 thick, at its end.
+    for (const int width : {160, 320, 1280}) {
+        Scene scene  = wall_and_board();
+        scene.width  = width;
+        scene.height = width * 5 / 8;
+        const Stage stage(scene);
+        MethodRun run = stage.truth;
+        for (float& s : run.planes[0].s) s = 1;
+        const Explained e = stage.explained(run);
+        for (std::size_t i = 0; i < e.classes.size(); ++i) {
+            const double from_wall = stage.points.position(i).x + 1.485;
+            if (e.classes[i] == ErrorClass::detachment) {
+                EXPECT_LE(from_wall, 0.4 + 1e-5) << width;
+            } else if (e.classes[i] == ErrorClass::leak) {
+                EXPECT_GE(from_wall, 0.4 - 0.03 - 1e-5) << width << ": the board is in the air, far to the right";
+            }
+        }
+        const auto pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(width);
+        EXPECT_GT(e.error.detachment, pixels / 2000) << width;
+        EXPECT_GT(e.error.leak, 3 * e.error.detachment) << width;
+        EXPECT_EQ(e.error.unnamed, 0u) << width;
+    }
+}
+
 TEST(PlantedDefects, ALeakingSeamIsALeak) {
     const Stage stage(wall_and_board());
     Scene cracked = stage.scene;

@@ -74,6 +74,30 @@ TEST(ShadowEdges, DisplacementOfAHardEdgeIsReadToHalfAPixel) {
         }
 }
 
+TEST(ShadowEdges, DisplacementOfAnObliqueHardEdgeIsAtMostATenthLow) {
+    const PointBatch points = wall();
+    for (const double angle : {0.1, 0.3, 0.5, 0.7853981634, 1.0, 1.2})
+        for (const double off : {2.0, 3.0, 4.0, 5.0, 6.0, 7.0}) {
+            const VisibilityPlane truth = ramp(0, 0.25, angle), s = ramp(0, 0.25 + off, angle);
+            const auto e = edge_displacement(points, classes(points, s, truth), s, truth);
+            ASSERT_TRUE(e);
+            EXPECT_GE(e->mean, 0.9 * off) << angle << ' ' << off;
+            EXPECT_LE(e->mean, off + 0.5) << angle << ' ' << off << ": each boundary is known to half a pixel";
+        }
+}
+
+TEST(ShadowEdges, WhatIsBeyondReachIsUnmatched) {
+    const PointBatch points = wall();
+    for (const double angle : {0.0, 0.3, 0.7853981634}) {
+        const VisibilityPlane truth = ramp(0, 0.25, angle), s = ramp(0, 0.25 + kFarthest + 1.5, angle);
+        const auto e = edge_displacement(points, classes(points, s, truth), s, truth);
+        ASSERT_TRUE(e);
+        EXPECT_GT(e->pieces, 70u);
+        EXPECT_EQ(e->unmatched, e->pieces) << angle;
+        EXPECT_EQ(e->mean, 0);
+    }
+}
+
 TEST(ShadowEdges, ABoundaryThatIsLitOnTheOtherSideIsAnother) {
     const PointBatch points = wall();
     // A dark strip 5 wide; the method's lies 4 to the left. Its right edge is 1 from the truth's left one.
@@ -91,7 +115,9 @@ TEST(ShadowEdges, WithoutABoundaryThereIsNothing) {
     const VisibilityPlane lit   = plane([](double, double) { return 1.0; });
     const VisibilityPlane truth = ramp(0);
     EXPECT_FALSE(edge_displacement(points, classes(points, truth, lit), truth, lit));
-    EXPECT_FALSE(edge_displacement(points, classes(points, lit, truth), lit, truth));
+    const auto lost = edge_displacement(points, classes(points, lit, truth), lit, truth);
+    ASSERT_TRUE(lost);
+    EXPECT_EQ(lost->unmatched, lost->pieces);
     EXPECT_FALSE(penumbra_width(points, classes(points, truth, lit), truth, lit));
 }
 
