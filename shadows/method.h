@@ -36,6 +36,12 @@ struct Service {
     explicit operator bool() const { return how != How::not_at_all; }
 };
 
+class Method;
+
+/// What a method says of a scene (Method::serves), or less: where materials ask for a visibility that no method
+/// computes (SceneFacts::uncomputed), the best is `approximately`, and `why` names the materials.
+[[nodiscard]] Service verdict(const Method& method, const SceneFacts& facts);
+
 /// One method with one set of parameters. Calls come from one thread at a time, except that `visibility` and `blame`
 /// may run in several threads at once; a method does its own parallelism (core/base/parallel.h), and its results do not
 /// depend on the number of threads.
@@ -57,7 +63,8 @@ public:
     /// changed parameter's on are called again (first_changed_phase), and what earlier phases made is still there.
     virtual void configure(const Settings& settings) = 0;
 
-    /// From the scene's facts alone. The phases are called only where this is not `not_at_all`.
+    /// From the scene's facts alone, as if all triangles were opaque: callers ask `verdict`, which knows of the others.
+    /// The phases are called only where this is not `not_at_all`.
     [[nodiscard]] virtual Service serves(const SceneFacts& facts) const = 0;
 
     /// Which fraction it answers. A method is compared with the truth of the same measure.

@@ -54,6 +54,18 @@ const Preset* find_preset(const MethodInfo& info, std::string_view name) {
 
 }  // namespace
 
+Service verdict(const Method& method, const SceneFacts& facts) {
+    Service service = method.serves(facts);
+    if (!service) return service;
+    for (const UncomputedTerm& term : facts.uncomputed) {
+        if (!term.changes_visibility) continue;
+        service.how = std::min(service.how, How::approximately);
+        if (service.why.ends_with('.')) service.why.pop_back();
+        service.why += fmt::format("; the {} is not computed: {}", in_words(term), term.consequence);
+    }
+    return service;
+}
+
 std::string_view to_string(How how) {
     switch (how) {
         case How::not_at_all: return "not";

@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <tuple>
-
+#include "umbra/bench/pages/mesh_faults.h"
 #include "umbra/shadows/volumes/silhouettes.h"
 
 namespace umbra {
@@ -19,14 +18,9 @@ std::string join(const Json& list) {
 std::string mesh_state(const Json& o) {
     if (o["closed"]) return o["outward"] ? "closed, oriented outwards" : "closed, oriented inwards";
     std::string text;
-    for (const auto& [key, one, many] : {std::tuple{"boundary_edges", "boundary edge", "boundary edges"},
-                                         {"nonmanifold_edges", "non-manifold edge", "non-manifold edges"},
-                                         {"misoriented_edges", "misoriented edge", "misoriented edges"},
-                                         {"nonmanifold_vertices", "non-manifold vertex", "non-manifold vertices"},
-                                         {"degenerate_triangles", "degenerate triangle", "degenerate triangles"},
-                                         {"duplicate_triangles", "duplicate triangle", "duplicate triangles"}})
-        if (const auto n = o[key].get<std::uint64_t>(); n != 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, n == 1 ? one : many);
+    for (const MeshFault& fault : kMeshFaults)
+        if (const auto n = o[std::string(fault.key)].get<std::uint64_t>(); n != 0)
+            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, n == 1 ? fault.one : fault.many);
     return "not closed: " + text;
 }
 
@@ -36,7 +30,7 @@ Json inspect_json(const Scene& scene, const SceneFacts& facts, const SilhouetteO
     Json record = {{"schema", kResultsSchema},   {"version", version()},         {"scene", scene_json(scene)},
                    {"facts", facts_json(facts)}, {"lights", lights_json(facts)}, {"methods", Json::array()}};
     for (const MethodInfo* info : methods())
-        record["methods"].push_back({{"name", info->name}, {"serves", service_json(info->make()->serves(facts))}});
+        record["methods"].push_back({{"name", info->name}, {"serves", service_json(verdict(*info->make(), facts))}});
     if (silhouettes.directions > 0) {
         record["silhouettes"] = Json::array();
         for (const SilhouetteStatistics& s : silhouette_statistics(scene, silhouettes.directions, silhouettes.seed))

@@ -179,7 +179,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     Reference reference = default_reference(prepared.facts);
     if (options.reference) {
         reference       = {parse_method(*options.reference), false, "Chosen on the command line."};
-        reference.exact = reference.choice.info->reference;
+        reference.exact = verdict(*reference.choice.make(), prepared.facts).how == How::exactly;
     }
     tell("reference " + reference.choice.text());
     const ReferenceRun reference_ran = run_reference(reference, scene, prepared.facts, prepared.points, options.points);

@@ -71,7 +71,7 @@ std::string finding(const Field& root) {
     }
     if (wrong.empty() && right.empty()) return {};
     const std::string against =
-        fmt::format("against the {} reference", root["reference"]["exact"].flag() ? "exact" : "sampled");
+        fmt::format("against the {} reference", root["reference"]["exact"].flag() ? "exact" : "inexact");
     if (wrong.empty()) {
         const bool partial = std::any_of(right.begin(), right.end(), [](const Compared& c) { return c.partial; });
         return fmt::format("{}: no wrong interior point {}{}.",

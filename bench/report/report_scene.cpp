@@ -149,7 +149,7 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
                               fmt::format("{}: shadows by the reference", scene.scene().title));
         f.is_object()) {
         f["note"] = fmt::format("{}: {}", reference_view(root)["title"].get<std::string>(),
-                                reference["exact"].flag() ? "exact" : "sampled, not exact");
+                                reference["exact"].flag() ? "exact" : "not exact");
         pictures.push_back(std::move(f));
     }
     if (const json exr = scene.exr(reference["files"]); exr.is_string())

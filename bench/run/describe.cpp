@@ -87,12 +87,17 @@ Json facts_json(const SceneFacts& facts) {
                           {"offset", number(p.offset)},
                           {"area", number(p.area)},
                           {"triangles", p.triangles.size()}});
+    Json uncomputed = Json::array();
+    for (const UncomputedTerm& t : facts.uncomputed)
+        uncomputed.push_back(
+            {{"term", t.term}, {"materials", t.materials}, {"changes_visibility", t.changes_visibility}});
     return {{"triangles", facts.triangles},
             {"extent", {{"min", vector_json(dvec3(facts.box.min))}, {"max", vector_json(dvec3(facts.box.max))}}},
             {"objects", objects},
             {"planes", planes},
             {"planar_area_share", number(facts.planar_area_share)},
             {"eye_inside_closed_object", facts.eye_inside_closed_object},
+            {"not_computed", uncomputed},
             {"requires", requires_list(facts)},
             {"not_required", not_required_list(facts)}};
 }

@@ -28,6 +28,34 @@ void warn_of_points_off_their_pixels(Scene& scene, const PointBatch& points) {
                     off.points, surface, off.worst));
 }
 
+bool any(vec3 v) { return v != vec3(0); }
+
+/// Some point of the picture is reached by the light, if nothing occludes it.
+bool adds_anything(const Light& light, LightId id, const PointBatch& points) {
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (points.asks(id, i) && falloff(light, points.position(i)) > 0) return true;
+    return false;
+}
+
+/// What only a picture shows: a camera that sees nothing, and lights for which S_j is computed in vain.
+void warn_of_picture(Scene& scene, const PointBatch& points) {
+    const auto& seen = points.triangle;
+    const bool empty = std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; });
+    if (empty) scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
+    for (LightId j = 0; j < scene.lights.size(); ++j) {
+        const Light& light = scene.lights[j];
+        if (!any(light.diffuse) && !any(light.specular))
+            scene.warnings.push_back(fmt::format(
+                "Light \"{}\" has intensity 0: it adds nothing, and S_j is computed for it as for the others.",
+                light.name));
+        else if (!empty && !adds_anything(light, j, points))
+            scene.warnings.push_back(
+                fmt::format("Light \"{}\" adds nothing to this picture: no surface point that the camera sees faces it "
+                            "within its range and cone.",
+                            light.name));
+    }
+}
+
 }  // namespace
 
 Size parse_size(const std::string& text) {
@@ -55,9 +83,7 @@ PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pi
     p.gbuffer_ms =
         timed_ms([&] { p.points = primary_points(*rays, p.scene, p.scene.camera, size.width, size.height); });
     if (p.pixel_side > 1) p.subpixels = subpixel_points(*rays, p.scene, size.width, size.height, p.pixel_side);
-    const auto& seen = p.points.triangle;
-    if (std::all_of(seen.begin(), seen.end(), [](TriangleId t) { return t == kNoTriangle; }))
-        p.scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
+    warn_of_picture(p.scene, p.points);
     warn_of_points_off_their_pixels(p.scene, p.points);
     return p;
 }

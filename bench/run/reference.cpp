@@ -87,8 +87,8 @@ Reference default_reference(const SceneFacts& facts, Measure measure) {
     for (const MethodInfo* info : methods()) {
         if (!info->reference) continue;
         const MethodChoice choice = of_measure(MethodChoice(*info), measure);
-        const Service service     = choice.make()->serves(facts);
-        if (service) return {choice, true, service.why};
+        const Service service     = verdict(*choice.make(), facts);
+        if (service) return {choice, service.how == How::exactly, service.why};
         why += fmt::format(" {} does not serve here: {}.", info->title, service.why);
     }
     const MethodChoice choice = of_measure(stand_in_for_reference(), measure);
@@ -100,12 +100,12 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
     // Only the exact reference is slow: every other one answers for the whole picture, unless `wanted` says otherwise.
-    if (!wanted) wanted = any_area && reference.exact ? affordable(scene, all) : all;
+    if (!wanted) wanted = any_area && reference.choice.info->reference ? affordable(scene, all) : all;
 
     ReferenceRun done{MethodRun{reference.choice}, all, all, {}};
     MethodRun& run = done.run;
     run.method     = reference.choice.make();
-    run.service    = run.method->serves(facts);
+    run.service    = verdict(*run.method, facts);
     if (!run.service)
         throw UsageError(
             fmt::format("{} cannot be the reference of this scene: {}", reference.choice.info->name, run.service.why));

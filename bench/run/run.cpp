@@ -79,7 +79,7 @@ MethodRun run_method(const MethodChoice& choice, const Scene& scene, const Scene
                      const Repeats& repeats, std::optional<LightId>* at) {
     MethodRun run{choice};
     run.method  = choice.make();
-    run.service = run.method->serves(facts);
+    run.service = verdict(*run.method, facts);
     if (!run.service) return run;
 
     run.build = time_runs(repeats, [&] { run.method->build(scene, facts); });

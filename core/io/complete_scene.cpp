@@ -9,6 +9,7 @@
 #include "umbra/core/io/check_camera.h"
 #include "umbra/core/io/scene_readers.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/core/scene/uncomputed.h"
 
 namespace umbra {
 namespace {
@@ -120,6 +121,11 @@ void warn_of_bright_materials(Scene& scene) {
                             m.name, std::max({sum.r, sum.g, sum.b})));
 }
 
+void warn_of_uncomputed(Scene& scene) {
+    for (const UncomputedTerm& term : find_uncomputed(scene))
+        scene.warnings.push_back(fmt::format("The {} is not computed: {}.", in_words(term), term.consequence));
+}
+
 }  // namespace
 
 Scene complete_scene(SceneFile&& read, const std::filesystem::path& file) {
@@ -131,6 +137,7 @@ Scene complete_scene(SceneFile&& read, const std::filesystem::path& file) {
     for (vec3& n : scene.normals) n = unit(n);  // zero means the face normal
     warn_of_geometry(scene);
     warn_of_bright_materials(scene);
+    warn_of_uncomputed(scene);
     if (!read.has_camera) {
         assume_camera(scene);
         check_camera(scene, file);

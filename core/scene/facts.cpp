@@ -265,6 +265,7 @@ SceneFacts find_facts(const Scene& scene) {
         facts.hard_lights_only = facts.hard_lights_only && !is_area(light.kind);
     }
     find_terms(scene, facts);
+    facts.uncomputed = find_uncomputed(scene);
     return facts;
 }
 

@@ -7,6 +7,7 @@
 
 #include "umbra/core/scene/planes.h"
 #include "umbra/core/scene/scene.h"
+#include "umbra/core/scene/uncomputed.h"
 
 namespace umbra {
 
@@ -54,6 +55,7 @@ struct SceneFacts {
     std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0;
     bool has_specular = false, has_emission = false, has_transparency = false, has_mirrors = false, has_ambient = false,
          has_attenuation = false, has_one_sided = false;
+    std::vector<UncomputedTerm> uncomputed;  ///< what materials ask for and no method or picture has
     bool hard_lights_only         = true;
     bool eye_inside_closed_object = false;
 };

@@ -24,9 +24,9 @@ struct Material {
     float shininess           = 1;  ///< n, >= 0
     Lobe lobe                 = Lobe::phong;
     bool two_sided            = true;  ///< the side that faces the eye is lit; otherwise the side of the winding only
-    float opacity             = 1;     ///< 1 opaque. Kept as a scene fact; every triangle is opaque to S_j as yet
-    float reflect             = 0;     ///< Whitted's mirror share. Kept as a scene fact
-    float transmit            = 0;     ///< Whitted's transmitted share. Kept as a scene fact
+    float opacity             = 1;     ///< 1 opaque; every triangle is opaque to S_j as yet (see uncomputed.h)
+    float reflect             = 0;     ///< Whitted's mirror share; not computed
+    float transmit            = 0;     ///< Whitted's transmitted share; not computed
     float index_of_refraction = 1;
 };
 

@@ -158,6 +158,166 @@ TEST_F(Cli, WarningsGoToStandardErrorWithTheScene) {
     EXPECT_EQ(errors_of("render " + kScene + size + "-o " + file("a.png")), "");
 }
 
+/// A sheet over a floor; `terms` are those of the sheet's material, with a comma before each.
+std::string sheet_scene(const std::string& terms) {
+    return R"({"camera": {"eye": [0, 3, 6], "target": [0, 0, 0]},
+        "lights": [{"name": "lamp", "type": "point", "position": [0, 4, 0]}],
+        "materials": {"grey": {}, "foil": {"k_d": 0.5)" +
+           terms + R"(}},
+        "objects": [{"name": "floor", "type": "plane", "size": [8, 8], "material": "grey"},
+                    {"name": "sheet", "type": "plane", "size": [2, 2], "material": "foil",
+                     "transform": [{"translate": [0, 1, 0]}]}]})";
+}
+
+std::string gltf_scene(const std::string& material) {
+    return R"({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "materials": [)" +
+           material + "]}";
+}
+
+TEST_F(Cli, WhatAMaterialAsksForAndNothingComputesIsNamedByInspect) {
+    const std::string nff_before =
+        "v\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 0.1\nresolution 32 32\nl 2 3 4\nf 1 0 0 ";
+    const std::string nff_after = "\np 3\n-1 -1 0\n1 -1 0\n0 1 0\n";
+    const std::string obj       = "mtllib a.mtl\nusemtl foil\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    struct Asks {
+        const char* file;
+        std::string text;
+        std::vector<std::string> terms;
+        bool of_visibility;
+        std::string mtl{};
+    };
+    const std::vector<Asks> all = {
+        {"a.json", sheet_scene(""), {}, false},
+        {"a.json", sheet_scene(R"(, "opacity": 0)"), {"opacity"}, true},
+        {"a.json", sheet_scene(R"(, "transmit": 0.5)"), {"transmit"}, true},
+        {"a.json", sheet_scene(R"(, "reflect": 0.5)"), {"reflect"}, false},
+        {"a.json", sheet_scene(R"(, "index_of_refraction": 1.5)"), {"index_of_refraction"}, false},
+        {"a.nff", nff_before + "0.8 0 10 0 0" + nff_after, {}, false},
+        {"a.nff", nff_before + "0.8 0.2 10 0 0" + nff_after, {"reflect"}, false},
+        {"a.nff", nff_before + "0.8 0 10 0.5 1.5" + nff_after, {"transmit", "index_of_refraction"}, true},
+        {"a.obj", obj, {}, false, "newmtl foil\nd 1\nNi 1\nillum 2\n"},
+        {"a.obj", obj, {"opacity"}, true, "newmtl foil\nd 0.5\n"},
+        {"a.obj", obj, {"opacity"}, true, "newmtl foil\nTr 0.5\n"},
+        {"a.obj", obj, {"index_of_refraction"}, false, "newmtl foil\nNi 1.5\n"},
+        {"a.obj", obj, {"reflect"}, false, "newmtl foil\nKs 1 1 1\nillum 3\n"},
+        {"a.obj", obj, {"opacity", "transmit"}, true, "newmtl foil\nd 0.5\nillum 4\n"},
+        {"a.gltf", gltf_scene(R"({"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}})"), {}, false},
+        {"a.gltf",
+         gltf_scene(R"({"alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}})"),
+         {"opacity"},
+         true},
+        {"a.gltf",
+         gltf_scene(R"({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}})"),
+         {"opacity"},
+         true},
+        {"a.gltf",
+         gltf_scene(
+             R"({"alphaMode": "MASK", "alphaCutoff": 0.1, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}})"),
+         {},
+         false},
+        {"a.gltf",
+         gltf_scene(R"({"extensions": {"KHR_materials_transmission": {"transmissionFactor": 0.9}}})"),
+         {"transmit", "index_of_refraction"},
+         true},
+        {"a.gltf",
+         gltf_scene(R"({"extensions": {"KHR_materials_ior": {"ior": 1.3}}})"),
+         {"index_of_refraction"},
+         false},
+    };
+    for (const Asks& asks : all) {
+        std::ofstream(file(asks.file)) << asks.text;
+        std::ofstream(file("a.mtl")) << asks.mtl;
+        const Answer answer = umbra("inspect --json " + file(asks.file));
+        ASSERT_EQ(answer.exit_code, 0) << answer.output;
+        const auto record = nlohmann::json::parse(answer.output);
+        std::vector<std::string> terms;
+        for (const auto& term : record["facts"]["not_computed"]) {
+            terms.push_back(term["term"]);
+            EXPECT_EQ(term["materials"].size(), 1u);
+        }
+        EXPECT_EQ(terms, asks.terms) << asks.text << asks.mtl;
+        for (const std::string& term : asks.terms)
+            EXPECT_TRUE(contains(record["scene"]["warnings"].dump(), "The " + term + " of material ")) << term;
+        if (asks.terms.empty()) {
+            EXPECT_FALSE(contains(answer.output, "not computed:"));
+        }
+        for (const auto& method : record["methods"]) {
+            const std::string how = method["serves"]["how"], why = method["serves"]["why"];
+            if (how == "not") continue;
+            EXPECT_EQ(contains(why, "is not computed"), asks.of_visibility) << method["name"] << ": " << why;
+            if (asks.of_visibility) {
+                EXPECT_EQ(how, "approximately") << method["name"];
+            } else if (method["name"] == "exact") {
+                EXPECT_EQ(how, "exactly");
+            }
+        }
+    }
+}
+
+TEST_F(Cli, ATransparentSheetIsNamedWhereverItIsDrawn) {
+    std::ofstream(file("sheet.json")) << sheet_scene(R"(, "opacity": 0)");
+    const std::string size = " --size 48x32 ";
+    const std::string says =
+        "The opacity of material \"foil\" is not computed: surfaces are drawn opaque and throw full "
+        "shadows.";
+    EXPECT_TRUE(contains(umbra("inspect " + file("sheet.json")).output, "warning: " + says));
+    EXPECT_EQ(errors_of("render " + file("sheet.json") + size + "-o " + file("a.png")),
+              "warning: sheet: " + says + "\n");
+    EXPECT_EQ(errors_of("compare " + file("sheet.json") + size + "--methods shadow_volumes -o " + file("out")),
+              "warning: sheet: " + says + "\n");
+    std::ifstream in(file("out/sheet/results.json"));
+    const auto record = nlohmann::json::parse(in);
+    EXPECT_EQ(record["scene"]["warnings"], nlohmann::json::array({says}));
+    EXPECT_EQ(record["facts"]["not_computed"][0]["term"], "opacity");
+    EXPECT_FALSE(record["reference"]["exact"]);
+    EXPECT_TRUE(contains(record["reference"]["note"], "the opacity of material \"foil\" is not computed"));
+    for (const auto& method : record["methods"]) EXPECT_EQ(method["serves"]["how"], "approximately");
+    std::ifstream page(file("out/sheet/index.html"));
+    std::stringstream html;
+    html << page.rdbuf();
+    EXPECT_TRUE(contains(html.str(), "is not computed: surfaces are drawn opaque"));
+}
+
+TEST_F(Cli, LightsThatAddNothingAndCamerasThatSeeNothingAreWarnedOf) {
+    const auto scene = [](const std::string& light, const std::string& eye = "[0, 3, 6]") {
+        return R"({"camera": {"eye": )" + eye + R"(, "target": [0, 0, 0]},
+            "lights": [{"name": "main", "type": "point", "position": [0, 4, 0]}, )" +
+               light + R"(], "objects": [{"name": "floor", "type": "plane", "size": [8, 8]}]})";
+    };
+    const std::string in_vain                         = "Light \"extra\" adds nothing to this picture";
+    const std::pair<std::string, std::string> cases[] = {
+        {R"({"name": "extra", "type": "point", "position": [1, 4, 0]})", ""},
+        {R"({"name": "extra", "type": "spot", "position": [1, 4, 0], "direction": [0, -1, 0.1]})", ""},
+        {R"({"name": "extra", "type": "point", "position": [1, 4, 0], "intensity": 0})",
+         "Light \"extra\" has intensity 0: it adds nothing"},
+        {R"({"name": "extra", "type": "spot", "position": [1, 4, 0], "direction": [0, 1, 0.1]})", in_vain},
+        {R"({"name": "extra", "type": "point", "position": [1, 4, 0], "range": 2})", in_vain},
+        {R"({"name": "extra", "type": "disk", "position": [0, -1, 0], "direction": [0, 1, 0], "radius": 0.1})",
+         in_vain},
+    };
+    const std::string size = " --size 48x32 ";
+    for (const auto& [light, warning] : cases) {
+        std::ofstream(file("a.json")) << scene(light);
+        for (const std::string& command : {std::string("inspect "), "render -o " + file("a.png") + size,
+                                           "compare --methods shadow_volumes -o " + file("out") + size}) {
+            const std::string output = umbra(command + file("a.json")).output;
+            EXPECT_EQ(contains(output, "warning: "), !warning.empty()) << command << light << output;
+            EXPECT_TRUE(contains(output, warning)) << command << light << output;
+        }
+    }
+    // The eye looks up.
+    std::ofstream(file("a.json")) << R"({"camera": {"eye": [0, 1, 0], "target": [0, 2, 0.1]},
+        "lights": [{"name": "main", "type": "point", "position": [0, 4, 0]}],
+        "objects": [{"name": "floor", "type": "plane", "size": [8, 8]}]})";
+    EXPECT_TRUE(contains(umbra("inspect " + file("a.json")).output, "warning: the camera sees nothing"));
+    EXPECT_TRUE(contains(umbra("inspect --json " + file("a.json")).output, "the camera sees nothing"));
+}
+
 TEST_F(Cli, UnreadableInputEndsWithFourAndLeavesNothing) {
     std::ofstream(file("broken.json")) << "{\n  \"lights\": [ { \"type\": \"spott\" } ]\n}\n";
     const Answer answer = umbra("render " + file("broken.json") + " -o " + file("a.png"));

@@ -6,8 +6,8 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/record_text.h"
-#include "umbra/core/io/scene_io.h"
 
 namespace umbra {
 namespace {
@@ -19,8 +19,8 @@ struct InspectLine {
 };
 
 int inspect(const InspectLine& line) {
-    const Scene scene = load_scene(scene_file(line.scene));
-    const Json record = inspect_json(scene, find_facts(scene), line.silhouettes);
+    const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});  // with what only the picture shows
+    const Json record            = inspect_json(prepared.scene, prepared.facts, line.silhouettes);
     fmt::print("{}", line.as_json ? record_text(record) : inspect_text(record) + "\n");
     return kDone;
 }

@@ -15,7 +15,7 @@
 //   KHR_materials_pbrSpecularGlossiness  O_d = diffuse, F0 = specular, roughness = 1 - glossiness
 //   emissiveFactor                  emission, times KHR_materials_emissive_strength
 //   KHR_materials_unlit             emission = c, nothing else
-//   baseColorFactor's alpha         opacity, unless alphaMode is OPAQUE
+//   baseColorFactor's alpha         opacity; alphaMode OPAQUE: 1, MASK: 1 from alphaCutoff on, else 0
 //   KHR_materials_transmission, _ior  transmit, index_of_refraction
 //   doubleSided                     two_sided
 //   KHR_lights_punctual             I_j = colour x intensity, as is (lux or candela); f_att = 1 / d^2 without limit;

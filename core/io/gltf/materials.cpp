@@ -84,12 +84,17 @@ Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_
     }
     m.transmit = static_cast<float>(
         number_or(json, extension(json, v, "KHR_materials_transmission"), "transmissionFactor", kShare, 0));
-    const double ior = number_or(json, extension(json, v, "KHR_materials_ior"), "ior", kNotNegative, 1.5);
-    if (m.transmit > 0 && ior > 0) m.index_of_refraction = static_cast<float>(ior);
+    // Where the file is silent, glTF has 1.5, which only matters to what transmits.
+    const JsonValue* given = extension(json, v, "KHR_materials_ior");
+    const double ior       = number_or(json, given, "ior", kNotNegative, 1.5);
+    if ((m.transmit > 0 || given) && ior > 0) m.index_of_refraction = static_cast<float>(ior);
 
-    if (const JsonValue* mode = find_member(v, "alphaMode");
-        mode && json.choice(*mode, "alphaMode", {"OPAQUE", "MASK", "BLEND"}) > 0)
-        m.opacity = static_cast<float>(base[3]);
+    const double cutoff = number_or(json, &v, "alphaCutoff", kNotNegative, 0.5);
+    if (const JsonValue* mode = find_member(v, "alphaMode")) {
+        const auto kind = json.choice(*mode, "alphaMode", {"OPAQUE", "MASK", "BLEND"});
+        if (kind == 1) m.opacity = base[3] >= cutoff ? 1 : 0;
+        if (kind == 2) m.opacity = static_cast<float>(base[3]);
+    }
     if (const JsonValue* sides = find_member(v, "doubleSided")) m.two_sided = json.boolean(*sides, "doubleSided");
 
     check_textures(json, v, {"normalTexture", "occlusionTexture", "emissiveTexture"}, notes);

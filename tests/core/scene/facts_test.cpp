@@ -279,5 +279,32 @@ TEST(Lists, EveryTraitIsInOneOfThem) {
     EXPECT_TRUE(lists(not_required_list(find_facts(scene)), "specular")) << "a material that no light makes shine";
 }
 
+TEST(Uncomputed, IsNamedByTermAndByMaterialInUse) {
+    Scene scene = scene_of(make_box({1, 1, 1}));
+    EXPECT_TRUE(find_facts(scene).uncomputed.empty());
+    scene.materials.assign(6, scene.materials[0]);
+    for (std::size_t m = 0; m < 6; ++m) {
+        scene.materials[m].name    = std::string(1, static_cast<char>('a' + m));
+        scene.materials[m].opacity = 0.5f;
+    }
+    scene.materials[0].index_of_refraction = 1.5f;
+    const Mesh box                         = make_box({1, 1, 1});
+    std::string words;
+    for (std::uint32_t m = 1; m < 5; ++m) {
+        const std::vector<UncomputedTerm> found = find_facts(scene).uncomputed;
+        ASSERT_EQ(found.size(), 2u) << "materials that no triangle has ask for nothing";
+        EXPECT_EQ(found[0].materials.size(), m);
+        EXPECT_TRUE(found[0].changes_visibility);
+        EXPECT_FALSE(found[1].changes_visibility);
+        words += in_words(found[0]) + "\n";
+        add_object(scene, "box", box.positions, box.normals, box.triangles, m);
+    }
+    EXPECT_EQ(words,
+              "opacity of material \"a\"\n"
+              "opacity of materials \"a\" and \"b\"\n"
+              "opacity of materials \"a\", \"b\" and \"c\"\n"
+              "opacity of materials \"a\", \"b\", \"c\" and 1 more\n");
+}
+
 }  // namespace
 }  // namespace umbra

@@ -1,0 +1,26 @@
+// What materials ask for and nothing computes yet: found once, warned about by readers, and named by verdicts.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+/// One term of a material that some object with triangles sets to other than its default.
+struct UncomputedTerm {
+    std::string_view term;               ///< as native scenes write it: "opacity"
+    std::string_view consequence;        ///< what is drawn instead, for people
+    bool changes_visibility;             ///< S_j would be another, were it computed
+    std::vector<std::string> materials;  ///< their names, in the scene's order; not empty
+};
+
+/// In a fixed order: opacity, transmit, reflect, index_of_refraction; those that no material asks for are left out.
+[[nodiscard]] std::vector<UncomputedTerm> find_uncomputed(const Scene& scene);
+
+/// "opacity of material \"glass\"", "opacity of materials \"a\", \"b\", \"c\" and 4 more".
+[[nodiscard]] std::string in_words(const UncomputedTerm& term);
+
+}  // namespace umbra
