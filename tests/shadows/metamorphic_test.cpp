@@ -1,8 +1,8 @@
 // Tests without a reference: scenes are changed in ways that leave every S_j as it was, or change it by a known rule.
 //
-// kRelations says for each relation and method what must be equal, and why. Scenes: the known ones, those of scenes/
-// that need no fetched mesh, or the files named by UMBRA_METAMORPHIC_SCENES (separated by blanks), for which a table
-// of what was found is printed:
+// kRelations says for each relation and kind of method (shadows/metamorphic.def) what must be equal, and why. Scenes:
+// the known ones, those of scenes/ that need no fetched mesh, or the files named by UMBRA_METAMORPHIC_SCENES (separated
+// by blanks), for which a table of what was found is printed:
 //     UMBRA_METAMORPHIC_SCENES="a.obj b.gltf" metamorphic_test
 //
 // Points at which the segment to the light touches an edge or a vertex and nothing more (`exact` knows) are on a
@@ -69,66 +69,88 @@ constexpr double kMapOutside   = 0.002;
 constexpr double kCoverageShare = 0.05;
 constexpr double kZ             = 5;  ///< two-sided false alarms of a normal variable: 6e-7 a plane
 
+/// What shadows/metamorphic.def says of methods.
+enum class Arithmetic : std::uint8_t { signs, doubles, map, floats };
+enum class AreaLights : std::uint8_t { brackets, pattern, samples, centre };
+enum class Batch : std::uint8_t { apart, rounds };
+struct Kind {
+    std::string_view method, settings;
+    Arithmetic arithmetic;
+    AreaLights area_lights;
+    Batch batch;
+};
+const Kind kKinds[] = {
+#define METAMORPHIC(method, settings, arithmetic, area_lights, batch) \
+    {#method, settings, Arithmetic::arithmetic, AreaLights::area_lights, Batch::batch},
+#include "umbra/shadows/metamorphic.def"
+#undef METAMORPHIC
+};
+
+/// Whom a relation is about, by what they make of area lights.
+enum class About : std::uint8_t { all, seeing_area, taking_centre };
+
 struct Relation {
     std::string_view name;
     Changed (*change)(const Asked&);
     Asked (*base)(const Asked&);  ///< what it starts from; null: the scene itself
-    Same exact, planar_projection, shadow_volumes, shadow_zbuffer, ray_traced;
+    Same signs, doubles, map, floats;
+    About about = About::all;
 };
 
 // Scale by a power of two: all arithmetic is the same except for exponents, so that only thresholds that are not
 //     lengths of the scene, and samples that depend on anything but the point's number, could tell.
 // Other motions and scales, exact in themselves: `exact` decides exact signs, which stay. Rays and planes are rounded
 //     elsewhere. A map moves and grows with the scene; where the scene turns, its window is computed again.
-// Order: what occludes does not depend on which triangle is tested first. planar_projection fits planes with
-//     sums, and shadow_volumes runs edges from the lower vertex, so that both round otherwise; a map keeps the nearest
-//     of many. With lights in another order, samples are others.
+// Order: what occludes does not depend on which triangle is tested first. Sums over triangles, and edges that run from
+//     the lower vertex, round otherwise in double; a map keeps the nearest of many. With lights in another order,
+//     samples are others.
 // Cut triangles: the same surface. A segment through one of the new edges touches where it crossed before.
 // Area lights cut: S is a mean over the light's area. Methods that take the light's centre cannot know; for them S is
 //     that of a point light at the centre, and 0 where the centre is behind the point's plane ("grown").
 // Shrunk: every part of the light tends to its centre.
 constexpr Same bits = Same::bits, sides = Same::sides, rounded = Same::rounded, map = Same::map,
-               nothing      = Same::nothing;
+               nothing = Same::nothing, away = Same::away_from_edges;
 const Relation kRelations[] = {
-    // Name, change, base; exact, planar_projection, shadow_volumes, shadow_zbuffer, ray_traced.
-    {"scaled by 2^-30", [](const Asked& a) { return scaled(a, 0x1p-30); }, nullptr, bits, bits, bits, bits, bits},
-    {"scaled by 2^11", [](const Asked& a) { return scaled(a, 0x1p11); }, nullptr, bits, bits, bits, bits, bits},
-    {"scaled by 2^40", [](const Asked& a) { return scaled(a, 0x1p40); }, nullptr, bits, bits, bits, bits, bits},
-    {"scaled by 3", [](const Asked& a) { return scaled(a, 3); }, nullptr, bits, sides, sides, sides, sides},
-    {"scaled by 0.7", [](const Asked& a) { return scaled(a, 0.7); }, nullptr, rounded, rounded, rounded, map, rounded},
-    {"axes cycled", axes_cycled, nullptr, bits, sides, sides, map, sides},
-    {"quarter turn", quarter_turn, nullptr, bits, sides, sides, map, sides},
-    {"moved", moved, nullptr, bits, sides, sides, sides, sides},
-    {"turned and moved", turned_and_moved, nullptr, rounded, rounded, rounded, map, rounded},
-    {"mirrored", mirrored, nullptr, bits, sides, sides, map, sides},
-    {"triangles shuffled", triangles_shuffled, nullptr, bits, sides, sides, bits, bits},
-    {"objects reversed", objects_reversed, nullptr, bits, sides, sides, bits, bits},
-    {"lights reversed", lights_reversed, nullptr, bits, bits, bits, bits, sides},
-    {"triangles split", triangles_split, nullptr, sides, sides, sides, map, sides},
-    {"subdivided", subdivided, nullptr, sides, sides, sides, map, sides},
-    {"rectangles split", rectangles_split, with_rectangles, sides, sides, nothing, nothing, sides},
-    {"light shrunk", [](const Asked& a) { return lights_grown(a, 0x1p-20); }, with_point_lights, Same::away_from_edges,
-     Same::away_from_edges, nothing, nothing, Same::away_from_edges},
-    {"light grown", [](const Asked& a) { return lights_grown(a, 0x1p-3); }, with_point_lights, nothing, nothing, sides,
-     map, nothing},
+    // Name, change, base; signs, doubles, map, floats; about.
+    {"scaled by 2^-30", [](const Asked& a) { return scaled(a, 0x1p-30); }, nullptr, bits, bits, bits, bits},
+    {"scaled by 2^11", [](const Asked& a) { return scaled(a, 0x1p11); }, nullptr, bits, bits, bits, bits},
+    {"scaled by 2^40", [](const Asked& a) { return scaled(a, 0x1p40); }, nullptr, bits, bits, bits, bits},
+    {"scaled by 3", [](const Asked& a) { return scaled(a, 3); }, nullptr, bits, sides, sides, sides},
+    {"scaled by 0.7", [](const Asked& a) { return scaled(a, 0.7); }, nullptr, rounded, rounded, map, rounded},
+    {"axes cycled", axes_cycled, nullptr, bits, sides, map, sides},
+    {"quarter turn", quarter_turn, nullptr, bits, sides, map, sides},
+    {"moved", moved, nullptr, bits, sides, sides, sides},
+    {"turned and moved", turned_and_moved, nullptr, rounded, rounded, map, rounded},
+    {"mirrored", mirrored, nullptr, bits, sides, map, sides},
+    {"triangles shuffled", triangles_shuffled, nullptr, bits, sides, bits, bits},
+    {"objects reversed", objects_reversed, nullptr, bits, sides, bits, bits},
+    {"lights reversed", lights_reversed, nullptr, bits, bits, bits, sides},
+    {"triangles split", triangles_split, nullptr, sides, sides, map, sides},
+    {"subdivided", subdivided, nullptr, sides, sides, map, sides},
+    {"rectangles split", rectangles_split, with_rectangles, sides, sides, map, sides, About::seeing_area},
+    {"light shrunk", [](const Asked& a) { return lights_grown(a, 0x1p-20); }, with_point_lights, away, away, map, away,
+     About::seeing_area},
+    {"light grown", [](const Asked& a) { return lights_grown(a, 0x1p-3); }, with_point_lights, nothing, sides, map,
+     sides, About::taking_centre},
 };
 
-/// What the table says, for this kind of light and for what rounding the change took. Methods that it does not name are
-/// asked what rays are.
-Same must_be(const Relation& relation, std::string_view method, LightKind kind, bool exact) {
-    Same same = method == "exact"               ? relation.exact
-                : method == "planar_projection" ? relation.planar_projection
-                : method == "shadow_volumes"    ? relation.shadow_volumes
-                : method == "shadow_zbuffer"    ? relation.shadow_zbuffer
-                                                : relation.ray_traced;
-    if (!exact && (same == bits || same == sides)) same = method == "shadow_zbuffer" ? map : rounded;
-    const bool soft = method == "exact" || method == "planar_projection" || method == "ray_traced";
-    // `exact` brackets visible areas: signs are the same, the last bits of areas and where round lights' polygons have
-    // their corners are not.
-    const bool rounds =
-        same == sides || same == rounded || (method == "exact" && !relation.name.starts_with("scaled by 2"));
-    if (is_area(kind) && soft && same != nothing && same != Same::away_from_edges && rounds)
-        return method == "exact" ? Same::brackets : method == "planar_projection" ? Same::pattern : Same::samples;
+/// What the table says, for this kind of light and for what rounding the change took.
+Same must_be(const Relation& relation, const Kind& method, LightKind kind, bool exact) {
+    const bool centre = method.area_lights == AreaLights::centre;
+    if ((relation.about == About::seeing_area && centre) || (relation.about == About::taking_centre && !centre))
+        return nothing;
+    const bool signs = method.arithmetic == Arithmetic::signs, by_map = method.arithmetic == Arithmetic::map;
+    Same same = signs                                      ? relation.signs
+                : by_map                                   ? relation.map
+                : method.arithmetic == Arithmetic::doubles ? relation.doubles
+                                                           : relation.floats;
+    if (!exact && (same == bits || same == sides)) same = by_map ? map : rounded;
+    // With brackets, signs are the same; the last bits of areas and where round lights' polygons have their corners are
+    // not.
+    const bool brackets = method.area_lights == AreaLights::brackets;
+    const bool rounds   = same == sides || same == rounded || (brackets && !relation.name.starts_with("scaled by 2"));
+    if (is_area(kind) && !centre && same != nothing && same != away && rounds)
+        return brackets ? Same::brackets : method.area_lights == AreaLights::pattern ? Same::pattern : Same::samples;
     return same;
 }
 
@@ -380,9 +402,10 @@ std::vector<Source> sources() {
     return all;
 }
 
-/// Every method; with fewer samples than by default, since what must hold holds for any number.
-const std::vector<std::string> kChoices{"exact", "planar_projection:light_samples=16", "shadow_volumes",
-                                        "shadow_zbuffer:resolution=512", "ray_traced"};
+/// As typed, of each kind of method.
+std::string choice_of(const Kind& kind) {
+    return kind.settings.empty() ? std::string(kind.method) : fmt::format("{}:{}", kind.method, kind.settings);
+}
 
 struct Finding {
     std::size_t planes = 0, points = 0, touching = 0, uncovered = 0, changed = 0, outside = 0, faults = 0;
@@ -439,9 +462,9 @@ TEST_P(Metamorphic, RelationsHold) {
         Answered& before = base->second;
         Changed changed  = relation.change(before.asked());
         Answered after(std::move(changed.after));
-        for (const std::string& choice : kChoices) {
+        for (const Kind& method : kKinds) {
+            const std::string choice = choice_of(method);
             if (before.by(choice).empty() || after.by(choice).empty()) continue;
-            const std::string_view method = parse_method(choice).info->name;
             for (LightId j = 0; j < before.asked().scene.lights.size(); ++j) {
                 const LightKind kind = before.asked().scene.lights[j].kind;
                 const Same same      = must_be(relation, method, kind, changed.exact);
@@ -459,7 +482,8 @@ TEST_P(Metamorphic, RelationsHold) {
 // What a thread works on does not depend on the others.
 TEST_P(Metamorphic, SameBitsForAnyNumberOfThreads) {
     const Answered scene(asked());
-    for (const std::string& choice : kChoices) {
+    for (const Kind& method : kKinds) {
+        const std::string choice = choice_of(method);
         std::vector<std::vector<Answers>> answers;
         for (const int threads : {1, 3}) {
             const ThreadLimit limit(threads);
@@ -472,9 +496,9 @@ TEST_P(Metamorphic, SameBitsForAnyNumberOfThreads) {
     }
 }
 
-// A point's answer does not depend on the others of its batch, nor on the raster: bit for bit, except for
-// shadow_volumes, which looks at the points from a position that depends on all of them and so rounds otherwise: for
-// it, where nothing touches. (Samples are numbered by the point's index in the batch, which is kept.)
+// A point's answer does not depend on the others of its batch, nor on the raster: bit for bit, except for methods that
+// look at the points from a position that depends on all of them and so round otherwise (Batch::rounds): for those,
+// where nothing touches. (Samples are numbered by the point's index in the batch, which is kept.)
 TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
     Answered scene(asked());
     const PointBatch& points = scene.asked().points;
@@ -485,7 +509,8 @@ TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
         chosen.emplace_back(points.size());
         chosen.back()[i] = 1;
     }
-    for (const std::string& choice : kChoices) {
+    for (const Kind& method : kKinds) {
+        const std::string choice = choice_of(method);
         AskedMethod run(choice, scene.asked(), scene.facts());
         if (!run.serves()) continue;
         for (LightId j = 0; j < scene.asked().scene.lights.size(); ++j) {
@@ -495,13 +520,20 @@ TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
                 const Asked some            = asked_for_some(scene.asked(), keep, false);
                 const VisibilityPlane alone = run.ask(some.points, j).plane;
                 for (std::size_t i = 0; i < keep.size(); ++i) {
-                    if (!keep[i] || (choice == "shadow_volumes" && scene.touches(j, i))) continue;
+                    if (!keep[i] || (method.batch == Batch::rounds && scene.touches(j, i))) continue;
                     EXPECT_EQ(alone.s[i], all.s[i]) << choice << ", point " << i;
                     EXPECT_EQ(alone.answer[i], all.answer[i]) << choice << ", point " << i;
                 }
             }
         }
     }
+}
+
+TEST(MetamorphicKinds, AreOfMethodsInTheList) {
+    for (const Kind& kind : kKinds) EXPECT_NO_THROW((void)parse_method(choice_of(kind))) << kind.method;
+    for (const MethodInfo* info : methods())
+        if (std::ranges::none_of(kKinds, [&](const Kind& kind) { return kind.method == info->name; }))
+            fmt::print("{} has no line in shadows/metamorphic.def and is left out of this test\n", info->name);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Metamorphic, testing::ValuesIn(sources()), [](const auto& p) { return p.param.name; });
