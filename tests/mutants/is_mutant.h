@@ -1,4 +1,5 @@
-// The first line of every mutated file in the copy that `./umbra mutants` builds: which change of tests/mutants/*.txt acts.
+// The first line of every mutated file in the copy that `./umbra mutants` builds: which change of tests/mutants/*.txt
+// acts.
 #pragma once
 
 // What is fine in a change that is meant to be wrong.
