@@ -9,6 +9,8 @@
 #include "umbra/bench/compare/compare.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/gbuffer.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -33,6 +35,20 @@ TEST(Antialias, SamplesAreSquares) {
     EXPECT_EQ(samples_along_side(1), 1);
     EXPECT_EQ(samples_along_side(16), 4);
     for (const int wrong : {0, -4, 2, 8, 65, 81}) EXPECT_THROW((void)samples_along_side(wrong), UsageError) << wrong;
+}
+
+/// Of 4 x 4 points of each pixel two are lit: N.L = 1 and k_d = 0.8 give 0.8 / 8.
+TEST(Antialias, IsTheMeanOfAllPointsOfAPixel) {
+    const TemporaryFolder folder;
+    const Scene scene     = load_scene(folder.write("floor.json", R"({
+        "camera": {"eye": [0, 4, 0], "target": [0, 0, 0], "up": [0, 0, -1], "height": 2}, "ambient": 0,
+        "lights": [{"type": "directional", "direction": [0, -1, 0]}], "objects": [{"type": "plane", "size": 8}]})"));
+    const PointBatch fine = subpixel_points(RayScene(scene), scene, 6, 5, 4);
+    VisibilityPlane plane(fine.size());
+    for (std::size_t i = 0; i < fine.size(); ++i) plane.s[i] = i / 24 % 4 == 1 && i % 24 % 4 >= 2 ? 1.0f : 0.0f;
+    const Image image = antialiased(scene, fine, std::span(&plane, 1), 4);
+    ASSERT_EQ(image.pixels(), 30u);
+    for (std::size_t i = 0; i < image.pixels(); ++i) EXPECT_NEAR(image.at(i, 1), 0.1, 1e-6);
 }
 
 /// The picture changes at edges alone; planes, errors and image metrics do not.

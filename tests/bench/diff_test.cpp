@@ -371,6 +371,22 @@ TEST_F(Diff, PageShowsFiguresAndPictures) {
               read_image(folder / "page.files/differs.exr.b.png").image.at(20 * 64 + 10, 1));
 }
 
+/// What is within the limits passes; beyond them and other sizes are failures; what cannot be read is an error.
+TEST_F(Diff, JunitCountsEachVerdict) {
+    DiffSet set{"a", "b", true, {}};
+    for (const Verdict v : {Verdict::same, Verdict::close, Verdict::close, Verdict::differs, Verdict::differs,
+                            Verdict::unlike, Verdict::unreadable}) {
+        set.images.emplace_back();
+        set.images.back().verdict = v;
+        set.images.back().name    = to_string(v);
+    }
+    const std::string text = diff_set_junit(set);
+    EXPECT_NE(text.find("tests=\"7\" failures=\"3\" errors=\"1\""), std::string::npos) << text;
+    EXPECT_NE(text.find("name=\"close\"/>"), std::string::npos) << text;
+    EXPECT_EQ(text.find("<failure type=\"close\""), std::string::npos) << text;
+    EXPECT_EQ(set.worst(), Verdict::unreadable);
+}
+
 TEST_F(Diff, JunitOfAPairAndNamesThatAreNoText) {
     const fs::path a    = box("a\x01\xff.exr", 0.1f);
     const DiffSet equal = diff_set(a, a, {}, {});

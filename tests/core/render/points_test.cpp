@@ -128,6 +128,26 @@ TEST(Points, AreaLightsAreCutByThePlane) {
     }
 }
 
+/// A disk reaches along a normal by its radius times the sine of the angle to its own: not at all where it lies flat.
+TEST(Points, AFlatDiskIsNotCutByThePlaneBelowIt) {
+    Scene scene = one_triangle(true);
+    for (const vec3 direction : {vec3(0, -1, 0), vec3(1, 0, 0), vec3(3, -4, 0)}) {
+        Light& light    = scene.lights.emplace_back();
+        light.kind      = LightKind::disk;
+        light.position  = vec3(3, 0.35f, 0);
+        light.direction = direction;
+        light.radius    = 0.5f;  // the last one reaches 0.3
+    }
+    PointBatch batch;
+    batch.eye = vec3(0, 3, 0);
+    batch.resize(1);
+    set_point(batch, 0, scene, 0, 0.25f, 0.25f);
+    face_lights(batch, scene);
+    EXPECT_EQ(batch.facing[0][0], Facing::front);
+    EXPECT_EQ(batch.facing[1][0], Facing::partly);
+    EXPECT_EQ(batch.facing[2][0], Facing::front);
+}
+
 TEST(Camera, ProjectInvertsTheEyeRay) {
     Camera camera;
     camera.eye    = vec3(1e5f, 2, 3);
