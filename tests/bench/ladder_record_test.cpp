@@ -1,0 +1,86 @@
+// What a run of ladders records, from a run made by hand whose figures are all different.
+#include "umbra/bench/ladders/ladder_record.h"
+
+#include <gtest/gtest.h>
+
+#include "umbra/bench/ladders/ladder_page.h"
+#include "umbra/bench/ladders/ladder_run.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+/// Two rungs, 1 and 2: the first method is wrong at 3, then at 14 of 1000 points; the second never serves.
+LadderRun run_by_hand() {
+    LadderRun run{&find_ladder("needles"), {parse_method("shadow_zbuffer"), parse_method("ray_traced")}, {}};
+    for (const int k : {0, 1}) {
+        Rung& rung          = run.rungs.emplace_back();
+        rung.value          = k + 1;
+        rung.truth          = "exact";
+        rung.surface_points = 10, rung.lit = 11, rung.umbra = 12, rung.penumbra = 13, rung.on_boundary = 14;
+        RungOutcome wrong;
+        wrong.service      = {How::approximately, "by hand"};
+        wrong.points       = 1000;
+        wrong.undefined    = 5;
+        wrong.false_shadow = k == 0 ? VisibilityError::Kind{1, 20} : VisibilityError::Kind{6, 21};
+        wrong.false_light  = k == 0 ? VisibilityError::Kind{2, 30} : VisibilityError::Kind{8, 31};
+        wrong.mae          = 0.25;
+        wrong.kind         = "leak";
+        RungOutcome none;
+        none.service  = {How::not_at_all, "it cannot"};
+        rung.outcomes = {wrong, none};
+    }
+    return run;
+}
+
+TEST(LadderRecord, EachFigureHasItsPlace) {
+    const Json ladder = ladder_json(run_by_hand());
+    EXPECT_EQ(ladder["rungs"][0]["surface_points"], 10);
+    EXPECT_EQ(ladder["rungs"][0]["lit"], 11);
+    EXPECT_EQ(ladder["rungs"][0]["umbra"], 12);
+    EXPECT_EQ(ladder["rungs"][0]["penumbra"], 13);
+    EXPECT_EQ(ladder["rungs"][0]["on_boundary"], 14);
+    const Json &method = ladder["methods"][0], &rung = method["rungs"][1];
+    EXPECT_EQ(rung["points"], 1000);
+    EXPECT_EQ(rung["undefined"], 5);
+    EXPECT_EQ(rung["false_shadow"], (Json{{"interior", 6}, {"edge", 21}}));
+    EXPECT_EQ(rung["false_light"], (Json{{"interior", 8}, {"edge", 31}}));
+    EXPECT_NEAR(rung["interior_share"], 0.014, 1e-12);
+    EXPECT_EQ(rung["broken"], true);
+    EXPECT_EQ(method["rungs"][0]["broken"], false);
+    EXPECT_EQ(method["breaks_at"], 2.0);
+    EXPECT_EQ(method["kind"], "leak");
+}
+
+TEST(LadderRecord, WordsAndTableNameTheRung) {
+    const Json ladder = ladder_json(run_by_hand());
+    EXPECT_EQ(climb_in_words(ladder["methods"][0], ladder), "2 leak");
+    EXPECT_EQ(climb_in_words(ladder["methods"][1], ladder), "not served");
+    const TemporaryFolder folder;
+    const Json record = {{"schema", kResultsSchema}, {"breaking_share", 0.005}, {"ladders", {ladder}}};
+    const Field root  = read_results(folder.write("results.json", record.dump()));
+    const auto table  = ladder_table_view(root, "page");
+    EXPECT_EQ(table["rows"][0]["cells"][0]["words"], "2");
+    EXPECT_EQ(table["rows"][0]["cells"][0]["kind"], "leak");
+    EXPECT_EQ(table["rows"][0]["cells"][1]["note"], "not served");
+    EXPECT_EQ(table["rows"][0]["range"], "1 to 2");
+}
+
+/// Two lights: the points of a rung are those of both.
+TEST(LadderRecord, PointsAreSumsOverLights) {
+    const TemporaryFolder folder;
+    const auto stage     = set_stage(load_scene(folder.write("two.json", R"({
+        "size": [24, 16], "camera": {"eye": [0, 3, 4], "target": [0, 0, 0]},
+        "lights": [{"type": "directional", "direction": [0, -1, 0]}, {"type": "directional", "direction": [1, -1, 0]}],
+        "objects": [{"type": "plane", "size": 40}]})")));
+    std::uint64_t points = 0;
+    for (LightId j = 0; j < 2; ++j)
+        points += visibility_error(stage->points, j, stage->truth.planes[j], stage->truth.planes[j], 0.5f).points;
+    EXPECT_EQ(points, 2u * 24 * 16);
+    EXPECT_EQ(outcome(*stage, parse_method("shadow_volumes")).points, points);
+}
+
+}  // namespace
+}  // namespace umbra
