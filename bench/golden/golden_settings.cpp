@@ -23,7 +23,7 @@ constexpr std::array kSettings = {
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,bias=receiver_plane"},
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,bias=manual"},
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,bias=manual,constant=4"},
-    GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,bias=manual,slope=4"},
+    GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,bias=manual,constant=0,slope=0.5"},
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,bias=manual,normal_offset=4"},
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,fit=scene"},
     GoldenSetting{"self_shadow", "shadow_zbuffer:resolution=256,depth=16,bias=manual,constant=0"},
