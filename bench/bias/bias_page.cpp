@@ -174,12 +174,18 @@ json legend() {
 void write_bias_page(const Json& record, const std::filesystem::path& out, StagedFiles& staged) {
     json studies = json::array();
     for (const Json& study : record["bias"]) studies.push_back(study_view(record, study));
+    json failures = json::array();
+    for (const Json& failure : record["failed"])
+        failures.push_back(
+            fmt::format("{}: {}", failure["scene"].get<std::string>(), failure["message"].get<std::string>()));
     const json view     = {{"command", without_folders(record["command"].get<std::string>())},
                            {"version", record["version"]},
                            {"width", fmt::format("{}", record["size"]["width"].get<int>())},
                            {"height", fmt::format("{}", record["size"]["height"].get<int>())},
                            {"map", record["map"]},
                            {"legend", legend()},
+                           {"has_failures", !failures.empty()},
+                           {"failures", std::move(failures)},
                            {"studies", std::move(studies)}};
     const PageHead head = {"The shadow z-buffer’s bias: acne against detachment", "", {}};
     staged.write(out / "index.html", render_page(assets::bias_html, head, view));

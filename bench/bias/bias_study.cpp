@@ -137,11 +137,16 @@ BiasStudy add_up(const std::vector<BiasStudy>& studies) {
     return all;
 }
 
+void check_bias_map(const std::string& settings, const BiasGrid& grid) {
+    const MethodChoice studied = choose(settings);
+    for (double offset : grid.normal_offsets)
+        (void)studied.info->make(with_bias(studied.settings, "manual", 0, 0, offset));
+}
+
 BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const BiasGrid& grid,
                      const std::function<void(const std::string&)>& progress) {
+    check_bias_map(settings, grid);
     const MethodChoice studied = choose(settings);
-    for (double offset : grid.normal_offsets)  // first of all, since one may be refused
-        (void)studied.info->make(with_bias(studied.settings, "manual", 0, 0, offset));
     harden_lights(prepared);
     const Scene& scene = prepared.scene;
     BiasStudy study{scene.name, scene.title, {}, 0, {}, {}, {}};

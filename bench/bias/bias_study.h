@@ -50,6 +50,9 @@ struct BiasStudy {
 /// All scenes' counts added up, as a study called "all".
 [[nodiscard]] BiasStudy add_up(const std::vector<BiasStudy>& studies);
 
+/// Throws UsageError where the settings are wrong, set a bias, or exclude one of the grid.
+void check_bias_map(const std::string& settings, const BiasGrid& grid);
+
 /// Runs shadow_zbuffer with `settings` ("k=v,k=v", none of them about bias; may be empty) over the grid. Area lights
 /// are taken for points in their centres, as the method takes them: the study is of bias, not of penumbrae. Throws
 /// UsageError where the settings are wrong or set a bias.

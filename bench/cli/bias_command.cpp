@@ -6,7 +6,6 @@
 
 #include "umbra/bench/bias/bias_page.h"
 #include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/run/record_text.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
@@ -56,12 +55,21 @@ Json study_json(const BiasStudy& study, const BiasGrid& grid) {
 Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
                   std::vector<std::string>& failed) {
     const BiasGrid grid = default_bias_grid();
+    check_bias_map(options.map, grid);
     std::vector<BiasStudy> studies;
+    Json failures = Json::array();
     for (const std::filesystem::path& file : files) {
         try {
-            studies.push_back(study_bias(prepare_scene(file, options.size), options.map, grid, options.progress));
+            BiasStudy study = study_bias(prepare_scene(file, options.size), options.map, grid, options.progress);
+            if (study.points > 0)
+                studies.push_back(std::move(study));
+            else
+                failed.push_back(fmt::format("{}: no point is judged: no lit surface is in view", file.string()));
         } catch (const InputError& e) {
             failed.emplace_back(e.what());
+        } catch (...) {
+            failures.push_back(
+                {{"scene", file.stem().string()}, {"method", "the study"}, {"message", current_message()}});
         }
     }
     Json record = {{"schema", kResultsSchema},
@@ -73,13 +81,14 @@ Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOpt
                    {"constants", grid.constants},
                    {"slopes", grid.slopes},
                    {"normal_offsets", grid.normal_offsets},
-                   {"bias", Json::array()}};
+                   {"bias", Json::array()},
+                   {"failed", std::move(failures)}};
     if (studies.empty()) return record;
     if (studies.size() > 1) studies.insert(studies.begin(), add_up(studies));
     for (const BiasStudy& study : studies) record["bias"].push_back(study_json(study, grid));
 
     StagedFiles staged;
-    staged.write(options.out / "results.json", record_text(record));
+    staged.write(options.out / "results.json", json_text(record));
     write_bias_page(record, options.out, staged);
     staged.commit();
     return record;

@@ -16,7 +16,8 @@ struct BiasOptions {
 
 /// Studies the scenes and writes OUT/results.json and the page OUT/index.html. Returns the record. The
 /// messages of unreadable scenes, or scenes whose meshes are missing, are appended to `failed`; these are skipped.
-/// Throws UsageError, InputError.
+/// Scenes on which a method threw are in the record's `failed`; without any study nothing is written. Throws
+/// UsageError, InputError.
 Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
                   std::vector<std::string>& failed);
 

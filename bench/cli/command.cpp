@@ -1,4 +1,5 @@
 #include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/streams.h"
 
 #include <fmt/format.h>
 
@@ -98,25 +99,33 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
         "umbra list).\n"
         "Exit codes: 0 done, 1 the answer is no, 4 input unreadable, 5 a method failed or internal error, 64 wrong "
         "usage; diff: 0 same, 1 close, 2 differs, 3 size or channels differ, 4 unreadable.\n"
-        "The script ./umbra also has: setup, test, bench, check, fuzz.");
+        "The script ./umbra also has: setup, test, bench, oracle, mutants, faults, check, fuzz.");
     return actions;
 }
 
 int run_command_line(int argc, const char* const* argv) {
+    prepare_streams();
     std::string help = "--help";
     try {
-        return parse_and_run(argc, argv, help);
+        const int code = parse_and_run(argc, argv, help);
+        flush_out();
+        return code;
+    } catch (const OutputClosed&) {
+        end_like_closed_pipe();
     } catch (const UsageError& e) {
-        fmt::print(stderr, "umbra: {}\nTry: umbra {}\n", e.what(), help);
+        print_error("umbra: {}\nTry: umbra {}\n", e.what(), help);
         return kUsage;
     } catch (const InputError& e) {
-        fmt::print(stderr, "{}\n", e.what());
+        print_error("{}\n", e.what());
         return kUnreadable;
     } catch (const std::filesystem::filesystem_error& e) {  // a name that is too long, a folder that is not ours
-        fmt::print(stderr, "{}\n", e.what());
+        print_error("{}\n", e.what());
         return kUnreadable;
-    } catch (const std::exception& e) {
-        fmt::print(stderr, "umbra: internal error: {}\n", e.what());
+    } catch (const MethodError& e) {
+        print_error("umbra: {}\n", e.what());
+        return kInternal;
+    } catch (...) {
+        print_error("umbra: internal error: {}\n", current_message());
         return kInternal;
     }
 }

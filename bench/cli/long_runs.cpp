@@ -1,9 +1,12 @@
 #include "umbra/bench/cli/long_runs.h"
+#include "umbra/bench/cli/streams.h"
 
 #include <fmt/format.h>
 
 #include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/report/report.h"
+#include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
@@ -19,18 +22,26 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
         const Terminal terminal(common.quiet);
         options.progress = [&](const std::string& what) { terminal.progress(what); };
         options.warn     = [&](const std::string& what) { terminal.warn(what); };
-        done             = compare_scenes(files, options);
+        options.add_page = write_scene_page;
+        // Whatever happens to this run, the first page fits the folders beside it.
+        options.scene_done = [&] {
+            try {
+                if (!links_hold(options.out / "index.html")) write_report({options.out}, options.out, {});
+            } catch (const InputError&) {  // an older result beside is not readable
+            }
+        };
+        done = compare_scenes(files, options);
     }
     std::vector<fs::path> folders;
     for (const std::string& name : done.names) folders.push_back(options.out / name);
     if (!folders.empty()) {
         folders.insert(folders.end(), also.begin(), also.end());
-        write_report(folders, options.out, {});
+        write_report(folders, options.out, {.failed = done.failed});
     }
-    if (!common.quiet && !folders.empty()) fmt::print("{}\n", (options.out / "index.html").string());
-    for (const std::string& message : done.failed) fmt::print(stderr, "{}\n", message);
-    for (const std::string& message : done.stopped) fmt::print(stderr, "{}\n", message);
-    for (const std::string& message : done.missing) fmt::print(stderr, "{}\n", message);
+    if (!common.quiet && !folders.empty()) print_out("{}\n", (options.out / "index.html").string());
+    for (const std::string& message : done.failed) print_error("{}\n", message);
+    for (const std::string& message : done.stopped) print_error("{}\n", message);
+    for (const std::string& message : done.missing) print_error("{}\n", message);
     return done;
 }
 
@@ -42,9 +53,14 @@ int exit_code(const ScenesDone& done) {
 Json climb_on_terminal(LadderOptions options, const Common& common) {
     options.command = common.command;
     options.threads = thread_count();
-    const Terminal terminal(common.quiet);
-    options.progress = [&](const std::string& what) { terminal.progress(what); };
-    return climb_ladders(options);
+    Json record;
+    {
+        const Terminal terminal(common.quiet);
+        options.progress = [&](const std::string& what) { terminal.progress(what); };
+        record           = climb_ladders(options);
+    }
+    for (const Json& failed : record["failed"]) print_error("{}\n", failed_climb_in_words(failed));
+    return record;
 }
 
 }  // namespace umbra

@@ -15,7 +15,7 @@ ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, 
 /// 0; 4 where scenes could not be read; 5 where a method failed.
 [[nodiscard]] int exit_code(const ScenesDone& done);
 
-/// Climbs; returns the record.
+/// Climbs; returns the record. Prints what failed to standard error.
 Json climb_on_terminal(LadderOptions options, const Common& common);
 
 }  // namespace umbra

@@ -4,7 +4,11 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <string>
+
+#include "umbra/bench/cli/streams.h"
 
 namespace umbra {
 namespace {
@@ -25,11 +29,17 @@ Terminal::~Terminal() {
 }
 
 void Terminal::progress(std::string_view what) const {
-    if (shows_progress_) fmt::print(stderr, "{}{}", kClearLine, what.substr(0, columns() - 1));
+    if (!shows_progress_) return;
+    std::fputs(kClearLine, stderr);
+    write_error(without_controls(std::string(what.substr(0, columns() - 1))));
 }
 
 void Terminal::warn(std::string_view what) const {
-    if (!quiet_) fmt::print(stderr, "{}warning: {}\n", shows_progress_ ? kClearLine : "", what);
+    if (quiet_) return;
+    if (shows_progress_) std::fputs(kClearLine, stderr);
+    std::string line(what);
+    std::replace(line.begin(), line.end(), '\n', ' ');  // one line a warning, whatever names hold
+    print_error("warning: {}\n", line);
 }
 
 }  // namespace umbra

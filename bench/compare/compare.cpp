@@ -2,17 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
-#include "umbra/bench/run/record_text.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
@@ -159,6 +161,26 @@ std::vector<MethodChoice> chosen(const CompareOptions& options) {
     return choices;
 }
 
+/// A folder for each scene. Throws UsageError where one file is given twice.
+std::vector<std::string> folders_of(const std::vector<fs::path>& files) {
+    const auto lower = [](std::string text) {
+        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+        return text;
+    };
+    std::set<fs::path> given;
+    std::set<std::string> taken;
+    std::vector<std::string> folders;
+    for (const fs::path& file : files) {
+        if (!given.insert(fs::weakly_canonical(file)).second)
+            throw UsageError(fmt::format("{}: is given twice, expected each scene once", file.string()));
+        const std::string name = folder_name(file.stem().string());
+        folders.push_back(name);
+        for (int k = 2; !taken.insert(lower(folders.back())).second; ++k)
+            folders.back() = fmt::format("{}-{}", name, k);
+    }
+    return folders;
+}
+
 }  // namespace
 
 Json compare_scene(const fs::path& file, const CompareOptions& options) {
@@ -172,7 +194,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const Scene& scene           = prepared.scene;
     warn(scene, options.warn);
 
-    const fs::path folder = options.out / scene.name;
+    const fs::path folder = options.out / (options.folder.empty() ? folder_name(scene.name) : options.folder);
     StagedFolder stage(folder);
     const fs::path& staging = stage.folder();
 
@@ -182,8 +204,15 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
         reference.exact = verdict(*reference.choice.make(), prepared.facts).how == How::exactly;
     }
     tell("reference " + reference.choice.text());
-    const ReferenceRun reference_ran = run_reference(reference, scene, prepared.facts, prepared.points, options.points);
-    const MethodRun& reference_run   = reference_ran.run;
+    const auto find_truth = [&](Reference& with) {
+        return run_reference_or_substitute(with, scene, prepared.facts, prepared.points, options.points);
+    };
+    const TruthRun truth_ran =
+        options.reference
+            ? TruthRun{run_reference(reference, scene, prepared.facts, prepared.points, options.points), std::nullopt}
+            : find_truth(reference);
+    const ReferenceRun& reference_ran = truth_ran.ran;
+    const MethodRun& reference_run    = reference_ran.run;
     const Rendered reference_rendered = render(scene, prepared.points, reference_run.planes);
 
     Json record                  = {{"schema", kResultsSchema},
@@ -195,7 +224,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                     {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
                                     {"lights", lights_json(prepared.facts)},
                                     {"times", Json::object()},
-                                    {"reference", reference_json(reference, reference_ran)},
+                                    {"reference", reference_json(reference, reference_ran, scene, truth_ran.failed)},
                                     {"methods", Json::array()}};
     record["reference"]["files"] = write_files(staging, "reference", prepared, reference_run, reference_rendered,
                                                reference_run, {}, options.command);
@@ -210,9 +239,9 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
         const Measure measure = choice.make()->measures();
         if (prepared.facts.hard_lights_only || measure == reference_run.method->measures()) return false;
         if (!other) {
-            const Reference chosen = default_reference(prepared.facts, measure);
+            Reference chosen = default_reference(prepared.facts, measure);
             tell("reference " + chosen.choice.text());
-            other.emplace(Truth{run_reference(chosen, scene, prepared.facts, prepared.points, options.points), {}});
+            other.emplace(Truth{find_truth(chosen).ran, {}});
             other->rendered = render(scene, prepared.points, other->ran.run.planes);
         }
         return true;
@@ -241,8 +270,8 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                                     : unserved_json(id, choice, run.service));
         } catch (const InputError&) {  // a file that cannot be written is no fault of the method
             throw;
-        } catch (const std::exception& e) {
-            record["methods"].push_back(failed_json(id, choice, scene, at, e.what()));
+        } catch (...) {
+            record["methods"].push_back(failed_json(id, choice, scene, at, current_message()));
         }
     }
     record["times"] = {{"load_ms", prepared.load_ms},
@@ -250,19 +279,15 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                        {"rays_build_ms", prepared.rays_build_ms},
                        {"gbuffer_ms", prepared.gbuffer_ms},
                        {"shade_ms", shade_ms}};
-    write_text(staging / "results.json", record_text(record));
+    write_text(staging / "results.json", json_text(record));
+    if (options.add_page) options.add_page(staging);
     stage.commit();
+    if (options.scene_done) options.scene_done();
     return record;
 }
 
 ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptions& options) {
-    std::set<std::string> stems;
-    for (const fs::path& file : files)
-        if (!stems.insert(file.stem().string()).second)
-            throw UsageError(
-                fmt::format("two scenes are named \"{}\" and would write to one folder, expected a run with its own -o "
-                            "for each",
-                            file.stem().string()));
+    const std::vector<std::string> folders = folders_of(files);
     for (const std::string& text : options.methods) static_cast<void>(parse_method(text));
     if (options.reference) static_cast<void>(parse_method(*options.reference));
     ScenesDone done;
@@ -270,32 +295,47 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
     CompareOptions numbered = options;
     Steps steps(files.size(), options.progress);
     numbered.progress = [&](const std::string& what) { steps.show(what); };
-    for (const fs::path& file : files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const fs::path& file = files[i];
+        numbered.folder      = folders[i];
         steps.next();
         try {
             last = compare_scene(file, numbered);
-            done.names.push_back(last["scene"]["name"]);
+            done.names.push_back(folders[i]);
             for (std::string& message : failures(last)) done.stopped.push_back(std::move(message));
         } catch (const MissingMesh& e) {
             done.missing.emplace_back(e.what());
         } catch (const InputError& e) {
             done.failed.emplace_back(e.what());
-        } catch (const std::exception& e) {
-            done.failed.push_back(fmt::format("{}: {}", file.stem().string(), e.what()));
+        } catch (...) {
+            done.failed.push_back(fmt::format("{}: {}", file.stem().string(), current_message()));
             done.internal = true;
         }
     }
-    if (files.size() == 1 && done.names.size() == 1)
-        write_text(options.out / "results.json", record_text(with_prefix(last, done.names[0] + "/")));
+    if (files.size() == 1 && done.names.size() == 1) {
+        StagedFiles staged;
+        staged.write(options.out / "results.json", json_text(with_prefix(last, done.names[0] + "/")));
+        staged.commit();
+    }
     return done;
 }
 
 Service render_scene(const fs::path& file, const RenderOptions& options) {
     const MethodChoice choice    = parse_method(options.method);
     const bool png               = options.out.extension() == ".png";
-    const PreparedScene prepared = prepare_scene(file, options.size, png ? options.pixel_samples : 1);
+    const PreparedScene prepared = prepare_scene(file, options.size, png ? options.pixel_samples : 1, Work::picture);
     warn(prepared.scene, options.warn);
-    const MethodRun run = run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0});
+    std::optional<LightId> at;
+    MethodRun run{choice};
+    try {
+        run = run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0}, &at);
+    } catch (const UsageError&) {  // settings that this scene does not allow
+        throw;
+    } catch (...) {
+        throw MethodError(fmt::format("{} failed{}: {}", choice.text(),
+                                      at ? fmt::format(" at light {}", prepared.scene.lights[*at].name) : "",
+                                      current_message()));
+    }
     if (!run.service) return run.service;
     const Rendered rendered = render(prepared.scene, prepared.points, run.planes);
     Image image =

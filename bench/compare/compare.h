@@ -22,22 +22,29 @@ struct CompareOptions {
     std::optional<std::uint64_t> points;   ///< at which area lights are scored; none: all, if affordable
     Size size;
     std::filesystem::path out;
+    std::string folder;   ///< of the scene, in `out`; empty: the scene's name, made fit for a folder
     std::string command;  ///< for the records
     int threads = 0;
     Repeats repeats;
     std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
     std::function<void(const std::string&)> warn;      ///< receives "SCENE: warning" of loading; may be empty
+    std::function<void(const std::filesystem::path&)>
+        add_page{};                      ///< adds a page to a folder that is whole but for
+                                         ///< that, before it is moved into place; may be empty
+    std::function<void()> scene_done{};  ///< after each folder; may be empty
 };
 
 /// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
 /// into place; an older result stays whole until then. A method that throws or breaks its contract has an entry that
-/// says so (`failed`), and the others go on. Returns the record that it wrote. Throws InputError, UsageError, and what
-/// the reference throws.
+/// says so (`failed`), and the others go on; a reference that throws is replaced, unless the options name it. Returns
+/// the record that it wrote. Throws InputError, UsageError, and what a reference throws that cannot be replaced.
 Json compare_scene(const std::filesystem::path& file, const CompareOptions& options);
 
-/// All scenes one after the other; where there is one only, OUT/results.json is a copy with paths that hold there.
-/// Scenes that cannot be read, or on which a method throws, are added to `failed` and skipped; their older results
-/// stay. Throws UsageError before the first scene where the methods or the reference are wrong.
+/// All scenes one after the other, each in a folder of its own name; scenes of one name, in any case, get -2, -3 and so
+/// on behind it in the order of `files`. Where there is one only, OUT/results.json is a copy with paths that hold
+/// there. Scenes that cannot be read, or on which a method throws, are added to `failed` and skipped; their older
+/// results stay. Throws UsageError before the first scene where the methods or the reference are wrong, or a file is
+/// given twice.
 struct ScenesDone {
     std::vector<std::string> names;    ///< folders below OUT, in order
     std::vector<std::string> failed;   ///< messages
@@ -48,7 +55,8 @@ struct ScenesDone {
 ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
 
 /// One method's picture of one scene: .exr (docs/exr.md; with geometry where asked) or .png (as displayed).
-/// Returns false and the reason where the method does not serve the scene; nothing is written then.
+/// Returns false and the reason where the method does not serve the scene; nothing is written then. Throws InputError,
+/// UsageError, and MethodError where the method fails.
 struct RenderOptions {
     std::string method = "ray_traced";
     Size size;

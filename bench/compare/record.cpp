@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace umbra {
 namespace {
 
@@ -37,6 +39,9 @@ Json error_json(const std::string& light, const Explained& explained) {
     const VisibilityError& e = explained.error;
     // Detachment and leak are distinguished by the occluder: null where the reference names none.
     const bool named = e.unnamed == 0;
+    // Where no point is compared, nothing is known to be right: null, not 0.
+    const auto counted  = [&](std::uint64_t n) { return e.points == 0 ? Json() : Json(n); };
+    const auto measured = [&](double x) { return e.points == 0 ? Json() : number(x); };
     return {{"light", light},
             {"points", e.points},
             {"undefined", e.undefined},
@@ -46,12 +51,15 @@ Json error_json(const std::string& light, const Explained& explained) {
             {"lit", e.lit},
             {"umbra", e.umbra},
             {"penumbra", e.penumbra},
-            {"false_shadow", {{"interior", e.false_shadow.interior}, {"edge", e.false_shadow.edge}, {"acne", e.acne}}},
+            {"false_shadow",
+             {{"interior", counted(e.false_shadow.interior)},
+              {"edge", counted(e.false_shadow.edge)},
+              {"acne", counted(e.acne)}}},
             {"false_light",
-             {{"interior", e.false_light.interior},
-              {"edge", e.false_light.edge},
-              {"detachment", named ? Json(e.detachment) : Json()},
-              {"leak", named ? Json(e.leak) : Json()}}},
+             {{"interior", counted(e.false_light.interior)},
+              {"edge", counted(e.false_light.edge)},
+              {"detachment", named ? counted(e.detachment) : Json()},
+              {"leak", named ? counted(e.leak) : Json()}}},
             {"interior", {{"lit", e.interior.lit}, {"umbra", e.interior.umbra}, {"penumbra", e.interior.penumbra}}},
             {"penumbra_error", direction_json(e.penumbra_error)},
             {"noise_error", direction_json(e.noise_error)},
@@ -60,10 +68,10 @@ Json error_json(const std::string& light, const Explained& explained) {
               {"normal_away", e.terminator.normal_away},
               {"wrong", e.terminator.wrong}}},
             {"bracket", e.max_half_width > 0 ? Json{{"max_half_width", number(e.max_half_width)}} : Json()},
-            {"mae", number(e.mae)},
-            {"rmse", number(e.rmse)},
-            {"max", number(e.max)},
-            {"bias", number(e.bias)},
+            {"mae", measured(e.mae)},
+            {"rmse", measured(e.rmse)},
+            {"max", measured(e.max)},
+            {"bias", measured(e.bias)},
             {"noise", noise_json(explained.noise)},
             {"edge_displacement_px", displacement_json(explained.displacement)},
             {"penumbra_width_px", penumbra_json(explained.penumbra_width)}};
@@ -87,6 +95,10 @@ Json head_json(const std::string& id, const MethodChoice& choice, const Service&
             {"serves", service_json(service)}};
 }
 
+std::string failed_in_words(const std::optional<std::string>& light, const std::string& message) {
+    return fmt::format("It failed{}: {}", light ? fmt::format(" at light {}", *light) : "", message);
+}
+
 Json times_json(const MethodRun& run) {
     return {{"build_ms", timing_json(run.build)},
             {"aim_ms", timing_json(total(run.aim))},
@@ -95,15 +107,21 @@ Json times_json(const MethodRun& run) {
 
 }  // namespace
 
-Json reference_json(const Reference& reference, const ReferenceRun& ran) {
-    return {{"name", reference.choice.info->name},
-            {"title", reference.choice.info->title},
-            {"text", reference.choice.text()},
-            {"parameters", parameters_json(reference.choice.settings)},
-            {"exact", reference.exact},
-            {"note", reference.note},
-            {"judged", judged_json(ran)},
-            {"times", times_json(ran.run)}};
+Json reference_json(const Reference& reference, const ReferenceRun& ran, const Scene& scene,
+                    const std::optional<Failure>& failed) {
+    Json record = {{"name", reference.choice.info->name},
+                   {"title", reference.choice.info->title},
+                   {"text", reference.choice.text()},
+                   {"parameters", parameters_json(reference.choice.settings)},
+                   {"exact", reference.exact},
+                   {"note", reference.note},
+                   {"judged", judged_json(ran)},
+                   {"times", times_json(ran.run)}};
+    if (failed)
+        record["failed"] = {{"method", failed->method},
+                            {"light", failed->light ? Json(scene.lights[*failed->light].name) : Json()},
+                            {"message", failed->message}};
+    return record;
 }
 
 Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
@@ -119,7 +137,8 @@ Json served_json(const std::string& id, const PreparedScene& prepared, const Met
     entry["times"]         = times_json(run);
     entry["light_times"]   = std::move(light_times);
     entry["memory_bytes"]  = run.memory_bytes;
-    entry["coverage"]      = run.coverage(prepared.points);
+    const auto covered     = run.coverage(prepared.points);
+    entry["coverage"]      = covered ? Json(*covered) : Json();
     entry["measures"]      = to_string(run.method->measures());
     entry["compared_with"] = reference;
     entry["errors"]        = std::move(errors);
@@ -132,20 +151,30 @@ Json unserved_json(const std::string& id, const MethodChoice& choice, const Serv
 
 Json failed_json(const std::string& id, const MethodChoice& choice, const Scene& scene, std::optional<LightId> light,
                  const std::string& message) {
-    const std::string where = light ? fmt::format(" at light {}", scene.lights[*light].name) : "";
-    Json entry              = head_json(id, choice, {How::not_at_all, fmt::format("It failed{}: {}", where, message)});
-    entry["failed"]         = {{"light", light ? Json(scene.lights[*light].name) : Json()}, {"message", message}};
+    std::optional<std::string> name;
+    if (light) name = scene.lights[*light].name;
+    Json entry      = head_json(id, choice, {How::not_at_all, failed_in_words(name, message)});
+    entry["failed"] = {{"light", name ? Json(*name) : Json()}, {"message", message}};
     return entry;
 }
 
 std::vector<std::string> failures(const Json& record) {
     std::vector<std::string> messages;
+    const auto add = [&](const Json& method, const Json& failed) {
+        std::optional<std::string> light;
+        if (failed["light"].is_string()) light = failed["light"];
+        messages.push_back(fmt::format("{}: {}: {}", record["scene"]["name"].get<std::string>(),
+                                       method.get<std::string>(), failed_in_words(light, failed["message"])));
+    };
+    if (const Json& reference = record["reference"]; reference.contains("failed"))
+        add(reference["failed"]["method"], reference["failed"]);
     for (const Json& method : record["methods"])
-        if (method.contains("failed"))
-            messages.push_back(fmt::format("{}: {}: {}", record["scene"]["name"].get<std::string>(),
-                                           method["text"].get<std::string>(),
-                                           method["serves"]["why"].get<std::string>()));
-    return messages;
+        if (method.contains("failed")) add(method["text"], method["failed"]);
+    // The reference may also be one of the methods.
+    std::vector<std::string> once;
+    for (std::string& message : messages)
+        if (std::find(once.begin(), once.end(), message) == once.end()) once.push_back(std::move(message));
+    return once;
 }
 
 /// The record with every file name set behind `prefix`.

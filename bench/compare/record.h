@@ -13,8 +13,9 @@
 
 namespace umbra {
 
-/// `reference` without its files.
-[[nodiscard]] Json reference_json(const Reference& reference, const ReferenceRun& ran);
+/// `reference` without its files; `failed` is what it replaces.
+[[nodiscard]] Json reference_json(const Reference& reference, const ReferenceRun& ran, const Scene& scene,
+                                  const std::optional<Failure>& failed);
 
 /// An entry of `methods`, without image and files; `explained` is one a light, against `reference`, as typed.
 [[nodiscard]] Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
@@ -26,7 +27,7 @@ namespace umbra {
 [[nodiscard]] Json failed_json(const std::string& id, const MethodChoice& choice, const Scene& scene,
                                std::optional<LightId> light, const std::string& message);
 
-/// "SCENE: METHOD: It failed at light LIGHT: message" for every failed method of a results.json.
+/// "SCENE: METHOD: It failed at light LIGHT: message" for the reference and every method of a results.json that failed.
 [[nodiscard]] std::vector<std::string> failures(const Json& record);
 
 /// The record with every file name set behind `prefix`.

@@ -13,6 +13,7 @@
 #include "umbra/bench/golden/golden_pictures.h"
 #include "umbra/bench/golden/golden_planes.h"
 #include "umbra/bench/golden/golden_settings.h"
+#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
@@ -38,7 +39,7 @@ struct GoldenScene {
 
 /// Holds one method against its golden; renews the file and its part of `accepted` where asked.
 std::optional<GoldenChange> method_change(const GoldenScene& scene, const MethodChoice& choice,
-                                          const GoldenOptions& options, Figures& accepted) {
+                                          const GoldenOptions& options, Figures& accepted, StagedFiles& staged) {
     const std::string method(choice.info->name);
     const std::string& name = scene.planes.scene.name;
     const fs::path file     = options.folder / name / (method + ".exr");
@@ -52,7 +53,7 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
         change.kind  = GoldenChange::Kind::removed;
         change.lines = {"the method does not serve the scene: " + run.service.why};
         if (options.renew) {
-            fs::remove(file);
+            staged.remove(file);
             accepted.methods.erase(method);
         }
         return change;
@@ -78,11 +79,10 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
         leave_pictures(change.pictures, scene.planes, before, now, changes.planes);
     }
     if (options.renew && plane_lines > 0) {
-        fs::create_directories(file.parent_path());
         if (now.channels.empty())
-            fs::remove(file);
+            staged.remove(file);
         else
-            write_image(file, now);
+            write_image(staged.place(file), now);
     }
     if (options.renew && changes.lines.size() > plane_lines) {
         if (scene.exact)
@@ -96,12 +96,13 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
 
 /// Goldens of methods that are no longer there.
 std::vector<GoldenChange> method_leftovers(const std::string& scene, const GoldenOptions& options,
-                                           const Figures& accepted) {
+                                           const Figures& accepted, StagedFiles& staged) {
     std::set<std::string> names;
     for (const auto& item : accepted.methods.items()) names.insert(item.key());
     if (fs::exists(options.folder / scene))
         for (const auto& entry : fs::directory_iterator(options.folder / scene))
-            if (entry.path().extension() == ".exr") names.insert(entry.path().stem().string());
+            if (entry.path().extension() == ".exr" && !is_hidden_name_of_ours(entry.path()))
+                names.insert(entry.path().stem().string());
     for (const MethodInfo* info : methods()) names.erase(std::string(info->name));
     std::vector<GoldenChange> changes;
     for (const std::string& name : names) {
@@ -110,7 +111,7 @@ std::vector<GoldenChange> method_leftovers(const std::string& scene, const Golde
         change.kind  = GoldenChange::Kind::removed;
         change.lines = {"unknown method"};
         changes.push_back(std::move(change));
-        if (options.renew) fs::remove(options.folder / scene / (name + ".exr"));
+        if (options.renew) staged.remove(options.folder / scene / (name + ".exr"));
     }
     return changes;
 }
@@ -129,6 +130,7 @@ std::string_view to_string(GoldenChange::Kind kind) {
         case GoldenChange::Kind::changed: return "changed";
         case GoldenChange::Kind::added: return "new";
         case GoldenChange::Kind::removed: return "removed";
+        case GoldenChange::Kind::failed: return "failed";
     }
     return "";
 }
@@ -156,15 +158,39 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     const fs::path figures_file = options.folder / name / "figures.json";
     Figures accepted            = read_figures(figures_file);
     const bool all = choices.size() == std::size_t(std::ranges::count_if(methods(), &MethodInfo::by_default));
-    if (all) std::ranges::move(method_leftovers(name, options, accepted), std::back_inserter(changes));
+    StagedFiles staged;  // planes and figures change together
+    if (all) std::ranges::move(method_leftovers(name, options, accepted, staged), std::back_inserter(changes));
     const std::size_t others = changes.size();
-    const GoldenScene scene(file);
-    for (const MethodChoice& choice : choices)
-        if (auto change = method_change(scene, choice, options, accepted)) changes.push_back(std::move(*change));
-    if (!options.renew || changes.size() == others) return changes;
+    const auto fail = [&](const std::string& what) {
+        GoldenChange change;
+        change.name  = what;
+        change.kind  = GoldenChange::Kind::failed;
+        change.lines = {current_message()};
+        changes.push_back(std::move(change));
+    };
+    std::optional<GoldenScene> scene;
+    try {
+        scene.emplace(file);
+    } catch (const InputError&) {
+        throw;
+    } catch (...) {
+        fail(name);
+        return changes;
+    }
+    for (const MethodChoice& choice : choices) {
+        try {
+            if (auto change = method_change(*scene, choice, options, accepted, staged))
+                changes.push_back(std::move(*change));
+        } catch (const InputError&) {
+            throw;
+        } catch (...) {
+            fail(fmt::format("{}/{}", name, choice.info->name));
+        }
+    }
+    const auto failed = [](const GoldenChange& change) { return change.kind == GoldenChange::Kind::failed; };
+    if (!options.renew || std::all_of(changes.begin() + std::ptrdiff_t(others), changes.end(), failed)) return changes;
 
     accepted.machine = rounding_machine();
-    StagedFiles staged;
     staged.write(figures_file, figures_text(accepted));
     staged.commit();
     return changes;

@@ -20,7 +20,9 @@
 
 namespace umbra {
 
-/// Runs all methods on the scene and holds them against their goldens. Empty where all is the same. Throws InputError.
+/// Runs all methods on the scene and compares them with their goldens. Empty where all is the same. A method that
+/// throws has an entry that says so, and its golden stays; so do all of the scene where the reference throws. Throws
+/// InputError.
 [[nodiscard]] std::vector<GoldenChange> golden_changes(const std::filesystem::path& scene,
                                                        const GoldenOptions& options);
 

@@ -18,8 +18,8 @@ struct GoldenOptions {
 
 /// One golden that is not as it was.
 struct GoldenChange {
-    enum class Kind : std::uint8_t { changed, added, removed };
-    std::string name;  ///< "SCENE/METHOD"
+    enum class Kind : std::uint8_t { changed, added, removed, failed };
+    std::string name;  ///< "SCENE/METHOD"; "SCENE" where the reference failed
     Kind kind = Kind::changed;
     std::vector<std::string> lines;  ///< what changed, a sentence each
     std::filesystem::path pictures;  ///< where reference, result and difference lie; empty: nowhere

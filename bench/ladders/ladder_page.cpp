@@ -9,6 +9,7 @@
 #include "report_assets.h"
 #include "umbra/bench/ladders/interior_points.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_page.h"
@@ -237,6 +238,8 @@ void write_ladder_page(const Field& root, const fs::path& folder, const std::str
         view["ladders"].push_back(ladder_view(ladder, limit));
         for (const Field& method : ladder["methods"].items()) broken += method["breaks_at"].present();
     }
+    view["failures"]     = listed_failures(root);
+    view["has_failures"] = !view["failures"].empty();
     view["ladder_count"] = counted(double(root["ladders"].items().size()), "ladder");
     view["break_count"]  = counted(broken, "break");
 

@@ -85,6 +85,35 @@ Json ladder_json(const LadderRun& run) {
     return j;
 }
 
+Json failed_climbs_json(const LadderRun& run) {
+    Json all       = Json::array();
+    const auto add = [&](double rung, const std::string& method, const std::optional<std::string>& light,
+                         const std::string& message) {
+        all.push_back({{"ladder", run.ladder->name},
+                       {"rung", rung},
+                       {"method", method},
+                       {"light", light ? Json(*light) : Json()},
+                       {"message", message}});
+    };
+    for (const Rung& rung : run.rungs)
+        if (!rung.failed.empty()) add(rung.value, "the reference", {}, rung.failed);
+    for (std::size_t m = 0; m < run.methods.size(); ++m)
+        for (const Rung& rung : run.rungs) {
+            if (!rung.unjudged.empty() || rung.outcomes[m].stopped.empty()) continue;
+            add(rung.value, run.methods[m].text(), rung.outcomes[m].light, rung.outcomes[m].stopped);
+            break;
+        }
+    return all;
+}
+
+std::string failed_climb_in_words(const Json& failed) {
+    return fmt::format("{}: {}: It failed{}{}: {}", failed["ladder"].get<std::string>(),
+                       failed["method"].get<std::string>(),
+                       failed["rung"].is_null() ? "" : fmt::format(" at {:g}", failed["rung"].get<double>()),
+                       failed["light"].is_null() ? "" : fmt::format(", light {}", failed["light"].get<std::string>()),
+                       failed["message"].get<std::string>());
+}
+
 std::string climb_in_words(const Json& method, const Json& ladder) {
     const auto value = [&](const char* key) { return method[key].get<double>(); };
     std::string words;

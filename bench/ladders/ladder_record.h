@@ -12,6 +12,11 @@ namespace umbra {
 /// The entry of one ladder in `ladders` of results.json (bench/ladders/ladders.schema.json).
 [[nodiscard]] Json ladder_json(const LadderRun& run);
 
+/// Entries of `failed` of results.json: methods and references that threw on a ladder, at their first such rung.
+[[nodiscard]] Json failed_climbs_json(const LadderRun& run);
+/// "LADDER: METHOD: It failed at RUNG, light LIGHT: message", of one such entry.
+[[nodiscard]] std::string failed_climb_in_words(const Json& failed);
+
 /// A ladder as `umbra list --json` names it: name, title, about, unit, rungs.
 [[nodiscard]] Json ladder_info_json(const Ladder& ladder);
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "umbra/bench/run/reference.h"
+#include "umbra/core/base/error.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
 
@@ -100,13 +101,15 @@ std::unique_ptr<RungStage> set_stage(Scene scene) {
 RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vector<Explained>* explained,
                     MethodRun* run) {
     RungOutcome o;
+    std::optional<LightId> at;
     try {
-        MethodRun ran = run_method(method, stage.scene, stage.facts, stage.points, kOnce);
+        MethodRun ran = run_method(method, stage.scene, stage.facts, stage.points, kOnce, &at);
         o.service     = ran.service;
         if (!ran.service) return o;
         VisibilityError sum;  // only what kinds are made of
         double absolute = 0;
         for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
+            at                       = j;
             Explained light          = explain(stage.scene, stage.points, j, ran, stage.truth);
             const VisibilityError& e = light.error;
             o.points += e.points, o.undefined += e.undefined;
@@ -123,10 +126,11 @@ RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vec
         if (o.points > 0) o.mae = absolute / double(o.points);
         o.kind = kind_of(sum);
         if (run != nullptr) *run = std::move(ran);
-    } catch (const std::exception& e) {
+    } catch (...) {
         o         = {};
         o.service = {How::approximately, "it stopped"};
-        o.stopped = e.what();
+        o.stopped = current_message();
+        if (at) o.light = stage.scene.lights[*at].name;
     }
     return o;
 }
@@ -141,8 +145,9 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
         std::unique_ptr<RungStage> set;
         try {
             set = set_stage(ladder.scene(value));
-        } catch (const std::exception& e) {
-            rung.unjudged = fmt::format("no reference: {}", e.what());
+        } catch (...) {
+            rung.failed   = current_message();
+            rung.unjudged = fmt::format("no reference: {}", rung.failed);
             break;
         }
         const RungStage& stage = *set;

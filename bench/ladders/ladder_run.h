@@ -24,7 +24,8 @@ inline constexpr double kMostUndefined = 0.5;
 /// What one method made of one rung, over all lights. Counts are points.
 struct RungOutcome {
     Service service;
-    std::string stopped;  ///< the message of the exception that ended it; empty where it ran to its end
+    std::string stopped;               ///< the message of the exception that ended it; empty where it ran to its end
+    std::optional<std::string> light;  ///< at which it stopped; none: before any
     std::uint64_t points = 0, undefined = 0;
     VisibilityError::Kind false_shadow, false_light;
     InteriorPoints can_show;  ///< of the points that the method answers
@@ -46,6 +47,7 @@ struct RungOutcome {
 struct Rung {
     double value = 0;
     std::string unjudged;  ///< why no method is judged on it; empty where they are
+    std::string failed;    ///< the message of the exception that the reference threw; empty where it did not
     std::string truth;     ///< the reference, as typed
     std::uint64_t surface_points = 0, lit = 0, umbra = 0, penumbra = 0, on_boundary = 0;
     InteriorPoints can_show;

@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
+#include <functional>
+#include <regex>
 
 #include "umbra/core/base/error.h"
 
@@ -10,11 +15,61 @@ namespace umbra {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Length of the UTF-8 character at `at`; 0 where there is none.
+std::size_t utf8_length(const std::string& text, std::size_t at) {
+    const auto byte         = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+    const std::size_t bytes = byte(at) < 0x80   ? 1
+                              : byte(at) < 0xc2 ? 0
+                              : byte(at) < 0xe0 ? 2
+                              : byte(at) < 0xf0 ? 3
+                              : byte(at) < 0xf5 ? 4
+                                                : 0;
+    if (at + bytes > text.size()) return 0;
+    for (std::size_t i = at + 1; i < at + bytes; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    return bytes;
+}
+
+/// Names that mean devices on Windows, and those of our own files and folders in an output folder.
+bool is_reserved(const std::string& name) {
+    static const std::regex reserved(R"((con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?|ladders|breaks|)"
+                                     R"(index\.html|results\.json|report\.css|(slider|finder|pictures)\.js)",
+                                     std::regex::icase);
+    return std::regex_match(name, reserved);
+}
+
+}  // namespace
+
+std::string folder_name(const std::string& name) {
+    constexpr std::size_t longest = 100;
+    std::string folder;
+    for (std::size_t at = 0; at < name.size();) {
+        const std::size_t bytes = utf8_length(name, at);
+        const auto c            = static_cast<unsigned char>(name[at]);
+        const bool fits         = bytes > 1 || (bytes == 1 && c >= 0x20 && c != 0x7f && !std::strchr("<>:\"/\\|?*", c));
+        if (folder.size() + std::max<std::size_t>(bytes, 1) > longest) {
+            folder += fmt::format("-{:08x}", std::hash<std::string>{}(name)&0xffffffff);
+            break;
+        }
+        folder += fits ? name.substr(at, bytes) : "_";
+        at += std::max<std::size_t>(bytes, 1);
+    }
+    if (folder.empty() || is_reserved(folder)) folder += '_';
+    for (const std::size_t end : {std::size_t{0}, folder.size() - 1})
+        if (folder[end] == '.' || folder[end] == ' ') folder[end] = '_';
+    return folder;
+}
+
 void write_text(const fs::path& file, std::string_view text) {
+    errno = 0;
     std::ofstream out(file, std::ios::binary);
     out.write(text.data(), std::streamsize(text.size()));
     out.close();
-    if (!out) throw InputError(fmt::format("{}: cannot be written", file.string()));
+    if (!out)
+        throw InputError(fmt::format("{}: cannot be written{}{}", file.string(), errno != 0 ? ": " : "",
+                                     errno != 0 ? std::strerror(errno) : ""));
 }
 
 void make_folder(const fs::path& folder) {

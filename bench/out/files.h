@@ -13,4 +13,9 @@ void write_text(const std::filesystem::path& file, std::string_view text);
 /// naming it.
 void make_folder(const std::filesystem::path& folder);
 
+/// A name from a file, such as a scene's, as the name of a folder that any system accepts and that is none of ours:
+/// letters of any language stay, separators, control characters and dots at the ends do not, long names are cut so that
+/// two of them stay two.
+[[nodiscard]] std::string folder_name(const std::string& name);
+
 }  // namespace umbra

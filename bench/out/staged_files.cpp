@@ -10,7 +10,7 @@ namespace umbra {
 namespace fs = std::filesystem;
 
 namespace {
-fs::path beside(fs::path file) { return file += ".part"; }
+fs::path beside(const fs::path& file) { return file.parent_path() / (".umbra-part." + file.filename().string()); }
 }  // namespace
 
 StagedFiles::~StagedFiles() {
@@ -37,13 +37,25 @@ void StagedFiles::copy(const fs::path& from, const fs::path& to) {
         throw InputError(fmt::format("{}: cannot be copied from {}: {}", to.string(), from.string(), error.message()));
 }
 
+fs::path StagedFiles::place(const fs::path& file) {
+    stage(file);
+    return beside(file);
+}
+
+void StagedFiles::remove(const fs::path& file) { removed_.insert(file); }
+
 void StagedFiles::commit() {
+    std::error_code error;
     for (const fs::path& file : files_) {
-        std::error_code error;
         fs::rename(beside(file), file, error);
         if (error) throw InputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
     }
+    for (const fs::path& file : removed_) {
+        fs::remove(file, error);
+        if (error) throw InputError(fmt::format("{}: cannot be removed: {}", file.string(), error.message()));
+    }
     files_.clear();
+    removed_.clear();
 }
 
 }  // namespace umbra

@@ -1,36 +1,65 @@
 #include "umbra/bench/out/staged_folder.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
+
+#include <cstdio>
 
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/own_files.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
 
 namespace fs = std::filesystem;
 
-StagedFolder::StagedFolder(const fs::path& to) : to_(fs::absolute(to).lexically_normal()) {
-    if (to_.filename().empty()) to_ = to_.parent_path();  // written with a slash at its end
-    if (fs::exists(to_) && !fs::exists(to_ / "results.json") && !(fs::is_directory(to_) && fs::is_empty(to_)))
-        throw InputError(fmt::format(
-            "{}: exists, holds no results.json and is not replaced, expected another folder with -o", to.string()));
-    folder_ = to_.parent_path() / fmt::format(".{}.{}", to_.filename().string(), ::getpid());
-    std::error_code ignored;  // usually there is none: an interrupted process of the same id left it
-    fs::remove_all(folder_, ignored);
+namespace {
+
+/// The place itself, behind symbolic links and without a slash at the end.
+fs::path resolved(const fs::path& to) {
+    fs::path place = fs::weakly_canonical(fs::absolute(to));
+    return place.filename().empty() ? place.parent_path() : place;
+}
+
+void remove_all_quietly(const fs::path& path) {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+}
+
+/// Swaps two folders in one step; false where the file system cannot.
+bool exchanged(const fs::path& a, const fs::path& b) {
+    return renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0;
+}
+
+}  // namespace
+
+StagedFolder::StagedFolder(const fs::path& to)
+    : to_(resolved(to)), folder_(hidden_beside(to_, "new")), lock_(PlaceLock::beside(to_)) {
+    const fs::path old = hidden_beside(to_, "old");
+    std::error_code ignored;
+    if (fs::exists(old) && !fs::exists(to_)) fs::rename(old, to_, ignored);
+    remove_all_quietly(old);
+    remove_all_quietly(folder_);
+    check_replaceable(to_);
     make_folder(folder_);
 }
 
-StagedFolder::~StagedFolder() {
-    std::error_code ignored;  // after commit() there is nothing to remove
-    fs::remove_all(folder_, ignored);
-}
+StagedFolder::~StagedFolder() { remove_all_quietly(folder_); }  // after commit(): the result that was replaced
 
 void StagedFolder::commit() {
-    const fs::path old = folder_.string() + ".old";
-    if (fs::exists(to_)) fs::rename(to_, old);
-    fs::rename(folder_, to_);
-    fs::remove_all(old);
+    try {
+        check_replaceable(to_);  // somebody may have put something there
+        if (fs::exists(to_) && !exchanged(folder_, to_)) {
+            const fs::path old = hidden_beside(to_, "old");
+            fs::rename(to_, old);
+            fs::rename(folder_, to_);
+            remove_all_quietly(old);
+        } else if (!fs::exists(to_)) {
+            fs::rename(folder_, to_);
+        }
+    } catch (const fs::filesystem_error& e) {
+        throw InputError(fmt::format("{}: cannot be replaced: {}", to_.string(), e.code().message()));
+    }
 }
 
 }  // namespace umbra

@@ -2,12 +2,15 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+
+#include "umbra/bench/out/place_lock.h"
 
 namespace umbra {
 
-/// A temporary folder beside `to`, renamed to `to` by commit() and removed where that is not called. An existing `to`
-/// is replaced only if it is empty or holds a results.json, and stays as it is until commit(). Throws InputError.
+/// A hidden folder beside `to`, which takes the place of `to` with commit() and is removed where that is not called. An
+/// existing `to` stays as it is until commit(), and is replaced only if everything in it is ours (own_files.h). What a
+/// killed run left behind is removed first; a result that it was about to replace is restored. While one object exists,
+/// a second one for the same place is refused, also in another process. Throws InputError.
 class StagedFolder {
 public:
     explicit StagedFolder(const std::filesystem::path& to);
@@ -20,6 +23,7 @@ public:
 
 private:
     std::filesystem::path to_, folder_;
+    PlaceLock lock_;
 };
 
 }  // namespace umbra

@@ -38,6 +38,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
     kainjow::mustache::data data = template_data(view);
     for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
                                         {"bias_map", assets::bias_map_html},
+                                        {"failures_note", assets::failures_note_html},
                                         {"picture", assets::picture_html},
                                         {"slider", assets::slider_html},
                                         {"classes", assets::classes_html},

@@ -126,19 +126,18 @@ std::optional<double> sum(std::optional<double> a, std::optional<double> b) {
 
 Totals totals(const Field& method) {
     Totals t;
-    double points = 0, absolute = 0;
+    double absolute = 0;
     for (const Field& error : method["errors"].items()) {
         for (const std::string& group : error_groups()) {
             t.interior += error[group]["interior"].number().value_or(0);
             t.edge += error[group]["edge"].number().value_or(0);
         }
-        if (const auto mae = error["mae"].number()) {
-            const double n = error["points"].number().value_or(1);
-            points += n;
-            absolute += *mae * n;
-        }
+        const auto mae = error["mae"].number();
+        const double n = error["points"].number().value_or(mae ? 1 : 0);
+        t.points += n;
+        absolute += mae.value_or(0) * n;
     }
-    if (points > 0) t.mae = absolute / points;
+    if (t.points > 0) t.mae = absolute / t.points;
     const Field times = method["times"];
     t.camera_ms       = times["visibility_ms"]["median"].number();
     t.light_ms        = sum(t.camera_ms, times["aim_ms"]["median"].number());

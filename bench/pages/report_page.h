@@ -68,6 +68,7 @@ private:
 /// Sums over the lights of one method on one scene. Interior and edge are never summed.
 struct Totals {
     double interior = 0, edge = 0;
+    double points = 0;                                     ///< compared; where it is 0, the counts say nothing
     std::optional<double> mae;                             ///< mean over all points of all lights
     std::optional<double> object_ms, light_ms, camera_ms;  ///< time when an object, a light, the camera moves
 };

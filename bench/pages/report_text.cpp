@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 
 namespace umbra {
@@ -89,6 +90,21 @@ std::string url(const std::filesystem::path& path) {
         encoded += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
     }
     return encoded;
+}
+
+std::filesystem::path path_of_url(const std::string& url) {
+    std::string path;
+    for (std::size_t i = 0; i < url.size(); ++i) {
+        int byte = 0;
+        if (url[i] == '%' && i + 2 < url.size() &&
+            std::from_chars(url.data() + i + 1, url.data() + i + 3, byte, 16).ptr == url.data() + i + 3) {
+            path += static_cast<char>(byte);
+            i += 2;
+        } else {
+            path += url[i];
+        }
+    }
+    return path;
 }
 
 }  // namespace umbra

@@ -42,5 +42,7 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 
 /// A relative path for an attribute: every byte with a meaning in a URL is encoded.
 [[nodiscard]] std::string url(const std::filesystem::path& path);
+/// The path that `url` made such an address of.
+[[nodiscard]] std::filesystem::path path_of_url(const std::string& url);
 
 }  // namespace umbra

@@ -63,13 +63,16 @@ std::string right_in_words(const std::vector<Compared>& right) {
 std::string finding(const Field& root) {
     const std::vector<Field> methods = root["methods"].items();
     std::vector<Compared> wrong, right;
+    bool any = false;
     for (const Field& method : methods) {
         if (!serves(method) || is_reference(root, method) || method["errors"].items().empty()) continue;
+        any = true;
+        if (totals(method).points == 0) continue;
         Compared c{method, method_label(method, methods), totals(method).interior,
                    method["coverage"].number().value_or(1) < 1};
         (c.wrong > 0 ? wrong : right).push_back(std::move(c));
     }
-    if (wrong.empty() && right.empty()) return {};
+    if (wrong.empty() && right.empty()) return any ? "No point is judged: no lit surface is in view." : "";
     const std::string against =
         fmt::format("against the {} reference", root["reference"]["exact"].flag() ? "exact" : "inexact");
     if (wrong.empty()) {

@@ -7,13 +7,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <regex>
 #include <set>
 
 #include "report_assets.h"
 #include "umbra/bench/ladders/ladder_page.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
@@ -35,7 +40,7 @@ std::vector<fs::path> results_files(const fs::path& dir) {
     std::vector<fs::path> files;
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(dir, error))
-        if (entry.is_directory() && fs::exists(entry.path() / "results.json"))
+        if (entry.is_directory() && !is_hidden_name_of_ours(entry.path()) && fs::exists(entry.path() / "results.json"))
             files.push_back(entry.path() / "results.json");
     if (error)
         throw InputError(
@@ -49,11 +54,17 @@ std::vector<fs::path> results_files(const fs::path& dir) {
     return files;
 }
 
-/// A scene's name as the name of a folder.
-std::string folder_name(const std::string& scene) {
-    std::string name;
-    for (const char c : scene) name += std::isalnum(static_cast<unsigned char>(c)) || c == '-' ? c : '_';
-    return name;
+/// A results.json of a compared scene, and its place; nothing where it is of another command.
+std::optional<ScenePage> read_scene(const fs::path& file) {
+    ScenePage scene{
+        .root = read_results(file), .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
+    if (scene.root["ladders"].present() || scene.root["bias"].present()) return std::nullopt;
+    scene.name      = scene.root["scene"]["name"].required_text();
+    scene.title     = scene.root["scene"]["title"].text();
+    scene.triangles = scene.root["facts"]["triangles"].number().value_or(0);
+    if (!scene.root["methods"].present()) scene.root["methods"].refuse("an array");
+    if (scene.title.empty()) scene.title = in_words(scene.name);
+    return scene;
 }
 
 /// The contents of the folders: compared scenes, and at most one run of ladders.
@@ -68,21 +79,11 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     for (const fs::path& dir : dirs) {
         const auto first = std::ptrdiff_t(all.size());
         for (const fs::path& file : results_files(dir)) {
-            ScenePage scene{.root  = read_results(file),
-                            .data  = fs::canonical(file.parent_path()),
-                            .page  = {},
-                            .name  = {},
-                            .title = {}};
-            if (scene.root["ladders"].present()) {
-                ladders = scene.data;
-                continue;
-            }
-            if (scene.root["bias"].present()) continue;  // a study of one method, with a page of its own
-            scene.name      = scene.root["scene"]["name"].required_text();
-            scene.title     = scene.root["scene"]["title"].text();
-            scene.triangles = scene.root["facts"]["triangles"].number().value_or(0);
-            if (!scene.root["methods"].present()) scene.root["methods"].refuse("an array");
-            if (scene.title.empty()) scene.title = in_words(scene.name);
+            if (const Field root = read_results(file); root["ladders"].present())
+                ladders = fs::canonical(file.parent_path());
+            std::optional<ScenePage> read = read_scene(file);
+            if (!read) continue;
+            ScenePage& scene = *read;
             const bool seen =
                 std::any_of(all.begin(), all.end(), [&](const ScenePage& other) { return other.data == scene.data; });
             if (!seen) all.push_back(std::move(scene));
@@ -117,7 +118,8 @@ json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, 
     if (relative == "." || *relative.begin() == "..") {
         place = out / "ladders";
         for (const auto& entry : fs::recursive_directory_iterator(*folder))
-            if (entry.is_regular_file()) staged.copy(entry.path(), place / entry.path().lexically_relative(*folder));
+            if (entry.is_regular_file() && !is_hidden_name_of_ours(entry.path()))
+                staged.copy(entry.path(), place / entry.path().lexically_relative(*folder));
     }
     const Field root       = read_results(*folder / "results.json");
     const std::string page = url((place / "index.html").lexically_relative(out));
@@ -128,7 +130,52 @@ json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, 
             {"count", counted(double(root["ladders"].items().size()), "ladder")}};
 }
 
+/// Everything that failed, in words, for the first page.
+void add_failures(json& index, const std::vector<std::string>& scenes_failed, const std::vector<ScenePage>& scenes,
+                  const std::optional<fs::path>& ladders) {
+    json failures = scenes_failed;
+    for (const ScenePage& scene : scenes)
+        for (std::string& message : scene_failures(scene.root)) failures.push_back(scene.title + ": " + message);
+    if (ladders)
+        for (std::string& message : listed_failures(read_results(*ladders / "results.json")))
+            failures.push_back(std::move(message));
+    index["has_failures"] = !failures.empty();
+    index["failures"]     = std::move(failures);
+}
+
+std::string scene_page(const SceneFiles& files, const std::vector<std::string>& order, const json& previous,
+                       const json& next, const std::string& root, const std::string& title) {
+    json view        = scene_view(files, order);
+    view["previous"] = previous;
+    view["next"]     = next;
+    return render_page(assets::scene_html, {fmt::format("{} – {}", files.scene().title, title), root, kSceneScripts},
+                       std::move(view));
+}
+
 }  // namespace
+
+void write_scene_page(const fs::path& folder) {
+    std::optional<ScenePage> scene = read_scene(folder / "results.json");
+    if (!scene) return;
+    scene->page = scene->data;
+    StagedFiles staged;
+    const SceneFiles files(*scene, staged);
+    staged.write(scene->page / "index.html",
+                 scene_page(files, method_ids({*scene}), false, false, "../", ReportOptions{}.title));
+    staged.commit();
+}
+
+bool links_hold(const fs::path& page) {
+    std::ifstream in(page, std::ios::binary);
+    if (!in) return false;
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    static const std::regex link(R"re( (?:src|href)="([^"#]+))re");
+    for (std::sregex_iterator at(html.begin(), html.end(), link), end; at != end; ++at)
+        if (const std::string target = (*at)[1]; !target.starts_with("data:") && !target.starts_with("http") &&
+                                                 !fs::exists(page.parent_path() / path_of_url(target)))
+            return false;
+    return true;
+}
 
 void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const ReportOptions& options) {
     if (dirs.empty()) throw UsageError("report: no folder given, expected one that umbra compare wrote");
@@ -148,16 +195,15 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
             return json{{"title", scenes[k].title},
                         {"href", url((scenes[k].page / "index.html").lexically_relative(page))}};
         };
-        json view        = scene_view(files[i], order);
-        view["previous"] = i > 0 ? neighbour(i - 1) : json(false);
-        view["next"]     = i + 1 < scenes.size() ? neighbour(i + 1) : json(false);
+        const json previous = i > 0 ? neighbour(i - 1) : json(false);
+        const json next     = i + 1 < scenes.size() ? neighbour(i + 1) : json(false);
         if (page != scenes[i].data) staged.copy(scenes[i].data / "results.json", page / "results.json");
-        const PageHead head = {fmt::format("{} – {}", scenes[i].title, options.title),
-                               url(root.lexically_relative(page) / ""), kSceneScripts};
-        staged.write(page / "index.html", render_page(assets::scene_html, head, std::move(view)));
+        staged.write(page / "index.html", scene_page(files[i], order, previous, next,
+                                                     url(root.lexically_relative(page) / ""), options.title));
     }
     json index         = index_view(scenes, files, root, options.title);
     index["stability"] = ladder_section(found.ladders, root, staged);
+    add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
     write_page_assets(root, kIndexScripts, staged);

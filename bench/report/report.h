@@ -9,6 +9,7 @@ namespace umbra {
 
 struct ReportOptions {
     std::string title = "Shadow methods compared";  ///< heading of the first page
+    std::vector<std::string> failed{};              ///< messages for the first page, of scenes that have no results
 };
 
 /// Folders that `umbra ladder` wrote may be among them: the first page then says where each method breaks.
@@ -19,5 +20,12 @@ struct ReportOptions {
 /// is moved into place. Throws InputError naming the file and the position in it, UsageError where no folder is given.
 void write_report(const std::vector<std::filesystem::path>& dirs, const std::filesystem::path& out,
                   const ReportOptions& options = {});
+
+/// Writes folder/index.html alone, for a scene that compare wrote to `folder`, which lies in the report's folder.
+/// Throws as above.
+void write_scene_page(const std::filesystem::path& folder);
+
+/// Everything that a page links to or shows exists; false where there is no page.
+[[nodiscard]] bool links_hold(const std::filesystem::path& page);
 
 }  // namespace umbra

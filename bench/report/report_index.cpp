@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
 
@@ -21,10 +22,11 @@ json cell_view(const ScenePage& scene, const std::string& id, const std::string&
     const std::vector<Field> methods = scene.root["methods"].items();
     const auto method =
         std::find_if(methods.begin(), methods.end(), [&](const Field& m) { return method_id(m) == id; });
-    json view = {{"served", false}, {"unserved", false}, {"absent", method == methods.end()}};
+    json view = {{"served", false}, {"unserved", false}, {"failed", false}, {"absent", method == methods.end()}};
     if (method == methods.end()) return view;
     if (!serves(*method)) {
-        view["unserved"] = json{{"why", (*method)["serves"]["why"].text()}, {"href", href + "#not-served"}};
+        view[failed(*method) ? "failed" : "unserved"] =
+            json{{"why", (*method)["serves"]["why"].text()}, {"href", href + "#not-served"}};
         return view;
     }
     const Totals t      = totals(*method);
@@ -32,14 +34,14 @@ json cell_view(const ScenePage& scene, const std::string& id, const std::string&
     view["served"]      = json{{"coverage", percent(coverage)},
                           {"itself", is_reference(scene.root, *method)},
                           {"partial", coverage && *coverage < 1},
-                          {"interior", count(t.interior)},
+                          {"interior", t.points > 0 ? count(t.interior) : "not judged"},
                           {"wrong", t.interior > 0},
-                          {"edge", count(t.edge)},
+                          {"edge", t.points > 0 ? count(t.edge) : kNone},
                           {"mae", score(t.mae)},
                           {"ms", milliseconds(t.object_ms)},
                           {"raw_mae", t.mae ? fmt::format("{}", *t.mae) : ""},
                           {"raw_ms", t.object_ms ? fmt::format("{}", *t.object_ms) : ""},
-                          {"raw_interior", fmt::format("{:.0f}", t.interior)},
+                          {"raw_interior", t.points > 0 ? fmt::format("{:.0f}", t.interior) : ""},
                           {"raw_coverage", coverage ? fmt::format("{}", *coverage) : ""}};
     return view;
 }

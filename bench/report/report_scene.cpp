@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/pages/error_palette.h"
+#include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
@@ -49,6 +50,7 @@ WrongInWords wrong_in_words(const Field& error) {
     std::string special;
     for (const std::string& group : error_groups()) {
         if (!error[group].present()) continue;
+        if (!error[group]["interior"].present()) return {"no point is judged", false};
         words.text += fmt::format("{}{} {}", words.text.empty() ? "interior: " : ", ",
                                   count(n(error[group]["interior"])), in_words(group));
         words.any |= n(error[group]["interior"]) + n(error[group]["edge"]) > 0;
@@ -159,7 +161,9 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
         const std::string label = method_label(method, methods), id = method_id(method);
         const bool served = serves(method);
         used.push_back({{"label", label},
-                        {"how", served ? method["serves"]["how"].text() : "not served"},
+                        {"how", served           ? method["serves"]["how"].text()
+                                : failed(method) ? "failed"
+                                                 : "not served"},
                         {"why", reason(method)},
                         {"parameters", parameters(method)}});
         if (!served) {
@@ -180,7 +184,8 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
                                   fmt::format("{}: shadows by {}", scene.scene().title, label));
             f.is_object()) {
             const std::string coverage = percent_words(method);
-            f["note"]                  = fmt::format("{}, {} ms{}{}", counted(t.interior, "wrong interior point"),
+            f["note"]                  = fmt::format("{}, {} ms{}{}",
+                                    t.points > 0 ? counted(t.interior, "wrong interior point") : "no point is judged",
                                                      milliseconds(t.object_ms), coverage.empty() ? "" : "; ", coverage);
             pictures.push_back(std::move(f));
         }
@@ -226,6 +231,8 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
         return std::any_of(light["columns"].begin(), light["columns"].end(),
                               [](const json& column) { return column.contains("rings_words"); });
     });
+    view["failures"]     = scene_failures(root);
+    view["has_failures"] = !view["failures"].empty();
     view["has_warnings"] = !view["warnings"].empty();
     view["chart"]        = chart.empty() ? json(false) : error_time_chart(chart);
     return view;

@@ -42,6 +42,8 @@ Json vector_json(dvec3 v) { return {number(v.x), number(v.y), number(v.z)}; }
 
 std::string_view version() { return UMBRA_VERSION; }
 
+std::string json_text(const Json& record) { return record.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json machine_json(int threads) {

@@ -22,6 +22,8 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json setting_json(const Parameter& p, double value);  ///< typed: a number, a boolean or a word
 [[nodiscard]] Json service_json(const Service& service);
 [[nodiscard]] Json timing_json(const Timing& timing);
+/// As files hold it: indented, with a newline at the end; bytes that are not UTF-8 are replaced.
+[[nodiscard]] std::string json_text(const Json& record);
 [[nodiscard]] Json number(double value);  ///< null where it is not finite: JSON has no infinity
 
 }  // namespace umbra

@@ -1,5 +1,10 @@
 #include "umbra/bench/run/explain.h"
 
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"
 
 namespace umbra {
@@ -10,8 +15,12 @@ std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, L
                                std::span<const std::uint32_t> which) {
     std::vector<TriangleId> who(which.size(), kNoTriangle);
     if (which.empty()) return who;
-    run.method->aim(light);
-    run.method->blame(pick(points, which), light, who);
+    try {
+        run.method->aim(light);
+        run.method->blame(pick(points, which), light, who);
+    } catch (...) {
+        throw std::runtime_error(fmt::format("{}, asked for occluders: {}", run.choice.text(), current_message()));
+    }
     return who;
 }
 

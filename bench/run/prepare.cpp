@@ -67,17 +67,23 @@ Size parse_size(const std::string& text) {
     };
     if (cross == std::string::npos || !read(0, cross, size.width) || !read(cross + 1, text.size(), size.height) ||
         static_cast<long>(size.width) * size.height > kMaxArea)
-        throw UsageError(fmt::format("--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels",
-                                     text, kMaxPictureSide, kMaxArea));
+        throw UsageError(fmt::format(
+            "--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels, whose comparison takes "
+            "{:.0f} GB",
+            text, kMaxPictureSide, kMaxArea, memory_needed({}, double(kMaxArea), 1, Work::comparison) / 1e9));
     return size;
 }
 
-PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples) {
+PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples, Work work) {
     PreparedScene p;
     p.pixel_side = samples_along_side(pixel_samples);
     p.load_ms    = timed_ms([&] { p.scene = load_scene(file); });
-    p.facts_ms   = timed_ms([&] { p.facts = find_facts(p.scene); });
     if (size.width == 0) size = {p.scene.width, p.scene.height};
+    if (static_cast<long>(size.width) * size.height > kMaxArea)
+        throw InputError(fmt::format("{}: the picture is {} x {}, expected at most {} pixels (set --size)",
+                                     file.string(), size.width, size.height, kMaxArea));
+    check_memory(p.scene, file, size.width, size.height, pixel_samples, work);
+    p.facts_ms = timed_ms([&] { p.facts = find_facts(p.scene); });
     std::optional<RayScene> rays;
     p.rays_build_ms = timed_ms([&] { rays.emplace(p.scene); });
     p.gbuffer_ms =

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "umbra/bench/run/memory_needed.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/scene.h"
@@ -37,7 +38,8 @@ struct Size {
 [[nodiscard]] Size parse_size(const std::string& text);
 
 /// `pixel_samples`: surface points a pixel for pictures (see antialias.h). Throws InputError, and UsageError for a
-/// number of samples that cannot be had.
-[[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples = 1);
+/// number of samples that cannot be had. InputError where `work` on it needs more memory than there is.
+[[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples = 1,
+                                          Work work = Work::comparison);
 
 }  // namespace umbra

@@ -80,6 +80,12 @@ MethodChoice of_measure(MethodChoice choice, Measure measure) {
     return choice;
 }
 
+/// `why` there is no exact one: sentences, each after a space.
+Reference substitute(Measure measure, const std::string& why) {
+    const MethodChoice choice = of_measure(stand_in_for_reference(), measure);
+    return {choice, false, fmt::format("{}: better sampled, not exact.{}", choice.info->title, why)};
+}
+
 }  // namespace
 
 Reference default_reference(const SceneFacts& facts, Measure measure) {
@@ -91,12 +97,11 @@ Reference default_reference(const SceneFacts& facts, Measure measure) {
         if (service) return {choice, service.how == How::exactly, service.why};
         why += fmt::format(" {} does not serve here: {}.", info->title, service.why);
     }
-    const MethodChoice choice = of_measure(stand_in_for_reference(), measure);
-    return {choice, false, fmt::format("{}: better sampled, not exact.{}", choice.info->title, why)};
+    return substitute(measure, why);
 }
 
 ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
-                           const PointBatch& points, std::optional<std::uint64_t> wanted) {
+                           const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at) {
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
     // Only the exact reference is slow: every other one answers for the whole picture, unless `wanted` says otherwise.
@@ -111,7 +116,7 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
             fmt::format("{} cannot be the reference of this scene: {}", reference.choice.info->name, run.service.why));
     constexpr Repeats kOnce{1, 0};
     if (!any_area || *wanted >= all) {
-        run = run_method(reference.choice, scene, facts, points, kOnce);
+        run = run_method(reference.choice, scene, facts, points, kOnce, at);
         return done;
     }
 
@@ -123,6 +128,7 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     run.judged.resize(scene.lights.size());
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const bool area = is_area(scene.lights[light].kind);
+        if (at != nullptr) *at = light;
         run_light(run, area ? sampled : points, light, kOnce);
         if (area) scatter(run, light, sample, stand_in.planes[light], points);
     }
@@ -130,6 +136,24 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     done.judged      = sample.size();
     done.stand_in    = stand_in.choice.text();
     return done;
+}
+
+TruthRun run_reference_or_substitute(Reference& reference, const Scene& scene, const SceneFacts& facts,
+                                     const PointBatch& points, std::optional<std::uint64_t> wanted) {
+    std::optional<LightId> at;
+    Failure failed{reference.choice.text(), {}, {}};
+    Measure measure = Measure::area;
+    try {
+        measure = reference.choice.make()->measures();
+        return {run_reference(reference, scene, facts, points, wanted, &at), std::nullopt};
+    } catch (...) {
+        failed.light   = at;
+        failed.message = current_message();
+    }
+    reference =
+        substitute(measure, fmt::format(" {} failed{}: {}.", reference.choice.info->title,
+                                        at ? fmt::format(" at light {}", scene.lights[*at].name) : "", failed.message));
+    return {run_reference(reference, scene, facts, points, wanted), std::move(failed)};
 }
 
 }  // namespace umbra

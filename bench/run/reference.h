@@ -34,6 +34,23 @@ struct ReferenceRun {
 /// one pixel, at random but always the same, out of each square tile. Throws UsageError where the reference does not
 /// serve the scene.
 [[nodiscard]] ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
-                                         const PointBatch& points, std::optional<std::uint64_t> wanted);
+                                         const PointBatch& points, std::optional<std::uint64_t> wanted,
+                                         std::optional<LightId>* at = nullptr);
+
+/// A method that threw, for the record.
+struct Failure {
+    std::string method;            ///< as typed
+    std::optional<LightId> light;  ///< none: before any light
+    std::string message;
+};
+
+/// As run_reference. Where the reference throws, `reference` becomes a substitute that is not exact and is run instead;
+/// then returns why. Throws what the substitute throws.
+struct TruthRun {
+    ReferenceRun ran;
+    std::optional<Failure> failed;
+};
+[[nodiscard]] TruthRun run_reference_or_substitute(Reference& reference, const Scene& scene, const SceneFacts& facts,
+                                                   const PointBatch& points, std::optional<std::uint64_t> wanted);
 
 }  // namespace umbra

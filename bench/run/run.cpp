@@ -55,7 +55,7 @@ Timing total(const std::vector<Timing>& timings) {
     return sum;
 }
 
-double MethodRun::coverage(const PointBatch& points) const {
+std::optional<double> MethodRun::coverage(const PointBatch& points) const {
     std::size_t asked = 0, given = 0;
     for (std::size_t j = 0; j < planes.size(); ++j)
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -63,7 +63,8 @@ double MethodRun::coverage(const PointBatch& points) const {
             ++asked;
             given += planes[j].defined(i);
         }
-    return asked == 0 ? 1.0 : static_cast<double>(given) / static_cast<double>(asked);
+    if (asked == 0) return std::nullopt;
+    return static_cast<double>(given) / static_cast<double>(asked);
 }
 
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {

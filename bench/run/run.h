@@ -47,8 +47,9 @@ struct MethodRun {
         return judged.empty() ? std::span<const std::uint8_t>{} : judged[light];
     }
 
-    /// Share of the points that S_j is asked for (any light in front) that it is given for, [0, 1]; 1 where none is.
-    [[nodiscard]] double coverage(const PointBatch& points) const;
+    /// Share of the points that S_j is asked for (any light in front) that it is given for, [0, 1]; nothing where none
+    /// is.
+    [[nodiscard]] std::optional<double> coverage(const PointBatch& points) const;
 };
 
 /// Runs all phases for all lights. Throws std::logic_error if the method breaks its contract (values outside [0, 1],

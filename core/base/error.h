@@ -25,4 +25,14 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// A method threw or broke its contract. Commands print it and exit with 5.
+class MethodError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// What the exception that is being handled says, for a record of a failure: one sentence for exhausted memory and for
+/// what is no std::exception. Only in a catch block.
+[[nodiscard]] std::string current_message();
+
 }  // namespace umbra

@@ -2,12 +2,17 @@
 
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <bit>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <string_view>
 
 #include "umbra/core/base/error.h"
@@ -133,18 +138,39 @@ void round_once(Image& image, double levels) {
     for (float& x : image.data) x = float(std::round(double(x) * levels) / levels);
 }
 
-/// A name beside `file` that no other process writes to; the ending is kept, since it tells the format.
-std::filesystem::path beside(const std::filesystem::path& file) {
-    return file.parent_path() / fmt::format(".{}.{}{}", file.stem().string(), getpid(), file.extension().string());
-}
-
-/// Removes the file unless it was moved away.
-struct Partial {
-    std::filesystem::path path;
-    ~Partial() {
-        std::error_code ignored;
-        std::filesystem::remove(path, ignored);
+/// A file beside `file` with the same ending, which tells the format; removed unless it was moved away. Its name is
+/// fixed, so that killed processes leave at most one; another process that writes the same file waits here.
+class Partial {
+public:
+    explicit Partial(const std::filesystem::path& file)
+        : path(file.parent_path() / fmt::format(".umbra-part.{}", file.filename().string())) {
+        struct stat open_file {
+        }, named{};
+        do {
+            if (descriptor_ >= 0) ::close(descriptor_);
+            descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+            if (descriptor_ < 0) throw std::runtime_error(std::strerror(errno));
+            while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+            }  // a file system without locks: without
+        } while (::fstat(descriptor_, &open_file) == 0 &&
+                 (::stat(path.c_str(), &named) != 0 || named.st_ino != open_file.st_ino));
     }
+    ~Partial() {
+        struct stat open_file {
+        }, named{};
+        std::error_code ignored;
+        if (::fstat(descriptor_, &open_file) == 0 && ::stat(path.c_str(), &named) == 0 &&
+            named.st_ino == open_file.st_ino)
+            std::filesystem::remove(path, ignored);
+        ::close(descriptor_);
+    }
+    Partial(const Partial&)            = delete;
+    Partial& operator=(const Partial&) = delete;
+
+    const std::filesystem::path path;
+
+private:
+    int descriptor_ = -1;
 };
 
 std::vector<unsigned char> to_8_bit(const Image& image, std::size_t channels) {
@@ -269,7 +295,7 @@ void write_image(const std::filesystem::path& file, const Image& image) {
     if (!folder.empty() && !is_folder(folder))
         throw InputError(fmt::format("{}: cannot write image: no folder {}", file.string(), folder.string()));
     try {
-        const Partial partial{beside(file)};
+        const Partial partial(file);
         const auto output = OIIO::ImageOutput::create(partial.path.string());
         if (!output) throw std::runtime_error(one_line(OIIO::geterror()));
         write_pixels(*output, partial.path, image, ending == ".png");

@@ -45,8 +45,25 @@ void normalise_direction(Light& light) {
     }
 }
 
-// Names become channels S.<name> of images, where a dot would open a layer, and parts of file names.
+std::string lower(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+// A name for a message: what is long is cut, between two characters of UTF-8.
+std::string shortened(const std::string& name) {
+    constexpr std::size_t most = 60;
+    if (name.size() <= most) return name;
+    std::size_t end = most;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
+    return name.substr(0, end) + "...";
+}
+
+// Names become channels S.<name> of images, where a dot would open a layer and OpenEXR allows 255 bytes, and parts of
+// file names, which some systems compare without regard to case.
 void name_lights(Scene& scene) {
+    constexpr std::size_t longest = 64;
     std::set<std::string> taken;
     for (Light& light : scene.lights) {
         std::string name;
@@ -56,11 +73,12 @@ void name_lights(Scene& scene) {
             if (fits || name.empty() || name.back() != '_') name += fits ? c : '_';
         }
         if (name.empty()) name = to_string(light.kind);
+        if (name.size() > longest) name.resize(longest);
         std::string unique = name;
-        for (int n = 2; !taken.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);
+        for (int n = 2; !taken.insert(lower(unique)).second; ++n) unique = fmt::format("{}_{}", name, n);
         if (!light.name.empty() && unique != light.name)
             scene.warnings.push_back(
-                fmt::format("Light \"{}\" is called {} in images and tables.", light.name, unique));
+                fmt::format("Light \"{}\" is called {} in images and tables.", shortened(light.name), unique));
         light.name = unique;
     }
 }

@@ -112,7 +112,7 @@ public:
         centre_            = planar::centre_of(light);
         sources_           = planar::sources_of(light, options.light_samples);
         shadows_.clear();  // before new ones take memory
-        shadows_ = planar::project(occluders_, receivers_, sources_, kMemoryShare * machine_memory());
+        shadows_ = planar::project(occluders_, receivers_, sources_, kMemoryShare * usable_memory());
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {

@@ -19,7 +19,7 @@ constexpr double kEpsilon   = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-double LightViews::half_of_memory() { return 0.5 * machine_memory(); }
+double LightViews::half_of_memory() { return 0.5 * usable_memory(); }
 
 std::size_t LightViews::memory_bytes() const {
     std::size_t bytes = casters_.memory_bytes();

@@ -364,7 +364,7 @@ TEST_F(Cli, ScriptPrintsHelpOnAFreshCloneWithoutSettingUp) {
         EXPECT_EQ(answer.exit_code, 0) << answer.output;
         for (const std::string& command : command_names())
             EXPECT_TRUE(contains(answer.output, "\n  " + command + " ")) << command << "\n" << answer.output;
-        for (const char* command : {"setup", "test", "bench", "check"})
+        for (const char* command : {"setup", "test", "bench", "faults", "check"})
             EXPECT_TRUE(contains(answer.output, std::string("\n  ") + command + " ")) << command;
     }
     EXPECT_FALSE(fs::exists(folder_ / ".build"));
@@ -530,6 +530,58 @@ TEST_F(Cli, AcceptRenewsOnceAndCheckNeverWrites) {
     EXPECT_EQ(run(with_folders + "--check").exit_code, 4);
     fs::remove(file("golden/sun/figures.json"));
     EXPECT_EQ(run(with_folders + "--check").exit_code, 1);
+}
+
+TEST_F(Cli, StreamsMayBeClosedFullOrWithoutAReader) {
+    const auto shell = [](const std::string& rest) {
+        return run("sh -c '" + std::string(UMBRA_PROGRAM) + " " + rest + "'");
+    };
+    for (const char* command : {"list", "--help"}) {
+        const Answer closed = shell(std::string(command) + " >&-"), full = shell(std::string(command) + " >/dev/full");
+        EXPECT_EQ(closed.exit_code, 4);
+        EXPECT_TRUE(contains(closed.output, "standard output: cannot be written: Bad file descriptor"))
+            << closed.output;
+        EXPECT_EQ(full.exit_code, 4);
+        EXPECT_TRUE(contains(full.output, "standard output: cannot be written: No space left")) << full.output;
+    }
+    // Whoever reads enough and leaves ends the program as a closed pipe does, without a word.
+    const Answer gone = run("bash -c '" + std::string(UMBRA_PROGRAM) + " list --json | true; exit ${PIPESTATUS[0]}'");
+    EXPECT_TRUE(gone.exit_code == 141 || gone.exit_code == 0) << gone.exit_code;
+    EXPECT_EQ(gone.output, "");
+    // No file of ours becomes standard output: what is printed there would be written into it.
+    EXPECT_EQ(
+        shell("compare sun_on_plane --size 32x18 --methods ray_traced -o " + file("out") + " >&- 2>&- <&-").exit_code,
+        4);
+    EXPECT_EQ(shell("compare sun_on_plane --size 32x18 --methods ray_traced -o " + file("out2") + " --quiet >&- 2>&-")
+                  .exit_code,
+              0);
+    for (const char* out : {"out", "out2"}) EXPECT_EQ(umbra("report --quiet " + file(out)).exit_code, 0);
+}
+
+TEST_F(Cli, AnOutputFolderThatIsNotOursIsLeftAlone) {
+    std::ofstream(file("index.html")) << "<p>home</p>";
+    for (const std::string& command : {"compare " + kScene, "bias " + kScene, std::string("report")}) {
+        const Answer answer = umbra(command + " -o " + folder_.string());
+        EXPECT_EQ(answer.exit_code, 4) << command;
+        EXPECT_TRUE(contains(answer.output, "holds index.html, which umbra did not write")) << answer.output;
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+}
+
+TEST_F(Cli, MemoryThatIsNotThereIsRefusedAtOnce) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "AddressSanitizer needs all of the address space";
+#endif
+    const std::string limited = "bash -c 'ulimit -v 2000000; " + std::string(UMBRA_PROGRAM) + " --threads 1 ";
+    for (const std::string& command :
+         {"compare " + kScene + " -o " + file("out"), "render " + kScene + " -o " + file("a.exr")}) {
+        const Answer answer = run(limited + command + " --size 16384x4096'");
+        EXPECT_EQ(answer.exit_code, 4) << answer.output;
+        EXPECT_TRUE(contains(answer.output, "16384 x 4096 pixels") && contains(answer.output, "GB may be used"))
+            << answer.output;
+    }
+    EXPECT_TRUE(fs::is_empty(folder_));
+    EXPECT_TRUE(contains(umbra("render " + kScene + " --size 16384x16384 -o " + file("a.exr")).output, "GB"));
 }
 
 TEST_F(Cli, CompareThenReportAnewFromFilesAlone) {

@@ -216,7 +216,7 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     };
     const std::vector<Case> cases = {{"build", nullptr, "no stone left"},
                                      {"aim", "panel", "the panel is too large"},
-                                     {"visibility", "panel", "std::bad_alloc"},
+                                     {"visibility", "panel", "not enough memory"},
                                      {"contract", "lamp", "failing breaks its contract at point"},
                                      {"never", nullptr, ""}};
     for (const Case& c : cases) options_.choices.emplace_back(info).settings.set("at", std::string_view(c.phase));
@@ -335,10 +335,14 @@ TEST_F(Compare, WrongMethodsAreRefusedBeforeTheFirstScene) {
     EXPECT_FALSE(fs::exists(options_.out));
 }
 
-TEST_F(Compare, ScenesOfOneNameAreRefused) {
+TEST_F(Compare, ScenesOfOneNameHaveFoldersOfTheirOwn) {
     fs::create_directories(folder_ / "other");
     fs::copy_file(scene_, folder_ / "other/lamp_over_box.json");
-    EXPECT_THROW((void)compare_scenes({scene_, folder_ / "other/lamp_over_box.json"}, options_), UsageError);
+    options_.methods = {"ray_traced"};
+    EXPECT_EQ(compare_scenes({scene_, folder_ / "other/lamp_over_box.json"}, options_).names,
+              (std::vector<std::string>{"lamp_over_box", "lamp_over_box-2"}));
+    EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box-2/results.json"));
+    EXPECT_THROW((void)compare_scenes({scene_, scene_}, options_), UsageError);
 }
 
 TEST(ParseSize, TakesSizesOnly) {

@@ -1,22 +1,21 @@
 // Names in files need not be UTF-8, and results.json must be all the same.
-#include "umbra/bench/run/record_text.h"
-
 #include <gtest/gtest.h>
 
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/report/report.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
 namespace {
 
 TEST(RecordText, ReplacesWhatIsNotUtf8) {
-    EXPECT_EQ(record_text({{"name",
+    EXPECT_EQ(json_text({{"name",
                             "K\xfc"
                             "che"}}),
               "{\n \"name\": \"K\xef\xbf\xbd"
               "che\"\n}\n");
-    EXPECT_EQ(record_text({{"name",
+    EXPECT_EQ(json_text({{"name",
                             "K\xc3\xbc"
                             "che"}}),
               "{\n \"name\": \"K\xc3\xbc"

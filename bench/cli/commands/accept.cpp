@@ -2,11 +2,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <optional>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/golden/golden.h"
+#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/canonical.h"
 
 namespace umbra {
@@ -18,8 +21,8 @@ struct AcceptLine {
 };
 
 void print_change(const GoldenChange& change) {
-    fmt::print("{}: {}\n", change.name, to_string(change.kind));
-    for (const std::string& line : change.lines) fmt::print("    {}\n", line);
+    print_out("{}: {}\n", change.name, to_string(change.kind));
+    for (const std::string& line : change.lines) print_out("    {}\n", line);
 }
 
 std::string summary(const std::vector<GoldenChange>& changes, const AcceptLine& line) {
@@ -27,9 +30,10 @@ std::string summary(const std::vector<GoldenChange>& changes, const AcceptLine& 
         return std::count_if(changes.begin(), changes.end(), [&](const GoldenChange& c) { return c.kind == kind; });
     };
     if (changes.empty()) return "nothing changed";
+    const auto failed = count(GoldenChange::Kind::failed);
     return fmt::format(
-        "{} changed, {} new, {} removed{}", count(GoldenChange::Kind::changed), count(GoldenChange::Kind::added),
-        count(GoldenChange::Kind::removed),
+        "{} changed, {} new, {} removed{}{}", count(GoldenChange::Kind::changed), count(GoldenChange::Kind::added),
+        count(GoldenChange::Kind::removed), failed > 0 ? fmt::format(", {} failed", failed) : "",
         line.only_check ? "; nothing was written" : fmt::format(", in {}", line.options.folder.string()));
 }
 
@@ -38,11 +42,13 @@ int accept(AcceptLine line, const Common& common) {
     check_golden_names(scenes, line.options);
     line.options.folder = golden_folder();
     line.options.renew  = !line.only_check;
+    std::optional<PlaceLock> lock;
+    if (line.options.renew) lock.emplace(PlaceLock::inside(line.options.folder));
 
     std::vector<GoldenChange> all;
     const auto add = [&](const std::vector<GoldenChange>& changes) {
         for (const GoldenChange& change : changes) {
-            if (!common.quiet) print_change(change);
+            if (!common.quiet || change.kind == GoldenChange::Kind::failed) print_change(change);
             all.push_back(change);
         }
     };
@@ -56,7 +62,10 @@ int accept(AcceptLine line, const Common& common) {
         add(changes);
     }
     add(golden_leftovers(scenes, line.options));
-    if (!common.quiet) fmt::print("{}\n", summary(all, line));
+    if (!common.quiet) print_out("{}\n", summary(all, line));
+    const bool failed =
+        std::any_of(all.begin(), all.end(), [](const GoldenChange& c) { return c.kind == GoldenChange::Kind::failed; });
+    if (failed) return kInternal;
     return line.only_check && !all.empty() ? kNo : kDone;
 }
 

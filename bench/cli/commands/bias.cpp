@@ -5,7 +5,10 @@
 #include "umbra/bench/cli/bias_command.h"
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/canonical.h"
 #include "umbra/core/base/parallel.h"
 
@@ -24,6 +27,9 @@ int bias(BiasLine line, const Common& common) {
     options.command  = common.command;
     options.threads  = thread_count();
     const auto files = line.scenes.empty() ? canonical_scenes(scenes_folder()) : scene_files(line.scenes);
+    check_bias_map(options.map, default_bias_grid());
+    check_writable_beside(options.out);
+    const PlaceLock lock = PlaceLock::inside(options.out);
     std::vector<std::string> failed;
     Json record;
     {
@@ -32,9 +38,11 @@ int bias(BiasLine line, const Common& common) {
         record           = study_biases(files, options, failed);
     }
     if (!common.quiet && !record["bias"].empty())
-        fmt::print("{}{}\n", bias_table(record), (options.out / "index.html").string());
-    for (const std::string& message : failed) fmt::print(stderr, "{}\n", message);
-    return failed.empty() ? kDone : kUnreadable;
+        print_out("{}{}\n", bias_table(record), (options.out / "index.html").string());
+    for (const std::string& message : failed) print_error("{}\n", message);
+    for (const Json& failure : record["failed"])
+        print_error("{}: {}\n", failure["scene"].get<std::string>(), failure["message"].get<std::string>());
+    return !record["failed"].empty() ? kInternal : failed.empty() ? kDone : kUnreadable;
 }
 
 }  // namespace

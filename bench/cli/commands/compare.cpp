@@ -5,6 +5,8 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
 
@@ -22,6 +24,8 @@ int compare(CompareLine line, const Common& common) {
     if (line.scenes.empty()) throw UsageError("compare: SCENE is required");
     if (!line.size.empty()) line.options.size = parse_size(line.size);
     if (!line.reference.empty()) line.options.reference = line.reference;
+    check_writable_beside(line.options.out);
+    const PlaceLock lock  = PlaceLock::inside(line.options.out);
     const ScenesDone done = compare_on_terminal(scene_files(line.scenes), line.options, common);
     const int code        = exit_code(done);
     return code == kDone && !done.missing.empty() ? kUnreadable : code;

@@ -1,4 +1,5 @@
 #include "umbra/bench/cli/completion.h"
+#include "umbra/bench/cli/streams.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +16,7 @@ Action completion_command(CLI::App& app, const Common& /*common*/) {
         "bash: source <(umbra completion bash), in ~/.bashrc to keep it.\n"
         "zsh: source <(umbra completion zsh) after compinit, in ~/.zshrc to keep it.");
     return [shell, &app] {
-        fmt::print("{}", completion_script(*app.get_parent(), *shell == "bash" ? Shell::bash : Shell::zsh));
+        print_out("{}", completion_script(*app.get_parent(), *shell == "bash" ? Shell::bash : Shell::zsh));
         return int{kDone};
     };
 }

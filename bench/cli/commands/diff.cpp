@@ -5,6 +5,7 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/diff/diff_page.h"
 #include "umbra/bench/diff/diff_set.h"
@@ -39,7 +40,7 @@ int diff(DiffLine line, const Common& common) {
     staged.commit();
     if (!line.html.empty()) write_diff_page(line.html, set);
     const auto replace = nlohmann::json::error_handler_t::replace;
-    fmt::print("{}", line.as_json ? diff_set_json(set).dump(1, ' ', false, replace) + "\n" : diff_set_text(set));
+    print_out("{}", line.as_json ? diff_set_json(set).dump(1, ' ', false, replace) + "\n" : diff_set_text(set));
     return static_cast<int>(set.worst());
 }
 

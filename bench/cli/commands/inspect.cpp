@@ -1,4 +1,5 @@
 #include "umbra/bench/cli/inspect.h"
+#include "umbra/bench/cli/streams.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +7,8 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/record_text.h"
 
 namespace umbra {
 namespace {
@@ -21,7 +22,7 @@ struct InspectLine {
 int inspect(const InspectLine& line) {
     const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});  // with what only the picture shows
     const Json record            = inspect_json(prepared.scene, prepared.facts, line.silhouettes);
-    fmt::print("{}", line.as_json ? record_text(record) : inspect_text(record) + "\n");
+    print_out("{}", line.as_json ? json_text(record) : without_controls(inspect_text(record)) + "\n");
     return kDone;
 }
 

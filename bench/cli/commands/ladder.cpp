@@ -5,8 +5,8 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/ladders/ladder_record.h"
-#include "umbra/bench/run/record_text.h"
 
 namespace umbra {
 namespace {
@@ -20,10 +20,10 @@ int ladder(LadderLine line, const Common& common) {
     return_ladders(line.options.methods, line.options.names);
     const Json record = climb_on_terminal(line.options, common);
     if (line.as_json)
-        fmt::print("{}", record_text(record));
+        print_out("{}", json_text(record));
     else if (!common.quiet)
-        fmt::print("{}", ladder_table(record["ladders"]));
-    return kDone;
+        print_out("{}", ladder_table(record["ladders"]));
+    return record["failed"].empty() ? kDone : kInternal;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
@@ -22,29 +23,29 @@ struct ListLine {
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
 void print_method(const Json& m) {
-    fmt::print("{} - {} ({})\n  {}\n", text(m["name"]), text(m["title"]), text(m["paper"]), text(m["summary"]));
+    print_out("{} - {} ({})\n  {}\n", text(m["name"]), text(m["title"]), text(m["paper"]), text(m["summary"]));
     for (const Json& p : m["parameters"]) {
         const std::string range = p.contains("choices") ? text(p["choices"])
                                   : p.contains("min")
                                       ? fmt::format("{} to {}", p["min"].get<double>(), p["max"].get<double>())
                                       : "true or false";
         const std::string unit  = text(p["unit"]);
-        fmt::print("    {}={}  ({}{}{})  {}\n", text(p["name"]), text(p["default"]), range, unit.empty() ? "" : " ",
-                   unit, text(p["doc"]));
+        print_out("    {}={}  ({}{}{})  {}\n", text(p["name"]), text(p["default"]), range, unit.empty() ? "" : " ",
+                  unit, text(p["doc"]));
     }
     for (const Json& p : m["presets"])
-        fmt::print("    @{}  ({})  {}\n", text(p["name"]), text(p["settings"]), text(p["doc"]));
+        print_out("    @{}  ({})  {}\n", text(p["name"]), text(p["settings"]), text(p["doc"]));
 }
 
 void print_ladder(const Json& l) {
     const std::string unit = text(l["unit"]);
-    fmt::print("{} - {}\n  {}\n  {} rungs: {}{}\n", text(l["name"]), text(l["title"]), text(l["about"]),
-               l["rungs"].size(), fmt::join(l["rungs"].get<std::vector<double>>(), ", "),
-               unit.empty() ? "" : " " + unit);
+    print_out("{} - {}\n  {}\n  {} rungs: {}{}\n", text(l["name"]), text(l["title"]), text(l["about"]),
+              l["rungs"].size(), fmt::join(l["rungs"].get<std::vector<double>>(), ", "),
+              unit.empty() ? "" : " " + unit);
 }
 
 void print_scene(const Json& s) {
-    fmt::print("{} - {}\n  {}\n  {}\n", text(s["name"]), text(s["title"]), text(s["shows"]), text(s["source"]));
+    print_out("{} - {}\n  {}\n  {}\n", text(s["name"]), text(s["title"]), text(s["shows"]), text(s["source"]));
 }
 
 int list_all(bool as_json) {
@@ -58,12 +59,12 @@ int list_all(bool as_json) {
     for (const std::string& scene : canonical_names()) record["scenes"].push_back(scene);
     for (const Ladder* ladder : ladders()) record["ladders"].push_back(ladder_info_json(*ladder));
     if (as_json) {
-        fmt::print("{}\n", record.dump(1));
+        print_out("{}", json_text(record));
         return kDone;
     }
     for (const Json& m : record["methods"]) print_method(m);
-    fmt::print("\nScenes: {}\nMetrics: {}\nLadders: {}\n", fmt::join(canonical_names(), " "),
-               fmt::join(record["metrics"].get<std::vector<std::string>>(), " "), fmt::join(ladder_names(), " "));
+    print_out("\nScenes: {}\nMetrics: {}\nLadders: {}\n", fmt::join(canonical_names(), " "),
+              fmt::join(record["metrics"].get<std::vector<std::string>>(), " "), fmt::join(ladder_names(), " "));
     return kDone;
 }
 
@@ -72,7 +73,7 @@ int list_one(const std::string& name, bool as_json) {
     const auto is_it = [&](const auto* entry) { return entry->name == name; };
     const auto show  = [&](const char* kind, const Json& entry, void (*print)(const Json&)) {
         if (as_json)
-            fmt::print("{}\n", Json{{kind, entry}}.dump(1));
+            print_out("{}", json_text({{kind, entry}}));
         else
             print(entry);
         return kDone;

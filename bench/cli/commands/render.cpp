@@ -4,6 +4,7 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/run/antialias.h"
@@ -29,7 +30,7 @@ int render(const RenderLine& line, const Common& common) {
     options.warn          = [&](const std::string& what) { terminal.warn(what); };
     const Service service = render_scene(scene_file(line.scene), options);
     if (service) return kDone;
-    fmt::print(stderr, "{} does not serve this scene: {}\n", options.method, service.why);
+    print_error("{} does not serve this scene: {}\n", options.method, service.why);
     return kNo;
 }
 

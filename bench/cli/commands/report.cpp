@@ -7,6 +7,9 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/canonical.h"
 
@@ -23,23 +26,26 @@ struct ReportLine {
 /// All canonical scenes and all ladders.
 int run_everything(const fs::path& out, const Common& common) {
     LadderOptions ladders;
-    ladders.out = out / "ladders";
-    climb_on_terminal(ladders, common);
+    ladders.out        = out / "ladders";
+    const bool climbed = climb_on_terminal(ladders, common)["failed"].empty();
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
     const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, {ladders.out});
     const int code        = exit_code(done);
+    if (!climbed) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
 int report(const ReportLine& line, const Common& common) {
     fs::path out = line.out;
     if (out.empty()) out = line.folders.size() == 1 ? line.folders[0] : "results";
+    check_writable_beside(out);
+    const PlaceLock lock = PlaceLock::inside(out);
     if (line.folders.empty()) return run_everything(out, common);
     write_report({line.folders.begin(), line.folders.end()}, out, {});
-    if (!common.quiet) fmt::print("{}\n", (out / "index.html").string());
+    if (!common.quiet) print_out("{}\n", (out / "index.html").string());
     return kDone;
 }
 

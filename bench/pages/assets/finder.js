@@ -10,7 +10,7 @@ function numberIn(text) { return text === undefined || text.trim() === "" ? NaN 
  * -1 where none is within the limits.
  */
 function cheapest(methods, limits) {
-  const within = methods.filter((m) => m.ms >= 0 && (Number.isNaN(limits.mae) || m.mae <= limits.mae) &&
+  const within = methods.filter((m) => m.ms >= 0 && !Number.isNaN(m.interior) && (Number.isNaN(limits.mae) || m.mae <= limits.mae) &&
     (Number.isNaN(limits.cover) || m.cover * 100 >= limits.cover));
   const clean = within.filter((m) => m.interior === 0);
   const [best] = (clean.length ? clean : within).sort((a, b) => a.ms - b.ms);
