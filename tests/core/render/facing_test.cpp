@@ -76,5 +76,39 @@ TEST(CentreIsBehind, IsTheSameToBothMethodsThatTakeTheCentre) {
     EXPECT_GT(behind, 800u);
 }
 
+/// A light flush with a face gives it nothing, whatever the light's shape; lifted by next to nothing it gives it all.
+TEST(Facing, OfLightsFlushWithAFace) {
+    for (const LightKind kind : {LightKind::rectangle, LightKind::disk}) {
+        for (const float lift : {0.0f, 0x1p-120f, -0x1p-120f}) {
+            Scene scene;
+            scene.materials.emplace_back().two_sided = false;
+            add_object(scene, "floor", {{-4, 0, 4}, {4, 0, 4}, {0, 0, -8}}, {}, {{0, 1, 2}}, 0);
+            Light light;
+            light.kind      = kind;
+            light.position  = {0, lift, 0};
+            light.direction = {0, -1, 0};
+            light.edge_u    = {0.3f, 0, 0.1f};
+            light.edge_v    = {-0.1f, 0, 0.3f};
+            light.radius    = 0.5f;
+            scene.lights.push_back(light);
+            EXPECT_EQ(points_on(scene, {0, 9, 0}).facing[0][0], lift > 0 ? Facing::front : Facing::away) << int(kind);
+        }
+    }
+}
+
+/// Corners of a rectangle light that no float can hold: its foot is behind the plane by less than their rounding.
+TEST(Facing, OfARectangleByItsExactCorners) {
+    Scene scene;
+    scene.materials.emplace_back().two_sided = false;
+    add_object(scene, "floor", {{-4, 65536, 4}, {4, 65536, 4}, {0, 65536, -8}}, {}, {{0, 1, 2}}, 0);
+    Light light;
+    light.kind     = LightKind::rectangle;
+    light.position = {0, 65536 + 0x1p-7f, 0};
+    light.edge_u   = {1, 0, 0};
+    light.edge_v   = {0, 0x1.0001p-6f, 0};  // the lower corners are at 65536 - 2^-23
+    scene.lights.push_back(light);
+    EXPECT_EQ(points_on(scene, {0, 70000, 0}).facing[0][0], Facing::partly);
+}
+
 }  // namespace
 }  // namespace umbra
