@@ -176,6 +176,15 @@ void add_fan(Soup& soup, Dice& dice) {
     for (int k = 0; k < count; ++k) soup.push_back({lift + tip, lift + rim[k], lift + rim[(k + 1) % 6]});
 }
 
+/// A sliver that is folded onto its triangle, or continues it, by as little as rotations leave of a zero: one of their
+/// common corners is moved by 1e-17 where its coordinate is 0.
+void add_folds(Soup& soup, Dice& dice) {
+    const double s = dice.any({1.0, 2.0}), sign = dice.any({-1.0, 1.0}), at = dice.any({0.5, 0.25});
+    const dvec3 a{0, 1, dice.any({1e-17, -1e-17, 1e-19})}, b{s, 1, 0.5 * s}, c{s, 1, sign * s};
+    soup.push_back({a, b, c});
+    soup.push_back({a, b, at * dvec3(s, 0, 0.5 * s) + dvec3(0, 1, 0)});
+}
+
 struct Part {
     const char* name;
     void (*add)(Soup&, Dice&);
@@ -188,7 +197,8 @@ constexpr Part kParts[] = {{"floor", add_floor},
                            {"slivers", add_slivers},
                            {"needles", add_needles},
                            {"repeats", add_repeats},
-                           {"fan", add_fan}};
+                           {"fan", add_fan},
+                           {"folds", add_folds}};
 
 /// From the small space into the world.
 struct Placement {
