@@ -161,7 +161,7 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     StagedFiles staged;  // planes and figures change together
     if (all) std::ranges::move(method_leftovers(name, options, accepted, staged), std::back_inserter(changes));
     const std::size_t others = changes.size();
-    const auto fail = [&](const std::string& what) {
+    const auto fail          = [&](const std::string& what) {
         GoldenChange change;
         change.name  = what;
         change.kind  = GoldenChange::Kind::failed;

@@ -14,8 +14,8 @@ namespace umbra {
 enum class Answer : std::uint8_t {
     undefined,   ///< the method cannot tell; s means nothing
     given,       ///< s is the method's answer
-    on_boundary  ///< the segment to the light touches an edge or a vertex and crosses nothing: no method is wrong
-                 ///< there. Only exact methods say so
+    on_boundary  ///< the segment to the light touches a triangle that rises over the point's own plane and crosses
+                 ///< none: no method is wrong there. Only exact methods say so
 };
 
 /// One light's answers as a method writes them, one entry a point of the batch. The memory is the caller's.

@@ -86,6 +86,7 @@ double ReceivedLight::split(const Trapezoid& t) const {
     const double distance = glm::length(middle);
     if (distance >= 13 * reach) return gauss<7>(t);
     if (distance >= 5 * reach) return gauss<10>(t);
+    if (splits_left_ == 0 || --splits_left_ == 0) return 0;
     const double wide       = std::max(glm::length(corner[1] - corner[0]), glm::length(corner[3] - corner[2]));
     const double tall       = glm::length(corner[2] + corner[3] - corner[0] - corner[1]) / 2;
     const double low_middle = (t.low_left + t.low_right) / 2, high_middle = (t.high_left + t.high_right) / 2;

@@ -36,11 +36,12 @@ public:
     /// `horizon` in doubles; `sight` is read here alone.
     ReceivedLight(const Sight& sight, const Horizon<double>& horizon);
 
-    /// False where so little is known of the distance to the light that nothing here is a bound.
-    [[nodiscard]] bool usable() const { return weight_error_ <= kUsable; }
+    /// False where so little is known of the distance to the light that nothing here is a bound, and once the pieces
+    /// that were asked for had to be split more than kSplits times: parts of the light all but touch the point.
+    [[nodiscard]] bool usable() const { return weight_error_ <= kUsable && splits_left_ > 0; }
 
     /// The integral of the weight over a trapezoid of the light that is before the horizon, in doubles; off by less
-    /// than kQuadrature of itself from the rule.
+    /// than kQuadrature of itself from the rule. One thread at a time.
     [[nodiscard]] double of(const Trapezoid& piece) const { return usable() ? split(piece) : 0; }
     /// Over the caps that are visible, and those that are left open.
     [[nodiscard]] Bracket of(const DiskCaps& caps) const;
@@ -53,6 +54,7 @@ public:
 
     static constexpr double kQuadrature = 1e-10;
     static constexpr double kUsable     = 1.0 / 16;  ///< so that first-order bounds hold with a factor of 2
+    static constexpr int kSplits        = 1 << 15;   ///< some hundredths of a second
 
 private:
     [[nodiscard]] dvec3 to(double x, double y) const { return centre_ + x * u_ + y * v_; }
@@ -66,6 +68,7 @@ private:
     dvec3 centre_, u_, v_;     ///< in a unit of length in which the largest component is 1
     Horizon<double> horizon_;  ///< in a unit in which no height exceeds 1
     double most_ = 0, weight_error_ = 0, height_error_ = 0;
+    mutable int splits_left_ = kSplits;
 };
 
 /// Light that is visible over all light that arrives, given by what of both is known.

@@ -149,6 +149,7 @@ Filtered<Bracket> VisiblePart<Space>::irradiance(const ReceivedLight& received, 
     DiskCaps caps;
     if (round() && sight_.partly) touch_caps(horizon_of<double>(sight_), caps);
     const double whole = whole_irradiance(received, light, caps);
+    if (!received.usable()) return Bracket{0, 1};
     const double moved = error * received.most();
     if (std::is_same_v<T, double> && !(moved <= kTrusted / 4 * whole)) return kUnsure;
     const double relative = received.weight_error() + ReceivedLight::kQuadrature;

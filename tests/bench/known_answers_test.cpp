@@ -111,7 +111,7 @@ constexpr std::size_t kSun = 0, kTop = 1, kBelow = 2;
 
 /// The planted method on the wall. For the sun:
 ///   columns 38 and 39: undefined;
-///   columns 0 to 4 of rows 0 to 4: 1 instead of 0;
+///   columns 7 to 11 of rows 0 to 4: 1 instead of 0;
 ///   column 29, and column 28 of rows 16 and 17: 1 instead of 0, beside the shadow's edge;
 ///   columns 34 to 36 of rows 0 to 2: 0 instead of 1; in row 0 it blames the point's own triangle;
 ///   column 30 of rows 10 to 12: 0 instead of 1, beside the edge.
@@ -119,7 +119,7 @@ constexpr std::size_t kSun = 0, kTop = 1, kBelow = 2;
 PlantedAnswer wrong_at_the_wall(LightId light, std::size_t x, std::size_t y) {
     if (light == kTop) return {y == 5 ? 0.75f : 1.0f};
     if (x >= 38) return {0, false};
-    const bool lit = x <= 4 && y <= 4                ? true
+    const bool lit = x >= 7 && x <= 11 && y <= 4     ? true
                      : x >= 34 && x <= 36 && y <= 2  ? false
                      : x == 30 && y >= 10 && y <= 12 ? false
                                                      : x >= 29 || (x == 28 && y >= 16);
@@ -129,14 +129,14 @@ double true_at_the_wall(std::size_t light, std::size_t x) {
     return light == kSun ? (x >= 30 ? 1 : 0) : light == kTop ? 1 : 0;
 }
 
-/// The class of each point of the sun, in words of the legend. A false light's distance to its occluder, the wall's
-/// face at X = -3, is (X + 3) / 0.8 along the sun's way, and 16 pixels are 1.6: a contact in columns 0 to 2, whose X is
-/// at most -1.72. The edge band is 1.5 pixels around the boundary at column 29.5: columns 28 to 31.
+/// The class of each point of the sun, in words of the legend. The segment to the sun meets the wall's face, X = -3, at
+/// the height 0.75 (X + 3). False light is a detachment up to half of the wall's height, 1.5: where X is at most -1, in
+/// columns 0 to 9. The edge band is 1.5 pixels around the boundary at column 29.5: columns 28 to 31.
 Rgb class_of_sun(std::size_t x, std::size_t y) {
     if (y >= 18) return kNoSurface;
     if (x >= 38) return hatched(x, y);
     const double s = wrong_at_the_wall(kSun, x, y).s, truth = true_at_the_wall(kSun, x);
-    if (s > truth) return x >= 28 ? kFalseLightEdge : x <= 2 ? kDetachment : kLeak;
+    if (s > truth) return x >= 28 ? kFalseLightEdge : x <= 9 ? kDetachment : kLeak;
     if (s < truth) return x == 30 ? kFalseShadowEdge : y == 0 ? kAcne : kFalseShadow;
     return truth == 1 ? kRightLit : kRightUmbra;
 }
@@ -260,10 +260,10 @@ TEST_F(Wall, PicturesHaveTheColoursOfTheLegends) {
     // FLIP's map is black where the pictures agree, brighter where they do not; #000005 begins its scale.
     const auto flip = png(files["flip"]);
     EXPECT_EQ(flip[40 * 15 + 15], (Rgb{0, 0, 5}));
-    EXPECT_GT(flip[40 * 2 + 1][0], 40);
+    EXPECT_GT(flip[40 * 2 + 9][0], 40);
 }
 
-/// The sums of the sun. False light: 25 in the block, of them columns 0 to 2 at the contact (15) and 3 and 4 not (10);
+/// The sums of the sun. False light: 25 in the block, of them columns 7 to 9 at the contact (15), 10 and 11 not (10);
 /// 18 + 2 beside the edge. False shadow: 9 in the block, its first row (3) blamed on the point itself; 3 beside the
 /// edge. Points: 18 rows of 38 columns, 8 of them lit; 57 are wrong by 1.
 ///
@@ -364,7 +364,7 @@ TEST_F(Wall, RecordTellsItsFiguresApart) {
     e.penumbra = 8, e.false_shadow = {9, 10}, e.false_light = {11, 12}, e.interior = {13, 14, 15};
     e.penumbra_error = {16, 17}, e.noise_error = {18, 19}, e.acne = 20, e.detachment = 21, e.leak = 22;
     e.terminator = {23, 24, 25}, e.max_half_width = 26, e.mae = 27, e.rmse = 28, e.max = 29, e.bias = 30;
-    one.displacement   = EdgeDisplacement{.mean = 31, .p95 = 32, .max = 33, .pieces = 34, .unmatched = 35};
+    one.displacement   = EdgeDisplacement{.mean = 31, .p95 = 32, .max = 33, .pieces = 35, .unmatched = 34};
     one.penumbra_width = PenumbraWidth{.method = 36, .reference = 37};
     one.noise          = Noise{.runs = 38, .rms = 39, .bias = 40};
     const std::vector<Explained> explained(3, one);
@@ -377,7 +377,7 @@ TEST_F(Wall, RecordTellsItsFiguresApart) {
         "terminator": {"facet_away": 23, "normal_away": 24, "wrong": 25}, "bracket": {"max_half_width": 26.0},
         "mae": 27.0, "rmse": 28.0, "max": 29.0, "bias": 30.0,
         "noise": {"runs": 38, "noise_rmse": 39.0, "bias_rmse": 40.0},
-        "edge_displacement_px": {"mean": 31.0, "p95": 32.0, "max": 33.0, "pieces": 34, "unmatched": 35},
+        "edge_displacement_px": {"mean": 31.0, "p95": 32.0, "max": 33.0, "pieces": 35, "unmatched": 34, "reach": 8.0},
         "penumbra_width_px": {"method": 36.0, "reference": 37.0}})");
     EXPECT_EQ(found, expected) << found.dump(1);
 }

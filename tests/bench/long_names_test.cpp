@@ -18,7 +18,7 @@ TEST(LongNames, OfMeshesAreRefusedAtTheirPlace) {
 
 TEST(LongNames, OfPicturesAreRefusedAtTheirPlaceInResults) {
     const TemporaryFolder folder;
-    (void)folder.write("run/results.json", R"({"schema":1,"scene":{"name":"a"},"methods":[{"name":"m","serves":{"how":)"
+    (void)folder.write("run/results.json", R"({"schema":2,"scene":{"name":"a"},"methods":[{"name":"m","serves":{"how":)"
                                            R"("exactly"},"files":{"exr":")" +
                                                kLong + R"(","png":")" + kLong + R"("}}]})");
     try {

@@ -202,8 +202,8 @@ TEST_F(PageFigures, WordsAroundThePictures) {
     EXPECT_TRUE(contains(page, fmt::format("<b>The shadow_zbuffer</b> <span>{} wrong interior points, 67.0 ms; covers "
                                            "87.5 %</span>",
                                            wrong)));
-    EXPECT_TRUE(contains(page, "<b>Reference</b> <span>The ray_traced: sampled, not exact") ||
-                contains(page, "<b>Reference</b> <span>Ray-traced: sampled, not exact</span>"));
+    EXPECT_TRUE(contains(page, "<b>Reference</b> <span>The ray_traced: not exact") ||
+                contains(page, "<b>Reference</b> <span>Ray-traced: not exact</span>"));
     // Below each light's pictures are its own counts.
     for (std::size_t j = 0; j < 2; ++j)
         EXPECT_TRUE(

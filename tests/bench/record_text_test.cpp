@@ -11,13 +11,13 @@ namespace {
 
 TEST(RecordText, ReplacesWhatIsNotUtf8) {
     EXPECT_EQ(json_text({{"name",
-                            "K\xfc"
-                            "che"}}),
+                          "K\xfc"
+                          "che"}}),
               "{\n \"name\": \"K\xef\xbf\xbd"
               "che\"\n}\n");
     EXPECT_EQ(json_text({{"name",
-                            "K\xc3\xbc"
-                            "che"}}),
+                          "K\xc3\xbc"
+                          "che"}}),
               "{\n \"name\": \"K\xc3\xbc"
               "che\"\n}\n");
 }

@@ -42,7 +42,7 @@ protected:
                         {{"name": "box", "type": "box", "size": [1, 1, 1], "transform": [{{"translate": [0, 1.5, 0]}}]}}]}})",
                                                   lights));
     }
-    [[nodiscard]] Answer planted(const std::string& plant, const std::string& arguments) const {
+    [[nodiscard]] ProgramAnswer planted(const std::string& plant, const std::string& arguments) const {
         return run_program(fmt::format("cd '{0}' && UMBRA_SCENES=hard UMBRA_GOLDEN=golden UMBRA_PLANT='{1}' {2} {3}",
                                        folder_.path().string(), plant, UMBRA_PLANTED, arguments));
     }
@@ -69,7 +69,7 @@ TEST_F(Failures, CompareRecordsMethodLightAndMessageAndGoesOn) {
                                      {"blame 1 bad_alloc", "panel", "not enough memory"}};
     for (const Case& c : cases) {
         fs::remove_all(file("out"));
-        const Answer answer = planted("shadow_zbuffer " + c.plant + " first", kCompare);
+        const ProgramAnswer answer = planted("shadow_zbuffer " + c.plant + " first", kCompare);
         EXPECT_EQ(answer.exit_code, 5) << c.plant << '\n' << answer.output;
         EXPECT_TRUE(contains(answer.output, "first: shadow_zbuffer:resolution=16,bias=manual: It failed"))
             << answer.output;
@@ -106,7 +106,7 @@ TEST_F(Failures, ASubstituteReplacesAReferenceThatThrows) {
     EXPECT_TRUE(json_of(file("out/second/results.json"))["reference"]["exact"]);
 
     // One that the user chose is not replaced: the scene has no results, and the first page says so.
-    const Answer chosen = planted("exact visibility 1 exception first", kCompare + "2 --reference exact");
+    const ProgramAnswer chosen = planted("exact visibility 1 exception first", kCompare + "2 --reference exact");
     EXPECT_EQ(chosen.exit_code, 5);
     EXPECT_FALSE(fs::exists(file("out2/first")));
     EXPECT_TRUE(contains(text_of(file("out2/index.html")), "first: a &lt;planted&gt; defect"));
@@ -122,7 +122,7 @@ TEST_F(Failures, ABlamingReferenceIsNamed) {
 }
 
 TEST_F(Failures, RenderWritesNothingAndNamesTheLight) {
-    const Answer answer =
+    const ProgramAnswer answer =
         planted("shadow_volumes visibility 1 bad_alloc", "render first.json --method shadow_volumes -o a.png");
     EXPECT_EQ(answer.exit_code, 5);
     EXPECT_EQ(answer.output, "umbra: shadow_volumes failed at light panel: not enough memory\n");
@@ -132,7 +132,7 @@ TEST_F(Failures, RenderWritesNothingAndNamesTheLight) {
 TEST_F(Failures, LaddersGoOn) {
     const std::string command =
         "ladder far_from_origin thin_walls --methods shadow_volumes planar_projection --quiet -o out";
-    const Answer answer = planted("shadow_volumes visibility - worker", command);
+    const ProgramAnswer answer = planted("shadow_volumes visibility - worker", command);
     EXPECT_EQ(answer.exit_code, 5);
     EXPECT_TRUE(contains(answer.output, "far_from_origin: shadow_volumes: It failed at 1, light")) << answer.output;
     const json record = json_of(file("out/results.json"));
@@ -151,7 +151,7 @@ TEST_F(Failures, LaddersGoOn) {
 }
 
 TEST_F(Failures, ReportShowsWhatFailedAndIsWhole) {
-    const Answer answer = planted("exact build - exception", "report --quiet -o out");
+    const ProgramAnswer answer = planted("exact build - exception", "report --quiet -o out");
     EXPECT_EQ(answer.exit_code, 5);
     const std::string index = text_of(file("out/index.html"));
     for (const char* what : {"first: The reference exact failed", "second: Exact visibility failed",
@@ -166,7 +166,7 @@ TEST_F(Failures, AcceptKeepsTheGoldenOfAMethodThatThrows) {
     fs::remove(file("golden/first/shadow_volumes.exr"));
     folder_.write("golden/first/shadow_zbuffer.exr", "not an image, but not to be lost");
     const auto changes = [&](const std::string& plant) { return planted(plant, "accept first/shadow_volumes second"); };
-    const Answer answer = changes("shadow_volumes build - worker first");
+    const ProgramAnswer answer = changes("shadow_volumes build - worker first");
     EXPECT_EQ(answer.exit_code, 5);
     EXPECT_TRUE(contains(answer.output, "first/shadow_volumes: failed\n    a <planted> defect\n")) << answer.output;
     EXPECT_TRUE(contains(answer.output, "1 failed"));
@@ -178,7 +178,7 @@ TEST_F(Failures, AcceptKeepsTheGoldenOfAMethodThatThrows) {
 }
 
 TEST_F(Failures, BiasStudiesTheOtherScenes) {
-    const Answer answer = planted("shadow_zbuffer visibility 0 bad_alloc first",
+    const ProgramAnswer answer = planted("shadow_zbuffer visibility 0 bad_alloc first",
                                   "bias --quiet --size 16x9 -o out hard/first.json hard/second.json");
     EXPECT_EQ(answer.exit_code, 5);
     EXPECT_EQ(answer.output, "first: not enough memory\n");
