@@ -54,7 +54,7 @@ public:
 
     static constexpr double kQuadrature = 1e-10;
     static constexpr double kUsable     = 1.0 / 16;  ///< so that first-order bounds hold with a factor of 2
-    static constexpr int kSplits        = 1 << 15;   ///< some hundredths of a second
+    static constexpr int kSplits        = 1 << 12;   ///< some thousandths of a second
 
 private:
     [[nodiscard]] dvec3 to(double x, double y) const { return centre_ + x * u_ + y * v_; }

@@ -179,7 +179,7 @@ TEST_F(Failures, AcceptKeepsTheGoldenOfAMethodThatThrows) {
 
 TEST_F(Failures, BiasStudiesTheOtherScenes) {
     const ProgramAnswer answer = planted("shadow_zbuffer visibility 0 bad_alloc first",
-                                  "bias --quiet --size 16x9 -o out hard/first.json hard/second.json");
+                                         "bias --quiet --size 16x9 -o out hard/first.json hard/second.json");
     EXPECT_EQ(answer.exit_code, 5);
     EXPECT_EQ(answer.output, "first: not enough memory\n");
     const json record = json_of(file("out/results.json"));
