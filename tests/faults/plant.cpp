@@ -79,6 +79,9 @@ private:
 }  // namespace
 
 // As the compiler names `MethodInfo::make(const Settings&) const` and the linker, under --wrap, its original.
+#ifdef __clang__
+#pragma clang diagnostic ignored "-Wreturn-type-c-linkage"  // C++ calls it, by its mangled name
+#endif
 extern "C" std::unique_ptr<Method> __real__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(const MethodInfo*,
                                                                                       const Settings&);
 extern "C" std::unique_ptr<Method> __wrap__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(const MethodInfo* info,
