@@ -9,11 +9,11 @@
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/paths.h"
 
 namespace umbra {
 namespace {
@@ -30,7 +30,7 @@ void add_break(Json& method, const std::filesystem::path& folder, const LadderRu
 }  // namespace
 
 Json climb_ladders(const LadderOptions& options) {
-    if (is_there(options.out / "results.json") && !read_results(options.out / "results.json")["ladders"].present())
+    if (holds_record_without(options.out, "ladders"))
         throw InputError(
             fmt::format("{}: holds the results of another command and is not replaced, expected another folder "
                         "with -o",

@@ -76,6 +76,11 @@ void check_replaceable(const fs::path& folder) {
     }
 }
 
+bool holds_record_without(const fs::path& folder, std::string_view key) {
+    const json record = record_in(folder);
+    return !record.is_discarded() && !record.contains(key);
+}
+
 void check_writable_beside(const fs::path& folder) {
     const bool page = fs::exists(folder / kPage), ours = page && is_our_page(folder / kPage);
     const auto refuse_file = [&](std::string_view name) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 
 namespace umbra {
 
 /// For a folder that a new result replaces as a whole. Throws InputError that names the first thing in it that no
 /// results.json of ours accounts for. A folder that is missing, empty, or a result of ours passes.
 void check_replaceable(const std::filesystem::path& folder);
+
+/// Whether the folder holds a results.json of ours, of any version, that has no such member: of another command.
+[[nodiscard]] bool holds_record_without(const std::filesystem::path& folder, std::string_view key);
 
 /// For a folder into which a results.json and pages are written beside other files. Throws InputError where one of them
 /// is there and is not ours.

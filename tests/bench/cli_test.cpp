@@ -1,36 +1,21 @@
 // The program as people and scripts see it: exit codes, messages, JSON.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/program.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Answer {
-    int exit_code = -1;
-    std::string output;  ///< standard output and error together
-};
-
-Answer run(const std::string& command) {
-    FILE* pipe = popen((command + " 2>&1 </dev/null").c_str(), "r");
-    Answer answer;
-    std::array<char, 4096> buffer{};
-    for (std::size_t n = 0; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-        answer.output.append(buffer.data(), n);
-    const int status = pclose(pipe);
-    answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return answer;
-}
+using Answer   = umbra::ProgramAnswer;
+const auto run = umbra::run_program;
 
 Answer umbra(const std::string& arguments) { return run(std::string(UMBRA_PROGRAM) + " " + arguments); }
 

@@ -289,6 +289,13 @@ TEST_F(LadderCommand, ReplacesItsOwnResultsAndNothingElse) {
     EXPECT_THROW((void)climb_ladders(options_), InputError);
     EXPECT_TRUE(fs::exists(options_.out / "breaks/stale.json")) << "no record names it: it is somebody's";
     fs::remove(options_.out / "breaks/stale.json");
+
+    // What an older version wrote is ours, too.
+    auto old      = nlohmann::json::parse(text_of(options_.out / "results.json"));
+    old["schema"] = 1;
+    std::ofstream(options_.out / "results.json") << old;
+    (void)climb_ladders(options_);
+    EXPECT_EQ(nlohmann::json::parse(text_of(options_.out / "results.json"))["schema"], 2);
     (void)climb_ladders(options_);
 
     for (const auto& [name, text] :
