@@ -6,6 +6,8 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "umbra/bench/run/timing.h"
+
 namespace umbra {
 namespace {
 
@@ -38,10 +40,7 @@ Timing time_runs(const Repeats& repeats, const std::function<void()>& work, cons
         times.push_back(now_ms() - start);
         spent += times.back();
     } while (static_cast<int>(times.size()) < repeats.max_runs && spent < repeats.budget_ms);
-    std::sort(times.begin(), times.end());
-    const std::size_t n = times.size();
-    const double median = n % 2 ? times[n / 2] : 0.5 * (times[n / 2 - 1] + times[n / 2]);
-    return {median, times.front(), times.back(), static_cast<int>(n)};
+    return timing_of(times);
 }
 
 Timing total(const std::vector<Timing>& timings) {

@@ -1,0 +1,303 @@
+#include "umbra/bench/time/turns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <numeric>
+#include <stdexcept>
+
+#include "umbra/bench/run/timing.h"
+#include "umbra/bench/statistics/statistics.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/base/random_bits.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::size_t kFewestRounds = 3;  ///< those that the whole budget pays for
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// The order of each round: a permutation by Fisher and Yates, from a counter.
+class Dice {
+public:
+    explicit Dice(std::uint32_t seed) : counter_(std::uint64_t{seed} << 32) {}
+    template <class T>
+    void shuffle(std::vector<T>& items) {
+        for (std::size_t n = items.size(); n > 1; --n)
+            std::swap(items[n - 1], items[((mixed_bits(counter_++) >> 32) * n) >> 32]);
+    }
+
+private:
+    std::uint64_t counter_;
+};
+
+/// One thing that takes turns: a setting, or the control's twin.
+struct Entry {
+    std::size_t setting;
+    bool twin     = false;
+    bool unknown  = false;  ///< its first run is still to come
+    bool playing  = true;
+    double spent  = 0;  ///< ms, in rounds
+    double latest = 0;  ///< ms of its latest run
+    std::vector<RunTimes> runs{};
+    std::vector<int> order{};
+};
+
+using Group = std::vector<std::size_t>;  ///< indices of entries that share a build
+
+class Schedule {
+public:
+    Schedule(const PreparedScene& prepared, const TurnOptions& options, Turns& turns)
+        : prepared_(prepared), options_(options), turns_(turns), dice_(options.seed), plane_(prepared.points.size()) {}
+
+    /// The first run of each setting, or what is known of it.
+    void run_cold() {
+        if (!options_.first.empty() && options_.first.size() != turns_.settings.size())
+            throw std::logic_error("first runs are given, but not one a setting");
+        for (std::size_t k = 0; k < turns_.settings.size(); ++k) {
+            TurnTimes& t = turns_.settings[k];
+            try {
+                t.service = verdict(*t.choice.make(), prepared_.facts);
+            } catch (const UsageError& e) {  // its settings contradict one another
+                t.service = {How::not_at_all, e.what()};
+                t.failed  = e.what();
+            }
+            if (!t.service) continue;
+            entries_.push_back({k});
+            if (!options_.first.empty() && options_.first[k])
+                keep_cold(entries_.back(), *options_.first[k]);
+            else
+                entries_.back().unknown = true;
+        }
+        for (const Group& group : groups([](const Entry& e) { return e.unknown; })) run_group(group, true);
+        share_ = entries_.empty() ? 0 : options_.budget_ms / static_cast<double>(entries_.size());
+        std::erase_if(entries_, [](const Entry& e) { return !e.playing; });
+    }
+
+    void add_control() {
+        if (entries_.empty()) return;
+        const auto cheapest = std::min_element(entries_.begin(), entries_.end(),
+                                               [](const Entry& a, const Entry& b) { return a.latest < b.latest; });
+        Entry twin{cheapest->setting, true};
+        twin.latest    = cheapest->latest;
+        turns_.control = cheapest->setting;
+        turns_.twin    = TurnTimes{choice_of(*cheapest), turns_.settings[cheapest->setting].service};
+        entries_.push_back(std::move(twin));
+    }
+
+    void run_rounds() {
+        for (int round = 0; round < std::max(1, options_.rounds); ++round) {
+            choose(static_cast<std::size_t>(round));
+            std::vector<Group> order = groups([](const Entry& e) { return e.playing; });
+            if (order.empty()) return;
+            tell(fmt::format("round {} of {}", round + 1, options_.rounds));
+            const double start = options_.clock();
+            options_.calibration_loop();
+            turns_.calibration.push_back(options_.clock() - start);
+            for (Group& group : order) dice_.shuffle(group);
+            dice_.shuffle(order);
+            int position = 0;
+            for (const Group& group : order) {
+                for (const std::size_t e : group) entries_[e].order.push_back(position++);
+                run_group(group, false);
+            }
+        }
+    }
+
+    /// Moves what was measured into the result.
+    void finish() {
+        for (Entry& e : entries_) {
+            TurnTimes& t = e.twin ? *turns_.twin : turns_.settings[e.setting];
+            t.order      = std::move(e.order);
+            t.order.resize(std::min(t.order.size(), e.runs.size()));  // it may have failed within a round
+            if (e.runs.empty() && t.failed.empty() && !e.twin) {
+                e.runs.push_back(cold_[e.setting]);
+                t.only_cold = true;
+            }
+            keep_samples(t, e.runs);
+        }
+        Ratio control;
+        if (turns_.control && !turns_.settings[*turns_.control].only_cold)
+            control = paired_ratio(totals(*turns_.twin), totals(turns_.settings[*turns_.control]));
+        turns_.noise_bar = noise_bar(control);
+    }
+
+private:
+    void keep_samples(TurnTimes& t, const std::vector<RunTimes>& runs) const {
+        const std::size_t lights = prepared_.scene.lights.size();
+        t.light_aim.resize(lights);
+        t.light_visibility.resize(lights);
+        for (const RunTimes& run : runs) {
+            t.build.push_back(run.build);
+            t.aim.push_back(sum(run.aim));
+            t.visibility.push_back(sum(run.visibility));
+            for (std::size_t j = 0; j < lights; ++j) {
+                t.light_aim[j].push_back(run.aim[j]);
+                t.light_visibility[j].push_back(run.visibility[j]);
+            }
+        }
+    }
+
+    void tell(const std::string& what) const {
+        if (options_.progress) options_.progress(what);
+    }
+
+    [[nodiscard]] const MethodChoice& choice_of(const Entry& e) const { return turns_.settings[e.setting].choice; }
+
+    /// Leaves out of this and all later rounds what the budget no longer affords.
+    void choose(std::size_t round) {
+        double spent = 0, needed = 0;
+        for (const Entry& e : entries_) {
+            spent += e.spent;
+            needed += e.playing ? e.latest : 0;
+        }
+        const bool whole = round < kFewestRounds && spent + needed <= options_.budget_ms;
+        for (Entry& e : entries_) e.playing = e.playing && (whole || e.spent + e.latest <= share_);
+    }
+
+    template <class Wanted>
+    [[nodiscard]] std::vector<Group> groups(const Wanted& wanted) const {
+        std::vector<Group> groups;
+        for (std::size_t e = 0; e < entries_.size(); ++e) {
+            if (!wanted(entries_[e])) continue;
+            const auto shares = [&](const Group& group) {
+                const Entry& first = entries_[group[0]];
+                return !first.twin && choice_of(first).info == choice_of(entries_[e]).info &&
+                       first_changed_phase(choice_of(first).settings, choice_of(entries_[e]).settings) != Phase::build;
+            };
+            const auto found = entries_[e].twin || !options_.share_builds
+                                   ? groups.end()
+                                   : std::find_if(groups.begin(), groups.end(), shares);
+            if (found == groups.end())
+                groups.push_back({e});
+            else
+                found->push_back(e);
+        }
+        return groups;
+    }
+
+    template <class Work>
+    double timed(Work&& work) const {
+        const double start = options_.clock();
+        work();
+        return options_.clock() - start;
+    }
+
+    /// One build, then aim and visibility of each member. One that throws is out of all later rounds; those behind it
+    /// in the group get a build of their own.
+    void run_group(const Group& group, bool cold) {
+        std::unique_ptr<Method> method;
+        double build = 0;
+        for (std::size_t k = 0; k < group.size(); ++k) {
+            Entry& e = entries_[group[k]];
+            if (cold) tell(choice_of(e).text());
+            try {
+                if (k == 0) {
+                    method = choice_of(e).make();
+                    build  = timed([&] { method->build(prepared_.scene, prepared_.facts); });
+                } else {
+                    method->configure(choice_of(e).settings);
+                }
+                RunTimes run{build};
+                for (LightId j = 0; j < prepared_.scene.lights.size(); ++j) {
+                    plane_.clear();
+                    run.aim.push_back(timed([&] { method->aim(j); }));
+                    run.visibility.push_back(timed([&] { method->visibility(prepared_.points, j, plane_.out()); }));
+                }
+                turns_.settings[e.setting].memory_bytes = method->memory_bytes();
+                if (cold)
+                    keep_cold(e, run);
+                else
+                    keep(e, std::move(run));
+            } catch (...) {
+                fail(e, current_message());
+                if (k + 1 < group.size()) {  // the others start on a method that has not thrown
+                    run_group(Group(group.begin() + static_cast<std::ptrdiff_t>(k) + 1, group.end()), cold);
+                }
+                return;
+            }
+        }
+    }
+
+    void fail(Entry& e, std::string message) {
+        e.playing = false;
+        if (!e.twin) turns_.settings[e.setting].failed = std::move(message);
+    }
+
+    void keep_cold(Entry& e, const RunTimes& run) {
+        cold_.resize(turns_.settings.size());
+        cold_[e.setting]  = run;
+        TurnTimes& t      = turns_.settings[e.setting];
+        t.cold_build      = run.build;
+        t.cold_aim        = sum(run.aim);
+        t.cold_visibility = sum(run.visibility);
+        e.latest          = run.all();
+    }
+
+    void keep(Entry& e, RunTimes run) {
+        e.latest = run.all();
+        e.spent += e.latest;
+        e.runs.push_back(std::move(run));
+    }
+
+    const PreparedScene& prepared_;
+    const TurnOptions& options_;
+    Turns& turns_;
+    Dice dice_;
+    VisibilityPlane plane_;
+    std::vector<Entry> entries_;
+    std::vector<RunTimes> cold_;
+    double share_ = 0;  ///< of the budget, of one setting
+};
+
+Json samples_json(const std::vector<double>& samples) {
+    Json record = timing_json(timing_of(samples));
+    Json& list  = record["samples"];
+    list        = Json::array();
+    for (const double ms : samples) list.push_back(number(ms));
+    return record;
+}
+
+}  // namespace
+
+double wall_clock_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double RunTimes::all() const { return build + sum(aim) + sum(visibility); }
+
+std::vector<double> totals(const TurnTimes& times) {
+    std::vector<double> all(times.build.size());
+    for (std::size_t r = 0; r < all.size(); ++r) all[r] = times.build[r] + times.aim[r] + times.visibility[r];
+    return all;
+}
+
+Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice> choices, const TurnOptions& options) {
+    std::optional<ThreadLimit> limit;
+    if (options.threads > 0) limit.emplace(options.threads);
+    Turns turns;
+    for (const MethodChoice& choice : choices) turns.settings.push_back({choice});
+    Schedule schedule(prepared, options, turns);
+    schedule.run_cold();
+    schedule.add_control();
+    schedule.run_rounds();
+    schedule.finish();
+    return turns;
+}
+
+Json turn_times_json(const TurnTimes& times) {
+    return {{"build_ms", samples_json(times.build)},
+            {"aim_ms", samples_json(times.aim)},
+            {"visibility_ms", samples_json(times.visibility)},
+            {"cold",
+             {{"build_ms", number(times.cold_build)},
+              {"aim_ms", number(times.cold_aim)},
+              {"visibility_ms", number(times.cold_visibility)}}},
+            {"order", times.order}};
+}
+
+}  // namespace umbra

@@ -1,0 +1,90 @@
+// Times of several settings on one scene, measured in turns: a machine whose speed drifts favours none of them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/run.h"
+#include "umbra/bench/time/calibration.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// One run of all phases, milliseconds; aim and visibility by light.
+struct RunTimes {
+    double build = 0;
+    std::vector<double> aim{}, visibility{};  ///< [light]
+
+    [[nodiscard]] double all() const;  ///< of all phases and lights
+};
+
+/// Milliseconds of wall clock.
+[[nodiscard]] double wall_clock_ms();
+
+struct TurnOptions {
+    int rounds         = 7;     ///< at most, at least 1
+    double budget_ms   = 3000;  ///< for all settings together, without their first runs
+    std::uint32_t seed = 1;     ///< of the order
+    bool share_builds  = true;  ///< false: every setting has a build of its own in each round
+    int threads        = 0;     ///< 0: as the process has it
+    std::function<void(const std::string&)> progress{};
+    /// First runs that have already happened, one a setting (nothing for one that does not serve): they are not run
+    /// again. Empty: each setting runs once before the first round.
+    std::vector<std::optional<RunTimes>> first{};
+    std::function<double()> clock          = wall_clock_ms;
+    std::function<void()> calibration_loop = calibration_work;  ///< timed at the begin of each round
+};
+
+/// Of one setting: one value a round, all lights together, milliseconds. A setting takes part in the first rounds and
+/// then in none, so that samples of two settings with one index are of one round.
+struct TurnTimes {
+    MethodChoice choice;
+    Service service{};
+    std::vector<double> build{}, aim{}, visibility{};
+    std::vector<std::vector<double>> light_aim{}, light_visibility{};  ///< [light][round]
+    double cold_build = 0, cold_aim = 0, cold_visibility = 0;          ///< the first run, kept apart
+    std::vector<int> order{};          ///< its position within each round, from 0; the A/A twin has one too
+    std::size_t memory_bytes = 0;      ///< after the last light was aimed at
+    bool only_cold           = false;  ///< it took so long that the first run is also the one sample
+    std::string failed{};              ///< the message of what it threw; its samples up to there are kept
+};
+
+struct Turns {
+    std::vector<TurnTimes> settings;       ///< as given
+    std::vector<double> calibration{};     ///< ms of the calibration loop, one a round
+    double noise_bar = 0;                  ///< of the control's total time; infinite where there is no control
+    std::optional<std::size_t> control{};  ///< the setting that ran twice a round: the cheapest
+    std::optional<TurnTimes> twin{};       ///< its second run of each round
+};
+
+/// Every setting once a round, in an order drawn for each round. Settings of one method that differ only in parameters
+/// of aim or visibility form a group: in each round they follow one another behind one build, on a Method that is new
+/// in this round, and each is recorded with the time of that build. The order of the groups is drawn, and that within
+/// each. The cheapest setting runs a second time, in a group of its own, as an A/A control.
+///
+/// Only the method is inside the clock: not its construction, not the clearing of planes.
+///
+/// Before the first round each setting runs once (`cold`), in the order given, groups together. It takes part in a
+/// round where its time by its last run fits into what is left of its part of the budget, the budget over the number of
+/// settings; in the first three rounds also where the round fits into what is left of the whole. Where it never does,
+/// its cold run is its only sample.
+///
+/// A setting that throws keeps the message in `failed`, and the others go on. Throws std::logic_error where `first`
+/// is neither empty nor one a setting.
+[[nodiscard]] Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice> choices,
+                                  const TurnOptions& options);
+
+/// Times of all phases and lights, one a round.
+[[nodiscard]] std::vector<double> totals(const TurnTimes& times);
+
+/// `times` of a setting in results.json: median, least, largest, number and samples of each phase, the cold run, and
+/// its position in each round. Throws std::logic_error where it has no samples: it does not serve, or failed.
+[[nodiscard]] Json turn_times_json(const TurnTimes& times);
+
+}  // namespace umbra

@@ -1,0 +1,69 @@
+#include "umbra/bench/time/workload.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/suggest.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::string_view kExpected = "expected events a second, as in camera=60,light=1,object=0";
+
+double rate(std::string_view pair, std::string_view text) {
+    double value             = 0;
+    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (failed != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0)
+        throw UsageError(fmt::format("workload: {}: \"{}\" is not a rate, expected a number of 0 or more", pair, text));
+    return value;
+}
+
+double& member(Workload& workload, std::string_view name) {
+    if (name == "camera") return workload.camera;
+    if (name == "light") return workload.light;
+    if (name == "object") return workload.object;
+    const std::vector<std::string> known{"camera", "light", "object"};
+    throw UsageError(fmt::format("workload: unknown event \"{}\" (known: {}){}", name, fmt::join(known, ", "),
+                                 did_you_mean(std::string(name), known)));
+}
+
+}  // namespace
+
+Workload parse_workload(const std::string& text) {
+    Workload workload{0, 0, 0};
+    std::set<std::string_view> seen;
+    for (std::string_view rest = text;;) {
+        const std::size_t comma     = rest.find(',');
+        const std::string_view pair = rest.substr(0, comma);
+        const std::size_t equals    = pair.find('=');
+        if (equals == std::string_view::npos)
+            throw UsageError(fmt::format("workload: found \"{}\", {}", pair, kExpected));
+        const std::string_view name = pair.substr(0, equals);
+        member(workload, name)      = rate(pair, pair.substr(equals + 1));
+        if (!seen.insert(name).second) throw UsageError(fmt::format("workload: {} is set twice", name));
+        if (comma == std::string_view::npos) break;
+        rest = rest.substr(comma + 1);
+    }
+    if (workload.camera + workload.light + workload.object == 0)
+        throw UsageError(fmt::format("workload: nothing moves in \"{}\", expected a rate above 0", text));
+    return workload;
+}
+
+std::string to_text(const Workload& workload) {
+    return fmt::format("camera={},light={},object={}", workload.camera, workload.light, workload.object);
+}
+
+double frame_cost_ms(const Workload& workload, double build_ms, double aim_ms, double visibility_ms) {
+    const double frames = std::max({workload.camera, workload.light, workload.object});
+    const auto of       = [&](double events, double ms) { return events > 0 ? events / frames * ms : 0; };
+    return of(workload.object, build_ms) + of(std::max(workload.light, workload.object), aim_ms) + visibility_ms;
+}
+
+}  // namespace umbra
