@@ -171,8 +171,9 @@ TEST(Crossing, OfExactLaws) {
     EXPECT_FALSE(crossing(fit_power_law(x, slow), fit_power_law(x, slow))) << "parallel";
 }
 
-/// The interval of a crossing holds the truth in 95 % of 400 experiments; its degrees of freedom are the smaller fit's,
-/// which makes it wider than need be: 94 to 100 % (one standard deviation is 1.1 %).
+/// The interval of a crossing, here far beyond the measured sizes, holds the truth in 95 % of 400 experiments; its
+/// degrees of freedom are the smaller fit's, which makes it wider than need be: 94 to 100 % (one standard deviation
+/// is 1.1 %).
 TEST(Crossing, IntervalCoversTheTruth) {
     Normal normal(11);
     const Values x{10, 30, 100, 300, 1000, 3000};
@@ -181,15 +182,34 @@ TEST(Crossing, IntervalCoversTheTruth) {
         Values a, b;
         for (const double v : x) {
             a.push_back(v * std::exp(0.1 * normal()));
-            b.push_back(20 * std::sqrt(v) * std::exp(0.1 * normal()));
+            b.push_back(200 * std::sqrt(v) * std::exp(0.1 * normal()));
         }
-        const auto meeting = crossing(fit_power_law(x, a), fit_power_law(x, b));  // at 400
+        const auto meeting = crossing(fit_power_law(x, a), fit_power_law(x, b));  // at 40,000
         ASSERT_TRUE(meeting);
-        holds += meeting->interval.low <= 400 && 400 <= meeting->interval.high;
-        bounded += meeting->interval.high < 1e4;
+        holds += meeting->interval.low <= 4e4 && 4e4 <= meeting->interval.high;
+        bounded += meeting->interval.high < 1e7;
     }
     EXPECT_GE(holds, 376);
     EXPECT_EQ(bounded, 400);
+}
+
+/// At both bounds the lines differ by 2.7764 standard errors: Student's t of four degrees of freedom, from the table.
+TEST(Crossing, BoundsAreWhereTheDifferenceIsItsError) {
+    const Values x{10, 30, 100, 300, 1000, 3000};
+    const PowerLaw a   = fit_power_law(x, Values{11, 28, 104, 310, 950, 3100});
+    const PowerLaw b   = fit_power_law(x, Values{650, 1050, 2100, 3300, 6600, 10400});
+    const auto meeting = crossing(a, b);
+    ASSERT_TRUE(meeting);
+    EXPECT_LT(meeting->interval.low, meeting->x);
+    EXPECT_GT(meeting->interval.high, meeting->x);
+    for (const double bound : {meeting->interval.low, meeting->interval.high}) {
+        double variance = 0;
+        for (const PowerLaw& law : {a, b}) {
+            const double off = std::log(bound) - law.log_x_mean;
+            variance += law.residual_variance * (1.0 / 6 + off * off / law.log_x_spread);
+        }
+        EXPECT_NEAR(std::abs(std::log(a.at(bound) / b.at(bound))) / std::sqrt(variance), 2.7764, 1e-4);
+    }
 }
 
 /// Exponents that do not differ cross nowhere that can be said.
