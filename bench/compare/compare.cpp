@@ -7,6 +7,7 @@
 #include <set>
 
 #include "umbra/bench/compare/exr_layers.h"
+#include "umbra/bench/compare/image_figures.h"
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
@@ -18,25 +19,11 @@
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
-#include "umbra/core/image/metrics.h"
 #include "umbra/core/render/shade.h"
 
 namespace umbra {
 namespace fs = std::filesystem;
 namespace {
-
-/// One method's S_j planes made into pictures, once.
-struct Rendered {
-    Image linear;  ///< R G B
-    Image shown;   ///< R G B, sRGB
-};
-
-Rendered render(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> planes) {
-    Rendered r;
-    r.linear = shade(scene, points, planes);
-    r.shown  = displayed(r.linear, scene.tone, scene.exposure);
-    return r;
-}
 
 /// What people look at: `rendered` with several points a pixel where those are prepared and the method has answered the
 /// picture whole.
@@ -92,25 +79,14 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
     return files;
 }
 
-/// Differences of the pictures over covered pixels: where a method leaves any light undefined, the reference's pixel
-/// is used.
+/// The differences of the pictures, and their map in a file.
 Json image_json(const fs::path& folder, const std::string& id, const MethodRun& run, Rendered rendered,
                 const Rendered& reference, Json& files) {
-    for (const VisibilityPlane& plane : run.planes)
-        for (std::size_t i = 0; i < plane.size(); ++i)
-            if (!plane.defined(i))
-                for (std::size_t c = 0; c < 3; ++c) {
-                    rendered.linear.at(i, c) = reference.linear.at(i, c);
-                    rendered.shown.at(i, c)  = reference.shown.at(i, c);
-                }
-    const Flip flip = flip_ldr(reference.shown, rendered.shown);
-    files["flip"]   = id + ".flip.png";
-    write_image(folder / files["flip"], flip_picture(rendered.shown.width, rendered.shown.height, flip.map));
-    return {{"rmse", number(image_error(rendered.linear, reference.linear).rmse)},
-            {"psnr", number(image_error(rendered.shown, reference.shown).psnr)},
-            {"ssim", number(ssim(rendered.shown, reference.shown))},
-            {"flip", number(flip.mean)},
-            {"flip_hdr", number(flip_hdr(reference.linear, rendered.linear).mean)}};
+    const int width = rendered.shown.width, height = rendered.shown.height;
+    ImageFigures found = image_figures(run.planes, std::move(rendered), reference);
+    files["flip"]      = id + ".flip.png";
+    write_image(folder / files["flip"], flip_picture(width, height, found.flip.map));
+    return std::move(found.figures);
 }
 
 void warn(const Scene& scene, const std::function<void(const std::string&)>& receive) {
@@ -140,7 +116,7 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     at.reset();
     Json entry = served_json(id, prepared, run, explained, reference.choice.text());
     Rendered rendered;
-    shade_ms       = timed_ms([&] { rendered = render(scene, prepared.points, run.planes); });
+    shade_ms       = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
     Json files     = write_files(folder, id, prepared, run, rendered, reference, explained, command);
     entry["image"] = image_json(folder, id, run, std::move(rendered), reference_rendered, files);
     entry["files"] = std::move(files);
@@ -213,7 +189,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
             : find_truth(reference);
     const ReferenceRun& reference_ran = truth_ran.ran;
     const MethodRun& reference_run    = reference_ran.run;
-    const Rendered reference_rendered = render(scene, prepared.points, reference_run.planes);
+    const Rendered reference_rendered = render_planes(scene, prepared.points, reference_run.planes);
 
     Json record                  = {{"schema", kResultsSchema},
                                     {"version", version()},
@@ -242,7 +218,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
             Reference chosen = default_reference(prepared.facts, measure);
             tell("reference " + chosen.choice.text());
             other.emplace(Truth{find_truth(chosen).ran, {}});
-            other->rendered = render(scene, prepared.points, other->ran.run.planes);
+            other->rendered = render_planes(scene, prepared.points, other->ran.run.planes);
         }
         return true;
     };
@@ -337,7 +313,7 @@ Service render_scene(const fs::path& file, const RenderOptions& options) {
                                       current_message()));
     }
     if (!run.service) return run.service;
-    const Rendered rendered = render(prepared.scene, prepared.points, run.planes);
+    const Rendered rendered = render_planes(prepared.scene, prepared.points, run.planes);
     Image image =
         png ? picture_of(prepared, run, rendered)
             : exr_image(rendered.linear, prepared.scene, prepared.points, run, {.geometry = options.with_geometry});

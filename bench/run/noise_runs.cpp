@@ -14,7 +14,7 @@ double other_seed(double own, int run) {
 }  // namespace
 
 std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
-                                                  const SceneFacts& facts, const PointBatch& points) {
+                                                  const SceneFacts& facts, const PointBatch& points, int runs) {
     std::vector<std::optional<NoiseMeter>> meters(scene.lights.size());
     const std::string_view seed = choice.info->seed;
     if (seed.empty()) return meters;
@@ -22,11 +22,16 @@ std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, co
         if (is_area(scene.lights[j].kind)) meters[j].emplace(points.size());
     if (std::ranges::none_of(meters, [](const auto& meter) { return meter.has_value(); })) return meters;
 
-    for (int run = 0; run < kNoiseRuns; ++run) {
+    std::unique_ptr<Method> method;
+    for (int run = 0; run < runs; ++run) {
         Settings settings = choice.settings;
         settings.set(seed, other_seed(choice.settings.value(seed), run));
-        const std::unique_ptr<Method> method = choice.info->make(settings);
-        method->build(scene, facts);
+        if (method == nullptr || first_changed_phase(choice.settings, settings) == Phase::build) {
+            method = choice.info->make(settings);
+            method->build(scene, facts);
+        } else {
+            method->configure(settings);
+        }
         for (LightId j = 0; j < scene.lights.size(); ++j) {
             if (!meters[j]) continue;
             VisibilityPlane plane(points.size());

@@ -13,9 +13,10 @@ namespace umbra {
 /// sqrt(2 / (K - 1)) at one point, and nothing over the thousands of a penumbra.
 inline constexpr int kNoiseRuns = 8;
 
-/// One meter a light, fed with kNoiseRuns runs; empty for methods that have no seed (their answers are always the same)
+/// One meter a light, fed with `runs` runs; empty for methods that have no seed (their answers are always the same)
 /// and for lights without an area (all their samples are one point).
 [[nodiscard]] std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
-                                                                const SceneFacts& facts, const PointBatch& points);
+                                                                const SceneFacts& facts, const PointBatch& points,
+                                                                int runs = kNoiseRuns);
 
 }  // namespace umbra

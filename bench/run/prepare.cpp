@@ -75,9 +75,18 @@ Size parse_size(const std::string& text) {
 }
 
 PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples, Work work) {
+    static_cast<void>(samples_along_side(pixel_samples));  // a wrong number is no reason to read a mesh
+    Scene scene;
+    const double load_ms = timed_ms([&] { scene = load_scene(file); });
+    PreparedScene p      = prepare_scene(std::move(scene), file, size, pixel_samples, work);
+    p.load_ms            = load_ms;
+    return p;
+}
+
+PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size size, int pixel_samples, Work work) {
     PreparedScene p;
     p.pixel_side = samples_along_side(pixel_samples);
-    p.load_ms    = timed_ms([&] { p.scene = load_scene(file); });
+    p.scene      = std::move(scene);
     if (size.width == 0) size = {p.scene.width, p.scene.height};
     if (static_cast<long>(size.width) * size.height > kMaxArea)
         throw InputError(fmt::format("{}: the picture is {} x {}, expected at most {} pixels (set --size)",

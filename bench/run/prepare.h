@@ -42,4 +42,8 @@ struct Size {
 [[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples = 1,
                                           Work work = Work::comparison);
 
+/// The same for a scene that is there already; `file` names it in messages.
+[[nodiscard]] PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size size,
+                                          int pixel_samples = 1, Work work = Work::comparison);
+
 }  // namespace umbra

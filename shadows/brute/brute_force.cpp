@@ -19,13 +19,14 @@ struct Options {
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::samples>({.name  = "samples",
-                                  .doc   = "Segments from a point to an area light; other lights take one.",
-                                  .unit  = "segments a point",
-                                  .phase = Phase::visibility,
-                                  .min   = 1,
-                                  .max   = 4096,
-                                  .sweep = "4|16|64"}),
+    parameter<&Options::samples>({.name        = "samples",
+                                  .doc         = "Segments from a point to an area light; other lights take one.",
+                                  .unit        = "segments a point",
+                                  .phase       = Phase::visibility,
+                                  .min         = 1,
+                                  .max         = 4096,
+                                  .sweep       = "4|16|64",
+                                  .area_lights = true}),
     parameter<&Options::max_triangles>({.name  = "max_triangles",
                                         .doc   = "Scenes of more triangles are not served: a picture would take hours.",
                                         .phase = Phase::build,

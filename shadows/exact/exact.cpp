@@ -29,14 +29,16 @@ const std::vector<Parameter> kParameters{
         {.name = "arithmetic",
          .doc = "Area lights. filtered: floating point with a proven bound, and rationals where the bound is too wide; "
                 "rational: rationals throughout, for a few points.",
-         .phase   = Phase::build,
-         .choices = "filtered|rational"}),
+         .phase       = Phase::build,
+         .choices     = "filtered|rational",
+         .area_lights = true}),
     parameter<&Options::measure>(
-        {.name    = "measure",
-         .doc     = "Which fraction of an area light S_j is. area: visible area over the light's area; irradiance: "
-                    "irradiance that arrives over irradiance without occluders, as radiosity and most renderers have it.",
-         .phase   = Phase::build,
-         .choices = "area|irradiance"}),
+        {.name        = "measure",
+         .doc         = "Which fraction of an area light S_j is. area: visible area over the light's area; irradiance: "
+                        "irradiance that arrives over irradiance without occluders, as radiosity and most renderers have it.",
+         .phase       = Phase::build,
+         .choices     = "area|irradiance",
+         .area_lights = true}),
 };
 
 constexpr int kPoints = 256;  ///< of an area light, tried in turn until one is hidden

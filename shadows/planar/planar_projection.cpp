@@ -56,7 +56,8 @@ const std::vector<Parameter> kParameters{
                                         .phase = Phase::aim,
                                         .min   = 1,
                                         .max   = 4096,
-                                        .sweep = "4|16|64|256"}),
+                                        .sweep = "4|16|64|256",
+                                        .area_lights = true}),
 };
 
 class PlanarProjection final : public MethodWith<Options> {
