@@ -8,6 +8,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/ladders/ladder_record.h"
+#include "umbra/bench/sweep/metrics.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/io/scene_io.h"
@@ -48,12 +49,24 @@ void print_scene(const Json& s) {
     print_out("{} - {}\n  {}\n  {}\n", text(s["name"]), text(s["title"]), text(s["shows"]), text(s["source"]));
 }
 
+std::vector<std::string> metric_names() {
+    std::vector<std::string> names;
+    for (const Metric& m : metrics()) names.emplace_back(m.name);
+    return names;
+}
+
+void print_metrics(const Json& all) {
+    for (const Json& m : all)
+        print_out("{:<28}{}{}\n", text(m["name"]), text(m["doc"]),
+                  text(m["unit"]).empty() ? "" : fmt::format(" ({})", text(m["unit"])));
+}
+
 int list_all(bool as_json) {
     Json record = {{"schema", kResultsSchema},
                    {"version", version()},
                    {"methods", Json::array()},
                    {"scenes", Json::array()},
-                   {"metrics", {"mae", "rmse", "max", "bias", "psnr", "ssim", "flip"}},
+                   {"metrics", metrics_json()},
                    {"ladders", Json::array()}};
     for (const MethodInfo* info : methods()) record["methods"].push_back(method_json(*info));
     for (const std::string& scene : canonical_names()) record["scenes"].push_back(scene);
@@ -64,7 +77,7 @@ int list_all(bool as_json) {
     }
     for (const Json& m : record["methods"]) print_method(m);
     print_out("\nScenes: {}\nMetrics: {}\nLadders: {}\n", fmt::join(canonical_names(), " "),
-              fmt::join(record["metrics"].get<std::vector<std::string>>(), " "), fmt::join(ladder_names(), " "));
+              fmt::join(metric_names(), " "), fmt::join(ladder_names(), " "));
     return kDone;
 }
 
@@ -78,6 +91,7 @@ int list_one(const std::string& name, bool as_json) {
             print(entry);
         return kDone;
     };
+    if (name == "metrics") return show("metrics", metrics_json(), print_metrics);
     if (const auto m = std::find_if(methods().begin(), methods().end(), is_it); m != methods().end())
         return show("method", method_json(**m), print_method);
     if (const auto l = std::find_if(ladders().begin(), ladders().end(), is_it); l != ladders().end())
@@ -99,7 +113,7 @@ int list(const ListLine& line) {
 
 Action list_command(CLI::App& app, const Common& /*common*/) {
     const auto line = std::make_shared<ListLine>();
-    app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full")->type_name("");
+    app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full, or metrics")->type_name("");
     app.add_flag("--json", line->as_json, "Print JSON");
     return [line] { return list(*line); };
 }

@@ -1,0 +1,102 @@
+#include "umbra/bench/recommend/recommend.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdlib>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/sweep.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RecommendLine {
+    std::string scene, size, reference, workload, cells;
+    std::vector<std::string> limits, methods;
+    std::optional<std::uint64_t> points;
+    bool as_json = false;
+    RecommendOptions options;
+};
+
+/// Where cells are kept unless the command says otherwise.
+fs::path cache_folder() {
+    if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0')
+        return fs::path(cache) / "umbra/cells";
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home != '\0')
+        return fs::path(home) / ".cache/umbra/cells";
+    return fs::temp_directory_path() / "umbra-cells";
+}
+
+int recommend(RecommendLine line, const Common& common) {
+    RecommendOptions& options = line.options;
+    if (line.scene.empty()) throw UsageError("recommend: SCENE is required");
+    if (line.limits.empty()) throw UsageError("recommend: --max METRIC=LIMIT is required");
+    for (const std::string& limit : line.limits) options.limits.push_back(parse_limit(limit));
+    if (!line.workload.empty()) options.workload = parse_workload(line.workload);
+    SweepPlan plan;
+    plan.settings = line.methods;
+    CellOptions cell;
+    if (!line.size.empty()) cell.size = parse_size(line.size);
+    if (!line.reference.empty()) {
+        static_cast<void>(parse_method(line.reference).make());
+        cell.reference = line.reference;
+    }
+    cell.points = line.points;
+    Recommendation found;
+    {
+        const Terminal terminal(common.quiet);
+        cell.progress = [&](const std::string& what) { terminal.progress(what); };
+        const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
+        SceneLab lab(scene_file(line.scene), cell, store);
+        for (const std::string& warning : lab.scene().warnings)
+            terminal.warn(fmt::format("{}: {}", lab.scene().name, warning));
+        options.choices = planned_settings(plan, lab.facts());
+        found           = recommend(lab, options);
+    }
+    print_out("{}",
+              line.as_json ? json_text(recommendation_json(found, options)) : recommendation_text(found, options));
+    return found.chosen ? kDone : kNo;
+}
+
+}  // namespace
+
+Action recommend_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<RecommendLine>();
+    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("");
+    app.add_option("--max", line->limits, "The largest error: METRIC=LIMIT (metrics: umbra list metrics); repeatable")
+        ->type_name("METRIC=E")
+        ->take_all();
+    app.add_option("--workload", line->workload, "Events a second (default: camera=60,light=1,object=0)")
+        ->type_name("LIST");
+    app.add_option("--methods", line->methods,
+                   "Candidates: METHOD, METHOD@PRESET, METHOD:k=a|b (default: the methods' own sweeps)")
+        ->type_name("METHOD");
+    app.add_option("--views", line->options.views, "Views to choose on: the scene's own, and jittered ones")
+        ->capture_default_str()
+        ->check(CLI::Range(2, 1000))
+        ->type_name("N");
+    app.add_option("--held-out", line->options.held_out, "Further views to try the choice on")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 1000))
+        ->type_name("N");
+    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    app.add_option("--reference", line->reference, "Reference method (default: as for compare)")->type_name("METHOD");
+    app.add_option("--reference-points", line->points, "Score area lights at about N stratified points")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
+        ->type_name("N");
+    app.add_option("-o,--output", line->cells,
+                   "Folder of a sweep whose cells are used and added to (default: a folder in the user's cache)")
+        ->type_name("DIR");
+    app.add_flag("--json", line->as_json, "Print the answer as JSON");
+    return [line, &common] { return recommend(*line, common); };
+}
+
+}  // namespace umbra

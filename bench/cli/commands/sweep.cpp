@@ -1,0 +1,176 @@
+#include "umbra/bench/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/sweep/grid.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SweepLine {
+    std::vector<std::string> scenes;
+    std::string size, reference, settings_file, workload, pack;
+    std::optional<std::size_t> list;
+    std::vector<std::string> merge;
+    bool no_times = false, as_json = false;
+    SweepOptions options;
+};
+
+/// One command a part, for engines that run commands: each may be run again and writes files of its own.
+void print_list(const SweepOptions& options, std::size_t parts) {
+    const std::vector<PlannedCell> cells = planned_cells(options.plan);
+    if (parts == 0) parts = cells.size();
+    parts                       = std::min(parts, cells.size());
+    const std::string arguments = plan_arguments(options.plan);
+    for (std::size_t k = 0; k < parts; ++k)
+        print_out("{} sweep {} --pack {}/{} -o '{}'\n", fs::read_symlink("/proc/self/exe").string(), arguments, k + 1,
+                  parts, fs::absolute(options.out).string());
+}
+
+/// The fronts of the first metric, a line a setting.
+void print_fronts(const SweepDone& done) {
+    for (const Json& record : done.records) {
+        const Json& sweep = record["sweep"];
+        print_out("{}: cost of a frame, S_j error (rmse), its upper bound; settings that no other beats in both:\n",
+                  record["scene"]["name"].get<std::string>());
+        for (const Json& text : sweep["fronts"]["rmse"])
+            for (const Json& s : sweep["settings"])
+                if (s["text"] == text) {
+                    const Json& bound = s["bounds"]["rmse"];
+                    print_out("  {:>9.3f} ms  {:<9.3g}  {:<9}  {}\n", s["cost_ms"].get<double>(),
+                              s["values"]["rmse"].get<double>(),
+                              bound.is_number() ? fmt::format("{:.3g}", bound.get<double>()) : "-",
+                              text.get<std::string>());
+                }
+    }
+}
+
+int report_failures(const std::vector<std::string>& failed) {
+    for (const std::string& message : failed) print_error("{}\n", message);
+    return failed.empty() ? kDone : kInternal;
+}
+
+void write_records(const SweepOptions& options, const SweepDone& done) {
+    StagedFiles staged;
+    for (std::size_t s = 0; s < done.records.size(); ++s) {
+        make_folder(options.out / done.folders[s]);
+        check_writable_beside(options.out / done.folders[s]);
+        staged.write(options.out / done.folders[s] / "results.json", json_text(done.records[s]));
+    }
+    if (done.records.size() == 1) {
+        staged.write(options.out / "results.json", json_text(done.records.front()));
+    } else {
+        const Json all = {
+            {"schema", kResultsSchema}, {"version", version()}, {"command", options.command}, {"sweeps", done.folders}};
+        staged.write(options.out / "results.json", json_text(all));
+    }
+    staged.commit();
+}
+
+int sweep(SweepLine line, const Common& common) {
+    SweepOptions& options = line.options;
+    return_scenes(options.plan.settings, line.scenes);
+    options.command = common.command;
+    options.threads = thread_count();
+    if (!line.merge.empty() && (!line.scenes.empty() || !options.plan.settings.empty()))
+        throw UsageError("sweep: --merge takes scenes and settings from the folders, expected none beside it");
+    if (line.merge.empty() && line.scenes.empty()) throw UsageError("sweep: SCENE is required");
+    if (!line.settings_file.empty())
+        for (const MethodChoice& choice : settings_in_file(line.settings_file))
+            options.plan.settings.push_back(choice.text());
+    if (!line.size.empty()) options.plan.size = parse_size(line.size);
+    if (!line.reference.empty()) {
+        static_cast<void>(parse_method(line.reference).make());
+        options.plan.reference = line.reference;
+    }
+    if (!line.workload.empty()) options.workload = parse_workload(line.workload);
+    options.times = !line.no_times;
+    for (const fs::path& file : scene_files(line.scenes)) options.plan.scenes.push_back(fs::absolute(file));
+
+    if (line.list) {
+        print_list(options, *line.list);
+        return kDone;
+    }
+    if (!line.pack.empty()) {
+        const Pack pack = parse_pack(line.pack);
+        std::vector<std::string> failed;
+        const Terminal terminal(common.quiet);
+        options.progress = [&](const std::string& what) { terminal.progress(what); };
+        sweep_pack(options, pack, failed);
+        return report_failures(failed);
+    }
+    check_writable_beside(options.out);
+    const PlaceLock lock = PlaceLock::inside(options.out);
+    if (!line.merge.empty()) options.plan = merged_plan({line.merge.begin(), line.merge.end()}, options.out);
+    SweepDone done;
+    {
+        const Terminal terminal(common.quiet);
+        options.progress = [&](const std::string& what) { terminal.progress(what); };
+        options.warn     = [&](const std::string& what) { terminal.warn(what); };
+        done             = sweep(options);
+    }
+    write_records(options, done);
+    if (line.as_json) {
+        for (const Json& record : done.records) print_out("{}", json_text(record));
+    } else if (!common.quiet) {
+        print_fronts(done);
+        print_out("{} cells, {} of them computed now\n{}\n", done.cells, done.computed,
+                  (options.out / "results.json").string());
+    }
+    return report_failures(done.failed);
+}
+
+}  // namespace
+
+Action sweep_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<SweepLine>();
+    app.add_option("SCENE", line->scenes, "Scenes: files or canonical names")->type_name("");
+    app.add_option("--methods", line->options.plan.settings,
+                   "Settings: METHOD, METHOD@PRESET, METHOD:k=a|b|c,l=d|e (default: the methods' own sweeps)")
+        ->type_name("METHOD");
+    app.add_option("--settings", line->settings_file, "A file of such settings, one a line")->type_name("FILE");
+    app.add_option("--views", line->options.plan.views,
+                   "Views: the scene's own, and others with camera and lights jittered")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    app.add_option("--reference", line->reference, "Reference method (default: as for compare)")->type_name("METHOD");
+    app.add_option("--reference-points", line->options.plan.points,
+                   "Score area lights at about N stratified points (default: all points, if affordable)")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
+        ->type_name("N");
+    app.add_option("--workload", line->workload,
+                   "Events a second that the cost of a frame is for (default: camera=60,light=1,object=0)")
+        ->type_name("LIST");
+    app.add_flag("--no-times", line->no_times, "Errors only");
+    app.add_option("--list", line->list,
+                   "Print the commands that compute the cells in N parts (0: one a cell), and do nothing else")
+        ->type_name("N")
+        ->expected(0, 1)
+        ->default_str("0");
+    app.add_option("--pack", line->pack, "Compute part K of N of the cells, and nothing else")->type_name("K/N");
+    app.add_option("--merge", line->merge, "Put folders with parts of one sweep together")->type_name("DIR");
+    app.add_flag("--json", line->as_json, "Print results.json instead of the fronts");
+    app.add_option("-o,--output", line->options.out, "Folder to write to, and to go on from")
+        ->type_name("DIR")
+        ->required();
+    return [line, &common] { return sweep(*line, common); };
+}
+
+}  // namespace umbra

@@ -1,0 +1,89 @@
+// `umbra recommend`: the cheapest setting whose errors stay within limits, with its evidence and its margin.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/sweep/metrics.h"
+#include "umbra/bench/sweep/scene_lab.h"
+#include "umbra/bench/time/workload.h"
+
+namespace umbra {
+
+/// A metric's upper bound (bench/sweep/bounds.h) must not exceed `most`.
+struct Limit {
+    const Metric* metric = nullptr;
+    double most          = 0;
+};
+/// "METRIC=E", E at least 0. Throws UsageError.
+[[nodiscard]] Limit parse_limit(const std::string& text);
+
+struct RecommendOptions {
+    std::vector<Limit> limits;  ///< at least one
+    Workload workload;
+    std::vector<MethodChoice> choices;  ///< candidates; those that answer all points alone are taken
+    int views    = 5;                   ///< that the choice is made on, from view 0
+    int held_out = 3;                   ///< further views that the chosen setting is tried on afterwards
+    TurnOptions turns{.rounds = 9, .budget_ms = 20000};
+    std::function<void(const std::string&)> progress{};
+};
+
+/// Settings of one method that differ in one number alone whose growth lowers the errors (the parameter has a sweep of
+/// numbers), by ascending number. Other settings are families of one.
+struct Family {
+    std::string parameter;  ///< empty in a family of one
+    std::vector<MethodChoice> settings;
+};
+[[nodiscard]] std::vector<Family> families(std::span<const MethodChoice> choices);
+
+/// The index of the first setting of a family that `good` accepts, by bisection, which takes for granted that each one
+/// behind an accepted one is accepted; nothing where the last is not. `good` is asked at most once a setting.
+[[nodiscard]] std::optional<std::size_t> first_good(std::size_t count, const std::function<bool(std::size_t)>& good);
+
+/// One setting that was looked at.
+struct Candidate {
+    MethodChoice choice;
+    std::vector<Json> views;                    ///< cells
+    std::vector<std::optional<double>> bounds;  ///< [limit]
+    std::string unfit;                          ///< why it is no candidate at all; empty where it is one
+    std::vector<double> costs;                  ///< ms a frame, one a round; empty where not timed
+    std::optional<double> cost;                 ///< their median
+    [[nodiscard]] bool within(std::span<const Limit> limits) const;
+    /// The largest bound over its limit; infinite where a bound is not known.
+    [[nodiscard]] double worst_ratio(std::span<const Limit> limits) const;
+};
+
+/// How much cheaper: settings are tied where the paired ratio of their costs does not differ from 1 by more than noise.
+struct Rival {
+    std::size_t candidate;
+    double ratio, low, high;  ///< its cost over that of the recommendation
+};
+
+/// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest.
+struct Step {
+    std::size_t candidate;
+    double error;
+};
+
+struct Recommendation {
+    std::vector<Candidate> candidates;
+    std::optional<std::size_t> chosen;        ///< none: no setting is within the limits
+    std::optional<std::size_t> nearest;       ///< where none is: the one that misses by the smallest factor
+    std::vector<Rival> tied;                  ///< as cheap as the chosen one, as far as can be told
+    std::optional<Rival> runner_up;           ///< the cheapest of the others within the limits
+    std::optional<Rival> cheapest;            ///< of all that were timed, whatever their errors
+    std::optional<Rival> exact;               ///< the reference method, where it was timed
+    std::vector<Step> staircase;              ///< by descending error
+    std::vector<Json> held_out;               ///< cells of the chosen one in views that it was not chosen on
+    std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
+    double noise_bar = 0;
+};
+[[nodiscard]] Recommendation recommend(SceneLab& lab, const RecommendOptions& options);
+
+/// As `umbra recommend --json` prints it (README), and in words.
+[[nodiscard]] Json recommendation_json(const Recommendation& r, const RecommendOptions& options);
+[[nodiscard]] std::string recommendation_text(const Recommendation& r, const RecommendOptions& options);
+
+}  // namespace umbra

@@ -1,0 +1,162 @@
+// A recommendation as JSON and in words.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "umbra/bench/recommend/recommend.h"
+
+namespace umbra {
+namespace {
+
+Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
+
+std::optional<double> largest(const Metric& metric, const std::vector<Json>& views) {
+    std::optional<double> most;
+    for (const Json& cell : views) {
+        const auto value = metric_value(metric, cell);
+        if (!value) return std::nullopt;
+        most = std::max(most.value_or(*value), *value);
+    }
+    return most;
+}
+
+/// In how many of the cells a metric is at most `bound`.
+std::size_t held(const Metric& metric, const std::vector<Json>& cells, double bound) {
+    return static_cast<std::size_t>(std::ranges::count_if(cells, [&](const Json& cell) {
+        const auto value = metric_value(metric, cell);
+        return value && *value <= bound;
+    }));
+}
+
+Json candidate_json(const Candidate& c, const RecommendOptions& options) {
+    Json errors = Json::object();
+    for (std::size_t k = 0; k < options.limits.size(); ++k) {
+        const Limit& limit                      = options.limits[k];
+        errors[std::string(limit.metric->name)] = {{"limit", limit.most},
+                                                   {"largest", optional_number(largest(*limit.metric, c.views))},
+                                                   {"bound", optional_number(c.bounds[k])}};
+    }
+    return {{"method", c.choice.text()}, {"cost", optional_number(c.cost)}, {"errors", std::move(errors)}};
+}
+
+Json rival_json(const Rival& rival, const Recommendation& r, const RecommendOptions& options) {
+    Json entry          = candidate_json(r.candidates[rival.candidate], options);
+    entry["cost_ratio"] = {{"median", number(rival.ratio)}, {"low", number(rival.low)}, {"high", number(rival.high)}};
+    return entry;
+}
+
+std::string with_unit(double value, std::string_view unit) {
+    return unit.empty() || unit == "share of points" ? fmt::format("{:.3g}", value)
+                                                     : fmt::format("{:.3g} {}", value, unit);
+}
+
+std::string errors_in_words(const Candidate& c, const RecommendOptions& options) {
+    std::string text;
+    for (std::size_t k = 0; k < options.limits.size(); ++k) {
+        const Limit& limit = options.limits[k];
+        const auto most    = largest(*limit.metric, c.views);
+        text += fmt::format(
+            "    {}: at most {}{}; limit {}\n", limit.metric->name,
+            c.bounds[k] ? with_unit(*c.bounds[k], limit.metric->unit) : "(no bound is known)",
+            most ? fmt::format(" (largest of {} views: {})", c.views.size(), with_unit(*most, limit.metric->unit)) : "",
+            with_unit(limit.most, limit.metric->unit));
+    }
+    return text;
+}
+
+std::string rival_in_words(const Rival& rival, const Recommendation& r) {
+    const Candidate& c = r.candidates[rival.candidate];
+    return fmt::format("{} ({:.3f} ms, {:.2f} times, {:.2f} to {:.2f})", c.choice.text(), *c.cost, rival.ratio,
+                       rival.low, rival.high);
+}
+
+std::string staircase_in_words(const Recommendation& r, const RecommendOptions& options) {
+    if (r.staircase.empty()) return {};
+    std::string text = fmt::format("  If {} may be at most E, the cheapest of the settings tried:\n",
+                                   options.limits.front().metric->name);
+    for (std::size_t k = 0; k < r.staircase.size(); ++k) {
+        const Step& step        = r.staircase[k];
+        const std::string range = k == 0 ? fmt::format("E from {:.3g}", step.error)
+                                         : fmt::format("E from {:.3g} to {:.3g}", step.error, r.staircase[k - 1].error);
+        text += fmt::format("    {:<28} {:>9.3f} ms  {}\n", range, *r.candidates[step.candidate].cost,
+                            r.candidates[step.candidate].choice.text());
+    }
+    return text;
+}
+
+}  // namespace
+
+Json recommendation_json(const Recommendation& r, const RecommendOptions& options) {
+    Json record = {{"recommendation", nullptr}, {"tied", Json::array()}, {"runner_up", nullptr},
+                   {"cheapest", nullptr},       {"exact", nullptr},      {"nearest", nullptr},
+                   {"staircase", Json::array()}};
+    if (r.chosen) {
+        Json chosen   = candidate_json(r.candidates[*r.chosen], options);
+        Json held_out = {{"views", r.held_out.size()}, {"holds", Json::object()}, {"largest", Json::object()}};
+        for (std::size_t k = 0; k < options.limits.size(); ++k) {
+            const Metric& metric                        = *options.limits[k].metric;
+            held_out["holds"][std::string(metric.name)] = held(metric, r.held_out, *r.candidates[*r.chosen].bounds[k]);
+            held_out["largest"][std::string(metric.name)] = optional_number(largest(metric, r.held_out));
+        }
+        chosen["held_out"]       = std::move(held_out);
+        record["recommendation"] = std::move(chosen);
+    }
+    for (const Rival& rival : r.tied) record["tied"].push_back(rival_json(rival, r, options));
+    if (r.runner_up) record["runner_up"] = rival_json(*r.runner_up, r, options);
+    if (r.cheapest) record["cheapest"] = rival_json(*r.cheapest, r, options);
+    if (r.exact) record["exact"] = rival_json(*r.exact, r, options);
+    if (r.nearest) {
+        record["nearest"]           = candidate_json(r.candidates[*r.nearest], options);
+        record["nearest"]["factor"] = number(r.candidates[*r.nearest].worst_ratio(options.limits));
+    }
+    for (const Step& step : r.staircase)
+        record["staircase"].push_back({{"error", number(step.error)},
+                                       {"method", r.candidates[step.candidate].choice.text()},
+                                       {"cost", optional_number(r.candidates[step.candidate].cost)}});
+    Json unfit = Json::array();
+    for (const Candidate& c : r.candidates)
+        if (!c.unfit.empty()) unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
+    record["unfit"]     = std::move(unfit);
+    record["workload"]  = to_text(options.workload);
+    record["views"]     = options.views;
+    record["settings"]  = {{"looked_at", r.looked_at}, {"of", r.settings}};
+    record["noise_bar"] = number(r.noise_bar);
+    return record;
+}
+
+std::string recommendation_text(const Recommendation& r, const RecommendOptions& options) {
+    std::string text;
+    if (!r.chosen) {
+        text = "No setting stays within the limits.\n";
+        if (r.nearest)
+            text += fmt::format("  Nearest: {}, which exceeds a limit {:.3g} times\n{}",
+                                r.candidates[*r.nearest].choice.text(),
+                                r.candidates[*r.nearest].worst_ratio(options.limits),
+                                errors_in_words(r.candidates[*r.nearest], options));
+    } else {
+        const Candidate& c = r.candidates[*r.chosen];
+        text = fmt::format("{}: {:.3f} ms a frame with {}\n{}", c.choice.text(), *c.cost, to_text(options.workload),
+                           errors_in_words(c, options));
+        for (std::size_t k = 0; k < options.limits.size() && !r.held_out.empty(); ++k) {
+            const Metric& metric = *options.limits[k].metric;
+            const auto most      = largest(metric, r.held_out);
+            text += fmt::format("  In {} views that it was not chosen on: {} of {} within that bound{}\n",
+                                r.held_out.size(), held(metric, r.held_out, *c.bounds[k]), metric.name,
+                                most ? fmt::format(", largest {}", with_unit(*most, metric.unit)) : "");
+        }
+        for (const Rival& rival : r.tied)
+            text += fmt::format("  As cheap, within the noise: {}\n", rival_in_words(rival, r));
+        if (r.runner_up) text += fmt::format("  Next: {}\n", rival_in_words(*r.runner_up, r));
+        if (r.cheapest && r.cheapest->candidate != *r.chosen)
+            text += fmt::format("  Cheapest of all, whatever its errors: {}\n", rival_in_words(*r.cheapest, r));
+        if (r.exact && r.exact->candidate != *r.chosen)
+            text += fmt::format("  The exact reference: {}\n", rival_in_words(*r.exact, r));
+    }
+    text += staircase_in_words(r, options);
+    for (const Candidate& c : r.candidates)
+        if (!c.unfit.empty()) text += fmt::format("  Left out: {}: {}\n", c.choice.text(), c.unfit);
+    return text + fmt::format("  {} of {} settings were looked at, in {} views each; bisection saved the others.\n",
+                              r.looked_at, r.settings, options.views);
+}
+
+}  // namespace umbra

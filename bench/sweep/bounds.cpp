@@ -1,0 +1,91 @@
+#include "umbra/bench/sweep/bounds.h"
+
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace umbra {
+namespace {
+
+using Kind = Metric::Kind;
+
+/// The reference's doubt about S_j, the largest of all lights.
+double half_width(const Json& cell) {
+    double widest = 0;
+    for (const Json& error : cell.at("errors"))
+        if (const Json& bracket = error.at("bracket"); bracket.is_object() && bracket.at("max_half_width").is_number())
+            widest = std::max(widest, bracket.at("max_half_width").get<double>());
+    return widest;
+}
+
+bool is_error_of_s(const Metric& metric) {
+    return metric.kind == Kind::rms || metric.kind == Kind::mean ||
+           (metric.kind == Kind::largest && metric.unit.empty());
+}
+
+/// What the points of a view leave possible. A share is an estimate from as many points. Of errors of S_j only one that
+/// was measured as 0 is: the points that none was found among may be wrong by all of S_j.
+double possible(const Metric& metric, const Json& cell, double measured) {
+    if (const auto c = counted(metric, cell)) return upper_share(c->wrong, c->of);
+    if (measured > 0 || !metric.unit.empty()) return measured;
+    const double missed = upper_share(0, points_compared(cell));
+    switch (metric.kind) {
+        case Kind::rms: return std::sqrt(missed);
+        case Kind::largest: return 1;
+        case Kind::share:
+        case Kind::mean:
+        case Kind::entry: return missed;
+    }
+    return measured;
+}
+
+/// Normal prediction bound for one more value.
+double prediction(const std::vector<double>& values) {
+    const auto n = static_cast<double>(values.size());
+    double mean = 0, squares = 0;
+    for (const double v : values) mean += v / n;
+    for (const double v : values) squares += (v - mean) * (v - mean);
+    const boost::math::students_t t(n - 1);
+    return mean + boost::math::quantile(t, kConfidence) * std::sqrt(squares / (n - 1)) * std::sqrt(1 + 1 / n);
+}
+
+}  // namespace
+
+double upper_share(std::uint64_t wrong, std::uint64_t of) {
+    if (of == 0 || wrong >= of) return 1;
+    return boost::math::binomial_distribution<double>::find_upper_bound_on_p(
+        static_cast<double>(of), static_cast<double>(wrong), 1 - kConfidence);
+}
+
+std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views) {
+    std::vector<double> values;
+    bool exactly = true;
+    for (const Json& cell : views) {
+        const auto value = metric_value(metric, cell);
+        if (!value) return std::nullopt;
+        values.push_back(*value);
+        exactly = exactly && cell.at("serves").at("how") == "exactly" && (*value == 0 || is_error_of_s(metric));
+    }
+    if (values.empty() || (!exactly && values.size() < 2)) return std::nullopt;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+        if (!exactly) values[v] = possible(metric, views[v], values[v]);
+        if (is_error_of_s(metric)) values[v] += half_width(views[v]);
+    }
+    const double largest = *std::ranges::max_element(values);
+    if (exactly) return largest;
+    double bound = 0;
+    if (*std::ranges::min_element(values) > 0) {
+        for (double& v : values) v = std::log(v);
+        bound = std::exp(prediction(values));
+    } else {
+        bound = prediction(values);
+    }
+    bound                = std::max(bound, largest);
+    const bool at_most_1 = metric.kind == Kind::share || is_error_of_s(metric);
+    return at_most_1 ? std::min(bound, std::max(1.0, largest)) : bound;
+}
+
+}  // namespace umbra

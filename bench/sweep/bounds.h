@@ -1,0 +1,33 @@
+// Upper bounds of errors: what a setting's error in a view that was not measured exceeds in one case of twenty.
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "umbra/bench/sweep/metrics.h"
+
+namespace umbra {
+
+/// The share of cases in which a bound is meant to hold.
+inline constexpr double kConfidence = 0.95;
+
+/// The largest share of wrong points that `wrong` of `of` points leave possible (Clopper and Pearson 1934, one-sided):
+/// of 0 wrong points about 3 / of.
+[[nodiscard]] double upper_share(std::uint64_t wrong, std::uint64_t of);
+
+/// From cells of one setting in several views, each of which has its own random numbers and, where the reference is
+/// sampled, its own sample of points:
+///
+///  - a setting that serves `exactly` is off by the reference's half width alone, by proof;
+///  - a view's share of points is the largest that its count leaves possible (upper_share); an error of S_j is the
+///    measured one, or, where that is 0, what 0 wrong points of as many leave possible if they are wrong by all of S_j;
+///    the half width of the reference is added;
+///  - over the views, the upper prediction bound for one more: logarithms are taken to be normally distributed,
+///  Student's
+///    t with the views less one as degrees of freedom. It is no less than the largest error measured.
+///
+/// Nothing where a view was not judged, where there are fewer than two views, and where the method failed or does not
+/// serve.
+[[nodiscard]] std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views);
+
+}  // namespace umbra

@@ -1,0 +1,77 @@
+// Quality cells: what one setting gets wrong in one view of a scene. A cell depends on its key alone and is computed
+// once.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "umbra/bench/compare/image_figures.h"
+#include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/reference.h"
+
+namespace umbra {
+
+/// Runs with other seeds that tell noise from other errors in a cell. Fewer than `compare` takes: a sweep has many
+/// cells.
+inline constexpr int kCellNoiseRuns = 3;
+
+/// What a cell's answers depend on besides the setting.
+struct CellOptions {
+    Size size{};
+    std::optional<std::string> reference{};  ///< as typed; none: `default_reference`
+    std::optional<std::uint64_t> points{};   ///< at which area lights are scored; none: as `run_reference` chooses
+    std::function<void(const std::string&)> progress{};  ///< receives what takes long; may be empty
+};
+
+/// One view of one scene, made ready when the first cell has to be computed.
+class CellView {
+public:
+    /// `own` is the scene as loaded from `file`, which only messages name; view 0 is that scene. The truth is kept in
+    /// `folder` for other processes.
+    CellView(std::shared_ptr<const Scene> own, std::filesystem::path file, int view, CellOptions options,
+             std::filesystem::path folder);
+
+    [[nodiscard]] int view() const { return view_; }
+    /// The key of a cell of this view, without making the view ready.
+    [[nodiscard]] std::string key(const MethodChoice& choice) const;
+    /// Throws InputError, UsageError, and what a reference throws that cannot be replaced.
+    [[nodiscard]] const PreparedScene& prepared();
+    /// `reference` of the record: the truth of area.
+    [[nodiscard]] Json reference();
+    /// The key of that, without making the view ready.
+    [[nodiscard]] std::string reference_key() const;
+
+    /// Computes the cell: an entry of `methods` of results.json without times and files, with `undefined`, `view` and
+    /// `key`. A method that does not serve has an entry that says so, and one that throws has `failed`. Settings that
+    /// follow one another and differ from a later phase on share the phases before. In view v > 0 methods that have a
+    /// seed run with another one.
+    [[nodiscard]] Json compute(const MethodChoice& choice);
+
+private:
+    struct Truth {
+        Reference reference;
+        ReferenceRun ran;
+        std::optional<Failure> failed;
+        Rendered rendered;
+    };
+    [[nodiscard]] const Truth& truth(Measure measure);
+    [[nodiscard]] std::string what_truth_depends_on() const;
+    [[nodiscard]] std::shared_ptr<Method> configured(const MethodChoice& choice);
+
+    std::shared_ptr<const Scene> own_;
+    std::filesystem::path file_;
+    int view_;
+    CellOptions options_;
+    std::filesystem::path folder_;
+    std::string scene_key_;
+    std::optional<PreparedScene> prepared_;
+    std::map<Measure, Truth> truths_;
+    std::optional<MethodChoice> built_;  ///< what `method_` was built with last
+    std::shared_ptr<Method> method_;
+};
+
+}  // namespace umbra

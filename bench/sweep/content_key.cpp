@@ -1,0 +1,117 @@
+#include "umbra/bench/sweep/content_key.h"
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+
+#include "code_versions.h"  // made by bench/sweep/code_versions.cmake
+
+namespace umbra {
+namespace {
+
+/// Takes values one by one; lists and texts with their lengths, so that no two sequences look alike.
+class Hasher {
+public:
+    Hasher() : state_(XXH3_createState()) {
+        if (state_ == nullptr) throw std::bad_alloc();
+        XXH3_128bits_reset(state_);
+    }
+    ~Hasher() { XXH3_freeState(state_); }
+    Hasher(const Hasher&)            = delete;
+    Hasher& operator=(const Hasher&) = delete;
+
+    template <class T>
+    requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) Hasher& operator<<(T value) {
+        return bytes(&value, sizeof value);
+    }
+    Hasher& operator<<(std::string_view text) {
+        *this << text.size();
+        return bytes(text.data(), text.size());
+    }
+    Hasher& operator<<(vec3 v) { return *this << v.x << v.y << v.z; }
+    /// Of types without padding.
+    template <class T>
+    Hasher& list(const std::vector<T>& values) {
+        static_assert(sizeof(T) % 4 == 0 && std::is_trivially_copyable_v<T>);
+        *this << values.size();
+        return bytes(values.data(), values.size() * sizeof(T));
+    }
+    [[nodiscard]] std::string digits() const {
+        const XXH128_hash_t hash = XXH3_128bits_digest(state_);
+        return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
+    }
+
+private:
+    Hasher& bytes(const void* data, std::size_t size) {
+        XXH3_128bits_update(state_, data, size);
+        return *this;
+    }
+    XXH3_state_t* state_;
+};
+
+// A member that is added to one of these structs has to be added below, too.
+#if defined(__GLIBCXX__) && defined(__x86_64__)
+static_assert(sizeof(Scene) == 416 && sizeof(Camera) == 48 && sizeof(Light) == 160 && sizeof(Material) == 128 &&
+              sizeof(Object) == 48);
+#endif
+
+Hasher& operator<<(Hasher& h, const Camera& c) {
+    return h << c.projection << c.eye << c.target << c.up << c.fov_y << c.height;
+}
+
+Hasher& operator<<(Hasher& h, const Object& o) {
+    return h << o.name << o.first_triangle << o.triangle_count << o.material;
+}
+
+Hasher& operator<<(Hasher& h, const Material& m) {
+    return h << m.name << m.k_a << m.k_d << m.k_s << m.O_d << m.O_s << m.emission << m.shininess << m.lobe
+             << m.two_sided << m.opacity << m.reflect << m.transmit << m.index_of_refraction;
+}
+
+Hasher& operator<<(Hasher& h, const Light& l) {
+    h << l.name << l.kind << l.position << l.direction << l.edge_u << l.edge_v << l.radius << l.range;
+    h << l.ambient << l.diffuse << l.specular;
+    h << l.attenuation.c1 << l.attenuation.c2 << l.attenuation.c3 << l.attenuation.clamp;
+    return h << l.spot.falloff << l.spot.exponent << l.spot.cutoff << l.spot.inner;
+}
+
+template <class T>
+Hasher& each(Hasher& h, const std::vector<T>& values) {
+    h << values.size();
+    for (const T& value : values) h << value;
+    return h;
+}
+
+}  // namespace
+
+std::string scene_key(const Scene& scene) {
+    Hasher h;
+    h << scene.name << scene.title << scene.shows;
+    h.list(scene.positions).list(scene.normals).list(scene.triangles).list(scene.triangle_object);
+    each(h, scene.objects);
+    each(h, scene.materials);
+    each(h, scene.lights);
+    h << scene.camera << scene.width << scene.height << scene.ambient << scene.background << scene.tone
+      << scene.exposure << scene.local_viewer;
+    return h.digits();
+}
+
+std::string code_key(const MethodInfo& method) {
+    for (const auto& [name, key] : kCodeVersions)
+        if (name == method.name) return std::string(key);
+    throw std::logic_error(fmt::format("{} has no line in methods.def", method.name));
+}
+
+std::string combined_key(std::initializer_list<std::string_view> parts) {
+    Hasher h;
+    h << parts.size();
+    for (const std::string_view part : parts) h << part;
+    return h.digits();
+}
+
+}  // namespace umbra

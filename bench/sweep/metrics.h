@@ -1,0 +1,51 @@
+// Metrics: the columns of results.json as single numbers that a limit can be set for. Less is better, for all of them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+
+#include "umbra/bench/run/describe.h"
+
+namespace umbra {
+
+struct Metric {
+    enum class Kind : std::uint8_t {
+        share,    ///< points of some classes, over the points compared, of all lights together
+        rms,      ///< root mean square over the points of all lights
+        mean,     ///< mean over the points of all lights
+        largest,  ///< the largest of all lights
+        entry     ///< one value a setting
+    };
+    std::string_view name;  ///< as typed; of what results.json holds, its path: "edge_displacement_px.p95"
+    std::string_view unit;  ///< empty for pure numbers
+    std::string_view doc;   ///< one sentence
+    Kind kind;
+    std::string_view paths;  ///< "a.b+c.d": where the summands lie, in an entry of `errors`, or in the cell for `entry`
+    double scale = 1;        ///< of `entry`: from the unit of results.json to `unit`
+};
+
+/// In the order of tables.
+[[nodiscard]] std::span<const Metric> metrics();
+
+/// Throws UsageError with near matches.
+[[nodiscard]] const Metric& find_metric(std::string_view name);
+
+/// A metric of one cell: an entry of `methods` of results.json, or one that a sweep made. Nothing where it was not
+/// judged: no point compared, no reference that names the class, no edge found.
+[[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Json& cell);
+
+/// The count behind a share, and the points that it is a share of; nothing for other kinds, and where not judged.
+struct Counted {
+    std::uint64_t wrong = 0, of = 0;
+};
+[[nodiscard]] std::optional<Counted> counted(const Metric& metric, const Json& cell);
+
+/// Points compared in a cell, of all lights.
+[[nodiscard]] std::uint64_t points_compared(const Json& cell);
+
+/// Name, unit and sentence of each, for records and `umbra list`.
+[[nodiscard]] Json metrics_json();
+
+}  // namespace umbra

@@ -1,0 +1,100 @@
+#include "umbra/bench/sweep/scene_lab.h"
+
+#include <fmt/format.h>
+
+#include <new>
+
+#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/sweep/content_key.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/io/scene_io.h"
+
+namespace umbra {
+
+SceneLab::SceneLab(const std::filesystem::path& file, CellOptions options, const CellStore& store)
+    : scene_(std::make_shared<const Scene>(load_scene(file))),
+      facts_(find_facts(*scene_)),
+      file_(file),
+      options_(std::move(options)),
+      store_(store) {}
+
+CellView& SceneLab::view(int view) {
+    const auto found = views_.find(view);
+    if (found != views_.end()) return found->second;
+    return views_.emplace(view, CellView(scene_, file_, view, options_, store_.folder())).first->second;
+}
+
+bool SceneLab::has_cell(const MethodChoice& choice, int view_number) {
+    return store_.find(view(view_number).key(choice)).has_value();
+}
+
+Json SceneLab::cell(const MethodChoice& choice, int view_number) {
+    CellView& here = view(view_number);
+    if (auto found = store_.find(here.key(choice))) return std::move(*found);
+    static_cast<void>(here.reference());  // where there is none, no method is to blame
+    if (options_.progress) options_.progress(fmt::format("view {}: {}", view_number, choice.text()));
+    Json made = here.compute(choice);
+    ++computed_;
+    const bool starved = made.contains("failed") && made["failed"]["message"] == std::bad_alloc().what();
+    if (!starved) store_.keep(made);
+    return made;
+}
+
+Json SceneLab::reference() {
+    const std::string key = view(0).reference_key();
+    if (const auto found = store_.find(key)) return found->at("reference");
+    const Json made = {{"key", key}, {"reference", view(0).reference()}};
+    store_.keep(made);
+    return made.at("reference");
+}
+
+std::string SceneLab::time_key(const MethodChoice& choice) {
+    const Json machine = machine_json(thread_count());
+    return combined_key({"time", machine.at("cpu").get<std::string>(), fmt::format("{}", thread_count()),
+                         machine.at("compiler").get<std::string>(), view(0).key(choice)});
+}
+
+std::vector<Json> SceneLab::times(std::span<const MethodChoice> choices, TurnOptions options) {
+    std::vector<Json> all(choices.size());
+    std::vector<std::size_t> missing;
+    std::vector<MethodChoice> to_time;
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        if (auto found = store_.find(time_key(choices[k]))) {
+            all[k] = std::move(*found);
+        } else {
+            missing.push_back(k);
+            to_time.push_back(choices[k]);
+        }
+    }
+    if (missing.empty()) return all;
+    options.progress  = options_.progress;
+    const Turns turns = time_in_turns(view(0).prepared(), to_time, options);
+    Json calibration  = Json::array();
+    for (const double ms : turns.calibration) calibration.push_back(number(ms));
+    const Json session = {{"noise_bar", number(turns.noise_bar)}, {"calibration_ms", std::move(calibration)}};
+    for (std::size_t m = 0; m < missing.size(); ++m) {
+        const TurnTimes& t = turns.settings[m];
+        if (t.build.empty() || !t.failed.empty()) continue;
+        Json& entry = all[missing[m]];
+        entry       = {{"key", time_key(to_time[m])}, {"times", turn_times_json(t)}, {"session", session}};
+        store_.keep(entry);
+    }
+    return all;
+}
+
+std::vector<MethodChoice> by_build(std::span<const MethodChoice> choices) {
+    std::vector<MethodChoice> ordered;
+    std::vector<bool> taken(choices.size());
+    for (std::size_t a = 0; a < choices.size(); ++a) {
+        if (taken[a]) continue;
+        for (std::size_t b = a; b < choices.size(); ++b) {
+            if (taken[b] || choices[a].info != choices[b].info) continue;
+            if (a != b && first_changed_phase(choices[a].settings, choices[b].settings) == Phase::build) continue;
+            ordered.push_back(choices[b]);
+            taken[b] = true;
+        }
+    }
+    return ordered;
+}
+
+}  // namespace umbra

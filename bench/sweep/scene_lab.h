@@ -1,0 +1,57 @@
+// One scene of a sweep: its cells and times, found where they have been computed before, computed where not.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/sweep/cell.h"
+#include "umbra/bench/sweep/cell_store.h"
+#include "umbra/bench/time/turns.h"
+
+namespace umbra {
+
+/// Quality cells and times of one scene. Quality is the same on every machine; times are of this one and are found
+/// again only where machine, threads and code are the same. One thread.
+class SceneLab {
+public:
+    /// Loads the scene. `store` must outlive this. Throws InputError.
+    SceneLab(const std::filesystem::path& file, CellOptions options, const CellStore& store);
+
+    [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] CellView& view(int view);
+    [[nodiscard]] const SceneFacts& facts() const { return facts_; }
+    /// `reference` of the record of view 0.
+    [[nodiscard]] Json reference();
+    /// Frees what a view holds; its cells stay on disk.
+    void release(int view) { views_.erase(view); }
+
+    [[nodiscard]] bool has_cell(const MethodChoice& choice, int view);
+    /// Settings of one method and build that follow one another cost one build. A cell that failed for want of
+    /// memory is not kept: it is computed again when it is asked for.
+    [[nodiscard]] Json cell(const MethodChoice& choice, int view);
+    [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
+
+    /// Times of the settings that serve and do not fail, in one session of turns for those that have none yet: by
+    /// setting, {"key", "times", "session": {"noise_bar", "calibration_ms"}}; null where there are none. Samples of two
+    /// settings are of the same rounds where their sessions are equal.
+    [[nodiscard]] std::vector<Json> times(std::span<const MethodChoice> choices, TurnOptions options);
+
+private:
+    [[nodiscard]] std::string time_key(const MethodChoice& choice);
+
+    std::shared_ptr<const Scene> scene_;
+    SceneFacts facts_;
+    std::filesystem::path file_;
+    CellOptions options_;
+    const CellStore& store_;
+    std::map<int, CellView> views_;
+    std::size_t computed_ = 0;
+};
+
+/// By method, then by what is built, so that builds are shared; the order of the methods stays.
+[[nodiscard]] std::vector<MethodChoice> by_build(std::span<const MethodChoice> choices);
+
+}  // namespace umbra

@@ -1,0 +1,267 @@
+#include "umbra/bench/sweep/sweep.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <set>
+
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/run/steps.h"
+#include "umbra/bench/sweep/cell_store.h"
+#include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/scene_lab.h"
+#include "umbra/bench/sweep/sweep_record.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+
+namespace umbra {
+namespace fs = std::filesystem;
+namespace {
+
+CellOptions cell_options(const SweepPlan& plan) { return {plan.size, plan.reference, plan.points}; }
+
+/// What is typed is wrong before anything is computed.
+std::vector<MethodChoice> typed_settings(const SweepPlan& plan) {
+    std::vector<MethodChoice> all;
+    for (const std::string& text : plan.settings)
+        for (MethodChoice& choice : expand_settings(text)) all.push_back(std::move(choice));
+    if (plan.settings.empty())
+        for (const MethodInfo* info : methods())
+            if (info->by_default)
+                for (MethodChoice& choice : default_sweep(*info)) all.push_back(std::move(choice));
+    return all;
+}
+
+Json plan_json(const SweepPlan& plan) {
+    Json scenes = Json::array();
+    for (const fs::path& scene : plan.scenes) scenes.push_back(scene.string());
+    return {{"scenes", std::move(scenes)},
+            {"settings", plan.settings},
+            {"views", plan.views},
+            {"width", plan.size.width},
+            {"height", plan.size.height},
+            {"reference", plan.reference ? Json(*plan.reference) : Json()},
+            {"points", plan.points ? Json(*plan.points) : Json()}};
+}
+
+SweepPlan plan_in(const fs::path& folder) {
+    const fs::path file = folder / "plan.json";
+    const Field root    = read_results(file);
+    const Field plan    = root["plan"];
+    if (!plan.present()) plan.refuse("the plan of a sweep");
+    SweepPlan p;
+    for (const Field& scene : plan["scenes"].items()) p.scenes.emplace_back(scene.required_text());
+    for (const Field& setting : plan["settings"].items()) p.settings.push_back(setting.required_text());
+    const auto whole = [&](const Field& field) { return static_cast<int>(field.number().value_or(0)); };
+    p.views          = whole(plan["views"]);
+    p.size           = {whole(plan["width"]), whole(plan["height"])};
+    if (plan["reference"].present()) p.reference = plan["reference"].required_text();
+    if (const auto points = plan["points"].number()) p.points = static_cast<std::uint64_t>(*points);
+    if (p.scenes.empty() || p.views < 1) plan.refuse("scenes and at least one view");
+    return p;
+}
+
+void write_plan(const SweepPlan& plan, const fs::path& out) {
+    const Json record      = {{"schema", kResultsSchema}, {"version", version()}, {"plan", plan_json(plan)}};
+    const std::string text = json_text(record);
+    std::ifstream in(out / "plan.json", std::ios::binary);
+    if (std::string(std::istreambuf_iterator<char>(in), {}) != text) write_text(out / "plan.json", text);
+}
+
+std::vector<std::string> folder_names(const std::vector<fs::path>& scenes) {
+    std::vector<std::string> names;
+    std::set<std::string> taken;
+    for (const fs::path& scene : scenes) {
+        const std::string name = folder_name(scene.stem().string());
+        names.push_back(name);
+        for (int k = 2; !taken.insert(names.back()).second; ++k) names.back() = fmt::format("{}-{}", name, k);
+    }
+    return names;
+}
+
+/// A setting that failed, in words.
+std::string failure(const Scene& scene, const Json& cell) {
+    const Json& failed = cell.at("failed");
+    return fmt::format("{}: {}: It failed{}: {}", scene.name, cell.at("text").get<std::string>(),
+                       failed.at("light").is_string() ? " at light " + failed.at("light").get<std::string>() : "",
+                       failed.at("message").get<std::string>());
+}
+
+Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<SweptSetting>& swept) {
+    const bool own = options.plan.size.width == 0;
+    return {{"schema", kResultsSchema},
+            {"version", version()},
+            {"command", options.command},
+            {"machine", machine_json(options.threads)},
+            {"scene", scene_json(lab.scene())},
+            {"facts", facts_json(lab.facts())},
+            {"size",
+             {{"width", own ? lab.scene().width : options.plan.size.width},
+              {"height", own ? lab.scene().height : options.plan.size.height}}},
+            {"lights", lights_json(lab.facts())},
+            {"reference", lab.reference()},
+            {"sweep", sweep_json(swept, options.plan.views, options.workload)}};
+}
+
+}  // namespace
+
+Pack parse_pack(const std::string& text) {
+    Pack pack;
+    const std::size_t slash = text.find('/');
+    const auto read         = [&](std::size_t begin, std::size_t end, std::size_t& value) {
+        const auto [at, error] = std::from_chars(text.data() + begin, text.data() + end, value);
+        return error == std::errc() && at == text.data() + end;
+    };
+    if (slash == std::string::npos || !read(0, slash, pack.index) || !read(slash + 1, text.size(), pack.count) ||
+        pack.index < 1 || pack.index > pack.count)
+        throw UsageError(fmt::format("--pack {}: expected K/N with K from 1 to N", text));
+    return pack;
+}
+
+std::vector<MethodChoice> planned_settings(const SweepPlan& plan, const SceneFacts& facts) {
+    return by_build(distinct(typed_settings(plan), facts));
+}
+
+std::vector<PlannedCell> planned_cells(const SweepPlan& plan) {
+    static_cast<void>(typed_settings(plan));
+    std::vector<PlannedCell> cells;
+    for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
+        const std::vector<MethodChoice> settings = planned_settings(plan, find_facts(load_scene(plan.scenes[s])));
+        for (int view = 0; view < plan.views; ++view)
+            for (const MethodChoice& choice : settings) cells.push_back({s, view, choice.text()});
+    }
+    return cells;
+}
+
+std::string plan_arguments(const SweepPlan& plan) {
+    const auto quoted = [](const std::string& text) {
+        std::string out = "'";
+        for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+        return out + "'";
+    };
+    std::string line;
+    for (const fs::path& scene : plan.scenes) line += " " + quoted(fs::absolute(scene).string());
+    if (!plan.settings.empty()) line += " --methods";
+    for (const std::string& setting : plan.settings) line += " " + quoted(setting);
+    line += fmt::format(" --views {}", plan.views);
+    if (plan.size.width > 0) line += fmt::format(" --size {}x{}", plan.size.width, plan.size.height);
+    if (plan.reference) line += " --reference " + quoted(*plan.reference);
+    if (plan.points) line += fmt::format(" --reference-points {}", *plan.points);
+    return line.substr(1);
+}
+
+std::size_t sweep_pack(const SweepOptions& options, Pack pack, std::vector<std::string>& failed) {
+    const CellStore store(options.out / "cells");
+    write_plan(options.plan, options.out);
+    const std::vector<PlannedCell> cells = planned_cells(options.plan);
+    std::size_t mine = 0, computed = 0;
+    for (std::size_t k = pack.index - 1; k < cells.size(); k += pack.count) ++mine;
+    Steps steps(mine, options.progress);
+    CellOptions cell = cell_options(options.plan);
+    cell.progress    = [&](const std::string& what) { steps.show(what); };
+    std::optional<SceneLab> lab;
+    std::size_t scene = options.plan.scenes.size();
+    int view          = 0;
+    for (std::size_t k = pack.index - 1; k < cells.size(); k += pack.count) {
+        steps.next();
+        if (cells[k].scene != scene) lab.emplace(options.plan.scenes[scene = cells[k].scene], cell, store);
+        if (cells[k].view != view) lab->release(view);
+        view            = cells[k].view;
+        const auto done = lab->computed();
+        const Json made = lab->cell(parse_method(cells[k].setting), view);
+        computed += lab->computed() - done;
+        if (made.contains("failed")) failed.push_back(failure(lab->scene(), made));
+    }
+    return computed;
+}
+
+SweepDone sweep(const SweepOptions& options) {
+    const CellStore store(options.out / "cells");
+    static_cast<void>(typed_settings(options.plan));
+    write_plan(options.plan, options.out);
+    SweepDone done;
+    done.folders = folder_names(options.plan.scenes);
+    for (const fs::path& file : options.plan.scenes) {
+        std::optional<Steps> steps;
+        const std::string name = file.stem().string();
+        CellOptions cell       = cell_options(options.plan);
+        cell.progress          = [&](const std::string& what) {
+            if (steps)
+                steps->show(fmt::format("{}: {}", name, what));
+            else if (options.progress)
+                options.progress(fmt::format("{}: {}", name, what));
+        };
+        cell.progress("loading");
+        SceneLab lab(file, cell, store);
+        if (options.warn)
+            for (const std::string& warning : lab.scene().warnings)
+                options.warn(fmt::format("{}: {}", lab.scene().name, warning));
+        const std::vector<MethodChoice> choices = planned_settings(options.plan, lab.facts());
+        std::vector<SweptSetting> swept;
+        for (const MethodChoice& choice : choices) swept.push_back({choice, {}, {}});
+
+        // Steps are the cells that have to be computed, so that what is there does not mislead the estimate.
+        std::vector<std::pair<int, std::size_t>> missing;
+        for (int view = 0; view < options.plan.views; ++view)
+            for (std::size_t k = 0; k < choices.size(); ++k)
+                if (!lab.has_cell(choices[k], view)) missing.emplace_back(view, k);
+        steps.emplace(missing.size(), options.progress);
+        std::size_t next = 0;
+        for (int view = 0; view < options.plan.views; ++view) {
+            for (std::size_t k = 0; k < choices.size(); ++k) {
+                if (next < missing.size() && missing[next] == std::pair(view, k)) ++next, steps->next();
+                swept[k].views.push_back(lab.cell(choices[k], view));
+                if (view == 0 && swept[k].views[0].contains("failed"))
+                    done.failed.push_back(failure(lab.scene(), swept[k].views[0]));
+            }
+            if (view > 0) lab.release(view);
+        }
+        steps.reset();
+        done.computed += lab.computed();
+        done.cells += choices.size() * static_cast<std::size_t>(options.plan.views);
+
+        if (options.times) {
+            std::vector<std::size_t> timed;
+            std::vector<MethodChoice> to_time;
+            for (std::size_t k = 0; k < swept.size(); ++k) {
+                const Json& first = swept[k].views.front();
+                if (first.contains("failed") || first.at("serves").at("how") == "not") continue;
+                timed.push_back(k);
+                to_time.push_back(choices[k]);
+            }
+            const std::vector<Json> times = lab.times(to_time, options.turns);
+            for (std::size_t t = 0; t < timed.size(); ++t) swept[timed[t]].time = times[t];
+        }
+        done.records.push_back(scene_record(lab, options, swept));
+    }
+    return done;
+}
+
+SweepPlan merged_plan(const std::vector<fs::path>& folders, const fs::path& out) {
+    if (folders.empty()) throw UsageError("--merge: no folder given, expected folders that umbra sweep wrote");
+    const SweepPlan plan = plan_in(folders.front());
+    for (const fs::path& folder : folders)
+        if (plan_json(plan_in(folder)) != plan_json(plan))
+            throw InputError(fmt::format("{}: its plan is not that of {}, expected parts of one sweep",
+                                         (folder / "plan.json").string(), folders.front().string()));
+    const CellStore store(out / "cells");
+    for (const fs::path& folder : folders)
+        if (!fs::exists(out) || !fs::equivalent(folder, out)) store.add_all(CellStore(folder / "cells"));
+
+    std::size_t missing = 0;
+    for (const fs::path& scene : plan.scenes) {
+        SceneLab lab(scene, cell_options(plan), store);
+        const std::vector<MethodChoice> settings = planned_settings(plan, lab.facts());
+        for (int view = 0; view < plan.views; ++view)
+            for (const MethodChoice& choice : settings) missing += !lab.has_cell(choice, view);
+    }
+    if (missing > 0)
+        throw InputError(fmt::format("{}: {} cells are missing; compute them with: umbra sweep {} -o {}", out.string(),
+                                     missing, plan_arguments(plan), out.string()));
+    return plan;
+}
+
+}  // namespace umbra

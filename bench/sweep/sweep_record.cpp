@@ -1,0 +1,110 @@
+#include "umbra/bench/sweep/sweep_record.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "umbra/bench/statistics/pareto.h"
+#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/sweep/bounds.h"
+#include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/metrics.h"
+
+namespace umbra {
+namespace {
+
+Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
+
+/// Why a setting is on no front; empty where it may be.
+std::string excluded(const SweptSetting& s) {
+    const Json& cell = s.views.front();
+    if (cell.contains("failed")) return "it failed";
+    if (cell.at("serves").at("how") == "not") return "it does not serve this scene";
+    double undefined = 0;
+    for (const Json& view : s.views)
+        if (view.contains("undefined") && view.at("undefined").is_number())
+            undefined = std::max(undefined, view.at("undefined").get<double>());
+    if (undefined > 0) return fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined);
+    if (s.time.is_null()) return "it was not timed";
+    return {};
+}
+
+Json view_json(const Json& cell) {
+    Json metrics_here = Json::object();
+    for (const Metric& m : metrics()) metrics_here[std::string(m.name)] = optional_number(metric_value(m, cell));
+    Json view = {{"view", cell.at("view")}, {"metrics", std::move(metrics_here)}};
+    for (const char* member : {"errors", "image"})
+        if (cell.contains(member)) view[member] = cell.at(member);
+    return view;
+}
+
+std::optional<double> median_over(const Metric& metric, std::span<const Json> views) {
+    std::vector<double> values;
+    for (const Json& cell : views) {
+        const auto value = metric_value(metric, cell);
+        if (!value) return std::nullopt;
+        values.push_back(*value);
+    }
+    return median(values);
+}
+
+Json setting_entry(const SweptSetting& s, const Workload& workload) {
+    const Json& cell      = s.views.front();
+    const auto preset     = preset_of(s.choice);
+    const std::string why = excluded(s);
+    Json entry;
+    for (const char* member : {"text", "name", "title"}) entry[member] = cell.at(member);
+    entry["preset"] = preset.empty() ? Json() : Json(preset);
+    for (const char* member :
+         {"parameters", "serves", "failed", "measures", "compared_with", "memory_bytes", "coverage"})
+        if (cell.contains(member)) entry[member] = cell.at(member);
+    entry["excluded"] = why.empty() ? Json() : Json(why);
+    entry["views"]    = Json::array();
+    for (const Json& view : s.views) entry["views"].push_back(view_json(view));
+    entry["values"] = Json::object();
+    entry["bounds"] = Json::object();
+    for (const Metric& m : metrics()) {
+        entry["values"][std::string(m.name)] = optional_number(median_over(m, s.views));
+        entry["bounds"][std::string(m.name)] = optional_number(upper_bound(m, s.views));
+    }
+    if (!s.time.is_null()) {
+        entry["times"]   = s.time.at("times");
+        entry["session"] = s.time.at("session");
+    }
+    entry["cost_ms"] = optional_number(cost_of(s.time, workload));
+    return entry;
+}
+
+}  // namespace
+
+std::optional<double> cost_of(const Json& time, const Workload& workload) {
+    if (time.is_null()) return std::nullopt;
+    const auto phase = [&](const char* name) { return time.at("times").at(name).at("median").get<double>(); };
+    return frame_cost_ms(workload, phase("build_ms"), phase("aim_ms"), phase("visibility_ms"));
+}
+
+Json sweep_json(std::span<const SweptSetting> settings, int views, const Workload& workload) {
+    Json record = {{"views", views},
+                   {"metrics", metrics_json()},
+                   {"workload", {{"camera", workload.camera}, {"light", workload.light}, {"object", workload.object}}},
+                   {"settings", Json::array()},
+                   {"fronts", Json::object()}};
+    for (const SweptSetting& s : settings) record["settings"].push_back(setting_entry(s, workload));
+    for (const Metric& m : metrics()) {
+        const std::string name(m.name);
+        std::vector<CostError> points;
+        std::vector<std::string> texts;
+        for (const Json& entry : record["settings"]) {
+            if (!entry["excluded"].is_null() || !entry["cost_ms"].is_number() || !entry["values"][name].is_number())
+                continue;
+            points.push_back({entry["cost_ms"], entry["values"][name]});
+            texts.push_back(entry["text"]);
+        }
+        Json front = Json::array();
+        for (const std::size_t i : pareto_front(points)) front.push_back(texts[i]);
+        record["fronts"][name] = std::move(front);
+    }
+    return record;
+}
+
+}  // namespace umbra

@@ -1,0 +1,27 @@
+// results.json of a sweep (bench/sweep/sweep.schema.json), from cells and times.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/time/workload.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// One setting of a sweep.
+struct SweptSetting {
+    MethodChoice choice;
+    std::vector<Json> views;  ///< cells, view 0 first
+    Json time;                ///< of SceneLab::times; null where it has none
+};
+
+/// Milliseconds of a frame of this workload, by the medians of the times; nothing where there are none.
+[[nodiscard]] std::optional<double> cost_of(const Json& time, const Workload& workload);
+
+/// `sweep` of results.json. The fronts hold, for each metric, the settings that no other one beats in both the cost of
+/// a frame and the median of the error over the views, of those that answer all points and have a time.
+[[nodiscard]] Json sweep_json(std::span<const SweptSetting> settings, int views, const Workload& workload);
+
+}  // namespace umbra

@@ -1,0 +1,367 @@
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+#include <rapidjson/document.h>
+#include <rapidjson/schema.h>
+#include <rapidjson/stringbuffer.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+
+#include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/sweep/bounds.h"
+#include "umbra/bench/sweep/content_key.h"
+#include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/sweep.h"
+#include "umbra/bench/sweep/sweep_record.h"
+#include "umbra/bench/sweep/truth_file.h"
+#include "umbra/bench/sweep/views.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/ray.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path scene_file(const std::string& name) { return fs::path(UMBRA_SCENES) / (name + ".json"); }
+
+TEST(SceneKey, ChangesWithEverythingThatAnAnswerDependsOn) {
+    const Scene scene = load_scene(scene_file("umbra_penumbra"));
+    ASSERT_FALSE(scene.lights.empty());
+    const std::vector<std::function<void(Scene&)>> changes = {
+        [](Scene& s) { s.positions[0].x += 1; },
+        [](Scene& s) { s.normals[0] = -s.normals[0]; },
+        [](Scene& s) { std::swap(s.triangles[0].x, s.triangles[0].y); },
+        [](Scene& s) { s.triangle_object[0] += 1; },
+        [](Scene& s) { s.objects[0].name += "x"; },
+        [](Scene& s) { s.objects[0].triangle_count -= 1; },
+        [](Scene& s) { s.materials[0].k_d.y += 0.5f; },
+        [](Scene& s) { s.materials[0].opacity = 0.5f; },
+        [](Scene& s) { s.materials[0].two_sided = !s.materials[0].two_sided; },
+        [](Scene& s) { s.lights[0].name += "x"; },
+        [](Scene& s) { s.lights[0].position.z += 1; },
+        [](Scene& s) { s.lights[0].radius += 1; },
+        [](Scene& s) { s.lights[0].spot.cutoff += 0.1f; },
+        [](Scene& s) { s.lights[0].attenuation.clamp = !s.lights[0].attenuation.clamp; },
+        [](Scene& s) { s.lights.push_back(s.lights[0]); },
+        [](Scene& s) { s.camera.fov_y += 1; },
+        [](Scene& s) { s.camera.eye.x += 1; },
+        [](Scene& s) { s.width += 1; },
+        [](Scene& s) { s.ambient.x += 1; },
+        [](Scene& s) { s.exposure *= 2; },
+        [](Scene& s) { s.tone = ToneMap::hue; },
+        [](Scene& s) { s.local_viewer = !s.local_viewer; },
+    };
+    std::vector<std::string> keys = {scene_key(scene)};
+    for (const auto& change : changes) {
+        Scene other = scene;
+        change(other);
+        keys.push_back(scene_key(other));
+    }
+    std::ranges::sort(keys);
+    EXPECT_TRUE(std::ranges::adjacent_find(keys) == keys.end());
+    Scene moved    = scene;
+    moved.source   = "elsewhere.json";
+    moved.warnings = {"a warning"};
+    EXPECT_EQ(scene_key(moved), scene_key(scene));
+}
+
+TEST(CodeKey, DiffersFromMethodToMethod) {
+    std::vector<std::string> keys;
+    for (const MethodInfo* info : methods()) keys.push_back(code_key(*info));
+    for (const std::string& key : keys) EXPECT_EQ(key.size(), 32u);
+    std::ranges::sort(keys);
+    EXPECT_TRUE(std::ranges::adjacent_find(keys) == keys.end());
+    EXPECT_NE(combined_key({"ab", "c"}), combined_key({"a", "bc"}));
+    EXPECT_NE(combined_key({"ab"}), combined_key({"ab", ""}));
+}
+
+TEST(Views, MoveCameraAndLightsALittleAndAlwaysTheSame) {
+    for (const char* name : {"six_lights", "umbra_penumbra", "light_inside_view"}) {
+        if (!fs::exists(scene_file(name))) continue;
+        const Scene scene = load_scene(scene_file(name));
+        EXPECT_EQ(scene_key(view_of(scene, 0)), scene_key(scene));
+        const RayScene rays(scene);
+        const double arm = glm::length(dvec3(scene.camera.eye) - dvec3(scene.camera.target));
+        std::vector<std::string> keys;
+        for (int v = 1; v <= 6; ++v) {
+            const Scene moved = view_of(scene, v);
+            keys.push_back(scene_key(moved));
+            EXPECT_EQ(keys.back(), scene_key(view_of(scene, v)));
+            EXPECT_EQ(moved.positions, scene.positions);
+            EXPECT_NEAR(glm::length(dvec3(moved.camera.eye) - dvec3(moved.camera.target)), arm, 1e-5 * arm);
+            const double chord = glm::length(dvec3(moved.camera.eye) - dvec3(scene.camera.eye));
+            EXPECT_LE(chord, arm * glm::radians(kJitterYaw + kJitterPitch));
+            for (std::size_t j = 0; j < scene.lights.size(); ++j) {
+                EXPECT_EQ(moved.lights[j].kind, scene.lights[j].kind);
+                EXPECT_NEAR(glm::length(moved.lights[j].direction), glm::length(scene.lights[j].direction), 1e-5);
+            }
+        }
+        std::ranges::sort(keys);
+        EXPECT_TRUE(std::ranges::adjacent_find(keys) == keys.end()) << name;
+    }
+}
+
+TEST(TruthFile, KeepsEveryBit) {
+    const TemporaryFolder folder;
+    PreparedScene p           = prepare_scene(scene_file("light_sizes"), {48, 27});
+    const Reference reference = default_reference(p.facts);
+    for (const std::optional<std::uint64_t> points :
+         {std::optional<std::uint64_t>{}, std::optional<std::uint64_t>{200}}) {
+        const ReferenceRun ran = run_reference(reference, p.scene, p.facts, p.points, points);
+        const fs::path file    = folder.path() / "truth.exr";
+        write_truth(file, ran, 48, 27);
+        ReferenceRun read{MethodRun{reference.choice}, 0, 0, {}};
+        ASSERT_TRUE(read_truth(file, p.scene.lights.size(), p.points.size(), read));
+        ASSERT_EQ(read.run.planes.size(), ran.run.planes.size());
+        for (std::size_t j = 0; j < ran.run.planes.size(); ++j) {
+            EXPECT_EQ(read.run.planes[j].s, ran.run.planes[j].s);
+            EXPECT_EQ(read.run.planes[j].answer, ran.run.planes[j].answer);
+            EXPECT_EQ(read.run.planes[j].half_width, ran.run.planes[j].half_width);
+        }
+        EXPECT_EQ(read.run.judged, ran.run.judged);
+        EXPECT_EQ(read.judged, ran.judged);
+        EXPECT_EQ(read.of, ran.of);
+        EXPECT_EQ(read.stand_in, ran.stand_in);
+        EXPECT_FALSE(read_truth(file, p.scene.lights.size() + 1, p.points.size(), read));
+        EXPECT_FALSE(read_truth(file, p.scene.lights.size(), p.points.size() - 1, read));
+    }
+    std::ofstream(folder.path() / "truth.exr") << "cut";
+    ReferenceRun read{MethodRun{reference.choice}, 0, 0, {}};
+    EXPECT_FALSE(read_truth(folder.path() / "truth.exr", p.scene.lights.size(), p.points.size(), read));
+}
+
+SweepOptions small_sweep(const fs::path& out) {
+    SweepOptions o;
+    o.plan  = {.scenes   = {scene_file("umbra_penumbra")},
+               .settings = {"ray_traced:samples=1|16", "shadow_zbuffer:resolution=128|512,filter=nearest|pcf",
+                            "planar_projection:light_samples=4"},
+               .views    = 2,
+               .size     = {48, 27}};
+    o.out   = out;
+    o.times = false;
+    return o;
+}
+
+Json settings_of(const SweepDone& done) { return done.records.at(0).at("sweep").at("settings"); }
+
+TEST(Sweep, ComputesEveryCellOnceAndSharingABuildChangesNothing) {
+    const TemporaryFolder folder;
+    const SweepDone first = sweep(small_sweep(folder.path() / "a"));
+    EXPECT_EQ(first.cells, 14u);
+    EXPECT_EQ(first.computed, 14u);
+    const SweepDone again = sweep(small_sweep(folder.path() / "a"));
+    EXPECT_EQ(again.computed, 0u);
+    EXPECT_EQ(again.records, first.records);
+
+    // Each setting alone, in a folder of its own.
+    std::size_t k = 0;
+    for (const Json& together : settings_of(first)) {
+        SweepOptions alone  = small_sweep(folder.path() / fmt::format("alone-{}", k++));
+        alone.plan.settings = {together.at("text").get<std::string>()};
+        const SweepDone one = sweep(alone);
+        EXPECT_EQ(settings_of(one).at(0), together);
+    }
+
+    // A further setting costs its own cells; a cell that is cut off is computed again.
+    SweepOptions more = small_sweep(folder.path() / "a");
+    more.plan.settings.emplace_back("shadow_volumes");
+    EXPECT_EQ(sweep(more).computed, 2u);
+    for (const auto& entry : fs::directory_iterator(folder.path() / "a/cells"))
+        if (entry.path().extension() == ".json") {
+            fs::resize_file(entry.path(), fs::file_size(entry.path()) / 2);
+            break;
+        }
+    EXPECT_LE(sweep(more).computed, 1u);
+}
+
+TEST(Sweep, MergedPacksAreTheUnbrokenRun) {
+    const TemporaryFolder folder;
+    const SweepDone whole = sweep(small_sweep(folder.path() / "whole"));
+    std::vector<fs::path> parts;
+    std::size_t computed = 0;
+    std::vector<std::string> failed;
+    for (std::size_t k = 1; k <= 3; ++k) {
+        parts.push_back(folder.path() / fmt::format("part-{}", k));
+        computed += sweep_pack(small_sweep(parts.back()), {k, 3}, failed);
+    }
+    EXPECT_EQ(computed, 14u);
+    EXPECT_TRUE(failed.empty());
+    SweepOptions merged      = small_sweep(folder.path() / "merged");
+    merged.plan              = merged_plan(parts, merged.out);
+    const SweepDone together = sweep(merged);
+    EXPECT_EQ(together.computed, 0u);
+    EXPECT_EQ(together.records, whole.records);
+
+    // Two of three parts are not the whole, and parts of another plan do not fit.
+    const auto error = [&](const std::vector<fs::path>& folders, const char* out) -> std::string {
+        try {
+            static_cast<void>(merged_plan(folders, folder.path() / out));
+        } catch (const InputError& e) {
+            return e.what();
+        }
+        return "no error";
+    };
+    EXPECT_NE(error({parts[0], parts[1]}, "two").find("4 cells are missing"), std::string::npos);
+    SweepOptions other = small_sweep(folder.path() / "other");
+    other.plan.views   = 1;
+    static_cast<void>(sweep_pack(other, {1, 1}, failed));
+    EXPECT_NE(error({parts[0], other.out}, "mixed").find("its plan is not that of"), std::string::npos);
+    EXPECT_NE(error({folder.path() / "nothing"}, "none").find("plan.json"), std::string::npos);
+}
+
+TEST(Sweep, FrontsHoldWhatNothingBeats) {
+    const auto swept = [](const char* text, double ms, double rmse, double undefined) {
+        Json e            = {{"light", "l"}, {"points", 1000}, {"rmse", rmse}, {"bracket", nullptr}};
+        Json c            = {{"text", text},
+                             {"name", "ray_traced"},
+                             {"title", "t"},
+                             {"parameters", Json::object()},
+                             {"view", 0},
+                             {"key", "k"},
+                             {"serves", {{"how", "approximately"}, {"why", "."}}},
+                             {"undefined", undefined},
+                             {"errors", {e}}};
+        const auto timing = [](double median) { return Json{{"median", median}}; };
+        return SweptSetting{
+            parse_method(text),
+            {c},
+            {{"times", {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"visibility_ms", timing(ms)}}},
+             {"session", Json::object()}}};
+    };
+    const std::vector<SweptSetting> settings = {
+        swept("ray_traced:samples=1", 1, 0.1, 0), swept("ray_traced:samples=2", 2, 0.2, 0),
+        swept("ray_traced:samples=4", 3, 0, 0), swept("ray_traced:samples=8", 0.5, 0, 0.5)};
+    const Json record = sweep_json(settings, 1, {60, 0, 0});
+    EXPECT_EQ(record["fronts"]["rmse"], (Json{"ray_traced:samples=1", "ray_traced:samples=4"}));
+    EXPECT_EQ(record["settings"][0]["cost_ms"], 1);
+    EXPECT_EQ(record["settings"][3]["excluded"], "it leaves 50 % of the points undefined");
+    EXPECT_TRUE(record["settings"][0]["excluded"].is_null());
+    // Half of the frames have a light that moved: aim is paid in half of them.
+    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0})["settings"][1]["cost_ms"].get<double>(), 2 + 0.5 * 10, 1e-12);
+    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60})["settings"][1]["cost_ms"].get<double>(), 2 + 10 + 100, 1e-12);
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Sweep, WritesWhatItsSchemaSays) {
+    const TemporaryFolder folder;
+    SweepOptions o       = small_sweep(folder.path() / "a");
+    o.plan.scenes        = {scene_file("self_shadow"), scene_file("umbra_penumbra")};
+    o.plan.settings      = {"ray_traced:samples=4", "shadow_zbuffer@fast", "planar_projection", "exact"};
+    o.times              = true;
+    o.turns              = {.rounds = 2, .budget_ms = 100};
+    const SweepDone done = sweep(o);
+    rapidjson::Document schema_document;
+    schema_document.Parse(text_of(UMBRA_SWEEP_SCHEMA).c_str());
+    ASSERT_FALSE(schema_document.HasParseError());
+    const rapidjson::SchemaDocument schema(schema_document);
+    const auto invalid_at = [&](const Json& record) -> std::string {
+        rapidjson::Document document;
+        document.Parse(json_text(record).c_str());
+        rapidjson::SchemaValidator valid(schema);
+        if (document.Accept(valid)) return "nowhere";
+        rapidjson::StringBuffer where;
+        valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
+        return where.GetString();
+    };
+    ASSERT_EQ(done.records.size(), 2u);
+    for (const Json& record : done.records) EXPECT_EQ(invalid_at(record), "nowhere");
+    Json bad                               = done.records[0];
+    bad["sweep"]["settings"][0]["cost_ms"] = "1";
+    EXPECT_EQ(invalid_at(bad), "#/sweep/settings/0/cost_ms");
+    bad = done.records[0];
+    bad["sweep"]["settings"][0].erase("bounds");
+    EXPECT_EQ(invalid_at(bad), "#/sweep/settings/0");
+
+    // Times are this machine's, and are found again.
+    EXPECT_EQ(sweep(o).records, done.records);
+    for (const Json& record : done.records)
+        for (const Json& s : record["sweep"]["settings"])
+            EXPECT_TRUE(s["times"]["build_ms"]["samples"].is_array()) << s["text"];
+}
+
+TEST(Recommend, TakesTheCheapestWithinTheLimits) {
+    const TemporaryFolder folder;
+    const CellStore store(folder.path() / "cells");
+    SceneLab lab(scene_file("umbra_penumbra"), {.size = {48, 27}}, store);
+    RecommendOptions o;
+    o.choices  = expand_settings("ray_traced:samples=1|4|16|64|256");
+    o.views    = 3;
+    o.held_out = 1;
+    o.turns    = {.rounds = 3, .budget_ms = 200};
+
+    o.limits               = {parse_limit("rmse=0.9")};
+    const Recommendation r = recommend(lab, o);
+    ASSERT_TRUE(r.chosen.has_value());
+    for (const Candidate& c : r.candidates) {
+        ASSERT_TRUE(c.cost.has_value());
+        if (c.within(o.limits)) {
+            EXPECT_LE(*r.candidates[*r.chosen].cost, *c.cost);
+        }
+    }
+    EXPECT_EQ(r.settings, 5u);
+    EXPECT_LT(r.looked_at, 5u);
+    EXPECT_EQ(r.held_out.size(), 1u);
+    const Json json = recommendation_json(r, o);
+    EXPECT_EQ(json["recommendation"]["method"], r.candidates[*r.chosen].choice.text());
+    EXPECT_LE(json["recommendation"]["errors"]["rmse"]["bound"].get<double>(), 0.9);
+    EXPECT_GE(json["recommendation"]["errors"]["rmse"]["bound"].get<double>(),
+              json["recommendation"]["errors"]["rmse"]["largest"].get<double>());
+    EXPECT_EQ(json["cheapest"]["method"].is_string(), true);
+
+    // Errors fall with the samples: a tighter limit asks for more of them.
+    const auto bound_of = [&](int samples) {
+        std::vector<Json> views;
+        const MethodChoice choice = parse_method(fmt::format("ray_traced:samples={}", samples));
+        for (int v = 0; v < 3; ++v) views.push_back(lab.cell(choice, v));
+        return *upper_bound(find_metric("rmse"), views);
+    };
+    o.limits                   = {{&find_metric("rmse"), 0.5 * (bound_of(16) + bound_of(64))}};
+    const Recommendation tight = recommend(lab, o);
+    ASSERT_TRUE(tight.chosen.has_value());
+    EXPECT_GE(tight.candidates[*tight.chosen].choice.settings.value("samples"), 64);
+    for (std::size_t k = 1; k < tight.staircase.size(); ++k) {
+        EXPECT_LT(tight.staircase[k].error, tight.staircase[k - 1].error);
+        EXPECT_GE(*tight.candidates[tight.staircase[k].candidate].cost,
+                  *tight.candidates[tight.staircase[k - 1].candidate].cost);
+    }
+
+    // Nothing sampled is exact.
+    o.limits                  = {parse_limit("rmse=0")};
+    const Recommendation none = recommend(lab, o);
+    EXPECT_FALSE(none.chosen.has_value());
+    ASSERT_TRUE(none.nearest.has_value());
+    EXPECT_TRUE(recommendation_json(none, o)["recommendation"].is_null());
+    EXPECT_NE(recommendation_text(none, o).find("No setting stays within the limits."), std::string::npos);
+}
+
+TEST(Recommend, LeavesOutWhatLeavesPointsUndefined) {
+    const TemporaryFolder folder;
+    const CellStore store(folder.path() / "cells");
+    SceneLab lab(scene_file("self_shadow"), {.size = {48, 27}}, store);
+    RecommendOptions o;
+    o.choices = expand_settings("planar_projection");
+    o.choices.push_back(parse_method("shadow_volumes"));
+    o.views                = 2;
+    o.held_out             = 0;
+    o.turns                = {.rounds = 1, .budget_ms = 50};
+    o.limits               = {parse_limit("interior=0.5")};
+    const Recommendation r = recommend(lab, o);
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(r.candidates[*r.chosen].choice.text(), "shadow_volumes");
+    const auto planar = std::ranges::find_if(
+        r.candidates, [](const Candidate& c) { return c.choice.info->name == "planar_projection"; });
+    ASSERT_NE(planar, r.candidates.end());
+    EXPECT_FALSE(planar->unfit.empty());
+}
+
+}  // namespace
+}  // namespace umbra
