@@ -51,13 +51,25 @@ std::string lower(std::string text) {
     return text;
 }
 
-// A name for a message: what is long is cut, between two characters of UTF-8.
+// A name for a message: what is long is cut, between two characters of UTF-8; a question mark replaces what would act
+// on the message around it: control characters, and those of Unicode that end a line or turn the direction of text
+// (U+2028 to U+202E, E2 80 A8 to AE; U+2066 to U+2069, E2 81 A6 to A9).
 std::string shortened(const std::string& name) {
     constexpr std::size_t most = 60;
-    if (name.size() <= most) return name;
-    std::size_t end = most;
-    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) --end;
-    return name.substr(0, end) + "...";
+    const auto byte = [&](std::size_t k) { return k < name.size() ? static_cast<unsigned char>(name[k]) : 0; };
+    std::string shown;
+    for (std::size_t k = 0; k < name.size();) {
+        const std::string_view lead = std::string_view(name).substr(k, 2);
+        const int last              = byte(k + 2);
+        std::size_t bytes           = 1;
+        while ((byte(k + bytes) & 0xc0) == 0x80) ++bytes;
+        if (k + bytes > most && name.size() > most) return shown + "...";
+        const bool acts = byte(k) < 0x20 || byte(k) == 0x7f || (lead == "\xe2\x80" && last >= 0xa8 && last <= 0xae) ||
+                          (lead == "\xe2\x81" && last >= 0xa6 && last <= 0xa9);
+        shown += acts ? "?" : name.substr(k, bytes);
+        k += bytes;
+    }
+    return shown;
 }
 
 // Names become channels S.<name> of images, where a dot would open a layer and OpenEXR allows 255 bytes, and parts of

@@ -166,6 +166,19 @@ TEST_F(HostileNames, ThatAreNotUtf8AreReplaced) {
     EXPECT_TRUE(links_hold(options_.out / "latin/index.html"));
 }
 
+TEST_F(HostileNames, DoNotActOnTheMessagesThatQuoteThem) {
+    const std::string lead(59, 'x');
+    const Scene scene = load_scene(
+        folder_.write("names.json", scene_text({"\u202eright to left", "a\u2066b\u2069c", "two\u2028lines",
+                                                "a\x1b[31m\n", "größe ☂", lead + "☂", lead + "y and more"})));
+    for (const char* quoted : {"\"?right to left\"", "\"a?b?c\"", "\"two?lines\"", "\"a?[31m?\"", "\"größe ☂\""})
+        EXPECT_TRUE(std::ranges::any_of(scene.warnings, [&](const auto& w) { return w.find(quoted) != w.npos; }))
+            << quoted;
+    for (const std::string& quoted : {"\"" + lead + "...\"", "\"" + lead + "y...\""})
+        EXPECT_TRUE(std::ranges::any_of(scene.warnings, [&](const auto& w) { return w.find(quoted) != w.npos; }))
+            << quoted;
+}
+
 TEST_F(HostileNames, NothingIsRightWhereNothingIsJudged) {
     const fs::path file =
         folder_.write("away.json", R"({"size": [16, 9], "camera": {"eye": [0, 1, 0], "target": [0, 2, 0.1]},
