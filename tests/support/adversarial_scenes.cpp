@@ -6,6 +6,8 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "umbra/core/base/random_bits.h"
 
@@ -176,13 +178,40 @@ void add_fan(Soup& soup, Dice& dice) {
     for (int k = 0; k < count; ++k) soup.push_back({lift + tip, lift + rim[k], lift + rim[(k + 1) % 6]});
 }
 
-/// A sliver that is folded onto its triangle, or continues it, by as little as rotations leave of a zero: one of their
-/// common corners is moved by 1e-17 where its coordinate is 0.
+/// A sliver that is folded onto its triangle, continues it or leaves its plane, by as little as rotations leave of a
+/// zero: a corner is moved by 1e-17 where its coordinate is 0. Either may be turned over.
 void add_folds(Soup& soup, Dice& dice) {
-    const double s = dice.any({1.0, 2.0}), sign = dice.any({-1.0, 1.0}), at = dice.any({0.5, 0.25});
-    const dvec3 a{0, 1, dice.any({1e-17, -1e-17, 1e-19})}, b{s, 1, 0.5 * s}, c{s, 1, sign * s};
-    soup.push_back({a, b, c});
-    soup.push_back({a, b, at * dvec3(s, 0, 0.5 * s) + dvec3(0, 1, 0)});
+    const double e = dice.any({1e-17, 1e-19, 1e-24});
+    dvec3 a, b, c, d;
+    if (dice.one_in(2)) {  // both in y = 1
+        const double s = dice.any({1.0, 2.0}), sign = dice.any({-1.0, 1.0}), at = dice.any({0.5, 0.25});
+        a = {0, 1, dice.any({-1.0, 1.0}) * e}, b = {s, 1, 0.5 * s}, c = {s, 1, sign * s};
+        d = at * dvec3(s, 0, 0.5 * s) + dvec3(0, 1, 0);
+    } else {  // the sliver's corner is beside the middle of the edge, the origin
+        do a = dice.grid(2), c = dice.grid(2);
+        while (glm::cross(a, c) == dvec3(0));
+        b = -a, d = e * dice.grid(1);
+    }
+    soup.push_back(dice.one_in(2) ? Corners{a, b, c} : Corners{b, a, c});
+    soup.push_back(dice.one_in(2) ? Corners{a, b, d} : Corners{b, a, d});
+}
+
+/// What rotations leave of zeros, along one axis or all: equal corners stay equal.
+void smear_zeros(Soup& soup, Dice& dice) {
+    const int axis     = dice.below(4);  // 3: all
+    const double least = dice.any({1e-17, 1e-19, 1e-24});
+    std::vector<std::pair<dvec3, dvec3>> moved;
+    for (Corners& t : soup)
+        for (dvec3* corner : {&t.a, &t.b, &t.c}) {
+            auto known = std::ranges::find(moved, *corner, [](const auto& pair) { return pair.first; });
+            if (known == moved.end()) {
+                dvec3 to = *corner;
+                for (int k = 0; k < 3; ++k)
+                    if (to[k] == 0 && (axis == k || axis == 3)) to[k] = least * dice.any({-1.0, 0.0, 1.0, 3.0});
+                known = moved.emplace(moved.end(), *corner, to);
+            }
+            *corner = known->second;
+        }
 }
 
 struct Part {
@@ -386,6 +415,10 @@ AdversarialScene adversarial_scene(std::uint64_t seed, LightsWanted wanted, int 
         const Part& part = kParts[dice.below(static_cast<int>(std::size(kParts)))];
         part.add(soup, dice);
         made.pattern += fmt::format("{}{}", made.pattern.empty() ? "" : " ", part.name);
+    }
+    if (dice.one_in(4)) {
+        smear_zeros(soup, dice);
+        made.pattern += " smeared";
     }
     const Placement place = any_placement(dice, wanted != LightsWanted::hard);
     made.pattern +=

@@ -197,6 +197,39 @@ TEST(ExactAgainstOracle, AreaLights) {
     EXPECT_GT(tally.penumbra, wanted / 4);
 }
 
+/// A triangle in an oblique plane through the origin and a sliver at one of its edges, whose third corner lies beside
+/// the origin by 1e-17 along each axis, or by nothing: it continues the triangle, is folded onto it or leaves its plane
+/// by any angle. In doubles the differences of coordinates lose all of that.
+TEST(ExactAgainstOracle, FoldsInEveryWay) {
+    Tally tally;
+    for (int way = 0; way < 3 * 3 * 3 * 8; ++way) {
+        const vec3 d = 1e-17f * (vec3(way % 3, way / 3 % 3, way / 9 % 3) - 1.0f), a(1, 1, 0.5f);
+        if (d == vec3(0)) continue;
+        const int turned = way / 27;
+        const vec3 c     = turned & 4 ? vec3(1, 1, -1) : vec3(-1, -1, 1);
+        AdversarialScene made;
+        made.pattern = fmt::format("fold {}", way);
+        made.scene.materials.resize(1);
+        add_object(made.scene, "floor", {{-16, -3, -16}, {0, -3, 32}, {16, -3, -16}}, {}, {{0, 1, 2}}, 0);
+        add_object(made.scene, "fold", {a, -a, c, d}, {},
+                   {turned & 1 ? uvec3(0, 1, 2) : uvec3(1, 0, 2), turned & 2 ? uvec3(0, 1, 3) : uvec3(1, 0, 3)}, 0);
+        Light light;
+        light.kind     = LightKind::rectangle;
+        light.position = {0.25f, 3, 0.125f};
+        light.edge_u   = {2, 0, 0};
+        light.edge_v   = {0, 0, -2};
+        made.scene.lights.push_back(light);
+        made.points.eye = {1, 8, 2};
+        made.points.resize(3);
+        for (std::size_t i = 0; i < 3; ++i)
+            set_point(made.points, i, made.scene, 0, 0.32f + 0.02f * static_cast<float>(i), 0.34f);
+        face_lights(made.points, made.scene);
+        judge_area(made, tally);
+    }
+    EXPECT_EQ(tally.mismatches, 0u);
+    EXPECT_EQ(tally.penumbra, tally.decisions) << tally.text();
+}
+
 /// Disks and spheres of any size in bad positions: an answer for every point, whatever it is worth.
 TEST(ExactAgainstOracle, RoundLightsInBadPositions) {
     const std::uint64_t wanted = from_environment("UMBRA_ORACLE_ROUND", 20);
