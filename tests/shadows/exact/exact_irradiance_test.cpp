@@ -163,6 +163,38 @@ TEST(ExactIrradiance, MeetsLambertsFormulaJustBelowALight) {
                    1.0f / 256, points, 50, 1e-6);
 }
 
+/// A light that all but touches the points, behind a comb: the part between any two teeth is cut into many pieces
+/// beside the point. Beyond kSplits of them nothing is known of what it sends, whereas its visible area still is.
+TEST(ExactIrradiance, OfALightThatAllButTouchesThePointBehindACombIsUnknown) {
+    for (const unsigned teeth : {16u, 512u}) {
+        Scene scene = floor_scene();
+        Mesh comb;
+        const float pitch = 4 / static_cast<float>(teeth), y = 1.0f / 256;
+        for (unsigned k = 0; k < teeth; ++k) {
+            const float x = -2 + pitch * static_cast<float>(k);
+            for (const vec2 corner : {vec2(x, -4), vec2(x + pitch / 2, -4), vec2(x + pitch / 2, 4), vec2(x, 4)})
+                comb.positions.emplace_back(corner.x, y, corner.y);
+            comb.triangles.emplace_back(4 * k, 4 * k + 1, 4 * k + 2);
+            comb.triangles.emplace_back(4 * k, 4 * k + 2, 4 * k + 3);
+        }
+        add(scene, comb);
+        scene.lights = {light_of(LightKind::rectangle, vec3(0, 1.0f / 64, 0), 0, vec3(16, 0, 0), vec3(0, 0, -16))};
+        const PointBatch points = floor_points(scene, random_places(4, -1.0 / 64, 1.0 / 64));
+        std::size_t asked       = 0;
+        ask(scene, points, Arithmetic::filtered, [&](std::size_t, const ExactArea::Answer& got) {
+            EXPECT_NEAR(got.visibility, 0.5, 0.05);
+            if (teeth == 16) {
+                EXPECT_LT(got.irradiance_half_width, 1e-3f);
+            } else {
+                EXPECT_EQ(got.irradiance, 0.5f);
+                EXPECT_GE(got.irradiance_half_width, 0.5f);
+            }
+            ++asked;
+        });
+        EXPECT_EQ(asked, points.size());
+    }
+}
+
 /// A plane through the point and the axis of the sphere halves the cone of half angle A around the axis e. With m, the
 /// plane's normal on the seen side, the half adds n . (e pi sin^2(A) / 2 + m (A - sin(A) cos(A))).
 TEST(ExactIrradiance, MeetsTheClosedFormOfAHalvedSphere) {
