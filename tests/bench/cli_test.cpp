@@ -19,7 +19,7 @@ const auto run = umbra::run_program;
 
 Answer umbra(const std::string& arguments) { return run(std::string(UMBRA_PROGRAM) + " " + arguments); }
 
-const std::string kScene = std::string(UMBRA_SCENES) + "/sun_on_plane.json";
+const std::string kScene = std::string(UMBRA_SOURCE) + "/scenes/sun_on_plane.json";
 
 class Cli : public testing::Test {
 protected:
