@@ -8,6 +8,7 @@
 
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/image_figures.h"
+#include "umbra/bench/compare/method_times.h"
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
@@ -24,6 +25,8 @@
 namespace umbra {
 namespace fs = std::filesystem;
 namespace {
+
+constexpr Repeats kOnce{1, 0};
 
 /// What people look at: `rendered` with several points a pixel where those are prepared and the method has answered the
 /// picture whole.
@@ -200,6 +203,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                     {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
                                     {"lights", lights_json(prepared.facts)},
                                     {"times", Json::object()},
+                                    {"turns", nullptr},
                                     {"reference", reference_json(reference, reference_ran, scene, truth_ran.failed)},
                                     {"methods", Json::array()}};
     record["reference"]["files"] = write_files(staging, "reference", prepared, reference_run, reference_rendered,
@@ -225,11 +229,14 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
 
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
+    std::vector<MethodChoice> listed;
+    std::vector<Answered> answered;
     for (const MethodChoice& choice : choices) {
         // Where the reference is too slow for the whole picture, so is the same method in the list.
         const bool itself = choice.text() == reference.choice.text();
         if (itself && options.methods.empty() && !reference_ran.stand_in.empty()) continue;
         tell(choice.text());
+        listed.push_back(choice);
         const std::string id = unique_id(choice.info->name, used);
         const bool slow      = total(reference_run.visibility).median > options.repeats.budget_ms;
         std::optional<LightId> at;
@@ -237,19 +244,23 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
             const bool apart               = differs_in_measure(choice);
             const MethodRun& truth         = apart ? other->ran.run : reference_run;
             const Rendered& truth_rendered = apart ? other->rendered : reference_rendered;
-            const MethodRun run =
-                itself && slow && reference_ran.stand_in.empty()
-                    ? reference_run
-                    : run_method(choice, scene, prepared.facts, prepared.points, options.repeats, &at);
-            record["methods"].push_back(run.service ? method_entry(staging, id, prepared, run, truth, truth_rendered,
-                                                                   options.command, shade_ms, at)
-                                                    : unserved_json(id, choice, run.service));
+            const MethodRun run            = itself && slow && reference_ran.stand_in.empty()
+                                                 ? reference_run
+                                                 : run_method(choice, scene, prepared.facts, prepared.points, kOnce, &at);
+            if (run.service)
+                answered.push_back(
+                    {method_entry(staging, id, prepared, run, truth, truth_rendered, options.command, shade_ms, at),
+                     times_of(run)});
+            else
+                answered.push_back({unserved_json(id, choice, run.service)});
         } catch (const InputError&) {  // a file that cannot be written is no fault of the method
             throw;
         } catch (...) {
-            record["methods"].push_back(failed_json(id, choice, scene, at, current_message()));
+            answered.push_back({failed_json(id, choice, scene, at, current_message())});
         }
     }
+    record["turns"] = time_methods(staging, prepared, listed, answered, options.repeats, tell);
+    for (Answered& a : answered) record["methods"].push_back(std::move(a.entry));
     record["times"] = {{"load_ms", prepared.load_ms},
                        {"facts_ms", prepared.facts_ms},
                        {"rays_build_ms", prepared.rays_build_ms},

@@ -25,7 +25,7 @@ struct CompareOptions {
     std::string folder;   ///< of the scene, in `out`; empty: the scene's name, made fit for a folder
     std::string command;  ///< for the records
     int threads = 0;
-    Repeats repeats;
+    Repeats repeats;  ///< of the times: at most max_runs rounds, and budget_ms for each phase of each method
     std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
     std::function<void(const std::string&)> warn;      ///< receives "SCENE: warning" of loading; may be empty
     std::function<void(const std::filesystem::path&)>
@@ -35,9 +35,11 @@ struct CompareOptions {
 };
 
 /// Compares on one scene and writes OUT/<scene>/: results.json, EXRs and PNGs. The folder is written beside and moved
-/// into place; an older result stays whole until then. A method that throws or breaks its contract has an entry that
-/// says so (`failed`), and the others go on; a reference that throws is replaced, unless the options name it. Returns
-/// the record that it wrote. Throws InputError, UsageError, and what a reference throws that cannot be replaced.
+/// into place; an older result stays whole until then. Each method runs once for its answers, and then all of them in
+/// turns for their times (bench/time/turns.h), of which that run is the first. A method that throws or breaks its
+/// contract has an entry that says so (`failed`), and the others go on; a reference that throws is replaced, unless the
+/// options name it. Returns the record that it wrote. Throws InputError, UsageError, and what a reference throws that
+/// cannot be replaced.
 Json compare_scene(const std::filesystem::path& file, const CompareOptions& options);
 
 /// All scenes one after the other, each in a folder of its own name; scenes of one name, in any case, get -2, -3 and so

@@ -4,6 +4,10 @@
 
 #include <algorithm>
 
+#include "umbra/bench/run/machine_load.h"
+#include "umbra/bench/run/timing.h"
+#include "umbra/core/base/parallel.h"
+
 namespace umbra {
 namespace {
 
@@ -126,23 +130,41 @@ Json reference_json(const Reference& reference, const ReferenceRun& ran, const S
 
 Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
                  std::span<const Explained> explained, const std::string& reference) {
-    Json entry       = head_json(id, run.choice, run.service);
-    Json light_times = Json::array(), errors = Json::array();
-    for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
-        const std::string& light = prepared.scene.lights[j].name;
-        light_times.push_back(
-            {{"light", light}, {"aim_ms", timing_json(run.aim[j])}, {"visibility_ms", timing_json(run.visibility[j])}});
-        errors.push_back(error_json(light, explained[j]));
-    }
-    entry["times"]         = times_json(run);
-    entry["light_times"]   = std::move(light_times);
+    Json entry             = head_json(id, run.choice, run.service);
+    entry["times"]         = nullptr;
+    entry["light_times"]   = nullptr;
     entry["memory_bytes"]  = run.memory_bytes;
     const auto covered     = run.coverage(prepared.points);
     entry["coverage"]      = covered ? Json(*covered) : Json();
     entry["measures"]      = to_string(run.method->measures());
     entry["compared_with"] = reference;
-    entry["errors"]        = std::move(errors);
+    Json& errors = entry["errors"] = Json::array();
+    for (LightId j = 0; j < prepared.scene.lights.size(); ++j)
+        errors.push_back(error_json(prepared.scene.lights[j].name, explained[j]));
     return entry;
+}
+
+void set_times(Json& entry, const Scene& scene, const TurnTimes& times) {
+    entry["times"]    = turn_times_json(times);
+    Json& light_times = entry["light_times"] = Json::array();
+    for (LightId j = 0; j < scene.lights.size(); ++j)
+        light_times.push_back({{"light", scene.lights[j].name},
+                               {"aim_ms", timing_json(timing_of(times.light_aim[j]))},
+                               {"visibility_ms", timing_json(timing_of(times.light_visibility[j]))}});
+}
+
+Json turns_json(const Turns& turns, const TurnOptions& options, std::pair<double, double> load) {
+    Json record = {{"rounds", turns.calibration.size()},
+                   {"seed", options.seed},
+                   {"threads", thread_count()},
+                   {"processors", usable_processors()},
+                   {"load_average", {{"before", number(load.first)}, {"after", number(load.second)}}},
+                   {"calibration_ms", turns.calibration},
+                   {"noise_bar", number(turns.noise_bar)},
+                   {"control", nullptr}};
+    if (turns.control && !turns.twin->build.empty())
+        record["control"] = {{"text", turns.twin->choice.text()}, {"again", turn_times_json(*turns.twin)}};
+    return record;
 }
 
 Json unserved_json(const std::string& id, const MethodChoice& choice, const Service& service) {

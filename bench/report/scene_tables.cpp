@@ -10,6 +10,7 @@
 #include "umbra/bench/pages/mesh_faults.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/time_ratios.h"
 
 namespace umbra {
 namespace {
@@ -175,6 +176,7 @@ json time_view(const Field& root, const std::vector<Field>& methods) {
         if (const auto ms = root["times"][key].number()) shared.push_back({{"name", name}, {"ms", score(ms)}});
     const bool several = root["lights"].items().size() > 1 && !by_light.empty();
     return {{"rows", std::move(rows)},
+            {"ratios", time_ratio_view(root, methods)},
             {"several_lights", several},
             {"by_light", std::move(by_light)},
             {"shared", std::move(shared)}};

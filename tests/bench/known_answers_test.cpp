@@ -493,15 +493,19 @@ TEST_F(Wall, RecordTellsThePhasesApart) {
     EXPECT_EQ(times["build_ms"]["runs"], 1);
 }
 
-/// Repetitions are for the clock: what the last one answers is the answer, whatever those before it wrote.
+/// Repetitions are for the clock: the first run answers, whatever those behind it write. Two rounds, in each of which
+/// the only method is also its own control.
 TEST_F(Wall, RepetitionsLeaveNothingBehind) {
     int run                  = 0;
     planted_behaviour.work   = [&](Phase phase, LightId light) { run += phase == Phase::visibility && light == kSun; };
     planted_behaviour.answer = [&](LightId, std::size_t x, std::size_t, int) {
-        return run == 1 ? PlantedAnswer{1, x < 20} : PlantedAnswer{0};
+        return run == 1 ? PlantedAnswer{0} : PlantedAnswer{1, x < 20};
     };
-    (void)compare(kWall, "wall", info_, {2, 1e9});
-    EXPECT_EQ(run, 2);
+    const json record = compare(kWall, "wall", info_, {2, 1e9});
+    EXPECT_EQ(run, 1 + 2 * 2);
+    EXPECT_EQ(record["methods"][0]["times"]["build_ms"]["runs"], 2);
+    EXPECT_EQ(record["turns"]["control"]["text"], "planted");
+    EXPECT_EQ(record["turns"]["calibration_ms"].size(), 2u);
     const Exr planted = read_exr(file("planted.exr"));
     for (const float s : planted.floats.at("S.sun")) ASSERT_EQ(s, 0);
 }

@@ -154,6 +154,54 @@ TEST_F(PageFigures, TablesOfErrors) {
     EXPECT_TRUE(contains(page, fmt::format("<td>{}</td>", figure(1, 0, "/false_shadow/edge"))));
 }
 
+/// Phases of seven rounds on a machine that gets slower from round to round.
+json in_turns(double build, double aim, double visibility) {
+    json times = {{"order", json::array()}};
+    for (const auto& [name, ms] :
+         {std::pair{"build_ms", build}, std::pair{"aim_ms", aim}, std::pair{"visibility_ms", visibility}}) {
+        times[name] = milliseconds_of(ms, ms, ms);
+        for (int round = 0; round < 7; ++round) times[name]["samples"].push_back(ms * (1 + 0.5 * round));
+    }
+    for (int round = 0; round < 7; ++round) times["order"].push_back(round % 3);
+    return times;
+}
+
+/// Build 41, aim 21, visibility 5 ms against 7.24, 11.26 and 15: the first is 3 times as fast for a camera (5 : 15),
+/// the second twice as fast for an object (33.5 : 67), and for a light (26 : 26.26) they differ by 1 %. The control
+/// differs from itself by 2 %.
+TEST_F(PageFigures, RatiosOfTimes) {
+    const auto page_of = [&] {
+        put(out / "court", results);
+        write_report({out}, out);
+        return read(out / "court/index.html");
+    };
+    EXPECT_FALSE(contains(page, "ratios-caption")) << "a record without samples";
+    results["methods"][1]["times"] = in_turns(41, 21, 5);
+    results["methods"][2]["times"] = in_turns(7.24, 11.26, 15);
+    results["turns"]               = {
+                      {"calibration_ms", {20, 21, 22}},
+                      {"control", {{"text", results["methods"][1]["text"]}, {"again", in_turns(41 * 1.02, 21 * 1.02, 5 * 1.02)}}}};
+    const std::string with = page_of();
+    const HtmlTable ratios(with, "ratios-caption");
+    const std::string first = "The shadow_zbuffer", second = "The ray_traced";
+    EXPECT_EQ(ratios.at(first, "Object"), "×2.00 (2.00–2.00)");
+    EXPECT_EQ(ratios.at(second, "Object"), "fastest");
+    EXPECT_EQ(ratios.at(first, "Light"), "fastest");
+    EXPECT_EQ(ratios.at(second, "Light"), "no difference");
+    EXPECT_EQ(ratios.at(first, "Camera"), "fastest");
+    EXPECT_EQ(ratios.at(second, "Camera"), "×3.00 (3.00–3.00)");
+    EXPECT_TRUE(contains(with,
+                         "object 2.0 %; light 2.0 %; camera 2.0 %; a fixed amount of work took 21.0 ms, between "
+                         "20.0 and 22.0, in 3 rounds"));
+
+    // A cold run is of no round, and without a control nothing can be said to differ.
+    results["methods"][2]["times"]["order"] = json::array();
+    EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "×3.00, one run");
+    results["methods"][2]["times"] = in_turns(7.24, 11.26, 15);
+    results["turns"]["control"]    = nullptr;
+    EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "no difference");
+}
+
 /// Build 41, aim 21, visibility 5 ms: a moved camera takes 5, a moved light 26, a moved object 67.
 TEST_F(PageFigures, TablesOfTimes) {
     const HtmlTable times(page, "times-caption"), by_light(page, "light-times-caption");

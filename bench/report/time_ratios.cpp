@@ -1,0 +1,106 @@
+#include "umbra/bench/report/time_ratios.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "umbra/bench/pages/report_page.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/statistics/statistics.h"
+
+namespace umbra {
+
+using nlohmann::json;
+
+namespace {
+
+using Samples = std::vector<double>;
+
+/// Milliseconds of each round by what moved, as the page's columns are.
+struct Movements {
+    std::array<Samples, 3> ms;  ///< object, light, camera
+    bool paired = false;        ///< its samples are of rounds
+};
+constexpr std::array<const char*, 3> kMovements{"object", "light", "camera"};
+
+Samples samples(const Field& phase) {
+    Samples all;
+    for (const Field& ms : phase["samples"].items())
+        all.push_back(ms.number().value_or(std::numeric_limits<double>::quiet_NaN()));
+    return all;
+}
+
+Movements movements(const Field& times) {
+    const Samples build = samples(times["build_ms"]), aim = samples(times["aim_ms"]),
+                  visibility = samples(times["visibility_ms"]);
+    Movements m;
+    m.paired = !times["order"].items().empty();
+    for (std::size_t r = 0; r < std::min({build.size(), aim.size(), visibility.size()}); ++r) {
+        m.ms[0].push_back(build[r] + aim[r] + visibility[r]);
+        m.ms[1].push_back(aim[r] + visibility[r]);
+        m.ms[2].push_back(visibility[r]);
+    }
+    return m;
+}
+
+struct Row {
+    std::string label;
+    Movements times;
+};
+
+std::string against(const Row& row, const Row& fastest, std::size_t movement, double bar) {
+    const Samples &mine = row.times.ms[movement], &its = fastest.times.ms[movement];
+    if (!row.times.paired || !fastest.times.paired)
+        return fmt::format("×{}, one run", score(median(mine) / median(its)));
+    const Ratio ratio = paired_ratio(mine, its);
+    if (!differs(ratio, bar)) return "no difference";
+    return fmt::format("×{} ({}–{})", score(ratio.median), score(ratio.interval.low), score(ratio.interval.high));
+}
+
+std::string bar_in_words(double bar) { return std::isfinite(bar) ? fmt::format("{:.1f} %", 100 * bar) : kNone; }
+
+}  // namespace
+
+json time_ratio_view(const Field& root, const std::vector<Field>& methods) {
+    const Field control = root["turns"]["control"];
+    std::vector<Row> rows;
+    std::array<Ratio, 3> same{};
+    for (const Field& method : methods) {
+        Row row{method_label(method, methods), movements(method["times"])};
+        if (!serves(method) || row.times.ms[0].empty()) continue;
+        if (control.present() && method["text"].text() == control["text"].text()) {
+            const Movements again = movements(control["again"]);
+            for (std::size_t m = 0; m < same.size(); ++m) same[m] = paired_ratio(again.ms[m], row.times.ms[m]);
+        }
+        rows.push_back(std::move(row));
+    }
+    if (!root["turns"].present() || rows.empty()) return false;
+
+    json table = json::array(), bars = json::array();
+    for (const Row& row : rows) table.push_back({{"label", row.label}});
+    for (std::size_t m = 0; m < kMovements.size(); ++m) {
+        const auto faster  = [&](const Row& a, const Row& b) { return median(a.times.ms[m]) < median(b.times.ms[m]); };
+        const auto fastest = std::min_element(rows.begin(), rows.end(), faster);
+        const double bar   = noise_bar(same[m]);
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            table[k][kMovements[m]] = &rows[k] == &*fastest ? "fastest" : against(rows[k], *fastest, m, bar);
+        bars.push_back({{"movement", kMovements[m]}, {"bar", bar_in_words(bar)}});
+    }
+    Samples calibration;
+    for (const Field& ms : root["turns"]["calibration_ms"].items())
+        if (const auto value = ms.number()) calibration.push_back(*value);
+    json view = {{"rows", std::move(table)}, {"bars", std::move(bars)}, {"calibrated", false}};
+    if (!calibration.empty()) {
+        const auto [least, largest] = std::minmax_element(calibration.begin(), calibration.end());
+        view["calibrated"]          = {{"median", milliseconds(median(calibration))},
+                                       {"least", milliseconds(*least)},
+                                       {"largest", milliseconds(*largest)},
+                                       {"rounds", std::to_string(calibration.size())}};
+    }
+    return view;
+}
+
+}  // namespace umbra
