@@ -24,6 +24,7 @@
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/report_index.h"
 #include "umbra/bench/report/report_scene.h"
+#include "umbra/bench/trade/trade_page.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 
@@ -58,7 +59,8 @@ std::vector<fs::path> results_files(const fs::path& dir) {
 std::optional<ScenePage> read_scene(const fs::path& file) {
     ScenePage scene{
         .root = read_results(file), .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
-    if (scene.root["ladders"].present() || scene.root["bias"].present()) return std::nullopt;
+    for (const char* other : {"ladders", "bias", "sweep", "sweeps"})
+        if (scene.root[other].present()) return std::nullopt;
     scene.name      = scene.root["scene"]["name"].required_text();
     scene.title     = scene.root["scene"]["title"].text();
     scene.triangles = scene.root["facts"]["triangles"].number().value_or(0);
@@ -67,20 +69,36 @@ std::optional<ScenePage> read_scene(const fs::path& file) {
     return scene;
 }
 
-/// The contents of the folders: compared scenes, and at most one run of ladders.
+/// The contents of the folders: compared scenes, at most one run of ladders, and the results.json of swept scenes.
 struct Found {
     std::vector<ScenePage> scenes;
     std::optional<fs::path> ladders;
+    std::vector<fs::path> sweeps;
 };
+
+/// The results.json of swept scenes that a results.json stands for: itself, or those of the scenes that it lists.
+std::vector<fs::path> swept(const Field& root, const fs::path& file) {
+    if (root["sweep"].present()) return {fs::canonical(file)};
+    std::vector<fs::path> files;
+    for (const Field& scene : root["sweeps"].items()) {
+        const fs::path listed = file.parent_path() / scene.required_text() / "results.json";
+        if (!is_file(listed)) scene.refuse("a folder beside this file that holds a results.json");
+        files.push_back(fs::canonical(listed));
+    }
+    return files;
+}
 
 Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     std::vector<ScenePage> all;
     std::optional<fs::path> ladders;
+    std::vector<fs::path> sweeps;
     for (const fs::path& dir : dirs) {
         const auto first = std::ptrdiff_t(all.size());
         for (const fs::path& file : results_files(dir)) {
-            if (const Field root = read_results(file); root["ladders"].present())
-                ladders = fs::canonical(file.parent_path());
+            const Field root = read_results(file);
+            if (root["ladders"].present()) ladders = fs::canonical(file.parent_path());
+            for (fs::path& sweep : swept(root, file))
+                if (std::find(sweeps.begin(), sweeps.end(), sweep) == sweeps.end()) sweeps.push_back(std::move(sweep));
             std::optional<ScenePage> read = read_scene(file);
             if (!read) continue;
             ScenePage& scene = *read;
@@ -94,6 +112,7 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     }
 
     std::set<fs::path> taken;
+    if (!sweeps.empty()) taken.insert(out / "trade");
     const auto below_out = [&](const ScenePage& scene) {
         const fs::path relative = scene.data.lexically_relative(out);
         return relative != "." && *relative.begin() != "..";
@@ -106,7 +125,7 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
             if (taken.insert(folder).second) scene.page = folder;
         }
     }
-    return {std::move(all), std::move(ladders)};
+    return {std::move(all), std::move(ladders), std::move(sweeps)};
 }
 
 /// The table of ladders for the first page, and the page of ladders with its files where it can be handed out with the
@@ -128,6 +147,18 @@ json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, 
             {"table", ladder_table_view(root, page)},
             {"showcase", ladder_showcase_view(root, page)},
             {"count", counted(double(root["ladders"].items().size()), "ladder")}};
+}
+
+/// The page of sweeps, and what the first page shows of it; false where there are no sweeps.
+json trade_section(const std::vector<fs::path>& sweeps, const fs::path& out, StagedFiles& staged) {
+    if (sweeps.empty()) return false;
+    const fs::path place   = out / "trade";
+    const std::string page = url((place / "index.html").lexically_relative(out));
+    json lines             = json::array();
+    for (const TradeLine& line :
+         write_trade_page(sweeps, place, url((out / "index.html").lexically_relative(place)), staged))
+        lines.push_back({{"scene", line.scene}, {"href", page + "#" + line.anchor}, {"finding", line.finding}});
+    return {{"page", page}, {"lines", std::move(lines)}};
 }
 
 /// Everything that failed, in words, for the first page.
@@ -203,6 +234,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     }
     json index         = index_view(scenes, files, root, options.title);
     index["stability"] = ladder_section(found.ladders, root, staged);
+    index["trade"]     = trade_section(found.sweeps, root, staged);
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));

@@ -12,7 +12,8 @@ struct ReportOptions {
     std::vector<std::string> failed{};              ///< messages for the first page, of scenes that have no results
 };
 
-/// Folders that `umbra ladder` wrote may be among them: the first page then says where each method breaks.
+/// Folders that `umbra ladder` wrote may be among them: the first page then says where each method breaks. Of folders
+/// that `umbra sweep` wrote, out/trade/index.html shows error against frame cost, and the first page what was found.
 /// Writes out/index.html, a page per scene, their style and their scripts. Reads DIR/<scene>/results.json of each
 /// folder, or DIR/results.json where there is none of those. A scene whose folder lies in `out` gets its page beside
 /// its pictures; of others the pictures are copied to out/<scene>, so that `out` can be handed out whole. The pages
