@@ -1,0 +1,228 @@
+// Kernels that all methods stand on: camera rays, shadow rays, exact signs, facing, facts, shading. Each is checked
+// before it is timed, by what is known of the scene without it.
+//
+//     kernels_benchmark [Google Benchmark's options]
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "umbra/bench/speed/speed_scenes.h"
+#include "umbra/bench/speed/timed_loop.h"
+#include "umbra/core/base/predicates.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/shade.h"
+#include "umbra/core/scene/facts.h"
+
+namespace umbra {
+namespace {
+
+constexpr int kWidth = 640, kHeight = 360;
+
+struct Stage {
+    std::string name;
+    Scene scene;
+    std::optional<RayScene> rays{};
+    PointBatch points{};
+
+    Stage(std::string stage, Scene made) : name(std::move(stage)), scene(std::move(made)) {
+        rays.emplace(scene);
+        points = primary_points(*rays, scene, scene.camera, kWidth, kHeight);
+    }
+};
+
+void time_tree(benchmark::State& state, const Stage& stage) {
+    std::optional<RayScene> rays;
+    timed_loop(
+        state, [&] { rays.emplace(stage.scene); }, [&] { rays.reset(); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.scene.triangles.size()));
+}
+
+/// Checked: each point lies on its pixel's ray, within a pixel.
+void time_camera_rays(benchmark::State& state, const Stage& stage) {
+    PointBatch batch;
+    const auto work = [&] { primary_points(*stage.rays, stage.scene, stage.scene.camera, kWidth, kHeight, batch); };
+    work();
+    const CameraFrame f = *batch.raster;
+    for (std::size_t i = 0; i < batch.size(); i += 97) {
+        if (batch.triangle[i] == kNoTriangle) continue;
+        const dvec3 to    = dvec3(batch.position(i)) - dvec3(f.eye);
+        const double deep = glm::dot(to, dvec3(f.forward));
+        const double x    = (glm::dot(to, dvec3(f.right)) / deep / f.half_width + 1) * kWidth / 2;
+        const double y    = (1 - glm::dot(to, dvec3(f.up)) / deep / f.half_height) * kHeight / 2;
+        if (std::abs(x - static_cast<double>(i % kWidth) - 0.5) > 1 ||
+            std::abs(y - static_cast<double>(i / kWidth) - 0.5) > 1)
+            return state.SkipWithError(fmt::format("point {} is not on its pixel's ray", i).c_str());
+    }
+    timed_loop(state, work);
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch.size()));
+}
+
+constexpr std::size_t kRays = std::size_t{1} << 16;
+
+/// Ray k starts over the floor, on a grid of 256 x 256 that covers the bodies, and goes up (even k) or down to the
+/// floor.
+struct VerticalRay {
+    vec3 origin;
+    float rise;
+
+    VerticalRay(const RaySpace& space, std::size_t k)
+        : origin(space.point(
+              vec3(6 * static_cast<float>(k % 256) / 256 - 3, 0.1f, 6 * static_cast<float>(k / 256) / 256 - 3))),
+          rise(static_cast<float>(k % 2 == 0 ? 3 : -1) * space.scale) {}
+};
+
+/// Whether a triangle blocks a vertical ray, in double: the origin's x and z are inside the triangle's, and the height
+/// there is on the way.
+bool blocks(const Scene& scene, const RaySpace& space, TriangleId t, const VerticalRay& ray) {
+    dvec3 v[3];
+    for (int k = 0; k < 3; ++k) v[k] = dvec3(space.point(scene.vertex(t, k))) - dvec3(ray.origin);
+    double weight[3], sum = 0;
+    for (int k = 0; k < 3; ++k) {
+        const dvec3 &p = v[(k + 1) % 3], &q = v[(k + 2) % 3];
+        sum += weight[k] = p.x * q.z - p.z * q.x;
+    }
+    const bool inside =
+        (weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0) || (weight[0] <= 0 && weight[1] <= 0 && weight[2] <= 0);
+    if (!inside || sum == 0) return false;
+    const double height = (weight[0] * v[0].y + weight[1] * v[1].y + weight[2] * v[2].y) / sum / ray.rise;
+    return height > 0 && height <= 1;
+}
+
+using Blocked = std::vector<std::uint8_t>;  ///< one a ray
+
+/// Checked: 64 of the rays against every triangle.
+template <class Trace>
+void time_shadow_rays(benchmark::State& state, const Stage& stage, const Trace& trace) {
+    Blocked blocked(kRays);
+    trace(*stage.rays, blocked);
+    for (std::size_t k = 7; k < kRays; k += kRays / 64 + 1) {
+        const VerticalRay ray(stage.rays->space(), k);
+        bool expected = false;
+        for (TriangleId t = 0; t < stage.scene.triangles.size() && !expected; ++t)
+            expected = blocks(stage.scene, stage.rays->space(), t, ray);
+        if (expected != (blocked[k] != 0)) return state.SkipWithError(fmt::format("ray {} is wrong", k).c_str());
+    }
+    timed_loop(state, [&] { trace(*stage.rays, blocked); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kRays));
+}
+
+void trace_packets(const RayScene& scene, Blocked& blocked) {
+    const FlushDenormals flush;
+    for (std::size_t first = 0; first < blocked.size(); first += 8) {
+        ShadowPacket packet;
+        for (std::size_t k = 0; k < 8; ++k) {
+            const VerticalRay ray(scene.space(), first + k);
+            packet.org_x[k] = ray.origin.x, packet.org_y[k] = ray.origin.y, packet.org_z[k] = ray.origin.z;
+            packet.dir_y[k] = ray.rise, packet.tfar[k] = 1, packet.id[k] = kNoTriangle, packet.valid[k] = -1;
+        }
+        scene.occluded(packet);
+        for (std::size_t k = 0; k < 8; ++k) blocked[first + k] = packet.tfar[k] < 0;
+    }
+}
+
+void trace_lists(const RayScene& scene, Blocked& blocked) {
+    const FlushDenormals flush;
+    std::vector<ShadowRay> list(128);
+    for (std::size_t first = 0; first < blocked.size(); first += list.size()) {
+        for (std::size_t k = 0; k < list.size(); ++k) {
+            const VerticalRay ray(scene.space(), first + k);
+            list[k] = {ray.origin.x, ray.origin.y, ray.origin.z, 0, 0, ray.rise, 0, 0, 1};
+        }
+        scene.occluded(list);
+        for (std::size_t k = 0; k < list.size(); ++k) blocked[first + k] = list[k].tfar < 0;
+    }
+}
+
+void trace_first_hits(const RayScene& scene, Blocked& blocked) {
+    const FlushDenormals flush;
+    for (std::size_t k = 0; k < blocked.size(); ++k) {
+        const VerticalRay ray(scene.space(), k);
+        blocked[k] =
+            scene.first_hit({ray.origin.x, ray.origin.y, ray.origin.z, 0, 0, ray.rise, 0, 0, 1}) != kNoTriangle;
+    }
+}
+
+/// Points over, under and in the plane x + y + z = 3; `lift` is their height. In the plane, floating point does not
+/// decide and rationals do.
+void time_signs(benchmark::State& state, float lift, int expected) {
+    const vec3 a(3, 0, 0), b(0, 3, 0), c(0, 0, 3);
+    const auto work = [&] {
+        int sum = 0;
+        for (int k = 0; k < 4096; ++k) {
+            const float u = static_cast<float>(k % 64) / 64, v = static_cast<float>(k / 64) / 64;  // exact in binary
+            sum += side_of_plane(a, b, c, vec3(u + lift, v, 3 - u - v));
+        }
+        return sum;
+    };
+    if (work() != 4096 * expected) return state.SkipWithError("a sign is wrong");
+    timed_loop(state, [&] { benchmark::DoNotOptimize(work()); });
+    state.SetItemsProcessed(state.iterations() * 4096);
+}
+
+void time_facing(benchmark::State& state, const Stage& stage) {
+    PointBatch points = stage.points;
+    for (auto& of : points.facing) of.assign(points.size(), Facing::none);
+    face_lights(points, stage.scene);
+    if (points.facing != stage.points.facing) return state.SkipWithError("differs from the first answer");
+    timed_loop(state, [&] { face_lights(points, stage.scene); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+}
+
+void time_facts(benchmark::State& state, const Stage& stage) {
+    if (find_facts(stage.scene).triangles != stage.scene.triangles.size())
+        return state.SkipWithError("the number of triangles is wrong");
+    timed_loop(state, [&] { benchmark::DoNotOptimize(find_facts(stage.scene)); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.scene.triangles.size()));
+}
+
+/// Checked: lights add light, so that no pixel is darker where all of them are seen than where none is, and some are
+/// brighter.
+void time_shading(benchmark::State& state, const Stage& stage) {
+    const std::size_t lights = stage.scene.lights.size();
+    std::vector<VisibilityPlane> umbra(lights, VisibilityPlane(stage.points.size())), lit = umbra;
+    for (VisibilityPlane& plane : lit) plane.s.assign(plane.size(), 1.0f);
+    const Image dark = shade(stage.scene, stage.points, umbra), bright = shade(stage.scene, stage.points, lit);
+    bool brighter = false;
+    for (std::size_t i = 0; i < dark.data.size(); ++i) {
+        if (bright.data[i] < dark.data[i]) return state.SkipWithError("a light darkens");
+        brighter = brighter || bright.data[i] > dark.data[i];
+    }
+    if (!brighter) return state.SkipWithError("lights add nothing");
+    timed_loop(state, [&] { benchmark::DoNotOptimize(shade(stage.scene, stage.points, lit)); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.points.size()));
+}
+
+}  // namespace
+}  // namespace umbra
+
+int main(int argc, char** argv) {
+    using namespace umbra;
+    std::vector<std::unique_ptr<Stage>> stages;
+    stages.push_back(std::make_unique<Stage>("small", simple_scene()));
+    stages.push_back(std::make_unique<Stage>("medium", tori_scene(32, 16)));
+    stages.push_back(std::make_unique<Stage>("million", tori_scene(125, 64)));
+    const auto add = [](const std::string& name, auto&& function) {
+        benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMillisecond);
+    };
+    add_calibration();
+    for (const auto& made : stages) {
+        const Stage& s   = *made;
+        const auto named = [&](const char* kernel) { return fmt::format("{}/{}", s.name, kernel); };
+        add(named("tree"), [&](benchmark::State& state) { time_tree(state, s); });
+        add(named("camera_rays"), [&](benchmark::State& state) { time_camera_rays(state, s); });
+        add(named("ray_packets"), [&](benchmark::State& state) { time_shadow_rays(state, s, trace_packets); });
+        add(named("ray_lists"), [&](benchmark::State& state) { time_shadow_rays(state, s, trace_lists); });
+        add(named("first_hits"), [&](benchmark::State& state) { time_shadow_rays(state, s, trace_first_hits); });
+        add(named("facing"), [&](benchmark::State& state) { time_facing(state, s); });
+        add(named("facts"), [&](benchmark::State& state) { time_facts(state, s); });
+        add(named("shading"), [&](benchmark::State& state) { time_shading(state, s); });
+    }
+    add("signs/clear", [](benchmark::State& state) { time_signs(state, 1, 1); });
+    add("signs/in_plane", [](benchmark::State& state) { time_signs(state, 0, 0); });
+    benchmark::Initialize(&argc, argv);
+    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+}
