@@ -355,5 +355,26 @@ INSTANTIATE_TEST_SUITE_P(All, EveryMesh,
                                          Fault::twice, Fault::inward),
                          fault_name);
 
+/// S is the same by either of them: a box has 18 edges, its triangles have 36 sides, and no view of it shows as many as
+/// 12 silhouette edges.
+TEST(ShadowVolumes, EdgesAreThoseThatTheSettingNames) {
+    Scene scene;
+    scene.materials.emplace_back();
+    const Mesh box = make_box(vec3(1));
+    add_object(scene, "box", box.positions, {}, box.triangles, 0);
+    Light light;
+    light.kind      = LightKind::point;
+    light.position  = {3, 4, 5};
+    scene.lights    = {light};
+    const auto held = [&](const char* settings) {
+        const auto method = parse_method(std::string("shadow_volumes:") + settings).make();
+        method->build(scene, find_facts(scene));
+        method->aim(0);
+        return method->memory_bytes();
+    };
+    EXPECT_GT(held("edges=per_triangle"), held("edges=weighted"));
+    EXPECT_GT(held("edges=per_triangle"), held("edges=silhouette"));
+}
+
 }  // namespace
 }  // namespace umbra
