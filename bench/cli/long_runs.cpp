@@ -5,13 +5,45 @@
 
 #include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/ladders/ladder_record.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/report/report.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/trade/trade_page.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// The records and their page.
+void write_records(const SweepOptions& options, const SweepDone& done) {
+    StagedFiles staged;
+    std::vector<fs::path> files;
+    for (std::size_t s = 0; s < done.records.size(); ++s) {
+        make_folder(options.out / done.folders[s]);
+        check_writable_beside(options.out / done.folders[s]);
+        files.push_back(fs::absolute(options.out) / done.folders[s] / "results.json");
+        staged.write(files.back(), json_text(done.records[s]));
+    }
+    if (done.records.size() == 1) {
+        staged.write(options.out / "results.json", json_text(done.records.front()));
+    } else {
+        const Json all = {
+            {"schema", kResultsSchema}, {"version", version()}, {"command", options.command}, {"sweeps", done.folders}};
+        staged.write(options.out / "results.json", json_text(all));
+    }
+    staged.commit();
+    StagedFiles page;
+    static_cast<void>(write_trade_page(files, fs::absolute(options.out), "", page));
+    page.commit();
+}
+
+}  // namespace
 
 ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOptions options, const Common& common,
                                const std::vector<fs::path>& also) {
@@ -61,6 +93,21 @@ Json climb_on_terminal(LadderOptions options, const Common& common) {
     }
     for (const Json& failed : record["failed"]) print_error("{}\n", failed_climb_in_words(failed));
     return record;
+}
+
+SweepDone sweep_on_terminal(SweepOptions options, const Common& common) {
+    options.command = common.command;
+    options.threads = thread_count();
+    SweepDone done;
+    {
+        const Terminal terminal(common.quiet);
+        options.progress = [&](const std::string& what) { terminal.progress(what); };
+        options.warn     = [&](const std::string& what) { terminal.warn(what); };
+        done             = sweep(options);
+    }
+    write_records(options, done);
+    for (const std::string& message : done.failed) print_error("{}\n", message);
+    return done;
 }
 
 }  // namespace umbra

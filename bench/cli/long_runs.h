@@ -4,6 +4,7 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/ladder_command.h"
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/sweep/sweep.h"
 
 namespace umbra {
 
@@ -17,5 +18,9 @@ ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, 
 
 /// Climbs; returns the record. Prints what failed to standard error.
 Json climb_on_terminal(LadderOptions options, const Common& common);
+
+/// Sweeps, writes OUT/<scene>/results.json, OUT/results.json and the page OUT/index.html. Prints what failed to
+/// standard error.
+SweepDone sweep_on_terminal(SweepOptions options, const Common& common);
 
 }  // namespace umbra

@@ -9,6 +9,7 @@
 
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
+#include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
 
@@ -17,18 +18,11 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// The parameter that a family grows along: of those with a sweep of numbers, the first.
-const Parameter* axis_of(const MethodInfo& info) {
-    for (const Parameter& p : info.parameters)
-        if (!p.sweep.empty() && (p.type == Parameter::Type::integer || p.type == Parameter::Type::real)) return &p;
-    return nullptr;
-}
-
 std::string why_unfit(const std::vector<Json>& views) {
     for (const Json& cell : views) {
         if (cell.contains("failed")) return "it failed";
         if (cell.at("serves").at("how") == "not") return cell.at("serves").at("why").get<std::string>();
-        if (cell.at("undefined").is_number() && cell.at("undefined").get<double>() > 0)
+        if (cell.at("undefined").is_number() && cell.at("undefined").get<double>() > kMostLeftOut)
             return fmt::format("it leaves {:.3g} % of the points undefined", 100 * cell.at("undefined").get<double>());
     }
     return {};
@@ -155,7 +149,7 @@ Limit parse_limit(const std::string& text) {
 std::vector<Family> families(std::span<const MethodChoice> choices) {
     std::vector<Family> all;
     for (const MethodChoice& choice : choices) {
-        const Parameter* axis = axis_of(*choice.info);
+        const Parameter* axis = line_of(*choice.info);
         const auto belongs    = [&](const Family& family) {
             const MethodChoice& other = family.settings.front();
             if (axis == nullptr || other.info != choice.info) return false;

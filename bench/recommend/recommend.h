@@ -23,7 +23,7 @@ struct Limit {
 struct RecommendOptions {
     std::vector<Limit> limits;  ///< at least one
     Workload workload;
-    std::vector<MethodChoice> choices;  ///< candidates; those that answer all points alone are taken
+    std::vector<MethodChoice> choices;  ///< candidates; those that leave points undefined are not taken
     int views    = 5;                   ///< that the choice is made on, from view 0
     int held_out = 3;                   ///< further views that the chosen setting is tried on afterwards
     TurnOptions turns{.rounds = 9, .budget_ms = 20000};

@@ -47,6 +47,14 @@ std::vector<MethodChoice> combinations(const MethodChoice& base, const std::vect
     return all;
 }
 
+/// The default settings and all presets.
+std::vector<MethodChoice> presets_of(const MethodInfo& method) {
+    std::vector<MethodChoice> all{MethodChoice(method)};
+    for (const Preset& preset : method.presets)
+        all.push_back(parse_method(fmt::format("{}@{}", method.name, preset.name)));
+    return all;
+}
+
 /// Settings may contradict one another, as a filter wider than its map.
 bool can_be_made(const MethodChoice& choice) {
     try {
@@ -105,10 +113,22 @@ std::vector<MethodChoice> settings_in_file(const std::string& file) {
     return all;
 }
 
+const Parameter* line_of(const MethodInfo& method) {
+    for (const Parameter& p : method.parameters)
+        if (!p.sweep.empty() && (p.type == Parameter::Type::integer || p.type == Parameter::Type::real)) return &p;
+    return nullptr;
+}
+
+std::vector<MethodChoice> line_sweep(const MethodInfo& method) {
+    std::vector<MethodChoice> all = presets_of(method);
+    if (const Parameter* line = line_of(method))
+        for (MethodChoice& choice : combinations(MethodChoice(method), {{line->name, split(line->sweep, '|')}}))
+            if (can_be_made(choice)) all.push_back(std::move(choice));
+    return all;
+}
+
 std::vector<MethodChoice> default_sweep(const MethodInfo& method) {
-    std::vector<MethodChoice> all{MethodChoice(method)};
-    for (const Preset& preset : method.presets)
-        all.push_back(parse_method(fmt::format("{}@{}", method.name, preset.name)));
+    std::vector<MethodChoice> all = presets_of(method);
     std::vector<Axis> axes;
     for (const Parameter& p : method.parameters)
         if (!p.sweep.empty()) axes.push_back({p.name, split(p.sweep, '|')});

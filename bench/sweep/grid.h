@@ -22,6 +22,12 @@ inline constexpr std::size_t kMostSettings = 100000;
 /// The method's own sweep: its presets, and every combination of the values that its parameters propose.
 [[nodiscard]] std::vector<MethodChoice> default_sweep(const MethodInfo& method);
 
+/// A part of that, for an overview: the presets, and one line of settings along `line_of`.
+[[nodiscard]] std::vector<MethodChoice> line_sweep(const MethodInfo& method);
+
+/// The number that errors mostly depend on: the first parameter whose sweep is of numbers; null where there is none.
+[[nodiscard]] const Parameter* line_of(const MethodInfo& method);
+
 /// The first of those that are the same method with the same effect on a scene: parameters of area lights
 /// (Parameter::area_lights) tell no two settings apart where there are none, and are at their defaults then.
 [[nodiscard]] std::vector<MethodChoice> distinct(std::span<const MethodChoice> choices, const SceneFacts& facts);

@@ -90,7 +90,7 @@ std::string failure(const Scene& scene, const Json& cell) {
                        failed.at("message").get<std::string>());
 }
 
-Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<SweptSetting>& swept) {
+Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept) {
     const bool own = options.plan.size.width == 0;
     return {{"schema", kResultsSchema},
             {"version", version()},
@@ -200,7 +200,7 @@ SweepDone sweep(const SweepOptions& options) {
             for (const std::string& warning : lab.scene().warnings)
                 options.warn(fmt::format("{}: {}", lab.scene().name, warning));
         const std::vector<MethodChoice> choices = planned_settings(options.plan, lab.facts());
-        std::vector<SweptSetting> swept;
+        std::vector<MeasuredSetting> swept;
         for (const MethodChoice& choice : choices) swept.push_back({choice, {}, {}});
 
         // Steps are the cells that have to be computed, so that what is there does not mislead the estimate.

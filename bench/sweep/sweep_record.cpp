@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "umbra/bench/statistics/pareto.h"
-#include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/metrics.h"
@@ -16,7 +15,7 @@ namespace {
 Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
 /// Why a setting is on no front; empty where it may be.
-std::string excluded(const SweptSetting& s) {
+std::string excluded(const MeasuredSetting& s) {
     const Json& cell = s.views.front();
     if (cell.contains("failed")) return "it failed";
     if (cell.at("serves").at("how") == "not") return "it does not serve this scene";
@@ -24,7 +23,7 @@ std::string excluded(const SweptSetting& s) {
     for (const Json& view : s.views)
         if (view.contains("undefined") && view.at("undefined").is_number())
             undefined = std::max(undefined, view.at("undefined").get<double>());
-    if (undefined > 0) return fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined);
+    if (undefined > kMostLeftOut) return fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined);
     if (s.time.is_null()) return "it was not timed";
     return {};
 }
@@ -38,17 +37,17 @@ Json view_json(const Json& cell) {
     return view;
 }
 
-std::optional<double> median_over(const Metric& metric, std::span<const Json> views) {
-    std::vector<double> values;
+std::optional<double> worst_of(const Metric& metric, std::span<const Json> views) {
+    std::optional<double> worst;
     for (const Json& cell : views) {
         const auto value = metric_value(metric, cell);
         if (!value) return std::nullopt;
-        values.push_back(*value);
+        worst = std::max(worst.value_or(*value), *value);
     }
-    return median(values);
+    return worst;
 }
 
-Json setting_entry(const SweptSetting& s, const Workload& workload) {
+Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
     const Json& cell      = s.views.front();
     const auto preset     = preset_of(s.choice);
     const std::string why = excluded(s);
@@ -64,7 +63,7 @@ Json setting_entry(const SweptSetting& s, const Workload& workload) {
     entry["values"] = Json::object();
     entry["bounds"] = Json::object();
     for (const Metric& m : metrics()) {
-        entry["values"][std::string(m.name)] = optional_number(median_over(m, s.views));
+        entry["values"][std::string(m.name)] = optional_number(worst_of(m, s.views));
         entry["bounds"][std::string(m.name)] = optional_number(upper_bound(m, s.views));
     }
     if (!s.time.is_null()) {
@@ -83,13 +82,13 @@ std::optional<double> cost_of(const Json& time, const Workload& workload) {
     return frame_cost_ms(workload, phase("build_ms"), phase("aim_ms"), phase("visibility_ms"));
 }
 
-Json sweep_json(std::span<const SweptSetting> settings, int views, const Workload& workload) {
+Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload) {
     Json record = {{"views", views},
                    {"metrics", metrics_json()},
                    {"workload", {{"camera", workload.camera}, {"light", workload.light}, {"object", workload.object}}},
                    {"settings", Json::array()},
                    {"fronts", Json::object()}};
-    for (const SweptSetting& s : settings) record["settings"].push_back(setting_entry(s, workload));
+    for (const MeasuredSetting& s : settings) record["settings"].push_back(setting_entry(s, workload));
     for (const Metric& m : metrics()) {
         const std::string name(m.name);
         std::vector<CostError> points;

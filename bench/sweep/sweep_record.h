@@ -10,8 +10,12 @@
 
 namespace umbra {
 
+/// A setting that leaves more of the points undefined is on no front and is not recommended: what it leaves undefined
+/// has no error.
+inline constexpr double kMostLeftOut = 0.01;
+
 /// One setting of a sweep.
-struct SweptSetting {
+struct MeasuredSetting {
     MethodChoice choice;
     std::vector<Json> views;  ///< cells, view 0 first
     Json time;                ///< of SceneLab::times; null where it has none
@@ -21,7 +25,7 @@ struct SweptSetting {
 [[nodiscard]] std::optional<double> cost_of(const Json& time, const Workload& workload);
 
 /// `sweep` of results.json. The fronts hold, for each metric, the settings that no other one beats in both the cost of
-/// a frame and the median of the error over the views, of those that answer all points and have a time.
-[[nodiscard]] Json sweep_json(std::span<const SweptSetting> settings, int views, const Workload& workload);
+/// a frame and the error of the worst view, of those that answer the points and have a time.
+[[nodiscard]] Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload);
 
 }  // namespace umbra

@@ -227,13 +227,13 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
                              {"undefined", undefined},
                              {"errors", {e}}};
         const auto timing = [](double median) { return Json{{"median", median}}; };
-        return SweptSetting{
+        return MeasuredSetting{
             parse_method(text),
             {c},
             {{"times", {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"visibility_ms", timing(ms)}}},
              {"session", Json::object()}}};
     };
-    const std::vector<SweptSetting> settings = {
+    const std::vector<MeasuredSetting> settings = {
         swept("ray_traced:samples=1", 1, 0.1, 0), swept("ray_traced:samples=2", 2, 0.2, 0),
         swept("ray_traced:samples=4", 3, 0, 0), swept("ray_traced:samples=8", 0.5, 0, 0.5)};
     const Json record = sweep_json(settings, 1, {60, 0, 0});

@@ -62,12 +62,8 @@ void print_metrics(const Json& all) {
 }
 
 int list_all(bool as_json) {
-    Json record = {{"schema", kResultsSchema},
-                   {"version", version()},
-                   {"methods", Json::array()},
-                   {"scenes", Json::array()},
-                   {"metrics", metrics_json()},
-                   {"ladders", Json::array()}};
+    Json record = {{"schema", kResultsSchema}, {"version", version()},      {"methods", Json::array()},
+                   {"scenes", Json::array()},  {"metrics", metrics_json()}, {"ladders", Json::array()}};
     for (const MethodInfo* info : methods()) record["methods"].push_back(method_json(*info));
     for (const std::string& scene : canonical_names()) record["scenes"].push_back(scene);
     for (const Ladder* ladder : ladders()) record["ladders"].push_back(ladder_info_json(*ladder));
@@ -113,7 +109,8 @@ int list(const ListLine& line) {
 
 Action list_command(CLI::App& app, const Common& /*common*/) {
     const auto line = std::make_shared<ListLine>();
-    app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full, or metrics")->type_name("");
+    app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full, or metrics")
+        ->type_name("");
     app.add_flag("--json", line->as_json, "Print JSON");
     return [line] { return list(*line); };
 }

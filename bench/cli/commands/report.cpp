@@ -12,6 +12,7 @@
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/canonical.h"
+#include "umbra/bench/sweep/grid.h"
 
 namespace umbra {
 namespace {
@@ -23,18 +24,35 @@ struct ReportLine {
     std::string out;
 };
 
-/// All canonical scenes and all ladders.
+/// A part of `umbra sweep` on three of the canonical scenes that takes seconds: presets, and a coarse line a method.
+SweepOptions canonical_sweep(const fs::path& out) {
+    SweepOptions sweep;
+    sweep.out        = out;
+    sweep.plan.views = 3;
+    sweep.plan.size  = {320, 180};
+    for (const char* scene : {"sun_on_plane", "low_sun_fence", "umbra_penumbra"})
+        sweep.plan.scenes.push_back(fs::absolute(scene_file(scene)));
+    for (const MethodInfo* info : methods())
+        if (info->by_default)
+            for (const MethodChoice& choice : line_sweep(*info)) sweep.plan.settings.push_back(choice.text());
+    sweep.turns = {.rounds = 5, .budget_ms = 4000};
+    return sweep;
+}
+
+/// All canonical scenes, all ladders, and the trade on some scenes.
 int run_everything(const fs::path& out, const Common& common) {
     LadderOptions ladders;
     ladders.out        = out / "ladders";
     const bool climbed = climb_on_terminal(ladders, common)["failed"].empty();
+    const bool swept   = sweep_on_terminal(canonical_sweep(out / "trade"), common).failed.empty();
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
-    const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, {ladders.out});
-    const int code        = exit_code(done);
-    if (!climbed) return kInternal;
+    const ScenesDone done =
+        compare_on_terminal(canonical_scenes(scenes_folder()), options, common, {ladders.out, out / "trade"});
+    const int code = exit_code(done);
+    if (!climbed || !swept) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 

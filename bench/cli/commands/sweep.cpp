@@ -5,14 +5,12 @@
 #include <CLI/CLI.hpp>
 
 #include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
-#include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
@@ -60,28 +58,6 @@ void print_fronts(const SweepDone& done) {
     }
 }
 
-int report_failures(const std::vector<std::string>& failed) {
-    for (const std::string& message : failed) print_error("{}\n", message);
-    return failed.empty() ? kDone : kInternal;
-}
-
-void write_records(const SweepOptions& options, const SweepDone& done) {
-    StagedFiles staged;
-    for (std::size_t s = 0; s < done.records.size(); ++s) {
-        make_folder(options.out / done.folders[s]);
-        check_writable_beside(options.out / done.folders[s]);
-        staged.write(options.out / done.folders[s] / "results.json", json_text(done.records[s]));
-    }
-    if (done.records.size() == 1) {
-        staged.write(options.out / "results.json", json_text(done.records.front()));
-    } else {
-        const Json all = {
-            {"schema", kResultsSchema}, {"version", version()}, {"command", options.command}, {"sweeps", done.folders}};
-        staged.write(options.out / "results.json", json_text(all));
-    }
-    staged.commit();
-}
-
 int sweep(SweepLine line, const Common& common) {
     SweepOptions& options = line.options;
     return_scenes(options.plan.settings, line.scenes);
@@ -112,27 +88,21 @@ int sweep(SweepLine line, const Common& common) {
         const Terminal terminal(common.quiet);
         options.progress = [&](const std::string& what) { terminal.progress(what); };
         sweep_pack(options, pack, failed);
-        return report_failures(failed);
+        for (const std::string& message : failed) print_error("{}\n", message);
+        return failed.empty() ? kDone : kInternal;
     }
     check_writable_beside(options.out);
     const PlaceLock lock = PlaceLock::inside(options.out);
     if (!line.merge.empty()) options.plan = merged_plan({line.merge.begin(), line.merge.end()}, options.out);
-    SweepDone done;
-    {
-        const Terminal terminal(common.quiet);
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        options.warn     = [&](const std::string& what) { terminal.warn(what); };
-        done             = sweep(options);
-    }
-    write_records(options, done);
+    const SweepDone done = sweep_on_terminal(options, common);
     if (line.as_json) {
         for (const Json& record : done.records) print_out("{}", json_text(record));
     } else if (!common.quiet) {
         print_fronts(done);
         print_out("{} cells, {} of them computed now\n{}\n", done.cells, done.computed,
-                  (options.out / "results.json").string());
+                  (options.out / "index.html").string());
     }
-    return report_failures(done.failed);
+    return done.failed.empty() ? kDone : kInternal;
 }
 
 }  // namespace
