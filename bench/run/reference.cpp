@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/bench/run/stratified_sample.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/random_bits.h"
 
@@ -27,24 +28,6 @@ std::uint64_t affordable(const Scene& scene, std::uint64_t points) {
     const auto triangles = static_cast<double>(scene.triangles.size());
     if (static_cast<double>(points) * triangles <= kWhole) return points;
     return static_cast<std::uint64_t>(std::clamp(kSampled / triangles, kFewest, kMost));
-}
-
-/// One pixel with a surface out of each tile that has any: about `wanted` of them where all have.
-std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint64_t wanted) {
-    const auto width   = static_cast<std::size_t>(points.raster->width),
-               height  = static_cast<std::size_t>(points.raster->height);
-    const double share = static_cast<double>(surface_points(points)) / static_cast<double>(wanted);
-    const auto side    = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(std::sqrt(share))));
-    std::vector<std::uint32_t> sample, tile;
-    for (std::size_t top = 0; top < height; top += side)
-        for (std::size_t left = 0; left < width; left += side) {
-            tile.clear();
-            for (std::size_t y = top; y < std::min(height, top + side); ++y)
-                for (std::size_t x = left; x < std::min(width, left + side); ++x)
-                    if (has_surface(points, y * width + x)) tile.push_back(static_cast<std::uint32_t>(y * width + x));
-            if (!tile.empty()) sample.push_back(tile[mixed_bits(top * width + left) % tile.size()]);
-        }
-    return sample;
 }
 
 /// The answers at the sample and those of the substitute method elsewhere, which are never compared.
@@ -87,6 +70,23 @@ Reference substitute(Measure measure, const std::string& why) {
 }
 
 }  // namespace
+
+std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint64_t wanted) {
+    const auto width   = static_cast<std::size_t>(points.raster->width),
+               height  = static_cast<std::size_t>(points.raster->height);
+    const double share = static_cast<double>(surface_points(points)) / static_cast<double>(wanted);
+    const auto side    = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(std::sqrt(share))));
+    std::vector<std::uint32_t> sample, tile;
+    for (std::size_t top = 0; top < height; top += side)
+        for (std::size_t left = 0; left < width; left += side) {
+            tile.clear();
+            for (std::size_t y = top; y < std::min(height, top + side); ++y)
+                for (std::size_t x = left; x < std::min(width, left + side); ++x)
+                    if (has_surface(points, y * width + x)) tile.push_back(static_cast<std::uint32_t>(y * width + x));
+            if (!tile.empty()) sample.push_back(tile[mixed_bits(top * width + left) % tile.size()]);
+        }
+    return sample;
+}
 
 Reference default_reference(const SceneFacts& facts, Measure measure) {
     std::string why;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "umbra/bench/run/contract.h"
 #include "umbra/bench/run/timing.h"
 
 namespace umbra {
@@ -14,6 +15,8 @@ namespace {
 double now_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+}  // namespace
 
 void check_contract(std::string_view name, const VisibilityPlane& plane, const PointBatch& points, LightId light) {
     for (std::size_t i = 0; i < plane.s.size(); ++i) {
@@ -27,8 +30,6 @@ void check_contract(std::string_view name, const VisibilityPlane& plane, const P
                 plane.half_width[i], static_cast<int>(plane.answer[i]), asked ? "asked for" : "not asked for"));
     }
 }
-
-}  // namespace
 
 Timing time_runs(const Repeats& repeats, const std::function<void()>& work, const std::function<void()>& before) {
     std::vector<double> times;

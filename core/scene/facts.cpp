@@ -10,6 +10,7 @@
 #include "umbra/core/base/disjoint_sets.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/core/scene/view_facts.h"
 #include "umbra/core/scene/winding.h"
 
 namespace umbra {
@@ -234,6 +235,17 @@ std::vector<ObjectFacts> find_object_facts(const Scene& scene) {
     return facts;
 }
 
+void update_view_facts(const Scene& scene, SceneFacts& facts) {
+    const dvec3 eye(scene.camera.eye);
+    facts.eye_inside_closed_object = false;
+    for (std::size_t i = 0; i < scene.objects.size() && !facts.eye_inside_closed_object; ++i) {
+        const ObjectFacts& f = facts.objects[i];
+        facts.eye_inside_closed_object =
+            f.closed && holds(f.box, scene.camera.eye) && std::abs(winding_number(scene, scene.objects[i], eye)) > 0.5;
+    }
+    for (std::size_t j = 0; j < scene.lights.size(); ++j) facts.lights[j].place = place_of(scene.lights[j], scene);
+}
+
 SceneFacts find_facts(const Scene& scene) {
     SceneFacts facts;
     facts.triangles = scene.triangles.size();
@@ -250,9 +262,6 @@ SceneFacts find_facts(const Scene& scene) {
         facts.misoriented_objects += f.misoriented_edges > 0;
         facts.degenerate_triangles += f.degenerate_triangles;
         facts.duplicate_triangles += f.duplicate_triangles;
-        if (f.closed && holds(f.box, scene.camera.eye) &&
-            std::abs(winding_number(scene, scene.objects[i], dvec3(scene.camera.eye))) > 0.5)
-            facts.eye_inside_closed_object = true;
     }
 
     facts.planes       = find_planes(scene, kPlanarShare);
@@ -261,9 +270,10 @@ SceneFacts find_facts(const Scene& scene) {
     facts.planar_area_share = area > 0 ? std::min(1.0, planar_area / area) : 0;
 
     for (const Light& light : scene.lights) {
-        facts.lights.push_back({light.name, light.kind, place_of(light, scene)});
+        facts.lights.push_back({light.name, light.kind, {}});
         facts.hard_lights_only = facts.hard_lights_only && !is_area(light.kind);
     }
+    update_view_facts(scene, facts);
     find_terms(scene, facts);
     facts.uncomputed = find_uncomputed(scene);
     return facts;
