@@ -59,7 +59,7 @@ std::vector<fs::path> results_files(const fs::path& dir) {
 std::optional<ScenePage> read_scene(const fs::path& file) {
     ScenePage scene{
         .root = read_results(file), .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
-    for (const char* other : {"ladders", "bias", "sweep", "sweeps"})
+    for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth"})
         if (scene.root[other].present()) return std::nullopt;
     scene.name      = scene.root["scene"]["name"].required_text();
     scene.title     = scene.root["scene"]["title"].text();

@@ -1,0 +1,76 @@
+#include "umbra/bench/motion/motion.h"
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
+
+namespace umbra {
+namespace {
+
+struct MotionLine {
+    std::vector<std::string> scenes;
+    std::string size;
+    bool as_json = false;
+    MotionCommand command;
+};
+
+int motion(MotionLine line, const Common& common) {
+    MotionCommand& command = line.command;
+    return_scenes(command.methods, line.scenes);
+    if (line.scenes.empty()) throw UsageError("motion: SCENE is required");
+    if (!line.size.empty()) command.size = parse_size(line.size);
+    command.command  = common.command;
+    command.threads  = thread_count();
+    const auto files = scene_files(line.scenes);
+    check_writable_beside(command.out);
+    const PlaceLock lock = PlaceLock::inside(command.out);
+    std::vector<std::string> unreadable;
+    Json record;
+    {
+        const Terminal terminal(common.quiet);
+        command.options.progress = [&](const std::string& what) { terminal.progress(what); };
+        record                   = measure_motion(files, command, unreadable);
+    }
+    if (line.as_json)
+        print_out("{}", json_text(record));
+    else if (!common.quiet && !record["motion"].empty())
+        print_out("{}{}\n", motion_table(record), (command.out / "index.html").string());
+    for (const std::string& message : unreadable) print_error("{}\n", message);
+    for (const Json& failure : record["failed"])
+        print_error("{}: {}: {}\n", failure["scene"].get<std::string>(), failure["method"].get<std::string>(),
+                    failure["message"].get<std::string>());
+    return !record["failed"].empty() ? kInternal : unreadable.empty() ? kDone : kUnreadable;
+}
+
+}  // namespace
+
+Action motion_command(CLI::App& app, const Common& common) {
+    const auto line        = std::make_shared<MotionLine>();
+    MotionCommand& command = line->command;
+    app.add_option("SCENE", line->scenes, "Scenes: files or canonical names (required)")->type_name("");
+    app.add_option("--methods", command.methods, "Methods, with settings (default: all)")->type_name("METHOD");
+    app.add_option("--frames", command.options.frames, "Frames of each movement")
+        ->check(number_in(1, 10000, "an integer from 1 to 10000"))
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--size", line->size, "Size of the pictures (default: 320x180)")->type_name("WIDTHxHEIGHT");
+    app.add_option("--reference-points", command.options.area_points,
+                   "Compare area lights at about N stratified points a frame")
+        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--max-rmse", command.max_rmse, "Also name the fastest method whose RMSE stays within this")
+        ->check(number_in(0, 1, "a number from 0 to 1"))
+        ->capture_default_str()
+        ->type_name("E");
+    app.add_option("-o,--output", command.out, "Folder to write to")->type_name("DIR")->required();
+    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
+    return [line, &common] { return motion(*line, common); };
+}
+
+}  // namespace umbra

@@ -1,0 +1,174 @@
+#include "umbra/bench/motion/animation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <optional>
+
+namespace umbra {
+namespace {
+
+/// A light is above the target, for this animation, where a turn would move it by less than this share of its distance.
+constexpr double kAbove = 0.05;
+/// How far an object moves, in its own diagonals.
+constexpr double kSlide = 0.25;
+
+int largest_coordinate(vec3 v) {
+    const vec3 a = glm::abs(v);
+    return a.x > a.y && a.x > a.z ? 0 : a.y >= a.z ? 1 : 2;
+}
+
+dvec3 unit_axis(int coordinate) {
+    dvec3 axis(0);
+    axis[coordinate] = 1;
+    return axis;
+}
+
+dvec3 turned(dvec3 v, dvec3 axis, double time) {
+    return dvec3(glm::rotate(dmat4(1), glm::radians(kArc) * time, axis) * dvec4(v, 0));
+}
+
+vec3 turned_direction(vec3 v, dvec3 axis, double time) { return vec3(turned(dvec3(v), axis, time)); }
+
+/// Which object owns each position alone: its index, or one of these.
+constexpr std::uint32_t kUnused = ~0u, kShared = ~0u - 1;
+std::vector<std::uint32_t> owners(const Scene& scene) {
+    std::vector<std::uint32_t> owner(scene.positions.size(), kUnused);
+    for (TriangleId t = 0; t < scene.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            std::uint32_t& o = owner[scene.triangles[t][k]];
+            o                = o == kUnused || o == scene.triangle_object[t] ? scene.triangle_object[t] : kShared;
+        }
+    return owner;
+}
+
+}  // namespace
+
+std::string_view to_string(Movement movement) {
+    switch (movement) {
+        case Movement::camera: return "camera";
+        case Movement::light: return "light";
+        case Movement::object: return "object";
+    }
+    return "";
+}
+
+Animation::Animation(const Scene& start, const SceneFacts& facts, Movement movement)
+    : movement_(movement), camera_(start.camera), vertical_(largest_coordinate(start.camera.up)) {
+    pivot_ = dvec3(camera_.target);
+    axis_  = unit_axis(vertical_);
+    if (movement == Movement::camera) {
+        if (camera_.eye == camera_.target) cannot_ = "the eye is at its target";
+    } else if (movement == Movement::light) {
+        if (start.lights.empty()) {
+            cannot_ = "the scene has no light";
+            return;
+        }
+        light_                = start.lights[light()];
+        const dvec3 arm       = light_.kind == LightKind::directional ? dvec3(light_.direction)
+                                                                      : dvec3(light_.position) - dvec3(camera_.target);
+        const double sideways = glm::length(arm - axis_ * glm::dot(arm, axis_));
+        if (sideways < kAbove * glm::length(arm)) axis_ = frame(camera_, 1, 1).right;
+        if (glm::length(arm) == 0) cannot_ = fmt::format("light {} is at the camera's target", light_.name);
+    } else {
+        choose_object(start, facts);
+    }
+    if (cannot_.empty()) describe(start);
+}
+
+void Animation::choose_object(const Scene& start, const SceneFacts& facts) {
+    if (start.objects.size() < 2) {
+        cannot_ = "the scene is one object: nothing in it can move apart from the rest";
+        return;
+    }
+    std::size_t receiver = 0;
+    for (std::size_t o = 1; o < start.objects.size(); ++o)
+        if (facts.objects[o].area > facts.objects[receiver].area) receiver = o;
+    const std::vector<std::uint32_t> owner = owners(start);
+    std::vector<bool> shares(start.objects.size());
+    for (TriangleId t = 0; t < start.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            if (owner[start.triangles[t][k]] == kShared) shares[start.triangle_object[t]] = true;
+
+    std::optional<std::size_t> best;
+    for (std::size_t o = 0; o < start.objects.size(); ++o) {
+        const ObjectFacts& f = facts.objects[o];
+        if (o == receiver || shares[o] || !(f.area > 0)) continue;
+        const auto better = [&](const ObjectFacts& than) {
+            return f.planar != than.planar ? !f.planar : f.area > than.area;
+        };
+        if (!best || better(facts.objects[*best])) best = o;
+    }
+    if (!best) {
+        cannot_ = "every object but the largest shares vertices with another one, or has no area";
+        return;
+    }
+    for (std::uint32_t v = 0; v < owner.size(); ++v) {
+        if (owner[v] != *best) continue;
+        vertices_.push_back(v);
+        positions_.push_back(start.positions[v]);
+        normals_.push_back(v < start.normals.size() ? start.normals[v] : vec3(0));
+    }
+    const Box& box      = facts.objects[*best].box;
+    pivot_              = dvec3(box.centre());
+    dvec3 sideways      = frame(camera_, 1, 1).right;
+    sideways[vertical_] = 0;
+    if (glm::length(sideways) < kAbove) sideways = unit_axis((vertical_ + 1) % 3);
+    slide_ = glm::normalize(sideways) * (kSlide * static_cast<double>(box.diagonal()));
+    what_  = fmt::format("object {}", start.objects[*best].name);
+}
+
+void Animation::describe(const Scene& start) {
+    switch (movement_) {
+        case Movement::camera: what_ = fmt::format("the eye turns by {:g} degrees about its target", kArc); break;
+        case Movement::light:
+            what_ = fmt::format("light {} turns by {:g} degrees about {}", start.lights[light()].name, kArc,
+                                light_.kind == LightKind::directional ? "the scene" : "the camera's target");
+            break;
+        case Movement::object:
+            what_ += fmt::format(" moves sideways by {:g} of its diagonal and turns by {:g} degrees", kSlide, kArc);
+            break;
+    }
+}
+
+void Animation::pose(Scene& scene, double time) const {
+    const bool start = time == 0;
+    switch (movement_) {
+        case Movement::camera: {
+            scene.camera = camera_;
+            if (start) return;
+            scene.camera.eye = vec3(pivot_ + turned(dvec3(camera_.eye) - pivot_, axis_, time));
+            scene.camera.up  = turned_direction(camera_.up, axis_, time);
+            return;
+        }
+        case Movement::light: {
+            Light& light = scene.lights[this->light()];
+            light        = light_;
+            if (start) return;
+            light.direction = turned_direction(light_.direction, axis_, time);
+            if (light.kind == LightKind::directional) return;
+            light.position = vec3(pivot_ + turned(dvec3(light_.position) - pivot_, axis_, time));
+            light.edge_u   = turned_direction(light_.edge_u, axis_, time);
+            light.edge_v   = turned_direction(light_.edge_v, axis_, time);
+            if (light.kind == LightKind::rectangle)
+                light.direction = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
+            return;
+        }
+        case Movement::object:
+            for (std::size_t i = 0; i < vertices_.size(); ++i) {
+                vec3& position = scene.positions[vertices_[i]];
+                position       = positions_[i];
+                if (!start) {
+                    position = vec3(pivot_ + turned(dvec3(positions_[i]) - pivot_, axis_, time) + time * slide_);
+                    position[vertical_] = positions_[i][vertical_];
+                }
+                if (vertices_[i] < scene.normals.size())
+                    scene.normals[vertices_[i]] = start ? normals_[i] : turned_direction(normals_[i], axis_, time);
+            }
+            return;
+    }
+}
+
+}  // namespace umbra

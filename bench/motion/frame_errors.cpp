@@ -1,0 +1,67 @@
+#include "umbra/bench/motion/frame_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "umbra/bench/run/contract.h"
+#include "umbra/bench/run/stratified_sample.h"
+#include "umbra/core/errors/visibility_error.h"
+
+namespace umbra {
+
+FrameTruth::FrameTruth(const Reference& reference, const Scene& scene, const SceneFacts& facts,
+                       const PointBatch& points, std::uint64_t area_points)
+    : scene_(&scene), points_(&points) {
+    const auto method = reference.choice.make();
+    method->build(scene, facts);
+    PointBatch sampled;
+    for (LightId j = 0; j < scene.lights.size(); ++j) {
+        const bool area = is_area(scene.lights[j].kind);
+        if (area && !sampled_) {
+            sampled_ = true;
+            sample_  = stratified_sample(points, area_points);
+            sampled  = pick(points, sample_);
+        }
+        const PointBatch& asked = area ? sampled : points;
+        planes_.emplace_back(asked.size());
+        method->aim(j);
+        method->visibility(asked, j, planes_.back().out());
+        check_contract(reference.choice.info->name, planes_.back(), asked, j);
+    }
+}
+
+FrameErrors FrameTruth::errors(const std::vector<VisibilityPlane>& planes) const {
+    FrameErrors errors;
+    double squares = 0;
+    for (LightId j = 0; j < planes_.size(); ++j) {
+        const bool area              = is_area(scene_->lights[j].kind);
+        const VisibilityPlane &truth = planes_[j], &plane = planes.at(j);
+        const float tolerance = visibility_tolerance(scene_->lights[j].kind);
+        for (std::size_t k = 0; k < truth.size(); ++k) {
+            const std::size_t i = area ? sample_[k] : k;
+            if (!points_->asks(j, i) || truth.answer[k] != Answer::given) continue;
+            if (!plane.defined(i)) {
+                ++errors.undefined;
+                continue;
+            }
+            const double difference = std::abs(static_cast<double>(plane.s[i]) - static_cast<double>(truth.s[k]));
+            ++errors.points;
+            squares += difference * difference;
+            errors.max = std::max(errors.max, difference);
+            errors.wrong += difference > static_cast<double>(tolerance + truth.half_width[k]);
+        }
+    }
+    errors.rmse = errors.points > 0 ? std::sqrt(squares / static_cast<double>(errors.points)) : 0;
+    if (!sampled_) {
+        errors.interior = 0;
+        for (LightId j = 0; j < planes_.size(); ++j) {
+            const VisibilityError e =
+                visibility_error(*points_, j, planes.at(j), planes_[j], visibility_tolerance(scene_->lights[j].kind));
+            *errors.interior += e.false_shadow.interior + e.false_light.interior;
+        }
+    }
+    return errors;
+}
+
+}  // namespace umbra

@@ -1,0 +1,75 @@
+#include "umbra/bench/motion/motion.h"
+
+#include <fmt/format.h>
+
+#include "umbra/bench/motion/motion_page.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/run/machine_load.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+std::vector<MethodChoice> chosen_methods(const MotionCommand& command) {
+    std::vector<MethodChoice> chosen = command.choices;
+    for (const std::string& text : command.methods) chosen.push_back(parse_method(text));
+    if (chosen.empty())
+        for (const MethodInfo* info : methods())
+            if (info->by_default) chosen.emplace_back(*info);
+    for (const MethodChoice& choice : chosen) (void)choice.make();  // settings that contradict one another, now
+    return chosen;
+}
+
+bool shows_a_surface(const PreparedScene& prepared) {
+    for (const TriangleId t : prepared.points.triangle)
+        if (t != kNoTriangle) return true;
+    return false;
+}
+
+}  // namespace
+
+Json measure_motion(const std::vector<std::filesystem::path>& files, const MotionCommand& command,
+                    std::vector<std::string>& unreadable) {
+    const std::vector<MethodChoice> chosen = chosen_methods(command);
+    Json record                            = {{"schema", kResultsSchema},
+                                              {"version", version()},
+                                              {"command", command.command},
+                                              {"machine", machine_json(command.threads)},
+                                              {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
+                                              {"frames", command.options.frames},
+                                              {"arc_degrees", kArc},
+                                              {"area_points", command.options.area_points},
+                                              {"max_rmse", command.max_rmse},
+                                              {"motion", Json::array()},
+                                              {"failed", Json::array()}};
+    const auto fail = [&](const std::string& scene, const std::string& method, const std::string& message) {
+        record["failed"].push_back({{"scene", scene}, {"method", method}, {"message", message}});
+    };
+    for (const std::filesystem::path& file : files) {
+        try {
+            PreparedScene prepared = prepare_scene(file, command.size);
+            if (!shows_a_surface(prepared))
+                throw InputError(fmt::format("{}: no surface is in view, so that no point is compared", file.string()));
+            const SceneMotion motion = run_motion(std::move(prepared), chosen, command.options);
+            for (const MethodMotion& method : motion.methods)
+                if (method.failed) fail(motion.name, method.still.choice.text(), *method.failed);
+            record["motion"].push_back(scene_motion_json(motion, command.max_rmse));
+        } catch (const InputError& e) {
+            unreadable.emplace_back(e.what());
+        } catch (const UsageError&) {
+            throw;
+        } catch (...) {
+            fail(file.stem().string(), "the reference", current_message());
+        }
+    }
+    if (record["motion"].empty()) return record;
+    record["load_average"]["after"] = number(load_average());
+    StagedFiles staged;
+    staged.write(command.out / "results.json", json_text(record));
+    write_motion_page(record, command.out, staged);
+    staged.commit();
+    return record;
+}
+
+}  // namespace umbra

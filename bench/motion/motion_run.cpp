@@ -1,0 +1,168 @@
+#include "umbra/bench/motion/motion_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <ranges>
+
+#include "umbra/bench/statistics/statistics.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/random_bits.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/scene/view_facts.h"
+
+namespace umbra {
+namespace {
+
+/// 0, 1, ... in a random order.
+std::vector<std::size_t> shuffled(std::size_t n, std::uint64_t& state) {
+    std::vector<std::size_t> order(n);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[mixed_bits(state++) % i]);
+    return order;
+}
+
+Turns still_times(const PreparedScene& prepared, const std::vector<MethodChoice>& choices,
+                  const MotionOptions& options) {
+    if (!prepared.facts.hard_lights_only)
+        for (const MethodChoice& choice : choices)
+            if (choice.make()->measures() != Measure::area)
+                throw UsageError(fmt::format("{}: measures irradiance, expected a method that measures visible area",
+                                             choice.text()));
+    TurnOptions still = options.still;
+    still.progress    = [&](const std::string& what) {
+        if (options.progress) options.progress(fmt::format("{}, at rest: {}", prepared.scene.name, what));
+    };
+    return time_in_turns(prepared, choices, still);
+}
+
+class MotionRun {
+public:
+    MotionRun(PreparedScene prepared, const std::vector<MethodChoice>& choices, const MotionOptions& options)
+        : options_(options),
+          turns_(still_times(prepared, choices, options)),
+          scene_(std::move(prepared.scene)),
+          facts_(std::move(prepared.facts)),
+          points_(std::move(prepared.points)),
+          random_(mixed_bits(options.still.seed)) {
+        result_.name      = scene_.name;
+        result_.title     = scene_.title;
+        result_.triangles = scene_.triangles.size();
+        result_.width     = points_.raster->width;
+        result_.height    = points_.raster->height;
+        result_.lights    = scene_.lights;
+        result_.reference = default_reference(facts_);
+        result_.sampled   = std::ranges::any_of(scene_.lights, [](const Light& l) { return is_area(l.kind); });
+        result_.noise_bar = turns_.noise_bar;
+        for (TurnTimes& still : turns_.settings) {
+            const bool runs = still.service && still.failed.empty();
+            kept_.push_back(runs ? std::make_unique<KeptMethod>(still.choice, scene_, facts_, options.still.clock)
+                                 : nullptr);
+            result_.methods.push_back({.still = std::move(still)});
+            MethodMotion& method = result_.methods.back();
+            if (!method.still.failed.empty()) method.failed = "at rest: " + method.still.failed;
+        }
+    }
+
+    SceneMotion run() {
+        for (const Movement movement : kMovements) run_movement(movement);
+        return std::move(result_);
+    }
+
+private:
+    /// Calls `work(m)` for each method that still runs, in a random order; one that throws runs no more.
+    template <class Work>
+    void in_turns(const std::string& where, const Work& work) {
+        for (const std::size_t m : shuffled(kept_.size(), random_)) {
+            if (!kept_[m]) continue;
+            try {
+                work(m);
+            } catch (...) {
+                result_.methods[m].failed = fmt::format("{}: {}", where, current_message());
+                kept_[m].reset();
+            }
+        }
+    }
+
+    void show(const std::string& what) const {
+        if (options_.progress) options_.progress(fmt::format("{}: {}", scene_.name, what));
+    }
+
+    [[nodiscard]] FrameWork everything() const { return frame_work(Movement::object, scene_.lights.size(), 0); }
+
+    void run_movement(Movement movement) {
+        const Animation animation(scene_, facts_, movement);
+        MovementRun& shared = result_.movements[static_cast<std::size_t>(movement)];
+        shared.what         = animation.what();
+        shared.cannot       = animation.cannot();
+        if (!shared.cannot.empty()) return;
+        if (movement == Movement::light) result_.moved = animation.light();
+
+        const SceneFacts facts_at_start  = facts_;
+        const PointBatch points_at_start = points_;
+        rays_.emplace(scene_);
+        in_turns(fmt::format("before the first frame of {}", to_string(movement)),
+                 [&](std::size_t m) { (void)kept_[m]->run(everything(), points_); });
+        const FrameWork work = frame_work(movement, scene_.lights.size(), animation.light());
+        std::vector<double> points_ms, facts_ms, truth_ms;
+        for (int frame = 1; frame <= options_.frames; ++frame) {
+            const std::string where = fmt::format("{}, frame {}", to_string(movement), frame);
+            show(fmt::format("{} of {}", where, options_.frames));
+            animation.pose(scene_, static_cast<double>(frame) / options_.frames);
+            facts_ms.push_back(timed_ms([&] { update_facts(movement); }));
+            points_ms.push_back(timed_ms([&] { update_points(animation); }));
+            std::optional<FrameTruth> truth;
+            truth_ms.push_back(
+                timed_ms([&] { truth.emplace(*result_.reference, scene_, facts_, points_, options_.area_points); }));
+            in_turns(where, [&](std::size_t m) {
+                if (const Service service = kept_[m]->service(); !service)
+                    throw MethodError("it does not serve the scene as it is here: " + service.why);
+                const RunTimes times = kept_[m]->run(work, points_);
+                result_.methods[m].frames[static_cast<std::size_t>(movement)].push_back(
+                    {times, truth->errors(kept_[m]->planes())});
+            });
+        }
+        shared.points_ms = median(points_ms);
+        shared.facts_ms  = median(facts_ms);
+        shared.truth_ms  = median(truth_ms);
+        animation.pose(scene_, 0);
+        facts_  = facts_at_start;
+        points_ = points_at_start;
+    }
+
+    /// In place: methods that are not built again hold pointers to the facts.
+    void update_facts(Movement movement) {
+        if (movement == Movement::object)
+            facts_ = find_facts(scene_);
+        else
+            update_view_facts(scene_, facts_);
+    }
+
+    void update_points(const Animation& animation) {
+        if (animation.movement() == Movement::light) {
+            face_light(points_, scene_, animation.light());
+            return;
+        }
+        if (animation.movement() == Movement::object) rays_.emplace(scene_);
+        primary_points(*rays_, scene_, scene_.camera, result_.width, result_.height, points_);
+    }
+
+    const MotionOptions& options_;
+    Turns turns_;
+    Scene scene_;
+    SceneFacts facts_;
+    PointBatch points_;
+    std::optional<RayScene> rays_;
+    std::uint64_t random_;
+    std::vector<std::unique_ptr<KeptMethod>> kept_;  ///< null where it does not serve or has failed
+    SceneMotion result_;
+};
+
+}  // namespace
+
+SceneMotion run_motion(PreparedScene prepared, const std::vector<MethodChoice>& choices, const MotionOptions& options) {
+    return MotionRun(std::move(prepared), choices, options).run();
+}
+
+}  // namespace umbra

@@ -1,0 +1,71 @@
+// What the animations say: does the sum of the phases predict them, which method is fastest where, when a build pays.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "umbra/bench/motion/motion_run.h"
+#include "umbra/bench/statistics/statistics.h"
+
+namespace umbra {
+
+/// Milliseconds of each frame of a movement, all phases and lights.
+[[nodiscard]] std::vector<double> frame_times(const MethodMotion& method, Movement movement);
+
+/// What frame_cost_ms says of the medians at rest for a scene in which this moves in every frame; of a light that moves
+/// the aim of that light alone.
+[[nodiscard]] double model_ms(const SceneMotion& motion, const MethodMotion& method, Movement movement);
+
+/// Over the frames of a movement, both undefined where there are none.
+struct ErrorSummary {
+    double mean_rmse = 0, worst_rmse = 0;
+    std::uint64_t undefined = 0, interior = 0;  ///< over all frames
+};
+[[nodiscard]] ErrorSummary summarise_errors(const std::vector<MotionFrame>& frames);
+
+/// A mix of frames: the fraction of frames in which nothing but the camera moved, in which the light moved, and in
+/// which an object moved. They add up to 1.
+struct Mix {
+    std::string_view name;
+    std::array<double, kMovements.size()> share;  ///< [movement]
+};
+/// The corners, their mixes in equal parts, and 60 frames a second with one light that moves once.
+[[nodiscard]] std::vector<Mix> canonical_mixes();
+/// Whether the scene has every movement that the mix asks for.
+[[nodiscard]] bool has(const SceneMotion& motion, const Mix& mix);
+
+/// Milliseconds of each frame of the mix: the weighted sums of the frames with one index of its movements.
+[[nodiscard]] std::vector<double> mix_times(const MethodMotion& method, const Mix& mix);
+
+/// Which methods compete: those that ran all frames and answered at every point; those of them whose RMSE stayed within
+/// a bound in every frame of every movement.
+[[nodiscard]] std::vector<std::size_t> complete(const SceneMotion& motion);
+[[nodiscard]] std::vector<std::size_t> within(const SceneMotion& motion, double max_rmse);
+
+/// The method with the least mean time of a mix.
+struct Winner {
+    std::size_t method = 0;
+    double ms          = 0;
+    std::vector<std::size_t> ties;         ///< others whose paired ratio to it says no difference
+    std::optional<std::size_t> runner_up;  ///< the next fastest, if any
+    Ratio behind;                          ///< its frames over the winner's
+};
+/// Nothing where nobody competes.
+[[nodiscard]] std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors,
+                                           const Mix& mix);
+
+/// `slow` needs longer until its first frame and less time for each frame of a moving camera: from `frames` frames on,
+/// it has paid off.
+struct BreakEven {
+    std::size_t slow = 0, fast = 0;
+    double setup_ms = 0, saves_ms = 0;  ///< longer setup (build and all aims); shorter visibility of all lights
+    double frames = 0;
+    Interval interval;  ///< of the frames, least and largest over the rounds; infinite where one saves nothing
+};
+/// For each pair of methods where neither is first in both, at rest.
+[[nodiscard]] std::vector<BreakEven> break_evens(const SceneMotion& motion,
+                                                 const std::vector<std::size_t>& competitors);
+
+}  // namespace umbra

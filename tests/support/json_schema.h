@@ -1,0 +1,31 @@
+// Whether JSON text fits a schema: RapidJSON has JSON Schema, which nlohmann-json lacks.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <rapidjson/document.h>
+#include <rapidjson/schema.h>
+#include <rapidjson/stringbuffer.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace umbra {
+
+/// Success, or where the text breaks which rule of the schema in that file.
+inline testing::AssertionResult fits_schema(const std::string& schema_file, const std::string& text) {
+    std::ifstream in(schema_file);
+    const std::string schema_text{std::istreambuf_iterator<char>(in), {}};
+    rapidjson::Document schema_document, document;
+    if (schema_document.Parse(schema_text.c_str()).HasParseError())
+        return testing::AssertionFailure() << schema_file << " is no JSON";
+    if (document.Parse(text.c_str()).HasParseError()) return testing::AssertionFailure() << "the text is no JSON";
+    const rapidjson::SchemaDocument schema(schema_document);
+    rapidjson::SchemaValidator valid(schema);
+    if (document.Accept(valid)) return testing::AssertionSuccess();
+    rapidjson::StringBuffer where;
+    valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
+    return testing::AssertionFailure() << where.GetString() << ": " << valid.GetInvalidSchemaKeyword();
+}
+
+}  // namespace umbra
