@@ -7,6 +7,7 @@
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
+#include "umbra/bench/motion/growth_family.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -40,6 +41,7 @@ _umbra_values() {
         METHOD) _umbra_methods "$2" ;;
         SCENE) _umbra_list SCENES; echo //files ;;
         LADDER) _umbra_list LADDERS ;;
+        SIZE) _umbra_list SIZES ;;
         GOLDEN) _umbra_list SCENES; _umbra_list METHODS ;;
         NAME) _umbra_list METHODS; _umbra_list LADDERS; _umbra_list SCENES ;;
         SHELL) printf '%s\n' bash zsh ;;
@@ -178,6 +180,13 @@ std::string method_functions() {
     return function("_umbra_settings", settings) + function("_umbra_choices", choices);
 }
 
+/// What can grow.
+Names size_names() {
+    Names names;
+    for (const GrowthFamily& family : growth_families()) names.emplace_back(family.name);
+    return names;
+}
+
 std::string app_functions(const CLI::App& app) {
     std::string options, kind_cases, positionals;
     Names names;
@@ -199,7 +208,7 @@ std::string app_functions(const CLI::App& app) {
     options += print_line("''", option_names(app));
     kind_cases += kinds(app, "*");
     return function("_umbra_list", print_line("COMMANDS", names) + print_line("METHODS", method_names()) +
-                                       print_line("LADDERS", ladder_names()) +
+                                       print_line("LADDERS", ladder_names()) + print_line("SIZES", size_names()) +
                                        print_line("SCENES", canonical_names())) +
            function("_umbra_options", options) + function("_umbra_kind", kind_cases) +
            function("_umbra_positional", positionals);

@@ -1,0 +1,62 @@
+#include "umbra/bench/motion/growth.h"
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
+#include "umbra/core/base/parallel.h"
+
+namespace umbra {
+namespace {
+
+struct GrowthLine {
+    bool as_json = false;
+    GrowthCommand command;
+};
+
+int growth(GrowthLine line, const Common& common) {
+    GrowthCommand& command = line.command;
+    command.command        = common.command;
+    command.threads        = thread_count();
+    check_writable_beside(command.out);
+    const PlaceLock lock = PlaceLock::inside(command.out);
+    Json record;
+    {
+        const Terminal terminal(common.quiet);
+        command.options.progress = [&](const std::string& what) { terminal.progress(what); };
+        record                   = measure_growth(command);
+    }
+    if (line.as_json)
+        print_out("{}", json_text(record));
+    else if (!common.quiet && !record["growth"].empty())
+        print_out("{}{}\n", growth_table(record), (command.out / "index.html").string());
+    for (const Json& failure : record["failed"])
+        print_error("{}: {}: {}\n", failure["family"].get<std::string>(), failure["method"].get<std::string>(),
+                    failure["message"].get<std::string>());
+    return record["failed"].empty() ? kDone : kInternal;
+}
+
+}  // namespace
+
+Action growth_command(CLI::App& app, const Common& common) {
+    const auto line        = std::make_shared<GrowthLine>();
+    GrowthCommand& command = line->command;
+    app.add_option("--over", command.over,
+                   "What grows: triangles, bodies, pixels, lights, samples, resolution (default: all)")
+        ->type_name("SIZE");
+    app.add_option("--methods", command.methods, "Methods, with settings (default: all)")->type_name("METHOD");
+    app.add_option("--max", command.most,
+                   "The largest size, with one --over (default: triangles 1e6, pixels 2048 x 2048)")
+        ->type_name("N");
+    app.add_option("--rounds", command.options.turns.rounds, "Rounds of time at each size")
+        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("-o,--output", command.out, "Folder to write to")->type_name("DIR")->required();
+    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
+    return [line, &common] { return growth(*line, common); };
+}
+
+}  // namespace umbra

@@ -1,0 +1,82 @@
+#include "umbra/bench/motion/growth.h"
+
+#include <fmt/format.h>
+
+#include "umbra/bench/motion/growth_page.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/run/machine_load.h"
+#include "umbra/bench/run/results_file.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+std::vector<MethodChoice> chosen_methods(const GrowthCommand& command, const GrowthFamily& family) {
+    std::vector<MethodChoice> chosen = command.choices;
+    for (const std::string& text : command.methods) chosen.push_back(parse_method(text));
+    if (!chosen.empty()) return chosen;
+    for (const MethodInfo* info : methods())
+        if (info->by_default) chosen.emplace_back(*info);
+    if (family.name == "pixels")
+        for (const char* text : {"shadow_volumes:edges=silhouette", "shadow_volumes:edges=per_triangle"})
+            chosen.push_back(parse_method(text));
+    return chosen;
+}
+
+std::vector<const GrowthFamily*> chosen_families(const GrowthCommand& command) {
+    std::vector<const GrowthFamily*> chosen;
+    for (const std::string& name : command.over) chosen.push_back(&find_growth_family(name));
+    if (chosen.empty())
+        for (const GrowthFamily& family : growth_families()) chosen.push_back(&family);
+    if (!command.most) return chosen;
+    if (chosen.size() != 1)
+        throw UsageError(
+            fmt::format("--max {:g}: of which of {} sizes? Expected --over with one", *command.most, chosen.size()));
+    const GrowthFamily& family = *chosen.front();
+    if (*command.most < family.least || *command.most > family.limit)
+        throw UsageError(fmt::format("--max {:g}: expected {:g} to {:g} {}", *command.most, family.least, family.limit,
+                                     family.unit));
+    return chosen;
+}
+
+}  // namespace
+
+Json measure_growth(const GrowthCommand& command) {
+    const std::vector<const GrowthFamily*> families = chosen_families(command);
+    for (const GrowthFamily* family : families)
+        for (const MethodChoice& choice : chosen_methods(command, *family)) (void)choice.make();
+    Json record = {{"schema", kResultsSchema},
+                   {"version", version()},
+                   {"command", command.command},
+                   {"machine", machine_json(command.threads)},
+                   {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
+                   {"growth", Json::array()},
+                   {"failed", Json::array()}};
+    for (const GrowthFamily* family : families) {
+        const auto fail = [&](const std::string& method, const std::string& message) {
+            record["failed"].push_back({{"family", family->name}, {"method", method}, {"message", message}});
+        };
+        try {
+            const GrowthRun run = run_growth(*family, chosen_methods(command, *family),
+                                             command.most.value_or(family->most), command.options);
+            for (const GrowthSeries& series : run.series)
+                if (series.left_out.starts_with("failed")) fail(series.choice.text(), series.left_out);
+            record["growth"].push_back(growth_json(run));
+        } catch (const UsageError&) {
+            throw;
+        } catch (const InputError&) {
+            throw;
+        } catch (...) {
+            fail("the scene", current_message());
+        }
+    }
+    if (record["growth"].empty()) return record;
+    record["load_average"]["after"] = number(load_average());
+    StagedFiles staged;
+    staged.write(command.out / "results.json", json_text(record));
+    write_growth_page(record, command.out, staged);
+    staged.commit();
+    return record;
+}
+
+}  // namespace umbra

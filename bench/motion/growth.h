@@ -1,0 +1,35 @@
+// `umbra growth`: how times and memory grow with triangles, pixels, lights, samples, and where methods cross.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/motion/growth_run.h"
+#include "umbra/bench/run/describe.h"
+
+namespace umbra {
+
+struct GrowthCommand {
+    std::vector<std::string> over{};      ///< families; empty: all
+    std::vector<std::string> methods{};   ///< as typed; empty: those that run by default, and for pixels the two ways
+                                          ///< of shadow volumes that are compared with others' figures
+    std::vector<MethodChoice> choices{};  ///< further methods, as objects
+    std::optional<double> most{};         ///< the largest x, of one family
+    GrowthOptions options{};
+    std::filesystem::path out;
+    std::string command;  ///< for the record
+    int threads = 0;
+};
+
+/// Runs the families and writes OUT/results.json (growth.schema.json) and OUT/index.html. Returns the record. A family
+/// that throws is in its `failed`; a method that throws has its message in its series. Throws UsageError, InputError.
+Json measure_growth(const GrowthCommand& command);
+
+[[nodiscard]] Json growth_json(const GrowthRun& run);
+
+/// The record's families as tables for a terminal.
+[[nodiscard]] std::string growth_table(const Json& record);
+
+}  // namespace umbra

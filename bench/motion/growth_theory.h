@@ -1,0 +1,30 @@
+// What growth the algorithms should have: exponents of power laws, with the reason.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "umbra/bench/statistics/statistics.h"
+
+namespace umbra {
+
+/// What is fitted: the phases, the two frames that repeat more than one of them, and the memory.
+enum class Quantity : std::uint8_t { build, aim, visibility, light_frame, object_frame, memory };
+inline constexpr std::array kQuantities{Quantity::build,       Quantity::aim,          Quantity::visibility,
+                                        Quantity::light_frame, Quantity::object_frame, Quantity::memory};
+[[nodiscard]] std::string_view to_string(Quantity quantity);
+
+/// The exponent lies in this interval for large sizes. A logarithm counts as an exponent of up to 0.15: between 1e3 and
+/// 1e6, log x grows like x^0.1, x log x like x^1.1.
+struct Theory {
+    Interval exponent;
+    std::string_view why;
+};
+/// Of a phase or the memory; nothing where nothing is claimed, as for the frames, which are sums.
+[[nodiscard]] std::optional<Theory> growth_theory(std::string_view family, std::string_view method, Quantity quantity);
+
+/// "agrees", or where the fitted interval lies: "below", "above".
+[[nodiscard]] std::string_view compare_with_theory(const Interval& fitted, const Theory& theory);
+
+}  // namespace umbra
