@@ -47,7 +47,7 @@ struct Scratch {
 
 /// What is the same whenever and wherever it is measured.
 Json lasting(Json record) {
-    for (const char* key : {"command", "machine", "times", "version"}) record.erase(key);
+    for (const char* key : {"command", "machine", "times", "turns", "version"}) record.erase(key);
     record["scene"].erase("source");
     record["reference"].erase("times");
     for (Json& method : record["methods"])

@@ -10,6 +10,7 @@
 #include <functional>
 
 #include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/run/explain.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/bench/sweep/grid.h"
@@ -19,7 +20,6 @@
 #include "umbra/bench/sweep/views.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/ray.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -85,7 +85,6 @@ TEST(Views, MoveCameraAndLightsALittleAndAlwaysTheSame) {
         if (!fs::exists(scene_file(name))) continue;
         const Scene scene = load_scene(scene_file(name));
         EXPECT_EQ(scene_key(view_of(scene, 0)), scene_key(scene));
-        const RayScene rays(scene);
         const double arm = glm::length(dvec3(scene.camera.eye) - dvec3(scene.camera.target));
         std::vector<std::string> keys;
         for (int v = 1; v <= 6; ++v) {
@@ -106,14 +105,72 @@ TEST(Views, MoveCameraAndLightsALittleAndAlwaysTheSame) {
     }
 }
 
+/// A closed box around a point, whose walls are `half` away.
+void add_walls(Scene& scene, vec3 middle, float half) {
+    std::vector<vec3> corners;
+    for (int k = 0; k < 8; ++k) corners.push_back(middle + half * vec3(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1));
+    add_object(scene, "walls", corners, {},
+               {{0, 1, 3},
+                {0, 3, 2},
+                {4, 6, 7},
+                {4, 7, 5},
+                {0, 4, 5},
+                {0, 5, 1},
+                {2, 3, 7},
+                {2, 7, 6},
+                {0, 2, 6},
+                {0, 6, 4},
+                {1, 5, 7},
+                {1, 7, 3}},
+               0);
+}
+
+TEST(Views, StayWithinWalls) {
+    Scene scene = load_scene(scene_file("umbra_penumbra"));
+    scene.lights.resize(1);
+    const vec3 light = scene.lights[0].position, eye = scene.camera.eye;
+    int moved = 0;
+    for (int v = 1; v <= 20; ++v) moved += view_of(scene, v).lights[0].position != light;
+    EXPECT_EQ(moved, 20);
+    const float half = 0.01f * glm::length(eye - scene.camera.target);
+    add_walls(scene, light, half);
+    add_walls(scene, eye, half);
+    const auto inside = [&](vec3 p, vec3 middle) {
+        const vec3 d = glm::abs(p - middle);
+        return std::max({d.x, d.y, d.z}) < half;
+    };
+    for (int v = 1; v <= 20; ++v) {
+        const Scene view = view_of(scene, v);
+        EXPECT_TRUE(inside(view.lights[0].position, light)) << v;
+        EXPECT_TRUE(inside(view.camera.eye, eye)) << v;
+    }
+}
+
+TEST(CellView, HasRandomNumbersOfItsOwn) {
+    const TemporaryFolder folder;
+    const auto own = std::make_shared<const Scene>(load_scene(scene_file("umbra_penumbra")));
+    CellView view(own, scene_file("umbra_penumbra"), 2, {.size = {48, 27}}, folder.path());
+    const PreparedScene& p   = view.prepared();
+    const ReferenceRun truth = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt);
+    const auto rmse          = [&](const char* text) {
+        const MethodRun run = run_method(parse_method(text), p.scene, p.facts, p.points, {1, 0});
+        return explain(p.scene, p.points, 0, run, truth.run).error.rmse;
+    };
+    const double found = view.compute(parse_method("ray_traced:samples=1"))["errors"][0]["rmse"];
+    EXPECT_NE(found, rmse("ray_traced:samples=1"));
+    EXPECT_EQ(found, rmse("ray_traced:samples=1,seed=15838"));
+}
+
 TEST(TruthFile, KeepsEveryBit) {
     const TemporaryFolder folder;
     PreparedScene p           = prepare_scene(scene_file("light_sizes"), {48, 27});
     const Reference reference = default_reference(p.facts);
     for (const std::optional<std::uint64_t> points :
          {std::optional<std::uint64_t>{}, std::optional<std::uint64_t>{200}}) {
-        const ReferenceRun ran = run_reference(reference, p.scene, p.facts, p.points, points);
-        const fs::path file    = folder.path() / "truth.exr";
+        ReferenceRun ran            = run_reference(reference, p.scene, p.facts, p.points, points);
+        ran.run.planes[0].answer[3] = Answer::on_boundary;
+        ran.run.planes[0].answer[4] = Answer::undefined;
+        const fs::path file         = folder.path() / "truth.exr";
         write_truth(file, ran, 48, 27);
         ReferenceRun read{MethodRun{reference.choice}, 0, 0, {}};
         ASSERT_TRUE(read_truth(file, p.scene.lights.size(), p.points.size(), read));

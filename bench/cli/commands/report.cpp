@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
@@ -30,8 +32,10 @@ SweepOptions canonical_sweep(const fs::path& out) {
     sweep.out        = out;
     sweep.plan.views = 3;
     sweep.plan.size  = {320, 180};
-    for (const char* scene : {"sun_on_plane", "low_sun_fence", "umbra_penumbra"})
-        sweep.plan.scenes.push_back(fs::absolute(scene_file(scene)));
+    constexpr std::array kSwept{"sun_on_plane", "low_sun_fence", "umbra_penumbra"};
+    for (const fs::path& scene : canonical_scenes(scenes_folder()))
+        if (std::ranges::find(kSwept, scene.stem().string()) != kSwept.end())
+            sweep.plan.scenes.push_back(fs::absolute(scene));
     for (const MethodInfo* info : methods())
         if (info->by_default)
             for (const MethodChoice& choice : line_sweep(*info)) sweep.plan.settings.push_back(choice.text());
@@ -42,16 +46,21 @@ SweepOptions canonical_sweep(const fs::path& out) {
 /// All canonical scenes, all ladders, and the trade on some scenes.
 int run_everything(const fs::path& out, const Common& common) {
     LadderOptions ladders;
-    ladders.out        = out / "ladders";
-    const bool climbed = climb_on_terminal(ladders, common)["failed"].empty();
-    const bool swept   = sweep_on_terminal(canonical_sweep(out / "trade"), common).failed.empty();
+    ladders.out              = out / "ladders";
+    const bool climbed       = climb_on_terminal(ladders, common)["failed"].empty();
+    const SweepOptions sweep = canonical_sweep(out / "trade");
+    std::vector<fs::path> also{ladders.out};
+    bool swept = true;
+    if (!sweep.plan.scenes.empty()) {
+        swept = sweep_on_terminal(sweep, common).failed.empty();
+        also.push_back(sweep.out);
+    }
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
-    const ScenesDone done =
-        compare_on_terminal(canonical_scenes(scenes_folder()), options, common, {ladders.out, out / "trade"});
-    const int code = exit_code(done);
+    const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, also);
+    const int code        = exit_code(done);
     if (!climbed || !swept) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
