@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "umbra/core/base/error.h"
 #include "umbra/shadows/method.h"
 #include "umbra/tests/support/known_scenes.h"
 
@@ -31,6 +32,20 @@ TEST(Parameters, BelongToTheStructOfTheirOwnFile) {
         const Service service = parse_method(text).make()->serves(facts);
         EXPECT_NE(service.why.find(" 7 "), std::string::npos) << text << ": " << service.why;
     }
+}
+
+TEST(Parameters, RangesIncludeTheirEndsAndNothingBeyond) {
+    for (const char* inside : {"1", "100"}) EXPECT_NO_THROW(Settings(kParameters).set("samples", inside)) << inside;
+    for (const char* beyond : {"0", "101", "-1", "100000"})
+        EXPECT_THROW(Settings(kParameters).set("samples", beyond), UsageError) << beyond;
+}
+
+TEST(Parameters, BooleansAreReadAsTheyArePrinted) {
+    const Parameter parameter{.name = "bilinear", .doc = "", .max = 1, .type = Parameter::Type::boolean};
+    EXPECT_EQ(parameter.text(1), "true");
+    EXPECT_EQ(parameter.text(0), "false");
+    EXPECT_EQ(parameter.parse("true"), 1);
+    EXPECT_EQ(parameter.parse("false"), 0);
 }
 
 }  // namespace

@@ -376,5 +376,32 @@ TEST(ShadowVolumes, EdgesAreThoseThatTheSettingNames) {
     EXPECT_GT(held("edges=per_triangle"), held("edges=silhouette"));
 }
 
+/// An area light is seen from its centre alone: where that is behind the point's plane, nothing of the light is seen.
+TEST(ShadowVolumes, ACentreBehindThePointsPlaneIsNotSeen) {
+    Scene scene;
+    scene.materials.emplace_back();
+    add_object(scene, "floor", {{-4, 0, -4}, {0, 0, 8}, {4, 0, -4}}, {}, {{0, 1, 2}}, 0);
+    Light light;
+    light.kind   = LightKind::sphere;
+    light.radius = 1;
+    scene.lights.assign(2, light);
+    scene.lights[0].position = {0, -0.25f, 0};
+    scene.lights[1].position = {0, 0.25f, 0};
+    PointBatch points;
+    points.eye = vec3(0, 4, 1);
+    points.resize(1);
+    set_point(points, 0, scene, 0, 0.25f, 0.25f);
+    face_lights(points, scene);
+    const auto method = parse_method("shadow_volumes").make();
+    method->build(scene, find_facts(scene));
+    for (const LightId j : {0u, 1u}) {
+        ASSERT_EQ(points.facing[j][0], Facing::partly);
+        method->aim(j);
+        VisibilityPlane plane(1);
+        method->visibility(points, j, plane.out());
+        EXPECT_EQ(plane.s[0], j == 0 ? 0.0f : 1.0f);
+    }
+}
+
 }  // namespace
 }  // namespace umbra
