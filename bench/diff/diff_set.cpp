@@ -8,6 +8,7 @@
 
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/place_lock.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 
@@ -24,6 +25,10 @@ std::set<fs::path> images_in(const fs::path& folder) {
     std::set<fs::path> names;
     std::error_code error;
     for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+        if (is_hidden_name_of_ours(entry->path())) {  // of a run that was killed, or still goes on
+            entry.disable_recursion_pending();
+            continue;
+        }
         std::string ending = entry->path().extension().string();
         std::transform(ending.begin(), ending.end(), ending.begin(),
                        [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

@@ -288,6 +288,10 @@ TEST_F(Diff, FoldersAreComparedImageByImage) {
     static_cast<void>(box("a/gone <&>.png", 0.1f));
     static_cast<void>(box("b/new.png", 0.1f));
     std::ofstream(a / "notes.txt") << "no image";
+    // What a killed run left is no image of the folder's.
+    fs::create_directories(a / ".deep.umbra-new");
+    static_cast<void>(box("a/.umbra-part.equal.png", 0.1f));
+    static_cast<void>(box("a/.deep.umbra-new/other.exr", 0.1f));
 
     std::vector<std::string> progress;
     const fs::path page = folder / "page.html";
