@@ -47,12 +47,12 @@ void time_camera_rays(benchmark::State& state, const Stage& stage) {
     const CameraFrame f = *batch.raster;
     for (std::size_t i = 0; i < batch.size(); i += 97) {
         if (batch.triangle[i] == kNoTriangle) continue;
-        const dvec3 to    = dvec3(batch.position(i)) - dvec3(f.eye);
-        const double deep = glm::dot(to, dvec3(f.forward));
-        const double x    = (glm::dot(to, dvec3(f.right)) / deep / f.half_width + 1) * kWidth / 2;
-        const double y    = (1 - glm::dot(to, dvec3(f.up)) / deep / f.half_height) * kHeight / 2;
-        if (std::abs(x - static_cast<double>(i % kWidth) - 0.5) > 1 ||
-            std::abs(y - static_cast<double>(i / kWidth) - 0.5) > 1)
+        const dvec3 to           = dvec3(batch.position(i)) - dvec3(f.eye);
+        const double deep        = glm::dot(to, dvec3(f.forward));
+        const double x           = (glm::dot(to, dvec3(f.right)) / deep / f.half_width + 1) * kWidth / 2;
+        const std::size_t column = i % kWidth, row = i / kWidth;
+        const double y = (1 - glm::dot(to, dvec3(f.up)) / deep / f.half_height) * kHeight / 2;
+        if (std::abs(x - static_cast<double>(column) - 0.5) > 1 || std::abs(y - static_cast<double>(row) - 0.5) > 1)
             return state.SkipWithError(fmt::format("point {} is not on its pixel's ray", i).c_str());
     }
     timed_loop(state, work);
@@ -68,8 +68,11 @@ struct VerticalRay {
     float rise;
 
     VerticalRay(const RaySpace& space, std::size_t k)
-        : origin(space.point(
-              vec3(6 * static_cast<float>(k % 256) / 256 - 3, 0.1f, 6 * static_cast<float>(k / 256) / 256 - 3))),
+        : VerticalRay(space, k, static_cast<float>(k % 256), static_cast<float>(k >> 8)) {}
+
+private:
+    VerticalRay(const RaySpace& space, std::size_t k, float column, float row)
+        : origin(space.point(vec3(6 * column / 256 - 3, 0.1f, 6 * row / 256 - 3))),
           rise(static_cast<float>(k % 2 == 0 ? 3 : -1) * space.scale) {}
 };
 
@@ -151,7 +154,7 @@ void time_signs(benchmark::State& state, float lift, int expected) {
     const auto work = [&] {
         int sum = 0;
         for (int k = 0; k < 4096; ++k) {
-            const float u = static_cast<float>(k % 64) / 64, v = static_cast<float>(k / 64) / 64;  // exact in binary
+            const float u = static_cast<float>(k % 64) / 64, v = static_cast<float>(k >> 6) / 64;  // exact in binary
             sum += side_of_plane(a, b, c, vec3(u + lift, v, 3 - u - v));
         }
         return sum;
