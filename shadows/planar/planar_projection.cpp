@@ -51,7 +51,7 @@ const std::vector<Parameter> kParameters{
                                       .max   = 1}),
     parameter<&Options::light_samples>({.name  = "light_samples",
                                         .doc   = "Points of an area light that occluders are projected from; other "
-                                                 "lights have one. All their shadows are kept in memory.",
+                                                 "lights have one. 1: the centre. All their shadows are kept in memory.",
                                         .unit  = "points a light",
                                         .phase = Phase::aim,
                                         .min   = 1,
@@ -86,6 +86,9 @@ public:
             return {How::approximately,
                     fmt::format("some planes are flat up to the rounding of floats only; {}", where)};
         if (facts.hard_lights_only) return {How::to_rounding, where};
+        if (options.light_samples == 1)
+            return {How::approximately,
+                    fmt::format("lights with an area are taken as their centres: umbra only, no penumbra; {}", where)};
         return {How::approximately,
                 fmt::format("lights with an area are taken at {} points; {}", options.light_samples, where)};
     }
@@ -237,7 +240,7 @@ const MethodInfo planar_projection{
         "than a million "
         "scene sizes from the origin float coordinates merge faces into planes that are none.",
     .parameters = kParameters,
-    .presets    = {{"textbook", "light_samples=16", "Sixteen points of an area light."},
+    .presets    = {{"textbook", "light_samples=1", "Blinn 1988: one shadow a plane, from the light's centre."},
                    {"fast", "light_samples=4", "Four points of an area light."},
                    {"best", "light_samples=1024", "1024 points of an area light."}},
     .create     = create<PlanarProjection>,

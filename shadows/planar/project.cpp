@@ -60,7 +60,7 @@ Source centre_of(const Light& light) {
 /// in every direction, and they are what points spread evenly over the unit sphere of four dimensions are, less their
 /// fourth coordinate.
 std::vector<Source> sources_of(const Light& light, int samples) {
-    if (!is_area(light.kind)) return {centre_of(light)};
+    if (!is_area(light.kind) || samples == 1) return {centre_of(light)};
 
     std::vector<Source> sources;
     const DiskAxes disk = light.kind == LightKind::disk ? disk_axes(light) : DiskAxes{};

@@ -352,7 +352,7 @@ const MethodInfo ray_traced{
         "Limit: what is finer than a millionth of the scene, as gaps, slivers or relief under grazing light.",
     .parameters = kParameters,
     .presets    = {{"textbook", "offset=epsilon,sampler=random",
-                    "Starts rays at an offset along the normal; independent samples."},
+                    "Cook and others 1984: rays start off the surface by a fixed distance; independent samples."},
                    {"fast", "samples=4", "Four rays a point to an area light."},
                    {"best", "samples=256", "256 rays a point to an area light."}},
     .seed       = "seed",

@@ -223,7 +223,8 @@ const MethodInfo shadow_zbuffer{
         "radians above an even floor, 1e-3 above one that rounding has left uneven, and for lights up to 1e12 scene "
         "sizes away.",
     .parameters = kParameters,
-    .presets    = {{"textbook", "bias=manual,constant=1,fit=scene", "One map of the whole scene and a constant bias."},
+    .presets    = {{"textbook", "bias=manual,constant=4,fit=scene",
+                    "Williams 1978: one map of the whole scene and a constant bias of four texels."},
                    {"fast", "resolution=512", "A map of 512 x 512 texels."},
                    {"best", "resolution=8192,filter=pcf", "A map of 8192 x 8192 texels, 3 x 3 comparisons."}},
     .create     = create<ShadowZBuffer>};
