@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "umbra/bench/ladders/ladder_break.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
+#include "umbra/bench/ladders/ladder_times.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/staged_folder.h"
@@ -18,6 +20,29 @@
 namespace umbra {
 namespace {
 
+constexpr std::string_view kTextbook = "textbook";
+
+/// The textbook form of a method, where it is something else than its defaults.
+std::optional<MethodChoice> textbook_form(const MethodInfo& info) {
+    for (const Preset& preset : info.presets)
+        if (preset.name == kTextbook)
+            if (MethodChoice form = parse_method(fmt::format("{}@{}", info.name, preset.name));
+                form.text() != info.name)
+                return form;
+    return std::nullopt;
+}
+
+/// All methods but the reference, with their defaults and, where that is something else, in their textbook form.
+std::vector<MethodChoice> default_methods() {
+    std::vector<MethodChoice> chosen;
+    for (const MethodInfo* info : methods()) {
+        if (!info->by_default || info->reference) continue;
+        chosen.emplace_back(*info);
+        if (auto form = textbook_form(*info)) chosen.push_back(std::move(*form));
+    }
+    return chosen;
+}
+
 /// Writes the scene that breaks a method, and its pictures.
 void add_break(Json& method, const std::filesystem::path& folder, const LadderRun& run, std::size_t m) {
     const auto same = std::count_if(run.methods.begin(), run.methods.begin() + std::ptrdiff_t(m),
@@ -25,6 +50,32 @@ void add_break(Json& method, const std::filesystem::path& folder, const LadderRu
     const std::string name =
         fmt::format("{}.{}{}", run.ladder->name, run.methods[m].info->name, same ? fmt::format("-{}", same + 1) : "");
     method["break"] = write_break(folder, name, *run.ladder, method["breaks_at"], run.methods[m]);
+}
+
+/// A textbook form that was climbed beside the default form.
+bool is_twin(const std::vector<MethodChoice>& all, const MethodChoice& method) {
+    const auto form = textbook_form(*method.info);
+    return form && form->text() == method.text() &&
+           std::any_of(all.begin(), all.end(), [&](const MethodChoice& m) { return m.text() == method.info->name; });
+}
+
+/// Where a textbook form breaks, on the ladder on which the default form holds for the most rungs longer.
+struct TextbookBreak {
+    const Ladder* ladder = nullptr;
+    std::size_t entry    = 0;  ///< index into `ladders` of the record
+    std::size_t method   = 0;
+    std::size_t gain     = 0;  ///< rungs
+};
+
+void find_textbook_break(const LadderRun& run, std::size_t m, std::size_t entry, TextbookBreak& best) {
+    const Climb textbook = climb(run, m);
+    if (!textbook.breaks_at || !run.rungs[*textbook.breaks_at].outcomes[m].ran()) return;
+    for (std::size_t d = 0; d < run.methods.size(); ++d) {
+        if (run.methods[d].text() != run.methods[m].info->name) continue;
+        const std::size_t until = climb(run, d).breaks_at.value_or(run.rungs.size());
+        if (until > *textbook.breaks_at && until - *textbook.breaks_at > best.gain)
+            best = {run.ladder, entry, m, until - *textbook.breaks_at};
+    }
 }
 
 }  // namespace
@@ -40,32 +91,40 @@ Json climb_ladders(const LadderOptions& options) {
     if (chosen.empty()) chosen.assign(ladders().begin(), ladders().end());
     std::vector<MethodChoice> methods_chosen;
     for (const std::string& text : options.methods) methods_chosen.push_back(parse_method(text));
-    if (options.methods.empty())
-        for (const MethodInfo* info : methods())
-            if (info->by_default && !info->reference) methods_chosen.emplace_back(*info);
+    if (options.methods.empty()) methods_chosen = default_methods();
 
-    Json record = {{"schema", kResultsSchema},         {"version", version()},
-                   {"command", options.command},       {"machine", machine_json(options.threads)},
-                   {"breaking_share", kBreakingShare}, {"ladders", Json::array()},
-                   {"failed", Json::array()}};
+    Json record           = {{"schema", kResultsSchema},         {"version", version()},
+                             {"command", options.command},       {"machine", machine_json(options.threads)},
+                             {"breaking_share", kBreakingShare}, {"ladders", Json::array()},
+                             {"failed", Json::array()}};
+    const auto add_failed = [&](const Ladder& ladder, const std::string& method) {
+        record["failed"].push_back({{"ladder", ladder.name},
+                                    {"rung", nullptr},
+                                    {"method", method},
+                                    {"light", nullptr},
+                                    {"message", current_message()}});
+    };
+    std::vector<TextbookBreak> textbook(methods_chosen.size());  // by method
     StagedFolder staged(options.out);
     std::filesystem::create_directory(staged.folder() / "breaks");
     Steps steps(chosen.size(), options.progress);
     const auto progress = [&](const std::string& what) { steps.show(what); };
     for (const Ladder* ladder : chosen) {
         steps.next();
-        const auto fail = [&](const std::string& method) {
-            record["failed"].push_back({{"ladder", ladder->name},
-                                        {"rung", nullptr},
-                                        {"method", method},
-                                        {"light", nullptr},
-                                        {"message", current_message()}});
-        };
+        const auto fail = [&](const std::string& method) { add_failed(*ladder, method); };
         try {
-            const LadderRun run = climb_ladder(*ladder, methods_chosen, progress);
-            Json entry          = ladder_json(run);
+            LadderRun run = climb_ladder(*ladder, methods_chosen, progress);
+            if (run.methods.size() > 1) {
+                progress(fmt::format("{}: times", ladder->name));
+                run.first_rung_ms = time_first_rung(*ladder, run.methods);
+            }
+            Json entry = ladder_json(run);
             for (Json& failed : failed_climbs_json(run)) record["failed"].push_back(std::move(failed));
             for (std::size_t m = 0; m < run.methods.size(); ++m) {
+                if (is_twin(run.methods, run.methods[m])) {  // one scene a form is enough to see why
+                    find_textbook_break(run, m, record["ladders"].size(), textbook[m]);
+                    continue;
+                }
                 const Climb c = climb(run, m);
                 if (!c.breaks_at || !run.rungs[*c.breaks_at].outcomes[m].ran()) continue;
                 progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
@@ -82,6 +141,21 @@ Json climb_ladders(const LadderOptions& options) {
             throw;
         } catch (...) {
             fail("the ladder");
+        }
+    }
+    for (const TextbookBreak& best : textbook) {
+        if (best.gain == 0) continue;
+        const MethodChoice& method = methods_chosen[best.method];
+        progress(fmt::format("{}: what breaks {}", best.ladder->name, method.text()));
+        try {
+            Json& entry    = record["ladders"][best.entry]["methods"][best.method];
+            entry["break"] = write_break(staged.folder() / "breaks",
+                                         fmt::format("{}.{}-{}", best.ladder->name, method.info->name, kTextbook),
+                                         *best.ladder, entry["breaks_at"], method);
+        } catch (const InputError&) {
+            throw;
+        } catch (...) {
+            add_failed(*best.ladder, method.text());
         }
     }
     write_text(staged.folder() / "results.json", json_text(record));

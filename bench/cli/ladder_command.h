@@ -12,7 +12,8 @@ namespace umbra {
 
 struct LadderOptions {
     std::vector<std::string> names;    ///< empty: all
-    std::vector<std::string> methods;  ///< as typed; empty: all but `exact`, the reference, with their defaults
+    std::vector<std::string> methods;  ///< as typed; empty: all but `exact`, the reference, with their defaults and in
+                                       ///< their textbook form
     std::filesystem::path out;
     std::string command;  ///< for the record
     int threads = 0;

@@ -8,6 +8,8 @@
 
 #include "report_assets.h"
 #include "umbra/bench/ladders/interior_points.h"
+#include "umbra/bench/ladders/ladder_cells.h"
+#include "umbra/bench/ladders/textbook_view.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/page_template.h"
@@ -21,57 +23,17 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A rung's value: 1, 3.2, 0.01, and beyond that 10⁻⁵ or 3.2·10⁻⁵.
-std::string rung_value(double value) {
-    if (value == 0 || (value >= 0.999e-3 && value < 1e4)) return fmt::format("{:g}", value);
-    const std::string text   = fmt::format("{:.2e}", value);  // 3.20e-05
-    const std::size_t e      = text.find('e');
-    const std::string factor = fmt::format("{:g}", std::stod(text.substr(0, e)));
-    return (factor == "1" ? "" : factor + "·") + "10" + superscript(std::stoi(text.substr(e + 1)));
-}
-
 /// The methods of all ladders, as typed, in the order in which they first appear; the sum is not one of them.
 std::vector<Field> methods_of(const Field& root) {
     std::vector<Field> all;
     for (const Field& ladder : root["ladders"].items())
         for (const Field& method : ladder["methods"].items()) {
             const std::string text = method["text"].required_text();
+            if (is_textbook_twin(ladder, method)) continue;  // it has a table of its own
             if (std::none_of(all.begin(), all.end(), [&](const Field& m) { return m["text"].text() == text; }))
                 all.push_back(method);
         }
     return all;
-}
-
-/// What a method is called: its title, or as typed where it runs with other than its default settings.
-std::string label_of(const Field& method) {
-    return method["text"].text() == method["name"].text() ? method["title"].text() : method["text"].text();
-}
-
-std::optional<std::size_t> rung_of(const Field& ladder, const Field& value) {
-    if (!value.present()) return std::nullopt;
-    const auto rungs = ladder["rungs"].items();
-    for (std::size_t r = 0; r < rungs.size(); ++r)
-        if (rungs[r]["value"].number() == value.number()) return r;
-    value.refuse("the value of a rung");
-}
-
-/// How a method fared, in three strings: the cell's main words, a note beneath them, and whether it is a break.
-json fared(const Field& ladder, const Field& method) {
-    const std::string unit = ladder["unit"].text();
-    std::string note;
-    const auto from = [&](const char* key, const char* words) {
-        if (const auto r = rung_of(ladder, method[key])) {
-            if (!note.empty()) note += ", ";
-            note += *r == 0 ? std::string(words) : fmt::format("{} from {}", words, rung_value(*method[key].number()));
-        }
-    };
-    from("not_served_from", "not served");
-    from("silent_from", "mostly undefined");
-    from("not_judged_from", "not judged");
-    const bool breaks = method["breaks_at"].present();
-    std::string words = breaks ? rung_value(*method["breaks_at"].number()) : note.empty() ? "holds" : "";
-    return {{"words", words},   {"kind", method["kind"].text()},   {"note", note}, {"why", method["why"].text()},
-            {"breaks", breaks}, {"holds", !breaks && note.empty()}};
 }
 
 json chart_of(const Field& ladder, double limit) {
@@ -82,14 +44,21 @@ json chart_of(const Field& ladder, double limit) {
         judged.push_back(rung["value"].number().value_or(0));
         rungs.push_back(rung_value(judged.back()));
     }
+    std::vector<std::string> styles;  // methods by name; a textbook form has its method's style
+    for (const Field& method : ladder["methods"].items())
+        if (!is_textbook_twin(ladder, method)) styles.push_back(method["name"].text());
     std::vector<RungSeries> series;
+    std::size_t own = 0;
     for (const Field& method : ladder["methods"].items()) {
         RungSeries s;
-        s.label = label_of(method);
+        s.label  = label_of(method);
+        s.dashed = is_textbook_twin(ladder, method);
+        s.style  = s.dashed
+                       ? std::size_t(std::find(styles.begin(), styles.end(), method["name"].text()) - styles.begin())
+                       : own++;
         for (const Field& rung : method["rungs"].items()) s.shares.push_back(rung["interior_share"].number());
         if (rung_of(ladder, method["breaks_at"]))
             s.breaks_at = std::find(judged.begin(), judged.end(), *method["breaks_at"].number()) - judged.begin();
-        s.style = series.size();
         series.push_back(std::move(s));
     }
     return rung_chart(rungs, series, limit);
@@ -167,7 +136,8 @@ json ladder_view(const Field& ladder, double limit) {
         row["key"]    = sum ? "" : view["chart"]["lines"][view["rows"].size()]["key"].get<std::string>();
         row["colour"] = sum ? "" : view["chart"]["lines"][view["rows"].size()]["colour"].get<std::string>();
         view["rows"].push_back(std::move(row));
-        if (method["break"].present()) view["breaks"].push_back(break_view(ladder, method));
+        if (method["break"].present() && !is_textbook_twin(ladder, method))
+            view["breaks"].push_back(break_view(ladder, method));
     }
     return view;
 }
@@ -224,19 +194,29 @@ json ladder_showcase_view(const Field& root, const std::string& page) {
 }
 
 void write_ladder_page(const Field& root, const fs::path& folder, const std::string& report, StagedFiles& staged) {
-    const double limit = root["breaking_share"].number().value_or(0);
-    json view          = {{"report", report},
-                          {"table", ladder_table_view(root, "")},
-                          {"run", run_view(root)},
-                          {"share", fmt::format("{:g}", 100 * limit)},
-                          {"least", count(double(kLeastOfAKind))},
-                          {"least_share", fmt::format("{:g}", 100 * kLeastShareOfAKind)},
-                          {"legend", class_legend()},
-                          {"ladders", json::array()}};
-    int broken         = 0;
+    const double limit      = root["breaking_share"].number().value_or(0);
+    json view               = {{"report", report},
+                               {"table", ladder_table_view(root, "")},
+                               {"textbook", textbook_view(root, "")},
+                               {"run", run_view(root)},
+                               {"share", fmt::format("{:g}", 100 * limit)},
+                               {"least", count(double(kLeastOfAKind))},
+                               {"least_share", fmt::format("{:g}", 100 * kLeastShareOfAKind)},
+                               {"legend", class_legend()},
+                               {"ladders", json::array()}};
+    view["textbook_breaks"] = json::array();
+    int broken              = 0;
     for (const Field& ladder : root["ladders"].items()) {
         view["ladders"].push_back(ladder_view(ladder, limit));
-        for (const Field& method : ladder["methods"].items()) broken += method["breaks_at"].present();
+        for (const Field& method : ladder["methods"].items()) {
+            const bool textbook = is_textbook_twin(ladder, method);
+            if (!textbook) broken += method["breaks_at"].present();
+            if (!textbook || !method["break"].present()) continue;
+            json one      = break_view(ladder, method);
+            one["title"]  = ladder["title"].text();
+            one["anchor"] = fmt::format("#{}", ladder["name"].text());
+            view["textbook_breaks"].push_back(std::move(one));
+        }
     }
     view["failures"]     = listed_failures(root);
     view["has_failures"] = !view["failures"].empty();

@@ -43,11 +43,21 @@ Json value_of(const LadderRun& run, const std::optional<std::size_t>& rung) {
     return rung ? Json(run.rungs[*rung].value) : Json(nullptr);
 }
 
+/// The preset whose settings these are; null where it is none.
+Json preset_of(const MethodChoice& choice) {
+    if (choice.text() == choice.info->name) return "default";
+    for (const Preset& preset : choice.info->presets)
+        if (parse_method(fmt::format("{}@{}", choice.info->name, preset.name)).text() == choice.text())
+            return preset.name;
+    return nullptr;
+}
+
 Json method_climb_json(const LadderRun& run, std::size_t m) {
     const Climb c = climb(run, m);
     Json j        = {{"name", run.methods.empty() ? "sum" : std::string(run.methods[m].info->name)},
                      {"title", run.methods.empty() ? "The sum" : std::string(run.methods[m].info->title)},
                      {"text", run.methods.empty() ? "sum" : run.methods[m].text()},
+                     {"preset", run.methods.empty() ? Json() : preset_of(run.methods[m])},
                      {"breaks_at", value_of(run, c.breaks_at)},
                      {"kind", nullptr},
                      {"silent_from", value_of(run, c.silent_from)},
@@ -61,6 +71,7 @@ Json method_climb_json(const LadderRun& run, std::size_t m) {
     }
     for (const Rung& rung : run.rungs)
         if (rung.unjudged.empty()) j["rungs"].push_back(outcome_json(rung.outcomes[m]));
+    if (m < run.first_rung_ms.size()) j["first_rung_ms"] = run.first_rung_ms[m];
     return j;
 }
 
@@ -130,6 +141,18 @@ std::string climb_in_words(const Json& method, const Json& ladder) {
     return words.empty() ? "holds" : words;
 }
 
+namespace {
+/// A column of the table: the method as typed, by its preset where it has one.
+std::string heading(const Json& ladders, const std::string& text) {
+    for (const Json& ladder : ladders)
+        for (const Json& method : ladder["methods"])
+            if (method["text"] == text && method.contains("preset") && method["preset"].is_string() &&
+                method["preset"] != "default")
+                return fmt::format("{}@{}", method["name"].get<std::string>(), method["preset"].get<std::string>());
+    return text;
+}
+}  // namespace
+
 std::string ladder_table(const Json& ladders) {
     // Columns are the methods in the order in which they first appear; ladders over the sum have a column of their own.
     std::vector<std::string> columns;
@@ -139,7 +162,7 @@ std::string ladder_table(const Json& ladders) {
                 std::find(columns.begin(), columns.end(), name) == columns.end())
                 columns.push_back(name);
     std::vector<std::vector<std::string>> rows(1, {"ladder"});
-    rows[0].insert(rows[0].end(), columns.begin(), columns.end());
+    for (const std::string& column : columns) rows[0].push_back(heading(ladders, column));
     rows[0].emplace_back("judged up to");
     for (const Json& ladder : ladders) {
         std::vector<std::string> row = {ladder["name"]};

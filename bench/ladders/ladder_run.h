@@ -56,8 +56,9 @@ struct Rung {
 
 struct LadderRun {
     const Ladder* ladder = nullptr;
-    std::vector<MethodChoice> methods;  ///< empty for ladders over the sum
-    std::vector<Rung> rungs;            ///< up to the first without points or truth, which is included
+    std::vector<MethodChoice> methods;                 ///< empty for ladders over the sum
+    std::vector<Rung> rungs;                           ///< up to the first without points or truth, which is included
+    std::vector<std::vector<double>> first_rung_ms{};  ///< time_first_rung; empty where nobody measured
 };
 
 /// How one method fared on one ladder. Rungs are indices into LadderRun::rungs.

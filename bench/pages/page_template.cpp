@@ -43,6 +43,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
                                         {"slider", assets::slider_html},
                                         {"classes", assets::classes_html},
                                         {"ladder_table", assets::ladder_table_html},
+                                        {"textbook_table", assets::textbook_table_html},
                                         {"break_pictures", assets::break_pictures_html},
                                         {"setup", assets::setup_html},
                                         {"scales", assets::scales_html},

@@ -116,6 +116,7 @@ json rung_chart(const std::vector<std::string>& rungs, const std::vector<RungSer
                          {"path", path},
                          {"dots", dots},
                          {"broken", broken},
+                         {"dashed", s.dashed},
                          {"key", mark_path(s.style, 14, 9)}});
     }
     json view          = frame(bottom + 46, bottom);

@@ -33,6 +33,7 @@ struct RungSeries {
     std::vector<std::optional<double>> shares;  ///< one per rung
     std::optional<std::size_t> breaks_at;
     std::size_t style = 0;
+    bool dashed       = false;  ///< a second form of the method that has this style, too
 };
 
 /// The share is logarithmic; rungs are geometric and so evenly spaced. Rungs without a wrong point lie in the lane of

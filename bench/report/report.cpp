@@ -16,6 +16,7 @@
 
 #include "report_assets.h"
 #include "umbra/bench/ladders/ladder_page.h"
+#include "umbra/bench/ladders/textbook_view.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/pages/failures.h"
@@ -145,6 +146,7 @@ json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, 
     write_ladder_page(root, place, url((out / "index.html").lexically_relative(place)), staged);
     return {{"page", page},
             {"table", ladder_table_view(root, page)},
+            {"textbook", textbook_view(root, page)},
             {"showcase", ladder_showcase_view(root, page)},
             {"count", counted(double(root["ladders"].items().size()), "ladder")}};
 }

@@ -1,0 +1,25 @@
+// How a method fared on a ladder, in the words that all tables of ladders share.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "umbra/bench/run/results_file.h"
+
+namespace umbra {
+
+/// A rung's value: 1, 3.2, 0.01, and beyond that 10⁻⁵ or 3.2·10⁻⁵.
+[[nodiscard]] std::string rung_value(double value);
+
+/// The index of the rung with this value; nothing where `value` is absent. Throws InputError where there is no such
+/// rung.
+[[nodiscard]] std::optional<std::size_t> rung_of(const Field& ladder, const Field& value);
+
+/// What a method is called: its title, with its preset or as typed where it runs with other than its default settings.
+[[nodiscard]] std::string label_of(const Field& method);
+
+/// How a method fared: the cell's main words, the class of its errors, a note beneath them, and whether it is a break.
+[[nodiscard]] nlohmann::json fared(const Field& ladder, const Field& method);
+
+}  // namespace umbra
