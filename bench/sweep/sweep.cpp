@@ -242,7 +242,7 @@ SweepDone sweep(const SweepOptions& options) {
 
 SweepPlan merged_plan(const std::vector<fs::path>& folders, const fs::path& out) {
     if (folders.empty()) throw UsageError("--merge: no folder given, expected folders that umbra sweep wrote");
-    const SweepPlan plan = plan_in(folders.front());
+    SweepPlan plan = plan_in(folders.front());
     for (const fs::path& folder : folders)
         if (plan_json(plan_in(folder)) != plan_json(plan))
             throw InputError(fmt::format("{}: its plan is not that of {}, expected parts of one sweep",
