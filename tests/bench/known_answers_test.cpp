@@ -510,6 +510,29 @@ TEST_F(Wall, RepetitionsLeaveNothingBehind) {
     for (const float s : planted.floats.at("S.sun")) ASSERT_EQ(s, 0);
 }
 
+/// A method that answers once and throws when its times are taken: it has failed, and the files of its answers are
+/// gone.
+TEST_F(Wall, WhatThrowsWhenItRunsAgainHasFailed) {
+    int builds             = 0;
+    planted_behaviour.work = [&](Phase phase, LightId) {
+        if (phase == Phase::build && ++builds > 1) throw std::runtime_error("only once");
+    };
+    CompareOptions options;
+    options.choices.emplace_back(info_);
+    options.size          = {40, 20};
+    options.out           = out();
+    options.repeats       = {2, 1e9};
+    const ScenesDone done = compare_scenes({folder_.write("wall.json", kWall)}, options);
+    EXPECT_EQ(done.stopped, (std::vector<std::string>{"wall: planted: It failed: only once"}));
+    const json method = json::parse(read_text(out() / "wall/results.json"))["methods"][0];
+    EXPECT_EQ(method["failed"]["message"], "only once");
+    EXPECT_EQ(method["serves"]["how"], "not");
+    EXPECT_FALSE(method.contains("times"));
+    EXPECT_TRUE(fs::exists(file("reference.exr")));
+    for (const auto& entry : fs::directory_iterator(out() / "wall"))
+        EXPECT_FALSE(entry.path().filename().string().starts_with("planted")) << entry.path();
+}
+
 /// Three runs that sleep 0, 10 and 600 ms: the median is the second of them, far from their mean.
 TEST(Times, MedianLeastAndLargest) {
     int run             = 0;
