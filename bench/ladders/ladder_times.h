@@ -1,5 +1,4 @@
-// What methods take on the first rung of a ladder, where none is broken yet: in turns, so that their ratios mean
-// something.
+// What methods take on the first rung of a ladder: in turns, so that their ratios mean something.
 #pragma once
 
 #include <span>

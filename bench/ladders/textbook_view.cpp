@@ -83,15 +83,17 @@ std::string settings_of(const Field& method) {
 }
 
 json tally_view(const Tally& tally) {
-    const auto [least, most] = std::minmax_element(tally.ratios.begin(), tally.ratios.end());
+    std::vector<double> ratios = tally.ratios;
+    std::sort(ratios.begin(), ratios.end());
+    const std::size_t n = ratios.size();
     return {{"title", tally.by_default["title"].text()},
             {"settings", settings_of(tally.textbook)},
             {"ladders", count(tally.ladders)},
             {"earlier", count(tally.earlier)},
             {"later", count(tally.later)},
             {"not_compared", count(tally.not_compared)},
-            {"ratio", tally.ratios.empty() ? kNone : score(median(tally.ratios))},
-            {"range", tally.ratios.size() > 1 ? fmt::format("{}–{}", score(*least), score(*most)) : ""}};
+            {"ratio", ratios.empty() ? kNone : score(median(ratios))},
+            {"range", n > 1 ? fmt::format("{}–{}", score(ratios[n / 4]), score(ratios[3 * n / 4])) : ""}};
 }
 
 std::string rungs_in_words(int rungs) {

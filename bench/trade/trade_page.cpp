@@ -27,7 +27,7 @@ fs::path below(const fs::path& root, const SweptScene& scene, const fs::path& fo
                StagedFiles& staged) {
     const fs::path relative = scene.file.lexically_relative(root);
     if (!relative.empty() && *relative.begin() != "..") return scene.file;
-    const fs::path copy = folder / fmt::format("{}-{}", k + 1, folder_name(scene.name)) / "results.json";
+    fs::path copy = folder / fmt::format("{}-{}", k + 1, folder_name(scene.name)) / "results.json";
     staged.copy(scene.file, copy);
     return copy;
 }
