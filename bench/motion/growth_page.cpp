@@ -51,8 +51,8 @@ struct LogScale {
 /// Milliseconds of one quantity at one point; below a clock's step there is no logarithm to draw.
 double at(const Json& point, bool whole_frame) {
     const Json& times = point["times"];
-    double ms         = times["visibility_ms"]["median"].get<double>();
-    if (whole_frame) ms += times["aim_ms"]["median"].get<double>() + times["build_ms"]["median"].get<double>();
+    double ms         = times["visibility_ms"]["min"].get<double>();
+    if (whole_frame) ms += times["aim_ms"]["min"].get<double>() + times["build_ms"]["min"].get<double>();
     return std::max(ms, 1e-3);
 }
 
@@ -101,7 +101,7 @@ json fit_row(const Json& method, const Json& fit) {
         {"theory", theory ? range(fit["theory"]["interval"]) : kNone},
         {"why", theory ? text(fit["theory"]["why"]) : ""},
         {"verdict", fit.contains("verdict") ? text(fit["verdict"]) : ""},
-        {"disagrees", fit.contains("verdict") && fit["verdict"] != "agrees"}};
+        {"disagrees", fit.contains("verdict") && (fit["verdict"] == "below" || fit["verdict"] == "above")}};
 }
 
 json family_view(const Json& family) {

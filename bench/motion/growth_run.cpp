@@ -10,13 +10,14 @@
 namespace umbra {
 namespace {
 
-/// The median over the rounds, or the memory; positive and long enough to fit, or nothing.
+/// The least of the rounds, or the memory; positive and long enough to fit, or nothing.
 std::optional<double> fitted_value(const GrowthPoint& point, Quantity quantity) {
     if (quantity == Quantity::memory) {
         const auto bytes = static_cast<double>(point.times.memory_bytes);
         return bytes > 0 ? std::optional(bytes) : std::nullopt;
     }
-    const double ms = median(GrowthSeries::rounds(point, quantity));
+    const std::vector<double> rounds = GrowthSeries::rounds(point, quantity);
+    const double ms                  = *std::ranges::min_element(rounds);
     return ms >= kShortest ? std::optional(ms) : std::nullopt;
 }
 

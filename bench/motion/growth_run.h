@@ -46,8 +46,8 @@ struct GrowthRun {
 [[nodiscard]] GrowthRun run_growth(const GrowthFamily& family, const std::vector<MethodChoice>& choices, double up_to,
                                    const GrowthOptions& options);
 
-/// A power law through the medians of the largest sizes: those from a hundredth of the largest on, where the time is at
-/// least kShortest; memory likewise, in bytes.
+/// A power law through the least times of the rounds, which other programs on the machine distort least, at the largest
+/// sizes: those from a hundredth of the largest on, where the time is at least kShortest; memory likewise, in bytes.
 struct GrowthFit {
     PowerLaw law;
     double from = 0, to = 0;

@@ -107,7 +107,7 @@ std::optional<Theory> growth_theory(std::string_view family, std::string_view me
 std::string_view compare_with_theory(const Interval& fitted, const Theory& theory) {
     if (fitted.high < theory.exponent.low) return "below";
     if (fitted.low > theory.exponent.high) return "above";
-    return "agrees";
+    return fitted.high - fitted.low <= kDecisive ? "agrees" : "undecided";
 }
 
 }  // namespace umbra

@@ -24,7 +24,9 @@ struct Theory {
 /// Of a phase or the memory; nothing where nothing is claimed, as for the frames, which are sums.
 [[nodiscard]] std::optional<Theory> growth_theory(std::string_view family, std::string_view method, Quantity quantity);
 
-/// "agrees", or where the fitted interval lies: "below", "above".
+/// An interval of exponents that is wider decides nothing where it meets theory's.
+inline constexpr double kDecisive = 0.5;
+/// "agrees", or where the fitted interval lies: "below", "above"; "undecided" where it meets theory's but is too wide.
 [[nodiscard]] std::string_view compare_with_theory(const Interval& fitted, const Theory& theory);
 
 }  // namespace umbra

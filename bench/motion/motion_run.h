@@ -18,7 +18,8 @@ namespace umbra {
 struct MotionOptions {
     int frames                = 16;    ///< of each movement; at least 1
     std::uint64_t area_points = 1024;  ///< at which lights with an area are compared; at least 1
-    TurnOptions still{};               ///< of the scene that does not move, for the model; its clock times frames, too
+    /// Of the scene that does not move, for the model; its clock times frames, too.
+    TurnOptions still{.budget_ms = 20000};
     std::function<void(const std::string&)> progress{};  ///< may be empty
 };
 

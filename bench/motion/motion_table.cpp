@@ -67,7 +67,7 @@ std::string motion_table(const Json& record) {
             text += fmt::format("  {:28} {:60} | {}\n", row["mix"].get<std::string>(), winner_text(row["complete"]),
                                 winner_text(row["within"]));
         for (const Json& pair : scene["break_even"])
-            text += fmt::format("  {} pays off over {} after {} camera frames ({} to {} by the rounds)\n",
+            text += fmt::format("  {} pays off over {} from {} camera frames on ({} to {} by the rounds)\n",
                                 pair["method"].get<std::string>(), pair["over"].get<std::string>(),
                                 number_text(pair["frames"], 0), number_text(pair["rounds"][0], 0),
                                 pair["rounds"][1].is_null() ? "never" : number_text(pair["rounds"][1], 0));

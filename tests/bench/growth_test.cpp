@@ -198,6 +198,8 @@ TEST(GrowthTheory, IntervalsThatMeetAgree) {
     EXPECT_EQ(compare_with_theory({0.7, 1.0}, theory), "agrees");
     EXPECT_EQ(compare_with_theory({1.15, 1.3}, theory), "agrees");
     EXPECT_EQ(compare_with_theory({1.16, 1.3}, theory), "above");
+    EXPECT_EQ(compare_with_theory({0.2, 1.9}, theory), "undecided") << "too wide to say";
+    EXPECT_EQ(compare_with_theory({-2, 0.9}, theory), "below") << "wide, but apart";
 }
 
 TEST(GrowthTheory, IsAboutMethodsAndPhasesThatThereAre) {
