@@ -29,7 +29,7 @@ struct Parameter {
     double min = 0, max = 0;          ///< integer, real: closed range
     std::string_view choices{};       ///< choice: "a|b|c", in the order of the enumerators from 0
     std::string_view sweep{};         ///< "16|64|256": values that are worth comparing; empty: leave it at its default
-    bool area_lights = false;         ///< it changes nothing where no light has an area
+    bool area_lights                           = false;       ///< it changes nothing where no light has an area
     Type type                                  = Type::real;  ///< from the member
     double fallback                            = 0;           ///< the default: the member's initializer
     void (*store)(double value, void* options) = nullptr;     ///< writes the member
