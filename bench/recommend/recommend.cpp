@@ -34,6 +34,7 @@ std::vector<double> costs_a_round(const Json& time, const Workload& workload) {
     };
     const auto build = samples("build_ms"), aim = samples("aim_ms"), visibility = samples("visibility_ms");
     std::vector<double> costs;
+    if (time.at("times").at("order").empty()) return costs;  // its one sample is of no round
     for (std::size_t r = 0; r < build.size(); ++r)
         costs.push_back(frame_cost_ms(workload, build[r], aim[r], visibility[r]));
     return costs;
@@ -91,32 +92,35 @@ public:
             Candidate& c = result_.candidates[who[t]];
             c.costs      = costs_a_round(times[t], options_.workload);
             c.cost       = cost_of(times[t], options_.workload);
-            sessions_.emplace_back(who[t], times[t].at("session"));
-            const Json& bar   = times[t].at("session").at("noise_bar");
+            turns_.emplace_back(who[t], times[t].at("turns"));
+            const Json& bar   = times[t].at("turns").at("noise_bar");
             result_.noise_bar = std::max(result_.noise_bar, bar.is_number() ? bar.get<double>() : kUnknown);
         }
     }
 
-    /// Cost of `a` over cost of `b`: paired where they were timed in turns, by medians over calibration otherwise.
+    /// Cost of `a` over cost of `b`: paired where they took turns with one another, by medians over the calibration
+    /// loop where they did not, and without an interval where one of them has no round.
     [[nodiscard]] Ratio ratio(std::size_t a, std::size_t b) const {
         const Candidate &x = result_.candidates[a], &y = result_.candidates[b];
-        if (session(a) == session(b)) return paired_ratio(x.costs, y.costs);
+        const bool together = turns_of(a) == turns_of(b);
+        if (together && !x.costs.empty() && !y.costs.empty()) return paired_ratio(x.costs, y.costs);
         const auto machine = [&](std::size_t k) {
-            return median(session(k).at("calibration_ms").get<std::vector<double>>());
+            const auto loop = turns_of(k).at("calibration_ms").get<std::vector<double>>();
+            return together || loop.empty() ? 1 : median(loop);
         };
         const double r = (*x.cost / machine(a)) / (*y.cost / machine(b));
         return {r, {r, r}, 0};
     }
 
 private:
-    [[nodiscard]] const Json& session(std::size_t k) const {
-        return std::ranges::find(sessions_, k, &std::pair<std::size_t, Json>::first)->second;
+    [[nodiscard]] const Json& turns_of(std::size_t k) const {
+        return std::ranges::find(turns_, k, &std::pair<std::size_t, Json>::first)->second;
     }
 
     SceneLab& lab_;
     const RecommendOptions& options_;
     Recommendation& result_;
-    std::vector<std::pair<std::size_t, Json>> sessions_;
+    std::vector<std::pair<std::size_t, Json>> turns_;
 };
 
 /// By descending error: each step is cheaper than every setting of a smaller bound.

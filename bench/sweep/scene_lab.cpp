@@ -71,12 +71,12 @@ std::vector<Json> SceneLab::times(std::span<const MethodChoice> choices, TurnOpt
     const Turns turns = time_in_turns(view(0).prepared(), to_time, options);
     Json calibration  = Json::array();
     for (const double ms : turns.calibration) calibration.push_back(number(ms));
-    const Json session = {{"noise_bar", number(turns.noise_bar)}, {"calibration_ms", std::move(calibration)}};
+    const Json shared = {{"noise_bar", number(turns.noise_bar)}, {"calibration_ms", std::move(calibration)}};
     for (std::size_t m = 0; m < missing.size(); ++m) {
         const TurnTimes& t = turns.settings[m];
         if (t.build.empty() || !t.failed.empty()) continue;
         Json& entry = all[missing[m]];
-        entry       = {{"key", time_key(to_time[m])}, {"times", turn_times_json(t)}, {"session", session}};
+        entry       = {{"key", time_key(to_time[m])}, {"times", turn_times_json(t)}, {"turns", shared}};
         store_.keep(entry);
     }
     return all;

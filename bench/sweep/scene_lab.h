@@ -34,9 +34,9 @@ public:
     [[nodiscard]] Json cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 
-    /// Times of the settings that serve and do not fail, in one session of turns for those that have none yet: by
-    /// setting, {"key", "times", "session": {"noise_bar", "calibration_ms"}}; null where there are none. Samples of two
-    /// settings are of the same rounds where their sessions are equal.
+    /// Times of the settings that serve and do not fail; those that have none yet take turns with one another now. By
+    /// setting, {"key", "times", "turns": {"noise_bar", "calibration_ms"}}; null where there are none. Samples of two
+    /// settings are of the same rounds where their `turns` are equal.
     [[nodiscard]] std::vector<Json> times(std::span<const MethodChoice> choices, TurnOptions options);
 
 private:

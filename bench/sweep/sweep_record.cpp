@@ -67,8 +67,8 @@ Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
         entry["bounds"][std::string(m.name)] = optional_number(upper_bound(m, s.views));
     }
     if (!s.time.is_null()) {
-        entry["times"]   = s.time.at("times");
-        entry["session"] = s.time.at("session");
+        entry["times"] = s.time.at("times");
+        entry["turns"] = s.time.at("turns");
     }
     entry["cost_ms"] = optional_number(cost_of(s.time, workload));
     return entry;

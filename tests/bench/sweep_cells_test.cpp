@@ -288,7 +288,7 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
             parse_method(text),
             {c},
             {{"times", {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"visibility_ms", timing(ms)}}},
-             {"session", Json::object()}}};
+             {"turns", Json::object()}}};
     };
     const std::vector<MeasuredSetting> settings = {
         swept("ray_traced:samples=1", 1, 0.1, 0), swept("ray_traced:samples=2", 2, 0.2, 0),
