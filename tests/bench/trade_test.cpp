@@ -222,7 +222,7 @@ TEST_F(Trade, LabelsOfTheFrontCoverNeitherMarksNorEachOther) {
     const json chart = pareto_chart(points);
     std::vector<std::array<double, 4>> labels;
     for (const json& m : chart["marks"]) {
-        if (m["label_x"] == "") continue;
+        if (m["label_x"].get<std::string>().empty()) continue;
         const double x = std::stod(m["label_x"].get<std::string>()), y = std::stod(m["label_y"].get<std::string>());
         labels.push_back({x, y - 9, x + 6.1 * double(m["front"].get<std::string>().size()), y + 3});
     }
