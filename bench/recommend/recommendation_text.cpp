@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "umbra/bench/recommend/recommend.h"
 
@@ -128,11 +129,14 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     std::string text;
     if (!r.chosen) {
         text = "No setting stays within the limits.\n";
-        if (r.nearest)
-            text += fmt::format("  Nearest: {}, which exceeds a limit {:.3g} times\n{}",
-                                r.candidates[*r.nearest].choice.text(),
-                                r.candidates[*r.nearest].worst_ratio(options.limits),
-                                errors_in_words(r.candidates[*r.nearest], options));
+        if (r.nearest) {
+            const Candidate& nearest = r.candidates[*r.nearest];
+            const double factor      = nearest.worst_ratio(options.limits);
+            text +=
+                fmt::format("  Nearest: {}{}\n{}", nearest.choice.text(),
+                            std::isfinite(factor) ? fmt::format(", which exceeds a limit {:.3g} times", factor) : "",
+                            errors_in_words(nearest, options));
+        }
     } else {
         const Candidate& c = r.candidates[*r.chosen];
         text = fmt::format("{}: {:.3f} ms a frame with {}\n{}", c.choice.text(), *c.cost, to_text(options.workload),
@@ -155,8 +159,8 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     text += staircase_in_words(r, options);
     for (const Candidate& c : r.candidates)
         if (!c.unfit.empty()) text += fmt::format("  Left out: {}: {}\n", c.choice.text(), c.unfit);
-    return text + fmt::format("  {} of {} settings were looked at, in {} views each; bisection saved the others.\n",
-                              r.looked_at, r.settings, options.views);
+    return text + fmt::format("  {} of {} settings were looked at, in {} views each{}.\n", r.looked_at, r.settings,
+                              options.views, r.looked_at < r.settings ? "; bisection saved the others" : "");
 }
 
 }  // namespace umbra

@@ -49,8 +49,11 @@ Json plan_json(const SweepPlan& plan) {
 
 SweepPlan plan_in(const fs::path& folder) {
     const fs::path file = folder / "plan.json";
-    const Field root    = read_results(file);
-    const Field plan    = root["plan"];
+    if (!fs::exists(file))
+        throw InputError(
+            fmt::format("{}: holds no plan.json, expected a folder that umbra sweep wrote", folder.string()));
+    const Field root = read_results(file);
+    const Field plan = root["plan"];
     if (!plan.present()) plan.refuse("the plan of a sweep");
     SweepPlan p;
     for (const Field& scene : plan["scenes"].items()) p.scenes.emplace_back(scene.required_text());

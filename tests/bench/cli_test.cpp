@@ -9,6 +9,7 @@
 
 #include "umbra/shadows/method.h"
 #include "umbra/tests/support/program.h"
+#include "umbra/tests/support/temporary_folder.h"
 
 namespace {
 
@@ -88,6 +89,24 @@ TEST_F(Cli, UsageErrorsEndWithSixtyFour) {
     const std::string points = umbra(compare + " --reference-points 0").output;
     EXPECT_LT(points.size(), 160u) << points;
     EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(Cli, SweepAndRecommendAnswerWithTheirExitCodes) {
+    const std::string out   = " --size 48x27 --views 2 -o " + (folder_ / "out").string();
+    const std::string sweep = "sweep umbra_penumbra --methods 'ray_traced:samples=1|4' --no-times" + out;
+    const Answer swept      = umbra(sweep);
+    EXPECT_EQ(swept.exit_code, 0) << swept.output;
+    EXPECT_NE(swept.output.find("4 cells, 4 of them computed now"), std::string::npos) << swept.output;
+    EXPECT_NE(umbra(sweep).output.find("4 cells, 0 of them computed now"), std::string::npos);
+    const std::string recommend = "recommend umbra_penumbra --held-out 0 --methods 'ray_traced:samples=1|4'" + out;
+    EXPECT_EQ(umbra(recommend + " --max rmse=0.9").exit_code, 0);
+    EXPECT_EQ(umbra(recommend + " --max rmse=0").exit_code, 1);
+    EXPECT_EQ(umbra(recommend).exit_code, 64);
+    EXPECT_EQ(umbra(recommend + " --max psnr=1").exit_code, 64);
+    EXPECT_EQ(umbra("sweep umbra_penumbra --pack 3/2" + out).exit_code, 64);
+    const Answer merged = umbra("sweep --merge " + (folder_ / "none").string() + " -o " + (folder_ / "m").string());
+    EXPECT_EQ(merged.exit_code, 4);
+    EXPECT_NE(merged.output.find("holds no plan.json"), std::string::npos) << merged.output;
 }
 
 TEST_F(Cli, MistypedNamesGetSuggestions) {
