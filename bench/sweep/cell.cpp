@@ -12,6 +12,7 @@
 #include "umbra/bench/sweep/truth_file.h"
 #include "umbra/bench/sweep/views.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -124,6 +125,8 @@ std::shared_ptr<Method> CellView::configured(const MethodChoice& choice) {
     } else {
         built_.reset();
         method_ = choice.make();
+        // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
+        const ThreadLimit one(1);
         if (verdict(*method_, prepared().facts)) method_->build(prepared().scene, prepared().facts);
     }
     built_ = choice;

@@ -363,12 +363,13 @@ TEST(ShadowVolumes, EdgesAreThoseThatTheSettingNames) {
     const Mesh box = make_box(vec3(1));
     add_object(scene, "box", box.positions, {}, box.triangles, 0);
     Light light;
-    light.kind      = LightKind::point;
-    light.position  = {3, 4, 5};
-    scene.lights    = {light};
-    const auto held = [&](const char* settings) {
+    light.kind             = LightKind::point;
+    light.position         = {3, 4, 5};
+    scene.lights           = {light};
+    const SceneFacts facts = find_facts(scene);
+    const auto held        = [&](const char* settings) {
         const auto method = parse_method(std::string("shadow_volumes:") + settings).make();
-        method->build(scene, find_facts(scene));
+        method->build(scene, facts);
         method->aim(0);
         return method->memory_bytes();
     };
