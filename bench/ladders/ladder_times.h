@@ -9,17 +9,16 @@
 
 namespace umbra {
 
-/// At most `rounds`, fewer where they take longer than the budget, at least one.
 struct LadderTurns {
-    int rounds       = 6;
-    double budget_ms = 600;
+    int rounds       = 6;     ///< at most
+    double budget_ms = 1000;  ///< for all methods together, without their first runs
 };
 
-/// [method][round]: milliseconds of build, aim and visibility over all lights. A round runs each method once, every
-/// other round backwards; a round before the first one is not counted. Empty for a method that does not serve the scene
-/// or that throws there.
+/// [method][round]: milliseconds of build, aim and visibility over all lights, as time_in_turns measures them: samples
+/// with one index are of one round. Empty for a method that does not serve the scene, that throws there, or that takes
+/// longer than the budget.
 [[nodiscard]] std::vector<std::vector<double>> time_first_rung(const Ladder& ladder,
                                                                std::span<const MethodChoice> methods,
-                                                               const LadderTurns& turns = {});
+                                                               const LadderTurns& options = {});
 
 }  // namespace umbra
