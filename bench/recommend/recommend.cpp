@@ -28,13 +28,11 @@ std::string why_unfit(const std::vector<Json>& views) {
     return {};
 }
 
-std::vector<double> costs_a_round(const Json& time, const Workload& workload) {
-    const auto samples = [&](const char* phase) {
-        return time.at("times").at(phase).at("samples").get<std::vector<double>>();
-    };
+std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
+    const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
     const auto build = samples("build_ms"), aim = samples("aim_ms"), visibility = samples("visibility_ms");
     std::vector<double> costs;
-    if (time.at("times").at("order").empty()) return costs;  // its one sample is of no round
+    if (times.at("order").empty()) return costs;  // its one sample is of no round
     for (std::size_t r = 0; r < build.size(); ++r)
         costs.push_back(frame_cost_ms(workload, build[r], aim[r], visibility[r]));
     return costs;
@@ -86,41 +84,31 @@ public:
             who.push_back(k);
             choices.push_back(result_.candidates[k].choice);
         }
-        const std::vector<Json> times = lab_.times(choices, options_.turns);
+        const TimedTogether together = lab_.times(choices, options_.turns);
+        if (who.empty()) return;
+        const Json& bar   = together.turns.at("noise_bar");
+        result_.noise_bar = bar.is_number() ? bar.get<double>() : kUnknown;
         for (std::size_t t = 0; t < who.size(); ++t) {
-            if (times[t].is_null()) continue;
+            const Json& times = together.settings[t];
+            if (times.is_null()) continue;
             Candidate& c = result_.candidates[who[t]];
-            c.costs      = costs_a_round(times[t], options_.workload);
-            c.cost       = cost_of(times[t], options_.workload);
-            turns_.emplace_back(who[t], times[t].at("turns"));
-            const Json& bar   = times[t].at("turns").at("noise_bar");
-            result_.noise_bar = std::max(result_.noise_bar, bar.is_number() ? bar.get<double>() : kUnknown);
+            c.costs      = costs_a_round(times, options_.workload);
+            c.cost       = cost_of(times, options_.workload);
         }
     }
 
-    /// Cost of `a` over cost of `b`: paired where they took turns with one another, by medians over the calibration
-    /// loop where they did not, and without an interval where one of them has no round.
+    /// Cost of `a` over cost of `b`; without an interval where one of them took part in no round.
     [[nodiscard]] Ratio ratio(std::size_t a, std::size_t b) const {
         const Candidate &x = result_.candidates[a], &y = result_.candidates[b];
-        const bool together = turns_of(a) == turns_of(b);
-        if (together && !x.costs.empty() && !y.costs.empty()) return paired_ratio(x.costs, y.costs);
-        const auto machine = [&](std::size_t k) {
-            const auto loop = turns_of(k).at("calibration_ms").get<std::vector<double>>();
-            return together || loop.empty() ? 1 : median(loop);
-        };
-        const double r = (*x.cost / machine(a)) / (*y.cost / machine(b));
+        if (!x.costs.empty() && !y.costs.empty()) return paired_ratio(x.costs, y.costs);
+        const double r = *x.cost / *y.cost;
         return {r, {r, r}, 0};
     }
 
 private:
-    [[nodiscard]] const Json& turns_of(std::size_t k) const {
-        return std::ranges::find(turns_, k, &std::pair<std::size_t, Json>::first)->second;
-    }
-
     SceneLab& lab_;
     const RecommendOptions& options_;
     Recommendation& result_;
-    std::vector<std::pair<std::size_t, Json>> turns_;
 };
 
 /// By descending error: each step is cheaper than every setting of a smaller bound.

@@ -54,30 +54,33 @@ std::string SceneLab::time_key(const MethodChoice& choice) {
                          machine.at("compiler").get<std::string>(), view(0).key(choice)});
 }
 
-std::vector<Json> SceneLab::times(std::span<const MethodChoice> choices, TurnOptions options) {
-    std::vector<Json> all(choices.size());
-    std::vector<std::size_t> missing;
-    std::vector<MethodChoice> to_time;
-    for (std::size_t k = 0; k < choices.size(); ++k) {
-        if (auto found = store_.find(time_key(choices[k]))) {
-            all[k] = std::move(*found);
-        } else {
-            missing.push_back(k);
-            to_time.push_back(choices[k]);
-        }
+std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice> choices) {
+    TimedTogether all;
+    for (const MethodChoice& choice : choices) {
+        auto found = store_.find(time_key(choice));
+        if (!found) return std::nullopt;
+        if (all.settings.empty())
+            all.turns = found->at("turns");
+        else if (found->at("turns") != all.turns)
+            return std::nullopt;
+        all.settings.push_back(std::move(found->at("times")));
     }
-    if (missing.empty()) return all;
+    return all;
+}
+
+TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions options) {
+    if (choices.empty()) return {};
+    if (auto stored = stored_times(choices)) return std::move(*stored);
     options.progress  = options_.progress;
-    const Turns turns = time_in_turns(view(0).prepared(), to_time, options);
-    Json calibration  = Json::array();
-    for (const double ms : turns.calibration) calibration.push_back(number(ms));
-    const Json shared = {{"noise_bar", number(turns.noise_bar)}, {"calibration_ms", std::move(calibration)}};
-    for (std::size_t m = 0; m < missing.size(); ++m) {
-        const TurnTimes& t = turns.settings[m];
-        if (t.build.empty() || !t.failed.empty()) continue;
-        Json& entry = all[missing[m]];
-        entry       = {{"key", time_key(to_time[m])}, {"times", turn_times_json(t)}, {"turns", shared}};
-        store_.keep(entry);
+    const Turns turns = time_in_turns(view(0).prepared(), choices, options);
+    TimedTogether all;
+    all.turns = {{"noise_bar", number(turns.noise_bar)}, {"calibration_ms", Json::array()}};
+    for (const double ms : turns.calibration) all.turns["calibration_ms"].push_back(number(ms));
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        const TurnTimes& t = turns.settings[k];
+        const bool timed   = !t.build.empty() && t.failed.empty();
+        all.settings.push_back(timed ? turn_times_json(t) : Json());
+        store_.keep({{"key", time_key(choices[k])}, {"times", all.settings.back()}, {"turns", all.turns}});
     }
     return all;
 }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,12 @@
 #include "umbra/bench/time/turns.h"
 
 namespace umbra {
+
+/// Of one run of time_in_turns.
+struct TimedTogether {
+    std::vector<Json> settings{};  ///< `times` of results.json, as given; null for one that does not serve or failed
+    Json turns{};                  ///< {"noise_bar", "calibration_ms"}; null where nothing was timed
+};
 
 /// Quality cells and times of one scene. Quality is the same on every machine; times are of this one and are found
 /// again only where machine, threads and code are the same. One thread.
@@ -34,13 +41,14 @@ public:
     [[nodiscard]] Json cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 
-    /// Times of the settings that serve and do not fail; those that have none yet take turns with one another now. By
-    /// setting, {"key", "times", "turns": {"noise_bar", "calibration_ms"}}; null where there are none. Samples of two
-    /// settings are of the same rounds where their `turns` are equal.
-    [[nodiscard]] std::vector<Json> times(std::span<const MethodChoice> choices, TurnOptions options);
+    /// Times of settings that took turns with one another. They are found where a run on this machine timed all of
+    /// these together; otherwise all of them are timed now, also those that an earlier run has timed among others: a
+    /// ratio of times from two runs would say as much of the machine as of the settings.
+    [[nodiscard]] TimedTogether times(std::span<const MethodChoice> choices, TurnOptions options);
 
 private:
     [[nodiscard]] std::string time_key(const MethodChoice& choice);
+    [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);
 
     std::shared_ptr<const Scene> scene_;
     SceneFacts facts_;

@@ -93,7 +93,8 @@ std::string failure(const Scene& scene, const Json& cell) {
                        failed.at("message").get<std::string>());
 }
 
-Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept) {
+Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
+                  const Json& turns) {
     const bool own = options.plan.size.width == 0;
     return {{"schema", kResultsSchema},
             {"version", version()},
@@ -106,7 +107,7 @@ Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<
               {"height", own ? lab.scene().height : options.plan.size.height}}},
             {"lights", lights_json(lab.facts())},
             {"reference", lab.reference()},
-            {"sweep", sweep_json(swept, options.plan.views, options.workload)}};
+            {"sweep", sweep_json(swept, options.plan.views, options.workload, turns)}};
 }
 
 }  // namespace
@@ -226,6 +227,7 @@ SweepDone sweep(const SweepOptions& options) {
         done.computed += lab.computed();
         done.cells += choices.size() * static_cast<std::size_t>(options.plan.views);
 
+        Json turns;
         if (options.times) {
             std::vector<std::size_t> timed;
             std::vector<MethodChoice> to_time;
@@ -235,10 +237,11 @@ SweepDone sweep(const SweepOptions& options) {
                 timed.push_back(k);
                 to_time.push_back(choices[k]);
             }
-            const std::vector<Json> times = lab.times(to_time, options.turns);
-            for (std::size_t t = 0; t < timed.size(); ++t) swept[timed[t]].time = times[t];
+            TimedTogether times = lab.times(to_time, options.turns);
+            for (std::size_t t = 0; t < timed.size(); ++t) swept[timed[t]].times = std::move(times.settings[t]);
+            turns = std::move(times.turns);
         }
-        done.records.push_back(scene_record(lab, options, swept));
+        done.records.push_back(scene_record(lab, options, swept, turns));
     }
     return done;
 }

@@ -24,7 +24,7 @@ std::string excluded(const MeasuredSetting& s) {
         if (view.contains("undefined") && view.at("undefined").is_number())
             undefined = std::max(undefined, view.at("undefined").get<double>());
     if (undefined > kMostLeftOut) return fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined);
-    if (s.time.is_null()) return "it was not timed";
+    if (s.times.is_null()) return "it was not timed";
     return {};
 }
 
@@ -66,25 +66,23 @@ Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
         entry["values"][std::string(m.name)] = optional_number(worst_of(m, s.views));
         entry["bounds"][std::string(m.name)] = optional_number(upper_bound(m, s.views));
     }
-    if (!s.time.is_null()) {
-        entry["times"] = s.time.at("times");
-        entry["turns"] = s.time.at("turns");
-    }
-    entry["cost_ms"] = optional_number(cost_of(s.time, workload));
+    if (!s.times.is_null()) entry["times"] = s.times;
+    entry["cost_ms"] = optional_number(cost_of(s.times, workload));
     return entry;
 }
 
 }  // namespace
 
-std::optional<double> cost_of(const Json& time, const Workload& workload) {
-    if (time.is_null()) return std::nullopt;
-    const auto phase = [&](const char* name) { return time.at("times").at(name).at("median").get<double>(); };
+std::optional<double> cost_of(const Json& times, const Workload& workload) {
+    if (times.is_null()) return std::nullopt;
+    const auto phase = [&](const char* name) { return times.at(name).at("median").get<double>(); };
     return frame_cost_ms(workload, phase("build_ms"), phase("aim_ms"), phase("visibility_ms"));
 }
 
-Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload) {
+Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload, const Json& turns) {
     Json record = {{"views", views},
                    {"metrics", metrics_json()},
+                   {"turns", turns},
                    {"workload", {{"camera", workload.camera}, {"light", workload.light}, {"object", workload.object}}},
                    {"settings", Json::array()},
                    {"fronts", Json::object()}};

@@ -18,14 +18,16 @@ inline constexpr double kMostLeftOut = 0.01;
 struct MeasuredSetting {
     MethodChoice choice;
     std::vector<Json> views;  ///< cells, view 0 first
-    Json time;                ///< of SceneLab::times; null where it has none
+    Json times;               ///< of SceneLab::times; null where it has none
 };
 
 /// Milliseconds of a frame of this workload, by the medians of the times; nothing where there are none.
-[[nodiscard]] std::optional<double> cost_of(const Json& time, const Workload& workload);
+[[nodiscard]] std::optional<double> cost_of(const Json& times, const Workload& workload);
 
 /// `sweep` of results.json. The fronts hold, for each metric, the settings that no other one beats in both the cost of
-/// a frame and the error of the worst view, of those that answer the points and have a time.
-[[nodiscard]] Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload);
+/// a frame and the error of the worst view, of those that answer the points and have a time. `turns` as of
+/// TimedTogether; null where nothing was timed.
+[[nodiscard]] Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload,
+                              const Json& turns);
 
 }  // namespace umbra

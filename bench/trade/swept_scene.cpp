@@ -106,6 +106,7 @@ SweptSetting read_setting(const SweptScene& scene, const Field& field) {
     s.label          = colon == std::string::npos ? "defaults" : s.text.substr(colon + 1);
     s.preset         = field["preset"].text();
     s.failed         = field["failed"].present();
+    s.excluded       = field["excluded"].text();
     if (s.failed)
         s.note = "failed: " + field["failed"]["message"].text();
     else if (field["serves"]["how"].text() == "not")
@@ -120,8 +121,6 @@ SweptSetting read_setting(const SweptScene& scene, const Field& field) {
 
 }  // namespace
 
-bool SweptSetting::covers() const { return coverage.value_or(1) >= kLeastCoverage; }
-
 SweptScene read_swept_scene(const std::filesystem::path& file) {
     SweptScene scene{.root = read_results(file), .file = file, .name = {}, .title = {}};
     const Field& root = scene.root;
@@ -132,7 +131,7 @@ SweptScene read_swept_scene(const std::filesystem::path& file) {
     if (scene.title.empty()) scene.title = in_words(scene.name);
     scene.triangles = root["facts"]["triangles"].number().value_or(0);
     scene.views     = int(std::clamp(sweep["views"].number().value_or(1), 1.0, 1e6));
-    scene.noise_bar = not_negative_if_there(sweep["noise_bar"]);
+    scene.noise_bar = not_negative_if_there(sweep["turns"]["noise_bar"]);
     if (const Field w = sweep["workload"]; w.present()) {
         scene.workload = {not_negative(w["camera"]), not_negative(w["light"]), not_negative(w["object"])};
         if (!(scene.workload.camera + scene.workload.light + scene.workload.object > 0))

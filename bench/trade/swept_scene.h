@@ -40,13 +40,8 @@ struct SweptSetting {
     std::optional<FrameCost> cost{};  ///< nothing where it was not timed
     std::optional<double> memory_bytes{}, coverage{};
     std::vector<std::optional<SweptError>> errors{};  ///< [metric]
-
-    /// It answers for (nearly) all points, so that its errors compare with those of others: kLeastCoverage.
-    [[nodiscard]] bool covers() const;
+    std::string excluded;                             ///< why it is on no front; empty where it may be
 };
-
-/// A setting that answers for a smaller fraction of the points is on no front: what it leaves undefined has no error.
-inline constexpr double kLeastCoverage = 0.99;
 
 struct SweptScene {
     Field root;

@@ -78,13 +78,13 @@ json row_view(const SweptScene& scene, const std::vector<SweptMethod>& methods, 
                              {"preset", s.preset},
                              {"colour", std::to_string(mark_style(k).colour)},
                              {"key", chart::mark_path(k, 14, 9)},
-                             {"note", s.note},
+                             {"note", s.note.empty() ? s.excluded : s.note},
                              {"failed", s.failed},
                              {"cost", s.cost ? milliseconds(s.cost->median) : kNone},
                              {"range", s.cost && s.cost->low < s.cost->high ? range(s.cost->low, s.cost->high) : ""},
                              {"memory", mebibytes(s.memory_bytes)},
                              {"coverage", percent(s.coverage)},
-                             {"partial", !s.covers()},
+                             {"partial", s.note.empty() && !s.excluded.empty()},
                              {"errors", json::array()}};
     for (std::size_t m = 0; m < scene.metrics.size(); ++m) {
         const auto& e            = s.errors[m];

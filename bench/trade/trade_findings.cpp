@@ -21,7 +21,7 @@ struct Flight {
 
 }  // namespace
 
-bool takes_part(const SweptSetting& s, std::size_t metric) { return s.cost && s.errors[metric] && s.covers(); }
+bool takes_part(const SweptSetting& s, std::size_t metric) { return s.cost && s.errors[metric] && s.excluded.empty(); }
 
 std::vector<std::size_t> front_of(const SweptScene& scene, std::size_t metric) {
     std::vector<CostError> points;

@@ -71,7 +71,6 @@ std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_jso
     json view            = {{"report", report},
                             {"scene_count", counted(double(scenes.size()), "scene")},
                             {"method_count", counted(double(methods.size()), "method")},
-                            {"least_coverage", fmt::format("{:g}", 100 * kLeastCoverage)},
                             {"scenes", json::array()},
                             {"runs", runs_of(scenes)}};
     std::size_t settings = 0;

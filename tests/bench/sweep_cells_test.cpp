@@ -228,12 +228,16 @@ TEST(Sweep, ComputesEveryCellOnceAndSharingABuildChangesNothing) {
     SweepOptions more = small_sweep(folder.path() / "a");
     more.plan.settings.emplace_back("shadow_volumes");
     EXPECT_EQ(sweep(more).computed, 2u);
-    for (const auto& entry : fs::directory_iterator(folder.path() / "a/cells"))
-        if (entry.path().extension() == ".json") {
-            fs::resize_file(entry.path(), fs::file_size(entry.path()) / 2);
-            break;
-        }
-    EXPECT_LE(sweep(more).computed, 1u);
+    const auto is_cell = [](const fs::directory_entry& entry) {
+        if (entry.path().extension() != ".json") return false;
+        std::ifstream in(entry.path());
+        return Json::parse(in).contains("errors");
+    };
+    const fs::directory_iterator files(folder.path() / "a/cells");
+    const auto cell = std::find_if(begin(files), end(files), is_cell);
+    ASSERT_NE(cell, end(files));
+    fs::resize_file(cell->path(), fs::file_size(cell->path()) / 2);
+    EXPECT_EQ(sweep(more).computed, 1u);
 }
 
 TEST(Sweep, MergedPacksAreTheUnbrokenRun) {
@@ -284,23 +288,21 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
                              {"undefined", undefined},
                              {"errors", {e}}};
         const auto timing = [](double median) { return Json{{"median", median}}; };
-        return MeasuredSetting{
-            parse_method(text),
-            {c},
-            {{"times", {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"visibility_ms", timing(ms)}}},
-             {"turns", Json::object()}}};
+        return MeasuredSetting{parse_method(text),
+                               {c},
+                               {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"visibility_ms", timing(ms)}}};
     };
     const std::vector<MeasuredSetting> settings = {
         swept("ray_traced:samples=1", 1, 0.1, 0), swept("ray_traced:samples=2", 2, 0.2, 0),
         swept("ray_traced:samples=4", 3, 0, 0), swept("ray_traced:samples=8", 0.5, 0, 0.5)};
-    const Json record = sweep_json(settings, 1, {60, 0, 0});
+    const Json record = sweep_json(settings, 1, {60, 0, 0}, {});
     EXPECT_EQ(record["fronts"]["rmse"], (Json{"ray_traced:samples=1", "ray_traced:samples=4"}));
     EXPECT_EQ(record["settings"][0]["cost_ms"], 1);
     EXPECT_EQ(record["settings"][3]["excluded"], "it leaves 50 % of the points undefined");
     EXPECT_TRUE(record["settings"][0]["excluded"].is_null());
     // Half of the frames have a light that moved: aim is paid in half of them.
-    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0})["settings"][1]["cost_ms"].get<double>(), 2 + 0.5 * 10, 1e-12);
-    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60})["settings"][1]["cost_ms"].get<double>(), 2 + 10 + 100, 1e-12);
+    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0}, {})["settings"][1]["cost_ms"].get<double>(), 2 + 0.5 * 10, 1e-12);
+    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60}, {})["settings"][1]["cost_ms"].get<double>(), 2 + 10 + 100, 1e-12);
 }
 
 std::string text_of(const fs::path& file) {
@@ -338,11 +340,29 @@ TEST(Sweep, WritesWhatItsSchemaSays) {
     bad["sweep"]["settings"][0].erase("bounds");
     EXPECT_EQ(invalid_at(bad), "#/sweep/settings/0");
 
-    // Times are this machine's, and are found again.
-    EXPECT_EQ(sweep(o).records, done.records);
-    for (const Json& record : done.records)
+    for (const Json& record : done.records) {
+        EXPECT_EQ(record["sweep"]["turns"]["calibration_ms"].size(), 2u);
         for (const Json& s : record["sweep"]["settings"])
             EXPECT_TRUE(s["times"]["build_ms"]["samples"].is_array()) << s["text"];
+    }
+
+    // Times are this machine's, and are found again, also those of some of the settings; for a further one all of them
+    // take turns again.
+    EXPECT_EQ(sweep(o).records, done.records);
+    const auto turns_of = [](const SweepDone& d) { return d.records.at(1).at("sweep").at("turns"); };
+    SweepOptions fewer  = o;
+    fewer.plan.settings = {"ray_traced:samples=4", "exact"};
+    EXPECT_EQ(turns_of(sweep(fewer)), turns_of(done));
+    SweepOptions further = o;
+    further.plan.settings.emplace_back("shadow_volumes");
+    const SweepDone later = sweep(further);
+    EXPECT_NE(turns_of(later), turns_of(done));
+    EXPECT_EQ(turns_of(sweep(o)), turns_of(later));
+    SweepOptions other  = o;
+    other.plan.settings = {"ray_traced:samples=4", "ray_traced:samples=8"};
+    const Json apart = turns_of(sweep(other)), again = turns_of(sweep(o));
+    EXPECT_NE(again, turns_of(later));
+    EXPECT_NE(again, apart);
 }
 
 TEST(Recommend, TakesTheCheapestWithinTheLimits) {
