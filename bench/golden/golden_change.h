@@ -7,7 +7,12 @@
 #include <string_view>
 #include <vector>
 
+#include "umbra/bench/run/prepare.h"
+
 namespace umbra {
+
+/// Of the pictures that goldens of comparisons and of settings are made of.
+inline constexpr Size kGoldenSize{64, 36};
 
 struct GoldenOptions {
     std::filesystem::path folder{};

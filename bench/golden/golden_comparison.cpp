@@ -17,7 +17,6 @@ namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr Size kSize{64, 36};
 constexpr const char* kRecord = "results.json";
 constexpr const char* kLinear = "reference.rgb.exr";
 
@@ -70,7 +69,7 @@ void run_comparison(const fs::path& scene, const Compared& compared, const fs::p
     CompareOptions options;
     options.methods   = compared.methods;
     options.points    = compared.points;
-    options.size      = kSize;
+    options.size      = kGoldenSize;
     options.out       = folder;
     options.repeats   = {1, 0};
     const Json record = compare_scene(scene, options);

@@ -15,8 +15,6 @@ namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr Size kSize{64, 36};
-
 constexpr std::array kSettings = {
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,filter=pcf,radius=2"},
     GoldenSetting{"stairs", "shadow_zbuffer:resolution=256,filter=pcf,radius=1,bilinear=false"},
@@ -105,7 +103,7 @@ std::vector<GoldenChange> setting_changes(const fs::path& scene, const GoldenOpt
         files.insert(file_name(s.method));
         const std::string_view method = s.method.substr(0, s.method.find(':'));
         if (!is_wanted(options, name, method) && !is_wanted(options, name, s.method)) continue;
-        if (!prepared) prepared.emplace(prepare_scene(scene, kSize));
+        if (!prepared) prepared.emplace(prepare_scene(scene, kGoldenSize));
         if (auto change = setting_change(*prepared, s.method, options)) changes.push_back(std::move(*change));
     }
     if (!options.names.empty() || !fs::exists(folder)) return changes;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "report_assets.h"
+#include "umbra/bench/motion/record_view.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
@@ -18,10 +19,6 @@ using nlohmann::json;
 // The chart, in units of its viewBox.
 constexpr double kLeft = 52, kRight = 430, kTop = 12, kBottom = 250;
 
-std::string text(const Json& value) { return value.get<std::string>(); }
-std::optional<double> value(const Json& number) {
-    return number.is_null() ? std::nullopt : std::optional(number.get<double>());
-}
 std::string coordinate(double v) { return fmt::format("{:.1f}", v); }
 
 /// 1000 as 10³; 0.1 and 1 as they are.
@@ -158,21 +155,9 @@ json family_view(const Json& family) {
 }  // namespace
 
 void write_growth_page(const Json& record, const std::filesystem::path& out, StagedFiles& staged) {
-    json families = json::array(), failures = json::array();
-    for (const Json& family : record["growth"]) families.push_back(family_view(family));
-    for (const Json& failure : record["failed"])
-        failures.push_back(
-            fmt::format("{}: {}: {}", text(failure["family"]), text(failure["method"]), text(failure["message"])));
-    const Json& machine = record["machine"];
-    const json view     = {{"command", without_folders(text(record["command"]))},
-                           {"version", record["version"]},
-                           {"cpu", machine["cpu"]},
-                           {"threads", std::to_string(machine["threads"].get<int>())},
-                           {"load", fmt::format("{} to {}", score(value(record["load_average"]["before"])),
-                                                score(value(record["load_average"]["after"])))},
-                           {"has_failures", !failures.empty()},
-                           {"failures", std::move(failures)},
-                           {"families", std::move(families)}};
+    json view        = record_view(record, "family");
+    view["families"] = json::array();
+    for (const Json& family : record["growth"]) view["families"].push_back(family_view(family));
     const PageHead head = {"Growth: times over triangles, pixels, lights, samples", "", {}};
     staged.write(out / "index.html", render_page(assets::growth_html, head, view));
     write_page_assets(out, head.scripts, staged);

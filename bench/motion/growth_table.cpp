@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include "umbra/bench/motion/growth.h"
+#include "umbra/bench/motion/record_view.h"
 
 namespace umbra {
 namespace {
 
-std::string text(const Json& value) { return value.get<std::string>(); }
 std::string fixed(const Json& value, int digits = 2) {
     return value.is_null() ? "-" : fmt::format("{:.{}f}", value.get<double>(), digits);
 }

@@ -8,6 +8,7 @@
 #include "report_assets.h"
 #include "umbra/bench/motion/animation.h"
 #include "umbra/bench/motion/mix_triangle.h"
+#include "umbra/bench/motion/record_view.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
@@ -19,12 +20,6 @@ using nlohmann::json;
 
 /// Corners of the triangle in the units of its viewBox: camera, light, object.
 constexpr std::array<std::array<double, 2>, 3> kCorners{{{40, 300}, {400, 300}, {220, 28}}};
-
-std::string text(const Json& value) { return value.get<std::string>(); }
-
-std::optional<double> value(const Json& number) {
-    return number.is_null() ? std::nullopt : std::optional(number.get<double>());
-}
 
 std::array<double, 2> place(const Shares& shares) {
     std::array<double, 2> at{0, 0};
@@ -180,24 +175,13 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
 }  // namespace
 
 void write_motion_page(const Json& record, const std::filesystem::path& out, StagedFiles& staged) {
-    json scenes = json::array(), failures = json::array();
-    for (const Json& scene : record["motion"]) scenes.push_back(scene_view(record, scene, scenes.size() + 1));
-    for (const Json& failure : record["failed"])
-        failures.push_back(
-            fmt::format("{}: {}: {}", text(failure["scene"]), text(failure["method"]), text(failure["message"])));
-    const Json& machine = record["machine"];
-    const json view     = {{"command", without_folders(text(record["command"]))},
-                           {"version", record["version"]},
-                           {"frames", std::to_string(record["frames"].get<int>())},
-                           {"arc", fmt::format("{:g}", record["arc_degrees"].get<double>())},
-                           {"max_rmse", fmt::format("{:g}", record["max_rmse"].get<double>())},
-                           {"cpu", machine["cpu"]},
-                           {"threads", std::to_string(machine["threads"].get<int>())},
-                           {"load", fmt::format("{} to {}", score(value(record["load_average"]["before"])),
-                                                score(value(record["load_average"]["after"])))},
-                           {"has_failures", !failures.empty()},
-                           {"failures", std::move(failures)},
-                           {"scenes", std::move(scenes)}};
+    json view        = record_view(record, "scene");
+    view["frames"]   = std::to_string(record["frames"].get<int>());
+    view["arc"]      = fmt::format("{:g}", record["arc_degrees"].get<double>());
+    view["max_rmse"] = fmt::format("{:g}", record["max_rmse"].get<double>());
+    view["scenes"]   = json::array();
+    for (const Json& scene : record["motion"])
+        view["scenes"].push_back(scene_view(record, scene, view["scenes"].size() + 1));
     const PageHead head = {"What moves: the fastest shadow method by movement", "", {}};
     staged.write(out / "index.html", render_page(assets::motion_html, head, view));
     write_page_assets(out, head.scripts, staged);

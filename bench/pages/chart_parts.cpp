@@ -74,9 +74,9 @@ double length_of(const std::string& label) {
 std::optional<LabelPlaces::Position> LabelPlaces::first_free(const std::vector<Position>& positions, double length) {
     constexpr double rise = 9, fall = 3;
     for (const auto& [begin, baseline] : positions) {
-        const Box box{begin, baseline - rise, begin + length, baseline + fall};
+        const Rect box{begin, baseline - rise, begin + length, baseline + fall};
         if (box.x0 < inside_.x0 || box.x1 > inside_.x1 || box.y0 < inside_.y0 || box.y1 > inside_.y1) continue;
-        if (std::any_of(taken_.begin(), taken_.end(), [&](const Box& b) { return b.meets(box); })) continue;
+        if (std::any_of(taken_.begin(), taken_.end(), [&](const Rect& b) { return b.meets(box); })) continue;
         taken_.push_back(box);
         return std::pair{begin, baseline};
     }

@@ -32,16 +32,16 @@ struct LogAxis {
 /// The outline of a mark, 12 to 15 across, with its centre at x, y: the path of an SVG.
 [[nodiscard]] std::string mark_path(std::size_t style, double x, double y);
 
-struct Box {
+struct Rect {
     double x0, y0, x1, y1;
-    [[nodiscard]] bool meets(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
+    [[nodiscard]] bool meets(const Rect& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
 };
 
 /// Positions of labels of text 12 high that cover neither each other nor what is taken.
 class LabelPlaces {
 public:
-    explicit LabelPlaces(const Box& inside) : inside_(inside) {}
-    void take(const Box& box) { taken_.push_back(box); }
+    explicit LabelPlaces(const Rect& inside) : inside_(inside) {}
+    void take(const Rect& box) { taken_.push_back(box); }
     /// Where the label begins (x) and its baseline (y): right, left, above or below a mark that reaches from `left` to
     /// `right` (centres) at the height y; nothing where each of these positions covers something or leaves the frame.
     [[nodiscard]] std::optional<std::pair<double, double>> place(double left, double right, double y,
@@ -55,8 +55,8 @@ private:
     using Position = std::pair<double, double>;
     std::optional<Position> first_free(const std::vector<Position>& positions, double length);
 
-    Box inside_;
-    std::vector<Box> taken_;
+    Rect inside_;
+    std::vector<Rect> taken_;
 };
 
 /// What the templates draw the frame from; `bottom` is the lower end of the vertical axis.

@@ -348,11 +348,6 @@ Exposures find_exposures(const std::vector<vec3>& reference) {
 
 // -- Images
 
-void check_pair(const Image& reference, const Image& test) {
-    if (reference.width != test.width || reference.height != test.height || reference.data.empty())
-        throw std::logic_error("flip: the images are empty or differ in size");
-}
-
 template <class Value>
 std::vector<vec3> colours(const Image& image, const Value& value) {
     const auto channels = colour_channels(image);
@@ -367,14 +362,14 @@ std::vector<vec3> colours(const Image& image, const Value& value) {
 }  // namespace
 
 Flip flip_ldr(const Image& reference, const Image& test, double pixels_per_degree) {
-    check_pair(reference, test);
+    check_same_size(reference, test, "flip");
     const auto light = [](float x) { return x > 0 ? linear_from_srgb(std::min(x, 1.0f)) : 0.0f; };  // NaN: 0
     return pooled(error_map(reference.width, reference.height, colours(reference, light), colours(test, light),
                             pixels_per_degree));
 }
 
 Flip flip_hdr(const Image& reference, const Image& test, double pixels_per_degree) {
-    check_pair(reference, test);
+    check_same_size(reference, test, "flip");
     const auto light          = [](float x) { return x > 0 ? std::min(x, 1e15f) : 0.0f; };  // NaN: 0
     const std::vector<vec3> a = colours(reference, light);
     const std::vector<vec3> b = colours(test, light);

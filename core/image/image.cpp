@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace umbra {
 
@@ -14,6 +15,11 @@ std::array<std::size_t, 3> colour_channels(const Image& image) {
         found[c] = std::size_t(at - image.channels.begin());
     }
     return found;
+}
+
+void check_same_size(const Image& a, const Image& b, std::string_view who) {
+    if (a.width != b.width || a.height != b.height || a.data.empty() || b.data.empty())
+        throw std::logic_error(std::string(who) + ": the images are empty or differ in size");
 }
 
 // In double: 1.055f - 0.055f falls short of 1, and white must be white.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbra/core/base/math.h"
@@ -33,6 +34,9 @@ struct Image {
 
 /// Where R, G and B are among the channels; the first channel three times, as grey, in an image that lacks one of them.
 [[nodiscard]] std::array<std::size_t, 3> colour_channels(const Image& image);
+
+/// Throws std::logic_error, which names `who`, where the images differ in size or one of them is empty.
+void check_same_size(const Image& a, const Image& b, std::string_view who);
 
 /// Encodes one linear value to sRGB (IEC 61966-2-1) and back; both for [0, 1], odd beyond.
 [[nodiscard]] float srgb_from_linear(float x);

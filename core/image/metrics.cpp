@@ -2,17 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
-
-void check_pair(const Image& a, const Image& b) {
-    if (a.width != b.width || a.height != b.height || a.data.empty() || b.data.empty())
-        throw std::logic_error("metrics: the images are empty or differ in size");
-}
 
 /// Pairs of channel indices of the same name.
 std::vector<std::pair<std::size_t, std::size_t>> common_channels(const Image& a, const Image& b) {
@@ -73,7 +67,7 @@ double similarity(const Moments& m) {
 }  // namespace
 
 ImageError image_error(const Image& a, const Image& b, double threshold) {
-    check_pair(a, b);
+    check_same_size(a, b, "metrics");
     const auto channels = common_channels(a, b);
     std::vector<RowSums> rows(std::size_t(a.height));
     parallel_ranges(rows.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -140,7 +134,7 @@ ImageError image_error(const Image& a, const Image& b, double threshold) {
 }
 
 double ssim(const Image& a, const Image& b) {
-    check_pair(a, b);
+    check_same_size(a, b, "metrics");
     const std::vector<double> ya     = luminance(a);
     const std::vector<double> yb     = luminance(b);
     const std::vector<double> across = window(a.width);

@@ -9,6 +9,7 @@
 #include "umbra/core/io/check_camera.h"
 #include "umbra/core/io/limits.h"
 #include "umbra/core/io/scene_readers.h"
+#include "umbra/core/io/vector_text.h"
 
 namespace umbra {
 namespace {
@@ -21,8 +22,6 @@ using std::filesystem::path;
 
 bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 bool holds(const Range& range, vec3 v) { return range.holds(v.x) && range.holds(v.y) && range.holds(v.z); }
-std::string text(vec3 v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
-
 /// Checks of one thing's terms, which messages name: "FILE: WHOSE: WHICH is X, expected ...".
 class Terms {
 public:
@@ -33,11 +32,12 @@ public:
         if (!range.holds(x)) fail(fmt::format("{} is {:g}, expected {}", which, x, range.words));
     }
     void vector(std::string_view which, vec3 v, const Range& range) const {
-        if (!holds(range, v)) fail(fmt::format("{} is {}, expected of each component {}", which, text(v), range.words));
+        if (!holds(range, v))
+            fail(fmt::format("{} is {}, expected of each component {}", which, vector_text(v), range.words));
     }
     void direction(std::string_view which, vec3 d) const {
         if (!is_finite(d) || d == vec3(0))
-            fail(fmt::format("{} is {}, expected a finite vector other than 0", which, text(d)));
+            fail(fmt::format("{} is {}, expected a finite vector other than 0", which, vector_text(d)));
     }
 
 private:
@@ -50,11 +50,12 @@ void check_geometry(const Scene& scene, const path& file) {
         refuse(file, fmt::format("{} triangles, expected at most {}", scene.triangles.size(), kMaxTriangles));
     for (const vec3 p : scene.positions)
         if (!holds(kAnyNumber, p))
-            refuse(file, fmt::format("a vertex at {}, expected of each coordinate {}", text(p), kAnyNumber.words));
+            refuse(file,
+                   fmt::format("a vertex at {}, expected of each coordinate {}", vector_text(p), kAnyNumber.words));
     if (scene.normals.size() != scene.positions.size())
         throw std::logic_error("check_scene: one normal a position is expected");
     for (const vec3 n : scene.normals)
-        if (!is_finite(n)) refuse(file, fmt::format("a vertex normal {}, expected finite numbers", text(n)));
+        if (!is_finite(n)) refuse(file, fmt::format("a vertex normal {}, expected finite numbers", vector_text(n)));
     for (const uvec3& t : scene.triangles)
         if (std::max({t.x, t.y, t.z}) >= scene.positions.size())
             refuse(file, fmt::format("a triangle of the vertices {}, {}, {} (there are {}, counted from 0)", t.x, t.y,
@@ -133,11 +134,12 @@ void check_camera(const Scene& scene, const path& file) {
     terms.vector("target", c.target, kAnyNumber);
     terms.vector("up", c.up, kAnyNumber);
     const dvec3 view = dvec3(c.target) - dvec3(c.eye);
-    if (view == dvec3(0)) terms.fail(fmt::format("eye and target are the same point {}", text(c.eye)));
+    if (view == dvec3(0)) terms.fail(fmt::format("eye and target are the same point {}", vector_text(c.eye)));
     if (c.up == vec3(0)) terms.fail("up is (0, 0, 0), expected a direction");
     // Nearer than some 1e-6 radians the picture's turn about its axis would be rounding noise.
     if (glm::length(glm::cross(glm::normalize(view), glm::normalize(dvec3(c.up)))) < 1e-6)
-        terms.fail(fmt::format("up {} is parallel to the view direction {}", text(c.up), text(vec3(view))));
+        terms.fail(
+            fmt::format("up {} is parallel to the view direction {}", vector_text(c.up), vector_text(vec3(view))));
     if (c.projection == Projection::perspective) terms.number("fov", c.fov_y, kFieldOfView);
     if (c.projection == Projection::orthographic) terms.number("height", c.height, kPositive);
     if (scene.width < 1 || scene.height < 1 || scene.width > kMaxPictureSide || scene.height > kMaxPictureSide)

@@ -8,13 +8,12 @@
 #include "umbra/core/io/arriving_light.h"
 #include "umbra/core/io/check_camera.h"
 #include "umbra/core/io/scene_readers.h"
+#include "umbra/core/io/vector_text.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/core/scene/uncomputed.h"
 
 namespace umbra {
 namespace {
-
-std::string text(vec3 v) { return fmt::format("({:g}, {:g}, {:g})", v.x, v.y, v.z); }
 
 // Of length 1; zero stays zero. A vector of that length up to rounding is left alone, so that a scene that is written
 // and read again keeps its bits.
@@ -114,7 +113,7 @@ void assume_camera(Scene& scene) {
     scene.warnings.push_back(
         fmt::format("The file has no camera: one that shows the whole scene from the front is assumed "
                     "(eye {}, target {}, 40 degrees high).",
-                    text(camera.eye), text(camera.target)));
+                    vector_text(camera.eye), vector_text(camera.target)));
 }
 
 void assume_light(Scene& scene) {

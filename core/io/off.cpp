@@ -12,7 +12,7 @@ namespace {
 
 // The first token ends in OFF; the letters before it say what follows each vertex: S, T texture points, C colours,
 // N normals.
-MeshPart read_part(const SourceText& source) {
+MeshPart off_part(const SourceText& source) {
     Tokens tokens(source);
     const Token header    = tokens.next();
     const std::size_t end = header.text.size();
@@ -74,7 +74,7 @@ MeshPart read_part(const SourceText& source) {
 
 SceneFile read_off(const std::filesystem::path& file) {
     const SourceText source = read_text(file);
-    return scene_of({read_part(source)}, file);
+    return scene_of({off_part(source)}, file);
 }
 
 }  // namespace umbra

@@ -28,7 +28,7 @@ struct Element {
     std::vector<Property> properties;
 };
 
-enum class Format : std::uint8_t { ascii, little, big };
+enum class Encoding : std::uint8_t { ascii, little, big };
 
 Type read_type(const Tokens& tokens, Token token) {
     static constexpr std::array<std::pair<std::string_view, Type>, 16> kTypes{{{"char", Type::int8},
@@ -61,7 +61,7 @@ std::size_t size_of(Type type) {
 bool is_whole(Type type) { return type < Type::float32; }
 
 struct Header {
-    Format format = Format::ascii;
+    Encoding encoding = Encoding::ascii;
     std::vector<Element> elements;
     std::size_t end = 0;  ///< where the data begins
 };
@@ -86,11 +86,11 @@ Header read_header(const SourceText& source) {
         if (key == "format") {
             const Token token = tokens.next_on_line();
             if (token.text == "ascii")
-                header.format = Format::ascii;
+                header.encoding = Encoding::ascii;
             else if (token.text == "binary_little_endian")
-                header.format = Format::little;
+                header.encoding = Encoding::little;
             else if (token.text == "binary_big_endian")
-                header.format = Format::big;
+                header.encoding = Encoding::big;
             else
                 tokens.fail(token,
                             fmt::format("unknown format {} (known: ascii binary_little_endian binary_big_endian)",
@@ -138,9 +138,9 @@ Header read_header(const SourceText& source) {
 class Body {
 public:
     Body(const SourceText& source, const Header& header)
-        : ascii_(header.format == Format::ascii),
+        : ascii_(header.encoding == Encoding::ascii),
           tokens_(source, header.end),
-          bytes_(source, header.end, header.format == Format::big ? std::endian::big : std::endian::little) {}
+          bytes_(source, header.end, header.encoding == Encoding::big ? std::endian::big : std::endian::little) {}
 
     float real(Type type, std::string_view what) {
         if (ascii_) return tokens_.real(what);
@@ -284,7 +284,7 @@ void read_element(Body& body, const Element& element, MeshPart& part, std::uint6
     }
 }
 
-MeshPart read_part(const SourceText& source) {
+MeshPart ply_part(const SourceText& source) {
     const Header header = read_header(source);
     const auto named    = [](std::string_view name) { return [name](const Element& e) { return e.name == name; }; };
     const auto vertex   = std::find_if(header.elements.begin(), header.elements.end(), named("vertex"));
@@ -299,7 +299,7 @@ MeshPart read_part(const SourceText& source) {
     for (const Element& e : header.elements) {
         std::uint64_t least = 0;  // bytes of one element
         for (const Property& p : e.properties)
-            least += header.format == Format::ascii ? 2 : size_of(p.is_list ? p.counting : p.type);
+            least += header.encoding == Encoding::ascii ? 2 : size_of(p.is_list ? p.counting : p.type);
         const std::uint64_t left = source.text.size() - before + 1;
         if (least > 0 && e.count > left / least)
             source.fail(0, fmt::format("the header says {} of element {}, but only {} bytes follow it", e.count, e.name,
@@ -315,7 +315,7 @@ MeshPart read_part(const SourceText& source) {
 
 SceneFile read_ply(const std::filesystem::path& file) {
     const SourceText source = read_text(file);
-    return scene_of({read_part(source)}, file);
+    return scene_of({ply_part(source)}, file);
 }
 
 }  // namespace umbra

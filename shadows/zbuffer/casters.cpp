@@ -8,8 +8,8 @@
 namespace umbra {
 namespace {
 
-constexpr double kRounding = 0x1p-22;  // of a corner that was computed in float, relative
-constexpr double kGrazing  = 1e-6;     // sine: flatter light may as well lie in the plane
+constexpr double kCornerRounding = 0x1p-22;  // of a corner that was computed in float, relative
+constexpr double kGrazing        = 1e-6;     // sine: flatter light may as well lie in the plane
 
 }  // namespace
 
@@ -37,7 +37,7 @@ void Casters::find_planes(const SceneFacts& facts, std::vector<std::uint8_t>& pl
     for (const PlanarReceiver& plane : facts.planes) {
         if (planes_.size() == kMaxPlanes) break;
         for (TriangleId t : plane.triangles) plane_of_triangle[t] = static_cast<std::uint8_t>(planes_.size());
-        planes_.push_back({plane.normal, plane.offset, plane.tolerance + kRounding * largest, {}, {}});
+        planes_.push_back({plane.normal, plane.offset, plane.tolerance + kCornerRounding * largest, {}, {}});
     }
 }
 

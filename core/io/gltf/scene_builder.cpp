@@ -10,6 +10,7 @@
 #include "umbra/core/io/gltf/materials.h"
 #include "umbra/core/io/gltf/members.h"
 #include "umbra/core/io/limits.h"
+#include "umbra/core/io/vector_text.h"
 
 namespace umbra {
 
@@ -103,9 +104,9 @@ void GltfSceneBuilder::add_mesh(const JsonValue& at, const std::string& name, co
         const Mesh mesh = placed(p.mesh, m);
         for (const vec3 q : mesh.positions)
             if (!(kAnyNumber.holds(q.x) && kAnyNumber.holds(q.y) && kAnyNumber.holds(q.z)))
-                json_.fail(at, fmt::format("this node places a vertex at ({:g}, {:g}, {:g}), expected numbers from "
+                json_.fail(at, fmt::format("this node places a vertex at {}, expected numbers from "
                                            "{:g} to {:g}",
-                                           q.x, q.y, q.z, kAnyNumber.min, kAnyNumber.max));
+                                           vector_text(q), kAnyNumber.min, kAnyNumber.max));
         add_object(scene_, name.empty() ? p.name : name, mesh.positions, mesh.normals, mesh.triangles, material_of(p));
     }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "umbra/core/io/native/directions.h"
+#include "umbra/core/io/vector_text.h"
 
 namespace umbra {
 
@@ -16,10 +17,9 @@ Camera read_native_camera(const JsonText& json, const JsonValue& v) {
     const JsonValue* up = f.find("up");
     if (up) camera.up = read_direction(json, *up, "up");
     if (is_parallel(dvec3(camera.up), dvec3(camera.target) - dvec3(camera.eye)))
-        json.fail(up ? *up : v,
-                  fmt::format("up ({:g}, {:g}, {:g}) is parallel to the view from eye to target, expected a direction "
-                              "across it, such as [0, 0, -1] for a view from above",
-                              camera.up.x, camera.up.y, camera.up.z));
+        json.fail(up ? *up : v, fmt::format("up {} is parallel to the view from eye to target, expected a direction "
+                                            "across it, such as [0, 0, -1] for a view from above",
+                                            vector_text(camera.up)));
     f.exclude("fov", "height");
     camera.fov_y = static_cast<float>(f.number("fov", kFieldOfView, double(camera.fov_y)));
     if (f.find("height")) camera.projection = Projection::orthographic;

@@ -6,6 +6,7 @@
 
 #include "umbra/core/io/native/shapes.h"
 #include "umbra/core/io/native/transforms.h"
+#include "umbra/core/io/vector_text.h"
 
 namespace umbra {
 namespace {
@@ -74,9 +75,8 @@ void NativeObjects::apply_transform(const JsonFields& f, const dmat4& m, std::ve
     for (const NativePart& part : parts)
         for (const vec3 p : part.mesh.positions)
             if (!(kAnyNumber.holds(p.x) && kAnyNumber.holds(p.y) && kAnyNumber.holds(p.z)))
-                json_.fail(v ? *v : f.value(),
-                           fmt::format("puts a vertex at ({:g}, {:g}, {:g}), expected numbers from {:g} to {:g}", p.x,
-                                       p.y, p.z, kAnyNumber.min, kAnyNumber.max));
+                json_.fail(v ? *v : f.value(), fmt::format("puts a vertex at {}, expected numbers from {:g} to {:g}",
+                                                           vector_text(p), kAnyNumber.min, kAnyNumber.max));
 }
 
 void NativeObjects::read(const JsonValue& v) {

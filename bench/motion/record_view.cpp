@@ -1,0 +1,24 @@
+#include "umbra/bench/motion/record_view.h"
+
+#include <fmt/format.h>
+
+#include "umbra/bench/pages/report_text.h"
+
+namespace umbra {
+
+nlohmann::json record_view(const Json& record, const char* place) {
+    nlohmann::json failures = nlohmann::json::array();
+    for (const Json& failure : record["failed"])
+        failures.push_back(
+            fmt::format("{}: {}: {}", text(failure[place]), text(failure["method"]), text(failure["message"])));
+    const Json& load = record["load_average"];
+    return {{"command", without_folders(text(record["command"]))},
+            {"version", record["version"]},
+            {"cpu", record["machine"]["cpu"]},
+            {"threads", std::to_string(record["machine"]["threads"].get<int>())},
+            {"load", fmt::format("{} to {}", score(value(load["before"])), score(value(load["after"])))},
+            {"has_failures", !failures.empty()},
+            {"failures", std::move(failures)}};
+}
+
+}  // namespace umbra

@@ -1,0 +1,21 @@
+// What the pages of motion and growth read from their records alike. Internal to bench/motion.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "umbra/bench/run/describe.h"
+
+namespace umbra {
+
+[[nodiscard]] inline std::string text(const Json& value) { return value.get<std::string>(); }
+/// Nothing for null.
+[[nodiscard]] inline std::optional<double> value(const Json& number) {
+    return number.is_null() ? std::nullopt : std::optional(number.get<double>());
+}
+
+/// The terms of a page's template that say which program measured on what machine, and what failed; `place` is the
+/// member of a failure that says where: "scene" or "family".
+[[nodiscard]] nlohmann::json record_view(const Json& record, const char* place);
+
+}  // namespace umbra
