@@ -101,6 +101,12 @@ json fit_row(const Json& method, const Json& fit) {
         {"disagrees", fit.contains("verdict") && (fit["verdict"] == "below" || fit["verdict"] == "above")}};
 }
 
+/// A size that a fit leads to, which may be beyond any that there are.
+std::string size_text(const Json& size) {
+    const auto v = value(size);
+    return v && *v > 1e9 ? "over 10⁹" : count(v);
+}
+
 json family_view(const Json& family) {
     json fits = json::array(), crossings = json::array(), left_out = json::array();
     for (const Json& method : family["methods"]) {
@@ -116,9 +122,9 @@ json family_view(const Json& family) {
              {"above", c["above"]},
              {"x", count(value(c["x"]))},
              {"between", fmt::format("{} to {}", count(value(c["between"][0])), count(value(c["between"][1])))},
-             {"fit", fitted ? score(value(c["fitted"]["x"])) : kNone},
-             {"fit_interval", fitted ? fmt::format("{} to {}", score(value(c["fitted"]["interval"][0])),
-                                                   score(value(c["fitted"]["interval"][1])))
+             {"fit", fitted ? size_text(c["fitted"]["x"]) : kNone},
+             {"fit_interval", fitted ? fmt::format("{} to {}", size_text(c["fitted"]["interval"][0]),
+                                                   size_text(c["fitted"]["interval"][1]))
                                      : ""}});
     }
     json external = false;

@@ -68,7 +68,7 @@ std::string staircase_in_words(const SweptScene& scene, std::size_t metric) {
         const std::string to = score(flights[f].to);
         if (f > 0)
             words += fmt::format(", below that down to {} {}", to, flights[f].title);
-        else if (flights[f].from > flights[f].to)
+        else if (score(flights[f].from) != to)
             words = fmt::format("From {} down to {} take {}", score(flights[f].from), to, flights[f].title);
         else
             words = fmt::format("Down to {} take {}", to, flights[f].title);
