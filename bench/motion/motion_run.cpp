@@ -7,7 +7,6 @@
 #include <ranges>
 
 #include "umbra/bench/statistics/statistics.h"
-#include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/random_bits.h"
 #include "umbra/core/render/gbuffer.h"
@@ -67,7 +66,6 @@ public:
     }
 
     SceneMotion run() {
-        const PinnedThreads pinned;
         for (const Movement movement : kMovements) run_movement(movement);
         return std::move(result_);
     }
