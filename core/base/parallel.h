@@ -10,7 +10,8 @@
 
 namespace umbra {
 
-/// Limits all parallel work of this process to `threads` (0: as many as the machine has) while it lives. One at a time.
+/// Limits all parallel work of this process to `threads` (0: as many as the machine has) while it lives. Of several at
+/// a time, the least counts.
 class ThreadLimit {
 public:
     explicit ThreadLimit(int threads);
