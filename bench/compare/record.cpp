@@ -158,6 +158,7 @@ Json turns_json(const Turns& turns, const TurnOptions& options, std::pair<double
                    {"seed", options.seed},
                    {"threads", thread_count()},
                    {"processors", usable_processors()},
+                   {"pinned", turns.pinned},
                    {"load_average", {{"before", number(load.first)}, {"after", number(load.second)}}},
                    {"calibration_ms", turns.calibration},
                    {"noise_bar", number(turns.noise_bar)},

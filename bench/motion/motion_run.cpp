@@ -7,6 +7,7 @@
 #include <ranges>
 
 #include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/random_bits.h"
 #include "umbra/core/render/gbuffer.h"
@@ -66,6 +67,7 @@ public:
     }
 
     SceneMotion run() {
+        const PinnedThreads pinned;
         for (const Movement movement : kMovements) run_movement(movement);
         return std::move(result_);
     }

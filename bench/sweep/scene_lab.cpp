@@ -74,7 +74,7 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
     options.progress  = options_.progress;
     const Turns turns = time_in_turns(view(0).prepared(), choices, options);
     TimedTogether all;
-    all.turns = {{"noise_bar", number(turns.noise_bar)}, {"calibration_ms", Json::array()}};
+    all.turns = {{"pinned", turns.pinned}, {"noise_bar", number(turns.noise_bar)}, {"calibration_ms", Json::array()}};
     for (const double ms : turns.calibration) all.turns["calibration_ms"].push_back(number(ms));
     for (std::size_t k = 0; k < choices.size(); ++k) {
         const TurnTimes& t = turns.settings[k];

@@ -17,7 +17,7 @@ namespace umbra {
 /// Of one run of time_in_turns.
 struct TimedTogether {
     std::vector<Json> settings{};  ///< `times` of results.json, as given; null for one that does not serve or failed
-    Json turns{};                  ///< {"noise_bar", "calibration_ms"}; null where nothing was timed
+    Json turns{};                  ///< {"pinned", "noise_bar", "calibration_ms"}; null where nothing was timed
 };
 
 /// Quality cells and times of one scene. Quality is the same on every machine; times are of this one and are found

@@ -10,6 +10,7 @@
 
 #include "umbra/bench/run/timing.h"
 #include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/random_bits.h"
@@ -279,7 +280,9 @@ std::vector<double> totals(const TurnTimes& times) {
 Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice> choices, const TurnOptions& options) {
     std::optional<ThreadLimit> limit;
     if (options.threads > 0) limit.emplace(options.threads);
+    const PinnedThreads pinned;
     Turns turns;
+    turns.pinned = pinned.pinned();
     for (const MethodChoice& choice : choices) turns.settings.push_back({choice});
     Schedule schedule(prepared, options, turns);
     schedule.run_cold();

@@ -61,6 +61,7 @@ struct Turns {
     double noise_bar = 0;                  ///< of the control's total time; infinite where there is no control
     std::optional<std::size_t> control{};  ///< the setting that ran twice a round: the cheapest
     std::optional<TurnTimes> twin{};       ///< its second run of each round
+    bool pinned = false;                   ///< each thread stayed on one processor (PinnedThreads)
 };
 
 /// Every setting once a round, in an order drawn for each round. Settings of one method that differ only in parameters
