@@ -18,7 +18,8 @@ constexpr int kTileWidth = 16, kTileHeight = 8;  // whole packets of 4 x 2 pixel
 /// What eight eye rays met, as 4 x 2 pixels.
 struct Hits8 {
     TriangleId triangle[8];
-    float u[8], v[8];
+    float u[8], v[8];                  ///< as Embree has them: their last bits depend on the processor
+    double origin[3][8], along[3][8];  ///< the rays, in world space
 };
 
 // In ray space the scene is about 1 wide and lies within kScene of the origin. Eye rays that begin farther than kFar
@@ -40,7 +41,10 @@ public:
         : window_(f.projection == Projection::orthographic),
           far_(farthest_start(f, space) > kFar),
           eye_(space.point(f.eye)),
-          forward_(f.forward) {
+          forward_(f.forward),
+          world_eye_(f.eye),
+          centre_(space.centre),
+          unit_(1 / static_cast<double>(space.scale)) {
         const double scale = static_cast<double>(space.scale);
         still_             = window_ ? f.forward : (f.eye - dvec3(space.centre)) * scale;
         middle_            = window_ ? (f.eye - dvec3(space.centre)) * scale : f.forward;
@@ -60,12 +64,20 @@ public:
         std::fill_n(ray.mask, 8, ~0u);
     }
 
-    /// Clears `valid` of rays that pass far from the scene.
-    void aim(RTCRay8& ray, int x, int y, int* valid) const {
-        if (far_) return aim_from_afar(ray, x, y, valid);
-        lanes(0, x, y, window_ ? ray.org_x : ray.dir_x);
-        lanes(1, x, y, window_ ? ray.org_y : ray.dir_y);
-        lanes(2, x, y, window_ ? ray.org_z : ray.dir_z);
+    /// Clears `valid` of rays that pass far from the scene. `hits` gets the rays in double.
+    void aim(RTCRay8& ray, int x, int y, int* valid, Hits8& hits) const {
+        if (far_) return aim_from_afar(ray, x, y, valid, hits);
+        float* to[3] = {window_ ? ray.org_x : ray.dir_x, window_ ? ray.org_y : ray.dir_y,
+                        window_ ? ray.org_z : ray.dir_z};
+        for (int d = 0; d < 3; ++d) {
+            double moving[8];
+            lanes(d, x, y, moving);
+            for (int k = 0; k < 8; ++k) {
+                to[d][k]          = static_cast<float>(moving[k]);
+                hits.origin[d][k] = window_ ? moving[k] * unit_ + centre_[d] : world_eye_[d];
+                hits.along[d][k]  = window_ ? still_[d] : moving[k];
+            }
+        }
         std::fill_n(ray.tfar, 8, kInfinity);
     }
 
@@ -73,13 +85,13 @@ private:
     static void fill(vec3 v, float* x, float* y, float* z) {
         std::fill_n(x, 8, v.x), std::fill_n(y, 8, v.y), std::fill_n(z, 8, v.z);
     }
-    void lanes(int d, int x, int y, float* to) const {
+    void lanes(int d, int x, int y, double* to) const {
         const double* column = column_[d].data() + x;
         for (int r = 0; r < 2; ++r)
-            for (int k = 0; k < 4; ++k) to[4 * r + k] = static_cast<float>(middle_[d] + (column[k] - row_[y + r][d]));
+            for (int k = 0; k < 4; ++k) to[4 * r + k] = middle_[d] + (column[k] - row_[y + r][d]);
     }
 
-    void aim_from_afar(RTCRay8& ray, int x, int y, int* valid) const {
+    void aim_from_afar(RTCRay8& ray, int x, int y, int* valid, Hits8& hits) const {
         for (int k = 0; k < 8; ++k) {
             const int column = x + k % 4, row = y + k / 4;
             dvec3 moving;
@@ -94,12 +106,18 @@ private:
             const vec3 o(valid[k] != 0 ? origin : dvec3(0)), r(direction);
             ray.org_x[k] = o.x, ray.org_y[k] = o.y, ray.org_z[k] = o.z;
             ray.dir_x[k] = r.x, ray.dir_y[k] = r.y, ray.dir_z[k] = r.z;
+            for (int d = 0; d < 3; ++d) {
+                hits.origin[d][k] = origin[d] * unit_ + centre_[d];
+                hits.along[d][k]  = direction[d];
+            }
         }
         std::fill_n(ray.tfar, 8, kInfinity);
     }
 
     bool window_, far_;
     vec3 eye_, forward_;
+    dvec3 world_eye_, centre_;
+    double unit_;      ///< of ray space, in world space
     dvec3 still_{0};   ///< what all rays have alike, in ray space: the eye, or the direction of an orthographic view
     dvec3 middle_{0};  ///< perspective: forward; orthographic: the eye, in ray space
     std::vector<double> column_[3];
@@ -116,10 +134,10 @@ void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, i
         for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4) {
             alignas(32) int valid[8];
             for (int k = 0; k < 8; ++k) valid[k] = x + (k & 3) < width && y + (k >> 2) < height ? -1 : 0;
-            eye.aim(rays.ray, x, y, valid);
+            Hits8& hit = hits[(y - y0) / 2][(x - x0) / 4];
+            eye.aim(rays.ray, x, y, valid, hit);
             std::fill_n(rays.hit.geomID, 8, RTC_INVALID_GEOMETRY_ID);
             intersect_coherent(scene, valid, rays);
-            Hits8& hit = hits[(y - y0) / 2][(x - x0) / 4];
             for (int k = 0; k < 8; ++k)
                 hit.triangle[k] = rays.hit.geomID[k] == RTC_INVALID_GEOMETRY_ID ? kNoTriangle : rays.hit.primID[k];
             std::copy_n(rays.hit.u, 8, hit.u);
@@ -128,7 +146,8 @@ void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, i
     }
 }
 
-/// set_point for eight hits at once, to the same bits: all but the loads are loops over lanes. Leaves to set_point what
+/// Where eight rays meet the planes of the triangles that Embree named, in double and so alike on all processors, and
+/// what set_point makes of that, to the same bits: all but the loads are loops over lanes. Leaves to set_point what
 /// needs a second look: barycentrics at or over an edge, slivers, triangles that the eye sees edge-on.
 class PointWriter {
 public:
@@ -150,8 +169,11 @@ public:
             else
                 store(points, 4 * row, i, count);
             for (int k = 4 * row; k < 4 * row + count; ++k)
-                if (hits.triangle[k] != kNoTriangle && !points.done[k])
-                    set_point(batch_, i + (k & 3), scene_, hits.triangle[k], hits.u[k], hits.v[k]);
+                if (hits.triangle[k] != kNoTriangle && !points.done[k]) {
+                    const bool known = std::isfinite(points.u[k]) && std::isfinite(points.v[k]);
+                    set_point(batch_, i + (k & 3), scene_, hits.triangle[k], known ? points.u[k] : hits.u[k],
+                              known ? points.v[k] : hits.v[k]);
+                }
         }
     }
 
@@ -189,7 +211,6 @@ private:
         const double eye_reach = sum_of_magnitudes(eye);
         double towards[8], length[8], sides[8], reach[8];
         for (int k = 0; k < 8; ++k) {
-            const double u = static_cast<double>(hits.u[k]), v = static_cast<double>(hits.v[k]);
             const double ax = static_cast<double>(a[0][k]), ay = static_cast<double>(a[1][k]),
                          az = static_cast<double>(a[2][k]);
             const double bx = static_cast<double>(b[0][k]) - ax, by = static_cast<double>(b[1][k]) - ay,
@@ -197,6 +218,14 @@ private:
             const double cx = static_cast<double>(c[0][k]) - ax, cy = static_cast<double>(c[1][k]) - ay,
                          cz = static_cast<double>(c[2][k]) - az;
             const double nx = by * cz - cy * bz, ny = bz * cx - cz * bx, nz = bx * cy - cx * by;
+            // The ray o + t d meets a + u b + v c. [Tomas Moeller, Ben Trumbore, 1997]
+            const double dx = hits.along[0][k], dy = hits.along[1][k], dz = hits.along[2][k];
+            const double sx = hits.origin[0][k] - ax, sy = hits.origin[1][k] - ay, sz = hits.origin[2][k] - az;
+            const double mx = sy * dz - dy * sz, my = sz * dx - dz * sx, mz = sx * dy - dx * sy;
+            const double over = -1 / (nx * dx + ny * dy + nz * dz);
+            out.u[k]          = static_cast<float>((mx * cx + my * cy + mz * cz) * over);
+            out.v[k]          = static_cast<float>((mx * bx + my * by + mz * bz) * -over);
+            const double u = static_cast<double>(out.u[k]), v = static_cast<double>(out.v[k]);
             const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
             const double ex = eye.x - pull * px, ey = eye.y - pull * py, ez = eye.z - pull * pz;
             length[k]           = std::sqrt(nx * nx + ny * ny + nz * nz);
@@ -210,14 +239,12 @@ private:
             out.nz[k] = static_cast<float>(nz * factor);
         }
         for (int k = 0; k < 8; ++k) {
-            const double sum = static_cast<double>(hits.u[k]) + static_cast<double>(hits.v[k]);
+            const double sum = static_cast<double>(out.u[k]) + static_cast<double>(out.v[k]);
             out.flipped[k]   = towards[k] < 0;
             const bool sure  = keeps_sign(towards[k], sides[k], reach[k]) | (two_sided[k] == 0);
-            out.done[k] = (hits.u[k] >= 0) & (hits.v[k] >= 0) & (sum < 1) & keeps_direction(length[k], sides[k]) & sure;
+            out.done[k] = (out.u[k] >= 0) & (out.v[k] >= 0) & (sum < 1) & keeps_direction(length[k], sides[k]) & sure;
         }
         std::copy_n(hits.triangle, 8, out.triangle);
-        std::copy_n(hits.u, 8, out.u);
-        std::copy_n(hits.v, 8, out.v);
         for (int k = 0; k < 8; ++k) {
             if (hits.triangle[k] != kNoTriangle) continue;
             out.u[k] = out.v[k] = out.px[k] = out.py[k] = out.pz[k] = out.nx[k] = out.ny[k] = out.nz[k] = 0;

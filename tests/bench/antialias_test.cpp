@@ -25,7 +25,7 @@ constexpr std::string_view kBoard = R"({
 })";
 
 Json without_times(Json record) {
-    record.erase("times");
+    for (const char* key : {"times", "turns"}) record.erase(key);
     record["reference"].erase("times");
     for (Json& method : record["methods"]) method.erase("times"), method.erase("light_times");
     return record;
