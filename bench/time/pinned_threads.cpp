@@ -1,73 +1,73 @@
 #include "umbra/bench/time/pinned_threads.h"
 
-#include <sched.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_scheduler_observer.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <mutex>
-#include <vector>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <thread>
+
+#include "umbra/core/base/parallel.h"
 
 namespace umbra {
+namespace {
 
-class PinnedThreads::Observer final : public tbb::task_scheduler_observer {
-public:
-    Observer() {
-        static_cast<void>(
-            tbb::this_task_arena::max_concurrency());  // counts processors once, before this thread has one
-        CPU_ZERO(&allowed_);
-        if (sched_getaffinity(0, sizeof(allowed_), &allowed_) != 0) return;
-        for (int p = 0; p < CPU_SETSIZE; ++p)
-            if (CPU_ISSET(p, &allowed_)) processors_.push_back(p);
-        // It begins where it is now, so that two programs do not both crowd the first processor.
-        const auto here = std::ranges::find(processors_, sched_getcpu());
-        if (here != processors_.end()) std::ranges::rotate(processors_, here);
-        pinned_ = pin(0);
-        observe(true);
-    }
+/// In increasing order, but beginning with the one that this thread runs on, so that two programs do not both crowd the
+/// first processor.
+std::vector<int> processors_from_here(const cpu_set_t& allowed) {
+    std::vector<int> processors;
+    for (int p = 0; p < CPU_SETSIZE; ++p)
+        if (CPU_ISSET(p, &allowed)) processors.push_back(p);
+    const auto here = std::ranges::find(processors, sched_getcpu());
+    if (here != processors.end()) std::ranges::rotate(processors, here);
+    return processors;
+}
 
-    ~Observer() override {
-        observe(false);
-        const std::lock_guard lock(mutex_);
-        for (const pid_t thread : threads_) sched_setaffinity(thread, sizeof(allowed_), &allowed_);
-    }
-    Observer(const Observer&)            = delete;
-    Observer& operator=(const Observer&) = delete;
+/// Calls body(k), k < threads, on that many threads, one call each: every call waits for the others to begin. False if
+/// they did not all begin within a second, because the system gave fewer threads.
+template <class Body>
+bool once_on_each_thread(std::size_t threads, const Body& body) {
+    using Clock         = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::seconds(1);
+    std::atomic<std::size_t> begun{0};
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, threads, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+            ++begun;
+            while (begun < threads && Clock::now() < deadline) std::this_thread::yield();
+            body(range.begin());
+        },
+        tbb::simple_partitioner{});
+    return Clock::now() < deadline;
+}
 
-    void on_scheduler_entry(bool) override {
-        if (const int slot = tbb::this_task_arena::current_thread_index(); slot > 0)
-            pin(static_cast<std::size_t>(slot));
-    }
-    void on_scheduler_exit(bool worker) override {
-        if (!worker) return;
-        const std::lock_guard lock(mutex_);
-        std::erase(threads_, gettid());
-        sched_setaffinity(0, sizeof(allowed_), &allowed_);
-    }
-    [[nodiscard]] bool pinned() const { return pinned_; }
+}  // namespace
 
-private:
-    bool pin(std::size_t slot) {
-        if (processors_.empty()) return false;
+PinnedThreads::PinnedThreads() {
+    const auto threads = static_cast<std::size_t>(thread_count());  // before this thread has one processor alone
+    CPU_ZERO(&allowed_);
+    if (sched_getaffinity(0, sizeof(allowed_), &allowed_) != 0) return;
+    const std::vector<int> processors = processors_from_here(allowed_);
+    threads_.resize(threads);
+    std::atomic<bool> refused = false;
+    const bool all            = once_on_each_thread(threads, [&](std::size_t k) {
         cpu_set_t one;
         CPU_ZERO(&one);
-        CPU_SET(processors_[slot % processors_.size()], &one);
-        if (sched_setaffinity(0, sizeof(one), &one) != 0) return false;
-        const std::lock_guard lock(mutex_);
-        threads_.push_back(gettid());
-        return true;
-    }
+        CPU_SET(processors[k % processors.size()], &one);
+        threads_[k] = gettid();
+        if (sched_setaffinity(0, sizeof(one), &one) != 0) refused = true;
+    });
+    if (!all || refused) release();
+}
 
-    cpu_set_t allowed_{};
-    std::vector<int> processors_;
-    std::mutex mutex_;
-    std::vector<pid_t> threads_;
-    bool pinned_ = false;
-};
+PinnedThreads::~PinnedThreads() { release(); }
 
-PinnedThreads::PinnedThreads() : observer_(std::make_unique<Observer>()) {}
-PinnedThreads::~PinnedThreads() = default;
-bool PinnedThreads::pinned() const { return observer_->pinned(); }
+void PinnedThreads::release() {
+    for (const pid_t thread : threads_) sched_setaffinity(thread, sizeof(allowed_), &allowed_);
+    threads_.clear();
+}
 
 }  // namespace umbra
