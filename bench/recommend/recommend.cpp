@@ -18,16 +18,6 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-std::string why_unfit(const std::vector<Json>& views) {
-    for (const Json& cell : views) {
-        if (cell.contains("failed")) return "it failed";
-        if (cell.at("serves").at("how") == "not") return cell.at("serves").at("why").get<std::string>();
-        if (cell.at("undefined").is_number() && cell.at("undefined").get<double>() > kMostLeftOut)
-            return fmt::format("it leaves {:.3g} % of the points undefined", 100 * cell.at("undefined").get<double>());
-    }
-    return {};
-}
-
 std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
     const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
     const auto build = samples("build_ms"), aim = samples("aim_ms"), visibility = samples("visibility_ms");

@@ -1,5 +1,7 @@
 #include "umbra/bench/sweep/bounds.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <boost/math/distributions/binomial.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -58,6 +60,17 @@ double upper_share(std::uint64_t wrong, std::uint64_t of) {
     if (of == 0 || wrong >= of) return 1;
     return boost::math::binomial_distribution<double>::find_upper_bound_on_p(
         static_cast<double>(of), static_cast<double>(wrong), 1 - kConfidence);
+}
+
+std::string why_unfit(std::span<const Json> views) {
+    double undefined = 0;
+    for (const Json& cell : views) {
+        if (cell.contains("failed")) return "it failed";
+        if (cell.at("serves").at("how") == "not") return cell.at("serves").at("why").get<std::string>();
+        if (cell.contains("undefined") && cell.at("undefined").is_number())
+            undefined = std::max(undefined, cell.at("undefined").get<double>());
+    }
+    return undefined > kMostLeftOut ? fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined) : "";
 }
 
 std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views) {

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <span>
+#include <string>
 
 #include "umbra/bench/sweep/metrics.h"
 
@@ -10,6 +11,13 @@ namespace umbra {
 
 /// The share of cases in which a bound is meant to hold.
 inline constexpr double kConfidence = 0.95;
+
+/// A setting that leaves more of the points undefined is on no front and is not recommended: what it leaves undefined
+/// has no error.
+inline constexpr double kMostLeftOut = 0.01;
+
+/// Why a setting is on no front and not recommended, from cells of some of its views; empty where it may be.
+[[nodiscard]] std::string why_unfit(std::span<const Json> views);
 
 /// The largest share of wrong points that `wrong` of `of` points leave possible (Clopper and Pearson 1934, one-sided):
 /// of 0 wrong points about 3 / of.
@@ -23,8 +31,7 @@ inline constexpr double kConfidence = 0.95;
 ///    measured one, or, where that is 0, what 0 wrong points of as many leave possible if they are wrong by all of S_j;
 ///    the half width of the reference is added;
 ///  - over the views, the upper prediction bound for one more: logarithms are taken to be normally distributed,
-///  Student's
-///    t with the views less one as degrees of freedom. It is no less than the largest error measured.
+///    Student's t with the views less one as degrees of freedom. It is no less than the largest error measured.
 ///
 /// Nothing where a view was not judged, where there are fewer than two views, and where the method failed or does not
 /// serve.

@@ -1,7 +1,5 @@
 #include "umbra/bench/sweep/sweep_record.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "umbra/bench/statistics/pareto.h"
@@ -13,20 +11,6 @@ namespace umbra {
 namespace {
 
 Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
-
-/// Why a setting is on no front; empty where it may be.
-std::string excluded(const MeasuredSetting& s) {
-    const Json& cell = s.views.front();
-    if (cell.contains("failed")) return "it failed";
-    if (cell.at("serves").at("how") == "not") return "it does not serve this scene";
-    double undefined = 0;
-    for (const Json& view : s.views)
-        if (view.contains("undefined") && view.at("undefined").is_number())
-            undefined = std::max(undefined, view.at("undefined").get<double>());
-    if (undefined > kMostLeftOut) return fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined);
-    if (s.times.is_null()) return "it was not timed";
-    return {};
-}
 
 Json view_json(const Json& cell) {
     Json metrics_here = Json::object();
@@ -48,9 +32,10 @@ std::optional<double> worst_of(const Metric& metric, std::span<const Json> views
 }
 
 Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
-    const Json& cell      = s.views.front();
-    const auto preset     = preset_of(s.choice);
-    const std::string why = excluded(s);
+    const Json& cell  = s.views.front();
+    const auto preset = preset_of(s.choice);
+    std::string why   = why_unfit(s.views);
+    if (why.empty() && s.times.is_null()) why = "it was not timed";
     Json entry;
     for (const char* member : {"text", "name", "title"}) entry[member] = cell.at(member);
     entry["preset"] = preset.empty() ? Json() : Json(preset);

@@ -10,10 +10,6 @@
 
 namespace umbra {
 
-/// A setting that leaves more of the points undefined is on no front and is not recommended: what it leaves undefined
-/// has no error.
-inline constexpr double kMostLeftOut = 0.01;
-
 /// One setting of a sweep.
 struct MeasuredSetting {
     MethodChoice choice;

@@ -22,7 +22,7 @@ std::vector<int> processors_from_here(const cpu_set_t& allowed) {
     for (int p = 0; p < CPU_SETSIZE; ++p)
         if (CPU_ISSET(p, &allowed)) processors.push_back(p);
     const auto here = std::ranges::find(processors, sched_getcpu());
-    if (here != processors.end()) std::ranges::rotate(processors, here);
+    if (here != processors.end()) std::rotate(processors.begin(), here, processors.end());
     return processors;
 }
 
