@@ -9,8 +9,8 @@
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/exact/exact_area.h"
-#include "umbra/shadows/exact/exact_segment.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/shared/exact_segment.h"
 #include "umbra/shadows/shared/light_points.h"
 #include "umbra/shadows/shared/triangle_tree.h"
 

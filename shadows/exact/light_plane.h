@@ -3,7 +3,7 @@
 #pragma once
 
 #include "umbra/core/scene/lights.h"
-#include "umbra/shadows/exact/exact_point.h"
+#include "umbra/shadows/shared/exact_point.h"
 #include "umbra/shadows/shared/light_points.h"
 
 namespace umbra::exact_detail {

@@ -1,7 +1,7 @@
 // Points in the numerators of light space (light_space.h), in either arithmetic, and what is computed of them.
 #pragma once
 
-#include "umbra/shadows/exact/exact_point.h"
+#include "umbra/shadows/shared/exact_point.h"
 
 namespace umbra::exact_detail {
 

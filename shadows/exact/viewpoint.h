@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "umbra/shadows/exact/exact_point.h"
+#include "umbra/shadows/shared/exact_point.h"
 
 namespace umbra::exact_detail {
 

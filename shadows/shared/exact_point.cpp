@@ -1,4 +1,4 @@
-#include "umbra/shadows/exact/exact_point.h"
+#include "umbra/shadows/shared/exact_point.h"
 
 #include "umbra/core/base/predicates.h"
 

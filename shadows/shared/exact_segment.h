@@ -2,8 +2,8 @@
 #pragma once
 
 #include "umbra/core/scene/lights.h"
-#include "umbra/shadows/exact/exact_point.h"
 #include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/shared/exact_point.h"
 
 namespace umbra::exact_detail {
 

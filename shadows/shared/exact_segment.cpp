@@ -3,7 +3,7 @@
 //
 // This work is based on:
 // Rafael Segura, Francisco Feito. Algorithms to Test Ray-Triangle Intersection. Comparative Study. 2001
-#include "umbra/shadows/exact/exact_segment.h"
+#include "umbra/shadows/shared/exact_segment.h"
 
 namespace umbra::exact_detail {
 
