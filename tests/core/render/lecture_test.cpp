@@ -3,7 +3,9 @@
 
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "umbra/core/render/shade.h"
 #include "umbra/core/scene/primitives.h"
@@ -160,6 +162,92 @@ TEST_P(Lecture, UmbraShrinksAndPenumbraGrowsWithTheLight) {
             EXPECT_GT(t.penumbra, before.penumbra) << "width " << width;
         }
         before = t;
+    }
+}
+
+/// A point on the inner side of a ring, and four lights: one behind its plane, one behind the ring's far side, one
+/// behind another object, one in the open.
+TEST_P(Lecture, AShadowHasThreeReasons) {
+    Scene scene;
+    scene.materials.emplace_back();
+    const Mesh ring = make_torus(1, 0.3f, 96, 48), square = make_plane(0.5f, 0.5f);
+    add_object(scene, "ring", ring.positions, {}, ring.triangles, 0);
+    std::vector<vec3> raised = square.positions;
+    for (vec3& p : raised) p += vec3(0.35f, 2, 0);
+    add_object(scene, "square", raised, {}, square.triangles, 0);
+    for (const vec3 position : {vec3(5, 0.1f, 0), vec3(-5, 0.1f, 0), vec3(0, 4, 0), vec3(0, -4, 0)}) {
+        Light light;
+        light.name     = "light" + std::to_string(scene.lights.size());
+        light.position = position;
+        scene.lights.push_back(light);
+    }
+    MethodCase run(info(), scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    TriangleId inner = 0;
+    float least      = 1;
+    for (TriangleId t = 0; t < scene.objects[0].triangle_count; ++t) {
+        const vec3 centre = (scene.vertex(t, 0) + scene.vertex(t, 1) + scene.vertex(t, 2)) / 3.0f;
+        const float off   = glm::length(centre - vec3(0.7f, 0, 0));
+        if (off < least) inner = t, least = off;
+    }
+    PointBatch point;
+    point.resize(1);
+    point.eye = {-0.5f, 0, 0};
+    set_point(point, 0, scene, inner, 0.3f, 0.35f);
+    face_lights(point, scene);
+    EXPECT_EQ(point.facing[0][0], Facing::away);
+
+    const char* const blockers[]{"", "ring", "square", ""};
+    for (LightId light = 1; light < 4; ++light) {
+        ASSERT_EQ(point.facing[light][0], Facing::front);
+        run.prepare(light);
+        const VisibilityPlane plane = run.visibility(point, light);
+        if (!plane.defined(0)) continue;
+        const std::string blocker = blockers[light];
+        EXPECT_EQ(plane.s[0], blocker.empty() ? 1 : 0) << "light " << light;
+        if (blocker.empty()) continue;
+        TriangleId who = kNoTriangle;
+        run.method->blame(point, light, std::span(&who, 1));
+        if (who != kNoTriangle) {
+            EXPECT_EQ(scene.objects[scene.triangle_object[who]].name, blocker);
+        }
+    }
+}
+
+/// A directional light reaches half of a sphere; a point light at distance d from its centre (1 - r / d) / 2.
+TEST(LitShare, OfASphereTellsTheKindOfLight) {
+    Scene scene;
+    scene.materials.emplace_back();
+    scene.materials[0].two_sided = false;
+    const Mesh ball              = make_sphere(1, 360, 180);
+    add_object(scene, "ball", ball.positions, {}, ball.triangles, 0);
+    const auto share = [&](const Light& light) {
+        scene.lights.assign(1, light);
+        PointBatch points;
+        points.resize(scene.triangles.size());
+        std::vector<double> area;
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+            const dvec3 a(scene.vertex(t, 0)), b(scene.vertex(t, 1)), c(scene.vertex(t, 2));
+            area.push_back(glm::length(glm::cross(b - a, c - a)));
+            set_point(points, t, scene, t, 0.25f, 0.25f);
+        }
+        face_lights(points, scene);
+        double lit = 0, all = 0;
+        for (std::size_t t = 0; t < area.size(); ++t) {
+            all += area[t];
+            lit += points.facing[0][t] == Facing::front ? area[t] : 0;
+        }
+        return lit / all;
+    };
+    Light light;
+    light.name      = "sun";
+    light.kind      = LightKind::directional;
+    light.direction = {0.3f, -1, 0.2f};
+    EXPECT_NEAR(share(light), 0.5, 0.002);
+    light.kind = LightKind::point;
+    for (const float d : {1.25f, 2.0f, 8.0f}) {
+        light.position = d * glm::normalize(vec3(-0.3f, 1, -0.2f));
+        EXPECT_NEAR(share(light), (1 - 1 / double(d)) / 2, 0.003) << "at " << d;
     }
 }
 
