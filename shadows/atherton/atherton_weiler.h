@@ -22,7 +22,7 @@ class AthertonWeiler final : public Method {
 public:
     /// What the light sees of a triangle.
     enum class Seen : std::uint8_t {
-        unknown,  ///< it is edge-on or has no area
+        unknown,  ///< it is edge-on, has no area, or every point tried in it lies on an outline
         lit,
         umbra,
         parts  ///< both

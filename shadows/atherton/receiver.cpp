@@ -11,11 +11,14 @@
 #include <cmath>
 
 #include "umbra/core/base/predicates.h"
+#include "umbra/shadows/shared/exact_point.h"
 
 namespace umbra::atherton_detail {
-namespace {
 
-constexpr double kUnit = 0x1p-53;
+using exact_detail::kUnit;
+using exact_detail::largest;
+
+namespace {
 
 Exact3 exact(vec3 v) { return {Exact(double(v.x)), Exact(double(v.y)), Exact(double(v.z))}; }
 Exact3 operator-(const Exact3& a, const Exact3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
@@ -24,7 +27,6 @@ Exact3 cross(const Exact3& a, const Exact3& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 Exact3 turned(const Exact3& a, bool turn) { return turn ? Exact3{-a[0], -a[1], -a[2]} : a; }
-double largest(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
 }  // namespace
 
@@ -88,7 +90,6 @@ bool Receiver::may_cover(vec3 a, vec3 b) const {
 }
 
 // A corner of the receiver lies on two of its borders: a where u = v = 0, b where v = rest = 0, c where u = rest = 0.
-
 bool Receiver::may_meet(const std::array<vec3, 3>& position, const std::array<int, 3>& corner) const {
     const std::array<std::pair<const Form*, int>, 3> borders{{{&u_, 1}, {&v_, 2}, {&rest_, 0}}};
     return std::ranges::none_of(borders, [&](const auto& border) {

@@ -44,6 +44,12 @@ struct Shadow {
     }
 };
 
+/// Which span, counted by one thread, asked each triangle last.
+struct Asked {
+    std::vector<std::uint32_t> last_span;
+    std::uint32_t span = 0;
+};
+
 class ScanLine final : public Method {
 public:
     void configure(const Settings&) override {}  // it has no parameters
@@ -63,9 +69,7 @@ public:
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         const std::size_t row  = points.raster ? static_cast<std::size_t>(points.raster->width) : points.size();
         const std::size_t rows = row > 0 ? points.size() / row : 0;
-        const auto darken      = [&](std::size_t begin, std::size_t end) {
-            std::vector<std::uint32_t> asked(scene_->triangles.size(), 0);  // the last span that asked a triangle
-            std::uint32_t number = 0;
+        const auto darken      = [&](std::size_t begin, std::size_t end, Asked& asked) {
             while (begin < end) {
                 if (!points.asks(light, begin)) {
                     ++begin;
@@ -74,16 +78,20 @@ public:
                 const Span span = span_from(points, light, begin, end);
                 std::fill(out.s.begin() + static_cast<std::ptrdiff_t>(span.first),
                                out.s.begin() + static_cast<std::ptrdiff_t>(span.last) + 1, 1.0f);
-                darken_span(points, span, ++number, asked, out.s);
+                darken_span(points, span, asked, out.s);
                 begin = span.last + 1;
             }
         };
         if (points.raster)
             parallel_ranges(rows, 16, [&](std::size_t first, std::size_t last) {
-                for (std::size_t y = first; y < last; ++y) darken(y * row, (y + 1) * row);
+                Asked asked{std::vector<std::uint32_t>(scene_->triangles.size(), 0)};
+                for (std::size_t y = first; y < last; ++y) darken(y * row, (y + 1) * row, asked);
             });
         else
-            parallel_ranges(points.size(), 4096, darken);
+            parallel_ranges(points.size(), 4096, [&](std::size_t first, std::size_t last) {
+                Asked asked{std::vector<std::uint32_t>(scene_->triangles.size(), 0)};
+                darken(first, last, asked);
+            });
     }
 
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
@@ -124,16 +132,15 @@ private:
     }
 
     /// Sets s to 0 wherever a triangle hides the span from the light. Each triangle is asked once a span.
-    void darken_span(const PointBatch& points, const Span& span, std::uint32_t number,
-                     std::vector<std::uint32_t>& asked, std::span<float> s) const {
+    void darken_span(const PointBatch& points, const Span& span, Asked& asked, std::span<float> s) const {
         const TriangleId own = points.triangle[span.first];
         const double shift   = largest_shift(points, span);
+        ++asked.span;
         cells_->visit(span.a, span.b, [&](std::span<const TriangleId> triangles) {
             for (const TriangleId t : triangles) {
-                if (t == own || asked[t] == number) continue;
-                asked[t] = number;
-                if (const auto shadow = shadow_of(t); shadow && rises(t, own))
-                    darken_by(*shadow, points, span, shift, s);
+                if (t == own || asked.last_span[t] == asked.span) continue;
+                asked.last_span[t] = asked.span;
+                darken_by(t, points, span, shift, s);
             }
         });
     }
@@ -153,10 +160,11 @@ private:
 
     /// Points lie beside the span's line by as much as `shift`. Between the pixels that a shadow holds in spite of that
     /// and those that it cannot hold, each point is asked.
-    void darken_by(const Shadow& shadow, const PointBatch& points, const Span& span, double shift,
-                   std::span<float> s) const {
+    void darken_by(TriangleId t, const PointBatch& points, const Span& span, double shift, std::span<float> s) const {
+        const std::optional<Shadow> shadow = shadow_of(t);
+        if (!shadow) return;
         Run sure{0, static_cast<double>(span.last - span.first)}, open = sure;
-        for (const Shadow::Side& side : shadow.sides) {
+        for (const Shadow::Side& side : shadow->sides) {
             // Divided by depth, its value is linear along the row.
             const double a = side.at(span.a) / span.depth_a, b = side.at(span.b) / span.depth_b;
             const double slack = glm::length(side.normal) * shift / std::min(span.depth_a, span.depth_b);
@@ -164,9 +172,10 @@ private:
             if (open.first > open.last) return;
             sure = above(slack, a, b, span, sure);
         }
+        if (!rises(t, points.triangle[span.first])) return;
         for (double k = open.first; k <= open.last; ++k) {
             const std::size_t i = span.first + static_cast<std::size_t>(k);
-            if ((k >= sure.first && k <= sure.last) || shadow.holds(exact_position(*scene_, points, i))) s[i] = 0;
+            if ((k >= sure.first && k <= sure.last) || shadow->holds(exact_position(*scene_, points, i))) s[i] = 0;
         }
     }
 
