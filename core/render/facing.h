@@ -7,6 +7,10 @@
 
 namespace umbra {
 
+/// On which side of the triangle a, b, c a light's centre is, or a directional light's source: +1 where the triangle's
+/// winding faces it, -1 on the other side, 0 in its plane and where the triangle has no area. Exact.
+[[nodiscard]] int side_of_light(const Light& light, vec3 a, vec3 b, vec3 c);
+
 /// Whether the centre of an area light that the plane of point i cuts is behind that plane, or in it: what methods ask
 /// that take an area light as one point, in its centre, whose S_j is then 0 there. False where the plane does not cut
 /// the light. Exact. `points.facing[light]` is filled.

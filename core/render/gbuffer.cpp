@@ -200,10 +200,8 @@ private:
             a[0][k] = p.x, a[1][k] = p.y, a[2][k] = p.z;
             b[0][k] = q.x, b[1][k] = q.y, b[2][k] = q.z;
             c[0][k] = r.x, c[1][k] = r.y, c[2][k] = r.z;
-            const auto both = [&] {
-                return scene_.materials[scene_.objects[scene_.triangle_object[t]].material].two_sided;
-            };
-            two_sided[k] = all_two_sided_ || both() ? 1 : 0;
+            const auto both = [&] { return scene_.material(t).two_sided; };
+            two_sided[k]    = all_two_sided_ || both() ? 1 : 0;
         }
         // To the eye: eye - p, or against an orthographic view.
         const double pull      = window_ ? 0 : 1;

@@ -6,6 +6,7 @@
 #include "umbra/core/base/heights.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/core/render/seen_side.h"
 
 namespace umbra {
@@ -115,9 +116,7 @@ Facing area_facing(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
 
 Facing facing_of(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
     if (is_area(light.kind)) return area_facing(light, a, b, c, turn);
-    const int side = light.kind == LightKind::directional ? side_of_direction(a, b, c, -light.direction)
-                                                          : side_of_plane(a, b, c, light.position);
-    return turn * side > 0 ? Facing::front : Facing::away;
+    return turn * side_of_light(light, a, b, c) > 0 ? Facing::front : Facing::away;
 }
 
 }  // namespace

@@ -58,6 +58,9 @@ struct Scene {
     std::vector<std::string> warnings;  ///< what loading assumed, a sentence each
 
     [[nodiscard]] vec3 vertex(TriangleId t, int k) const { return positions[triangles[t][k]]; }
+    [[nodiscard]] const Material& material(TriangleId t) const {
+        return materials[objects[triangle_object[t]].material];
+    }
 };
 
 /// Bounds of all triangles' vertices (unused positions do not count).

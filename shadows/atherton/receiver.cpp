@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/shadows/shared/exact_point.h"
 
 namespace umbra::atherton_detail {
@@ -37,7 +38,7 @@ Receiver::Receiver(const Scene& scene, TriangleId t, const Light& light)
       infinite_(light.kind == LightKind::directional) {
     const vec3 l = infinite_ ? -light.direction : light.position;
     from_        = infinite_ ? a_ : l;
-    mirrored_    = (infinite_ ? side_of_direction(a_, b_, c_, l) : side_of_plane(a_, b_, c_, l)) < 0;
+    mirrored_    = side_of_light(light, a_, b_, c_) < 0;
 
     const dvec3 p = dvec3(b_) - dvec3(a_), q = dvec3(c_) - dvec3(a_), g = infinite_ ? dvec3(l) : dvec3(l) - dvec3(a_);
     const double turn = mirrored_ ? -1 : 1, P = largest(p), Q = largest(q), G = largest(g);

@@ -14,6 +14,7 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/scanline/light_cells.h"
 
@@ -195,8 +196,7 @@ private:
     /// Whether some of triangle t is in front of the plane of the receiver, where the light is: else it hides nothing.
     [[nodiscard]] bool rises(TriangleId t, TriangleId own) const {
         const vec3 a = scene_->vertex(own, 0), b = scene_->vertex(own, 1), c = scene_->vertex(own, 2);
-        const int front = light_->kind == LightKind::directional ? side_of_direction(a, b, c, -light_->direction)
-                                                                 : side_of_plane(a, b, c, light_->position);
+        const int front = side_of_light(*light_, a, b, c);
         for (int k = 0; k < 3; ++k)
             if (side_of_plane(a, b, c, scene_->vertex(t, k)) == front) return true;
         return false;

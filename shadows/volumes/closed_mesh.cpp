@@ -3,7 +3,7 @@
 #include <CGAL/Surface_mesh.h>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 
 namespace umbra {
 
@@ -14,11 +14,6 @@ using Face        = SurfaceMesh::Face_index;
 
 /// Halfedge 2 e runs edge e of the topology from a to b, halfedge 2 e + 1 back; face t is the object's triangle t.
 struct ClosedMesh::Mesh : SurfaceMesh {};
-
-std::int8_t facing_of(vec3 a, vec3 b, vec3 c, const Light& light) {
-    return static_cast<std::int8_t>(light.kind == LightKind::directional ? side_of_direction(a, b, c, -light.direction)
-                                                                         : side_of_plane(a, b, c, light.position));
-}
 
 // The topology knows the two triangles of every edge, so that halfedges are linked at once; CGAL's add_face would look
 // for them again and needs several times as long.
@@ -59,8 +54,9 @@ void ClosedMesh::find_facing(const Light& light, std::span<std::int8_t> facing) 
     parallel_ranges(mesh.number_of_faces(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const Halfedge side         = mesh.halfedge(Face(static_cast<std::uint32_t>(t)));
-            facing[first_triangle_ + t] = facing_of(mesh.point(mesh.source(side)), mesh.point(mesh.target(side)),
-                                                    mesh.point(mesh.target(mesh.next(side))), light);
+            facing[first_triangle_ + t] = static_cast<std::int8_t>(
+                side_of_light(light, mesh.point(mesh.source(side)), mesh.point(mesh.target(side)),
+                              mesh.point(mesh.target(mesh.next(side)))));
         }
     });
 }

@@ -10,10 +10,6 @@
 
 namespace umbra {
 
-/// Which side of a triangle the light is on (area lights by their centre): +1 where the winding's side faces the light,
-/// -1 where the other does, 0 where its plane contains the light or it has no area. Exact, by CGAL's predicates.
-[[nodiscard]] std::int8_t facing_of(vec3 a, vec3 b, vec3 c, const Light& light);
-
 /// An edge that a shadow volume extrudes away from the light. `weight` counts the chosen triangles beside it, as the
 /// light sees them: those that run it anticlockwise from a to b less those that run it from b to a.
 struct SilhouetteEdge {
@@ -36,7 +32,7 @@ public:
     ClosedMesh(ClosedMesh&&) noexcept;
     ClosedMesh& operator=(ClosedMesh&&) noexcept;
 
-    /// Writes facing_of each of the object's triangles. Parallel.
+    /// Writes side_of_light of each of the object's triangles. Parallel.
     void find_facing(const Light& light, std::span<std::int8_t> facing) const;
 
     /// Appends the edges whose two triangles are taken differently, sorted by a, then b; SilhouetteMeshes::edges says

@@ -1,6 +1,7 @@
 #include "umbra/shadows/volumes/silhouettes.h"
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/facing.h"
 
 namespace umbra {
 
@@ -37,7 +38,8 @@ std::vector<std::int8_t> SilhouetteMeshes::facing(const Light& light) const {
         parallel_ranges(objects_[o].triangle_count, 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = first + begin; t < first + end; ++t) {
                 const uvec3 v = triangles_[t];
-                facing[t]     = facing_of(vertices_[v[0]], vertices_[v[1]], vertices_[v[2]], light);
+                facing[t] =
+                    static_cast<std::int8_t>(side_of_light(light, vertices_[v[0]], vertices_[v[1]], vertices_[v[2]]));
             }
         });
     }
