@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/base/predicates.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/shadows/atherton/lit_part.h"
 #include "umbra/shadows/atherton/receiver.h"
 #include "umbra/shadows/shared/exact_segment.h"
@@ -31,6 +31,7 @@ AthertonWeiler::AthertonWeiler()  = default;
 AthertonWeiler::~AthertonWeiler() = default;
 
 const std::vector<std::vector<dvec2>>& AthertonWeiler::lit_loops(TriangleId t) const { return parts_[t]->loops(); }
+std::vector<std::array<dvec2, 3>> AthertonWeiler::lit_triangles(TriangleId t) const { return parts_[t]->triangles(); }
 
 Service AthertonWeiler::serves(const SceneFacts& facts) const {
     if (!facts.hard_lights_only) return {How::not_at_all, "Lit polygons have no penumbra: no area lights."};
@@ -85,12 +86,8 @@ void AthertonWeiler::find_sides() {
     parallel_ranges(sides_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const auto id = static_cast<TriangleId>(t);
-            const vec3 a = scene_->vertex(id, 0), b = scene_->vertex(id, 1), c = scene_->vertex(id, 2);
-            int side = 0;
-            if (topology_.degenerate[t] == 0)
-                side = light_->kind == LightKind::directional ? side_of_direction(a, b, c, -light_->direction)
-                                                              : side_of_plane(a, b, c, light_->position);
-            sides_[t] = static_cast<std::int8_t>(side);
+            sides_[t]     = static_cast<std::int8_t>(
+                side_of_light(*light_, scene_->vertex(id, 0), scene_->vertex(id, 1), scene_->vertex(id, 2)));
         }
     });
 }

@@ -1,6 +1,7 @@
 // The class of atherton_weiler; atherton_weiler.cpp has the recipe.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -44,6 +45,8 @@ public:
     /// The outlines of its lit polygons in its barycentric coordinates, rounded: outer ones counterclockwise, holes
     /// clockwise; of a triangle that is Seen::parts.
     [[nodiscard]] const std::vector<std::vector<dvec2>>& lit_loops(TriangleId t) const;
+    /// The same polygons cut into triangles, counterclockwise. Made at each call.
+    [[nodiscard]] std::vector<std::array<dvec2, 3>> lit_triangles(TriangleId t) const;
 
 private:
     using Pieces = std::vector<atherton_detail::OutlinePiece>;

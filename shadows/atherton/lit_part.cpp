@@ -12,6 +12,8 @@
 #include <CGAL/Arr_segment_traits_2.h>
 #include <CGAL/Arr_walk_along_line_point_location.h>
 #include <CGAL/Arrangement_2.h>
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
 
 #include <algorithm>
 #include <cmath>
@@ -202,6 +204,39 @@ LitPart::At LitPart::at(float u, float v) const {
         if (crosses && (left > 0) != (b_over > a_over)) inside = !inside;
     }
     return inside || on_own_border ? At::lit : At::umbra;
+}
+
+std::vector<std::array<dvec2, 3>> LitPart::triangles() const {
+    using Vertices = CGAL::Triangulation_vertex_base_2<Kernel::Exact_kernel>;
+    using Faces    = CGAL::Constrained_triangulation_face_base_2<
+        Kernel::Exact_kernel, CGAL::Triangulation_face_base_with_info_2<int, Kernel::Exact_kernel>>;
+    using Triangulation =
+        CGAL::Constrained_Delaunay_triangulation_2<Kernel::Exact_kernel,
+                                                   CGAL::Triangulation_data_structure_2<Vertices, Faces>>;
+    Triangulation plane;
+    for (const Ends& edge : ends_) plane.insert_constraint({edge.a[0], edge.a[1]}, {edge.b[0], edge.b[1]});
+    for (const auto face : plane.all_face_handles()) face->info() = kUnknown;
+    std::vector<Triangulation::Face_handle> open{plane.infinite_face()};
+    open.back()->info() = 0;
+    while (!open.empty()) {  // every edge has a lit side and one that is not
+        const auto face = open.back();
+        open.pop_back();
+        for (int k = 0; k < 3; ++k) {
+            const auto next = face->neighbor(k);
+            if (next->info() != kUnknown) continue;
+            next->info() = face->is_constrained(k) ? 1 - face->info() : face->info();
+            open.push_back(next);
+        }
+    }
+    const auto corner = [](const Triangulation::Point& p) {
+        return dvec2(CGAL::to_double(p.x()), CGAL::to_double(p.y()));
+    };
+    std::vector<std::array<dvec2, 3>> lit;
+    for (const auto face : plane.finite_face_handles())
+        if (face->info() == 1)
+            lit.push_back(
+                {corner(face->vertex(0)->point()), corner(face->vertex(1)->point()), corner(face->vertex(2)->point())});
+    return lit;
 }
 
 std::size_t LitPart::memory_bytes() const {

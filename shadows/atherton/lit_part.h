@@ -29,6 +29,8 @@ public:
 
     /// The lit polygons' outlines, rounded: outer ones counterclockwise, holes clockwise.
     [[nodiscard]] const std::vector<std::vector<dvec2>>& loops() const { return loops_; }
+    /// The lit polygons cut into triangles, corners rounded, counterclockwise. Made at each call.
+    [[nodiscard]] std::vector<std::array<dvec2, 3>> triangles() const;
     /// Whether there is an edge between lit and umbra; otherwise all of the receiver is as any of its points.
     [[nodiscard]] bool divides() const { return divides_; }
     /// About: rationals are counted with the length that they usually have.
