@@ -307,20 +307,26 @@ TEST_P(Contract, BlamesATriangleThatBlocks) {
         MethodCase run(info(), known.scene);
         if (!run.serves()) continue;
         const PointBatch raster = primary(known.scene);
-        // What a method samples, as texels of a map, may lie off the segment to the light.
-        const double allowed = run.serves().how >= How::to_rounding ? 1e-9 : 5e-3;
+        // What a method samples, as texels of a map, may lie off the segment to the light. One that answers by
+        // irradiance interpolates between patches: near a shadow's edge points are dark that nothing hides.
+        const bool approximates = run.serves().how < How::to_rounding;
+        const double allowed = approximates ? 5e-3 : 1e-9, at_most = approximates ? 0.05 : allowed;
+        const std::size_t one_in = run.method->measures() == Measure::irradiance ? 5 : 100;
         for (LightId j = 0; j < known.scene.lights.size(); ++j) {
             run.prepare(j);
             const PointBatch dark = dark_points(known.scene, raster, j, run.visibility(raster, j));
             std::vector<TriangleId> who(dark.size(), 12345);
             run.method->blame(dark, j, who);
+            std::ptrdiff_t off = 0;
             for (std::size_t i = 0; i < who.size(); ++i) {
                 ASSERT_TRUE(who[i] == kNoTriangle || who[i] < known.scene.triangles.size());
                 if (who[i] == kNoTriangle) continue;
                 ++named;
-                ASSERT_LE(miss(known.scene, dark, i, known.scene.lights[j], who[i]), allowed) << name << ' ' << i;
+                const double by = miss(known.scene, dark, i, known.scene.lights[j], who[i]);
+                ASSERT_LE(by, at_most) << name << ' ' << i;
+                off += by > allowed ? 1 : 0;
             }
-            EXPECT_LE(std::ranges::count(who, kNoTriangle), std::ptrdiff_t(who.size() / 100)) << name;
+            EXPECT_LE(off + std::ranges::count(who, kNoTriangle), std::ptrdiff_t(who.size() / one_in)) << name;
         }
     }
     EXPECT_GT(named, 500u);

@@ -1,0 +1,47 @@
+#include <CLI/CLI.hpp>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/lit_polygons.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/prepare.h"
+
+namespace umbra {
+namespace {
+
+struct PolygonsLine {
+    std::string scene;
+    std::filesystem::path out;
+    bool as_json = false;
+};
+
+int polygons(const PolygonsLine& line, const Common& common) {
+    const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});
+    if (const Service service = verdict(*find_method("atherton_weiler").make(), prepared.facts); !service) {
+        print_error("no lit polygons of this scene: {}\n", service.why);
+        return kNo;
+    }
+    StagedFolder staged(line.out);
+    const Json record = write_lit_polygons(prepared.scene, prepared.facts, staged.folder());
+    write_text(staged.folder() / "results.json", json_text(record));
+    staged.commit();
+    if (line.as_json)
+        print_out("{}", json_text(record));
+    else if (!common.quiet)
+        print_out("{}", without_controls(lit_polygons_text(record)));
+    return kDone;
+}
+
+}  // namespace
+
+Action polygons_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<PolygonsLine>();
+    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
+    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    return [line, &common] { return polygons(*line, common); };
+}
+
+}  // namespace umbra

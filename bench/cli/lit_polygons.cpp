@@ -1,0 +1,227 @@
+#include "umbra/bench/cli/lit_polygons.h"
+
+#include <fmt/format.h>
+
+#include <glm/gtc/constants.hpp>
+
+#include "umbra/bench/out/files.h"
+#include "umbra/shadows/atherton/atherton_weiler.h"
+
+namespace umbra {
+namespace {
+
+using Seen   = AthertonWeiler::Seen;
+using Out    = std::back_insert_iterator<std::string>;
+namespace fs = std::filesystem;
+
+/// A triangle of the scene in world space, and what a light sees of it.
+class LitTriangle {
+public:
+    LitTriangle(const Scene& scene, const AthertonWeiler& method, TriangleId t)
+        : method_(&method),
+          t_(t),
+          a_(scene.vertex(t, 0)),
+          ab_(dvec3(scene.vertex(t, 1)) - a_),
+          ac_(dvec3(scene.vertex(t, 2)) - a_) {}
+
+    [[nodiscard]] dvec3 at(dvec2 uv) const { return a_ + uv.x * ab_ + uv.y * ac_; }
+    [[nodiscard]] double area() const {
+        return method_->seen(t_) == Seen::unknown ? 0 : glm::length(glm::cross(ab_, ac_)) / 2;
+    }
+    /// The lit polygons' triangles.
+    [[nodiscard]] std::vector<std::array<dvec2, 3>> triangles() const {
+        if (method_->seen(t_) == Seen::parts) return method_->lit_triangles(t_);
+        if (method_->seen(t_) == Seen::lit) return {{dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)}};
+        return {};
+    }
+    /// Their outlines.
+    [[nodiscard]] std::vector<std::vector<dvec2>> loops() const {
+        if (method_->seen(t_) == Seen::parts) return method_->lit_loops(t_);
+        if (method_->seen(t_) == Seen::lit) return {whole()};
+        return {};
+    }
+    [[nodiscard]] static std::vector<dvec2> whole() { return {{0, 0}, {1, 0}, {0, 1}}; }
+    [[nodiscard]] bool is_wound_towards(dvec3 direction) const { return glm::dot(glm::cross(ab_, ac_), direction) > 0; }
+    [[nodiscard]] double lit_area() const {
+        double share = 0;
+        for (const auto& [p, q, r] : triangles()) share += (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+        return share * area();
+    }
+
+private:
+    const AthertonWeiler* method_;
+    TriangleId t_;
+    dvec3 a_, ab_, ac_;
+};
+
+/// A name in a line of an OBJ file: control characters would end it.
+std::string in_one_line(std::string name) {
+    for (char& c : name)
+        if (static_cast<unsigned char>(c) < ' ') c = '_';
+    return name;
+}
+
+std::string in_xml(const std::string& text) {
+    std::string escaped;
+    for (const char c : text) {
+        if (c == '&')
+            escaped += "&amp;";
+        else if (c == '<')
+            escaped += "&lt;";
+        else if (c == '>')
+            escaped += "&gt;";
+        else
+            escaped += static_cast<unsigned char>(c) < ' ' ? '_' : c;
+    }
+    return escaped;
+}
+
+std::string mesh_text(const Scene& scene, const AthertonWeiler& method, const std::string& title) {
+    std::string text   = fmt::format("# {}\n", in_one_line(title));
+    std::size_t vertex = 1;
+    for (const Object& object : scene.objects) {
+        fmt::format_to(Out(text), "o {}\n", in_one_line(object.name));
+        for (TriangleId t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t) {
+            const LitTriangle triangle(scene, method, t);
+            for (const auto& corners : triangle.triangles()) {
+                for (const dvec2 uv : corners) {
+                    const dvec3 p = triangle.at(uv);
+                    fmt::format_to(Out(text), "v {} {} {}\n", p.x, p.y, p.z);
+                }
+                fmt::format_to(Out(text), "f {} {} {}\n", vertex, vertex + 1, vertex + 2);
+                vertex += 3;
+            }
+        }
+    }
+    return text;
+}
+
+/// Positions in a plane, seen from the side of its normal.
+struct Frame {
+    dvec3 right{1, 0, 0}, up{0, 1, 0};
+
+    explicit Frame(dvec3 normal) {
+        // The world's up is the drawing's; a level plane has -z there, as a map has north.
+        const dvec3 guide = std::abs(normal.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(0, 0, -1);
+        right             = glm::normalize(glm::cross(guide, normal));
+        up                = glm::cross(normal, right);
+    }
+    /// y runs down, as in SVG.
+    [[nodiscard]] dvec2 at(dvec3 p) const { return {glm::dot(right, p), -glm::dot(up, p)}; }
+};
+
+/// Loops that run one way in all triangles, so that the nonzero rule fills what several of them share.
+void append_path(std::string& d, const Frame& frame, const LitTriangle& triangle, std::vector<dvec2> loop,
+                 bool turned) {
+    if (turned) std::ranges::reverse(loop);
+    char step = 'M';
+    for (const dvec2 uv : loop) {
+        const dvec2 p = frame.at(triangle.at(uv));
+        fmt::format_to(Out(d), "{}{} {}", step, p.x, p.y);
+        step = 'L';
+    }
+    d += "Z";
+}
+
+std::string drawing_text(const Scene& scene, const AthertonWeiler& method, const PlanarReceiver& plane,
+                         const std::string& title) {
+    const Frame frame(plane.normal);
+    dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
+    std::string dark, unseen, bright;
+    for (const TriangleId t : plane.triangles) {
+        const LitTriangle triangle(scene, method, t);
+        for (const dvec2 uv : LitTriangle::whole()) {
+            const dvec2 p = frame.at(triangle.at(uv));
+            low           = glm::min(low, p);
+            high          = glm::max(high, p);
+        }
+        const bool turned = !triangle.is_wound_towards(plane.normal);
+        append_path(method.seen(t) == Seen::unknown ? unseen : dark, frame, triangle, LitTriangle::whole(), turned);
+        for (const auto& loop : triangle.loops()) append_path(bright, frame, triangle, loop, turned);
+    }
+    const dvec2 size    = high - low;
+    const double margin = 0.02 * std::max(size.x, size.y), line_width = 0.1 * margin;
+    std::string text = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{} {} {} {}\">\n<title>{}</title>\n"
+        "<g stroke-width=\"{}\" stroke-linejoin=\"round\">\n",
+        low.x - margin, low.y - margin, size.x + 2 * margin, size.y + 2 * margin, in_xml(title), line_width);
+    const auto add = [&](std::string_view name, const std::string& path, std::string_view fill, std::string_view line) {
+        if (!path.empty())
+            fmt::format_to(Out(text), "<path class=\"{}\" fill=\"{}\" stroke=\"{}\" d=\"{}\"/>\n", name, fill, line,
+                           path);
+    };
+    add("umbra", dark, "#223", "#223");
+    add("edge-on", unseen, "#999", "#999");
+    add("lit", bright, "#fd8", "#a60");
+    return text + "</g>\n</svg>\n";
+}
+
+/// {area, lit_area} of some triangles.
+template <class Triangles>
+Json areas(const Scene& scene, const AthertonWeiler& method, const Triangles& triangles) {
+    double area = 0, lit = 0;
+    for (const TriangleId t : triangles) {
+        const LitTriangle triangle(scene, method, t);
+        area += triangle.area();
+        lit += triangle.lit_area();
+    }
+    return {{"area", number(area)}, {"lit_area", number(lit)}};
+}
+
+/// Names of files: the light's, with its number where two lights have one name.
+std::vector<std::string> file_names(const Scene& scene) {
+    std::vector<std::string> names;
+    for (const Light& light : scene.lights) {
+        std::string name = folder_name(light.name);
+        if (std::ranges::find(names, name) != names.end()) name += fmt::format("-{}", names.size() + 1);
+        names.push_back(std::move(name));
+    }
+    return names;
+}
+
+}  // namespace
+
+Json write_lit_polygons(const Scene& scene, const SceneFacts& facts, const fs::path& folder) {
+    Json record = {
+        {"schema", kResultsSchema}, {"version", version()}, {"scene", scene_json(scene)}, {"lights", Json::array()}};
+    const std::vector<std::string> names = file_names(scene);
+    AthertonWeiler method;
+    method.build(scene, facts);
+    std::vector<TriangleId> all(scene.triangles.size());
+    std::iota(all.begin(), all.end(), TriangleId{0});
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        method.aim(light);
+        const std::string title = fmt::format("What {} lights in {}", scene.lights[light].name, scene.name);
+        Json entry              = {{"name", scene.lights[light].name}, {"mesh", names[light] + ".obj"}};
+        entry.update(areas(scene, method, all));
+        write_text(folder / (names[light] + ".obj"), mesh_text(scene, method, title));
+        entry["planes"] = Json::array();
+        for (std::size_t k = 0; k < facts.planes.size(); ++k) {
+            const PlanarReceiver& plane = facts.planes[k];
+            Json drawn                  = {{"drawing", fmt::format("{}_plane_{}.svg", names[light], k + 1)},
+                                           {"normal", {number(plane.normal.x), number(plane.normal.y), number(plane.normal.z)}}};
+            drawn.update(areas(scene, method, plane.triangles));
+            write_text(folder / drawn["drawing"].get<std::string>(), drawing_text(scene, method, plane, title));
+            entry["planes"].push_back(std::move(drawn));
+        }
+        record["lights"].push_back(std::move(entry));
+    }
+    return record;
+}
+
+std::string lit_polygons_text(const Json& record) {
+    std::string text;
+    const auto line = [&](const std::string& name, const Json& entry, const char* file) {
+        const double area = entry["area"].get<double>(), lit = entry["lit_area"].get<double>();
+        fmt::format_to(Out(text), "{:<28} {:>12.6g} of {:>12.6g} lit{}  {}\n", name, lit, area,
+                       area > 0 ? fmt::format(" ({:.1f} %)", 100 * lit / area) : "", entry[file].get<std::string>());
+    };
+    for (const Json& light : record["lights"]) {
+        line(light["name"].get<std::string>(), light, "mesh");
+        for (std::size_t k = 0; k < light["planes"].size(); ++k)
+            line(fmt::format("  plane {}", k + 1), light["planes"][k], "drawing");
+    }
+    return text;
+}
+
+}  // namespace umbra
