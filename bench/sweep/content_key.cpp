@@ -56,8 +56,8 @@ private:
 
 // A member that is added to one of these structs has to be added below, too.
 #if defined(__GLIBCXX__) && defined(__x86_64__)
-static_assert(sizeof(Scene) == 416 && sizeof(Camera) == 48 && sizeof(Light) == 160 && sizeof(Material) == 128 &&
-              sizeof(Object) == 48);
+static_assert(sizeof(Scene) == 448 && sizeof(Fog) == 36 && sizeof(Camera) == 48 && sizeof(Light) == 160 &&
+              sizeof(Material) == 128 && sizeof(Object) == 48);
 #endif
 
 Hasher& operator<<(Hasher& h, const Camera& c) {
@@ -80,6 +80,10 @@ Hasher& operator<<(Hasher& h, const Light& l) {
     return h << l.spot.falloff << l.spot.exponent << l.spot.cutoff << l.spot.inner;
 }
 
+Hasher& operator<<(Hasher& h, const Fog& f) {
+    return h << f.law << f.distance << f.colour << f.density << f.start << f.end << f.near_share << f.far_share;
+}
+
 template <class T>
 Hasher& each(Hasher& h, const std::vector<T>& values) {
     h << values.size();
@@ -97,7 +101,7 @@ std::string scene_key(const Scene& scene) {
     each(h, scene.materials);
     each(h, scene.lights);
     h << scene.camera << scene.width << scene.height << scene.ambient << scene.background << scene.tone
-      << scene.exposure << scene.local_viewer;
+      << scene.exposure << scene.local_viewer << scene.fog;
     return h.digits();
 }
 

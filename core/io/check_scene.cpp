@@ -154,6 +154,7 @@ void check_scene(const SceneFile& read, const path& file) {
     const Terms terms(file, "scene");
     terms.vector("ambient", scene.ambient, kNotNegative);
     terms.vector("background", scene.background, kNotNegative);
+    terms.vector("fog", scene.fog.colour, kNotNegative);
     if (read.has_camera) check_camera(scene, file);
     if (scene.lights.size() > kMaxLights)
         refuse(file, fmt::format("{} lights, expected at most {}", scene.lights.size(), kMaxLights));

@@ -1,5 +1,7 @@
 #include "umbra/core/io/scene_terms.h"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "umbra/core/image/image.h"
@@ -79,11 +81,41 @@ void apply_material_terms(const JsonText& json, const JsonFields& fields, Materi
     m.index_of_refraction = number_or(fields, "index_of_refraction", kPositive, m.index_of_refraction);
 }
 
+namespace {
+
+/// Only what the law uses may be given.
+void read_fog(const JsonText& json, const JsonValue& v, Fog& fog) {
+    const JsonFields fields(json, v, "fog", {"law", "distance", "colour", "density", "start", "end", "near", "far"});
+    fog     = {};
+    fog.law = json.choice<FogLaw>(fields.require("law"), "law");
+    if (const JsonValue* distance = fields.find("distance"))
+        fog.distance = json.choice<FogDistance>(*distance, "distance");
+    fog.colour        = colour_or(json, fields, "colour", fog.colour);
+    const bool linear = fog.law == FogLaw::linear, none = fog.law == FogLaw::none;
+    for (const std::string_view key : {"start", "end", "near", "far"})
+        if (const JsonValue* given = fields.find(key); given != nullptr && !linear)
+            json.fail(*given, fmt::format("{} is of linear fog, and this one is {}", key, name_of(fog.law)));
+    if (const JsonValue* given = fields.find("density"); given != nullptr && (linear || none))
+        json.fail(*given, fmt::format("density is of exponential fog, and this one is {}", name_of(fog.law)));
+    if (!linear && !none)
+        fog.density = static_cast<float>(json.number(fields.require("density"), "density", kNotNegative));
+    if (!linear) return;
+    fog.start      = number_or(fields, "start", kNotNegative, fog.start);
+    fog.end        = static_cast<float>(json.number(fields.require("end"), "end", kPositive));
+    fog.near_share = number_or(fields, "near", kShare, fog.near_share);
+    fog.far_share  = number_or(fields, "far", kShare, fog.far_share);
+    if (!(fog.start < fog.end))
+        json.fail(v, fmt::format("fog from {} to {}, expected an end beyond the start", fog.start, fog.end));
+}
+
+}  // namespace
+
 void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& scene) {
     scene.ambient    = colour_or(json, fields, "ambient", scene.ambient);
     scene.background = colour_or(json, fields, "background", scene.background);
     if (const JsonValue* tone = fields.find("tone")) scene.tone = json.choice<ToneMap>(*tone, "tone");
     scene.exposure = number_or(fields, "exposure", kPositive, scene.exposure);
+    if (const JsonValue* fog = fields.find("fog")) read_fog(json, *fog, scene.fog);
     if (const JsonValue* viewer = fields.find("viewer"))
         scene.local_viewer = json.choice<Viewer>(*viewer, "viewer") == Viewer::local;
 }

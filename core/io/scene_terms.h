@@ -23,7 +23,7 @@ void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene);
 [[nodiscard]] const std::vector<std::string_view>& material_keys();
 void apply_material_terms(const JsonText& json, const JsonFields& fields, Material& material);
 
-/// ambient, background, tone, exposure and viewer; a term that is not given keeps its value.
+/// ambient, background, tone, exposure, viewer and fog; a term that is not given keeps its value.
 void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& scene);
 
 }  // namespace umbra

@@ -147,6 +147,17 @@ std::vector<std::string> material_names(const Scene& scene) {
     return names;
 }
 
+std::string fog_text(const Fog& fog) {
+    std::string text = fmt::format("{{\"law\": \"{}\", \"distance\": \"{}\", \"colour\": {}", name_of(fog.law),
+                                   name_of(fog.distance), vector(fog.colour));
+    if (fog.law == FogLaw::linear)
+        text += fmt::format(", \"start\": {}, \"end\": {}, \"near\": {}, \"far\": {}", number(fog.start),
+                            number(fog.end), number(fog.near_share), number(fog.far_share));
+    else
+        text += fmt::format(", \"density\": {}", number(fog.density));
+    return text + "}";
+}
+
 /// A list or an object of items, one a line.
 template <class Items, class Text>
 std::string lines(const Items& items, const Text& text) {
@@ -171,6 +182,7 @@ std::string native_text(const Scene& scene) {
         fmt::format("  \"ambient\": {}, \"background\": {}, \"tone\": \"{}\", \"exposure\": {}, \"viewer\": \"{}\",\n",
                     vector(scene.ambient), vector(scene.background), name_of(scene.tone), number(scene.exposure),
                     name_of(Viewer{scene.local_viewer}));
+    if (scene.fog.law != FogLaw::none) text += fmt::format("  \"fog\": {},\n", fog_text(scene.fog));
     text += fmt::format("  \"materials\": {{{}\n  }},\n", lines(material_list, [&](std::size_t i) {
                             return fmt::format("{}: {}", json_string(names[i]), material_text(scene.materials[i]));
                         }));

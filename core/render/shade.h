@@ -1,6 +1,7 @@
 // The sum: Phong's terms with S_j, evaluated in world space, and what makes a displayable picture of it.
 #pragma once
 
+#include <array>
 #include <span>
 
 #include "umbra/core/image/image.h"
@@ -10,9 +11,13 @@
 namespace umbra {
 
 /// R G B, scene-linear, of a raster batch: I_e + I_a k_a O_d + sum_j S_j f_att,j I_j (...). `visibility` holds one
-/// plane a light; undefined points count as lit (S_j = 1) and are not part of image errors. Terms that no material or
-/// light asks for are not computed. Parallel; the same bits for any number of threads.
+/// plane a light; undefined points count as lit (S_j = 1) and are not part of image errors. Fog, if any, is part of it.
+/// Terms that no material or light asks for are not computed. Parallel; the same bits for any number of threads.
 [[nodiscard]] Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility);
+
+/// The normals at the corners of triangle t on the side of `face`, its geometric normal on the side that is seen. A
+/// vertex whose normal is zero has that one.
+[[nodiscard]] std::array<dvec3, 3> corner_normals(const Scene& scene, TriangleId t, dvec3 face);
 
 /// N, unit: the vertex normals interpolated, on the side of the geometric normal (which faces the eye where the
 /// material is two-sided). A vertex whose normal is zero lends the geometric one. Point i has a surface.

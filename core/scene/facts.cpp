@@ -158,6 +158,7 @@ void find_terms(const Scene& scene, SceneFacts& facts) {
                                                                  [](const Light& light) { return any(light.ambient); });
     const bool specular_light =
         std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return any(light.specular); });
+    facts.has_fog = scene.fog.law != FogLaw::none;
     for (const Object& object : scene.objects) {
         if (object.triangle_count == 0) continue;
         const Material& m = scene.materials[object.material];
@@ -204,6 +205,7 @@ std::vector<Trait> traits(const SceneFacts& facts) {
         {facts.has_emission, "emission"},
         {facts.has_attenuation, "attenuation with distance"},
         {facts.has_one_sided, "one-sided lighting"},
+        {facts.has_fog, "fog"},
         {facts.has_transparency, "transparency"},
         {facts.has_mirrors, "mirrors"},
         {!facts.hard_lights_only, "penumbra (area light)"},

@@ -50,6 +50,20 @@ struct EnumNames<ToneMap> {
 };
 
 template <>
+struct EnumNames<FogLaw> {
+    static constexpr std::array<Named<FogLaw>, 4> table{{{FogLaw::none, "none"},
+                                                         {FogLaw::linear, "linear"},
+                                                         {FogLaw::exponential, "exponential"},
+                                                         {FogLaw::exponential_squared, "exponential_squared"}}};
+};
+
+template <>
+struct EnumNames<FogDistance> {
+    static constexpr std::array<Named<FogDistance>, 2> table{
+        {{FogDistance::radial, "radial"}, {FogDistance::depth, "depth"}}};
+};
+
+template <>
 struct EnumNames<Projection> {
     static constexpr std::array<Named<Projection>, 2> table{
         {{Projection::perspective, "perspective"}, {Projection::orthographic, "orthographic"}}};

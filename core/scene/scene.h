@@ -6,6 +6,7 @@
 
 #include "umbra/core/base/math.h"
 #include "umbra/core/scene/camera.h"
+#include "umbra/core/scene/fog.h"
 #include "umbra/core/scene/lights.h"
 #include "umbra/core/scene/materials.h"
 
@@ -51,8 +52,9 @@ struct Scene {
     int height = 360;
     vec3 ambient{1};     ///< I_a, global
     vec3 background{0};  ///< where the eye ray meets nothing
-    ToneMap tone      = ToneMap::clamp;
-    float exposure    = 1;     ///< factor before the tone map
+    ToneMap tone   = ToneMap::clamp;
+    float exposure = 1;  ///< factor before the tone map
+    Fog fog;
     bool local_viewer = true;  ///< false: V is constant, against the view direction
 
     std::vector<std::string> warnings;  ///< what loading assumed, a sentence each

@@ -55,6 +55,8 @@ TEST(SceneKey, ChangesWithEverythingThatAnAnswerDependsOn) {
         [](Scene& s) { s.exposure *= 2; },
         [](Scene& s) { s.tone = ToneMap::hue; },
         [](Scene& s) { s.local_viewer = !s.local_viewer; },
+        [](Scene& s) { s.fog.law = FogLaw::linear; },
+        [](Scene& s) { s.fog.far_share = 0.5f; },
     };
     std::vector<std::string> keys = {scene_key(scene)};
     for (const auto& change : changes) {

@@ -130,7 +130,7 @@ std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbr
 
 SceneExtras apply_scene_extras(const JsonText& json, const JsonValue& umbra, Scene& scene) {
     const JsonFields fields(json, umbra, "extras.umbra of a scene",
-                            {"title", "shows", "ambient", "background", "tone", "exposure", "viewer", "size"});
+                            {"title", "shows", "ambient", "background", "tone", "exposure", "viewer", "fog", "size"});
     scene.title = fields.string("title", scene.title);
     scene.shows = fields.string("shows", "");
     apply_picture_terms(json, fields, scene);

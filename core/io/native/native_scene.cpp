@@ -25,7 +25,7 @@ SceneFile read_native(const std::filesystem::path& file) {
     const JsonText json(read_text(file, kMaxNativeFile));
     const JsonFields f(json, json.root(), "a scene",
                        {"$schema", "title", "shows", "size", "camera", "ambient", "background", "tone", "exposure",
-                        "viewer", "materials", "lights", "objects"});
+                        "viewer", "fog", "materials", "lights", "objects"});
     SceneFile read;
     Scene& scene = read.scene;
     scene.title  = f.string("title", "");

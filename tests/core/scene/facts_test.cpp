@@ -248,6 +248,9 @@ TEST(Lists, EachPropertyOfMaterialsAndLightsIsATrait) {
     scene                        = plain;
     scene.materials[0].two_sided = false;
     expect(scene, "one-sided lighting");
+    scene         = plain;
+    scene.fog.law = FogLaw::exponential;
+    expect(scene, "fog");
     scene                 = plain;
     scene.lights[0].range = 5;
     expect(scene, "attenuation");

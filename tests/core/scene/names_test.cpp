@@ -26,6 +26,8 @@ TEST(Names, TablesHoldWhatSceneFilesWrite) {
     expect_table<Lobe>({"phong", "blinn_phong"});
     expect_table<ToneMap>({"clamp", "divide", "hue"});
     expect_table<Viewer>({"local", "infinite"});
+    expect_table<FogLaw>({"none", "linear", "exponential", "exponential_squared"});
+    expect_table<FogDistance>({"radial", "depth"});
     expect_table<Projection>({"perspective", "orthographic"});
 }
 

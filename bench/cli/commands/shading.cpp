@@ -1,0 +1,65 @@
+#include <CLI/CLI.hpp>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/shading/shading_page.h"
+#include "umbra/bench/shading/shading_study.h"
+
+namespace umbra {
+namespace {
+
+struct ShadingLine {
+    std::string scene, size, method = "ray_traced";
+    std::filesystem::path out;
+    bool as_json = false, no_shadows = false;
+    ShadingOptions options;
+};
+
+int shading(const ShadingLine& line, const Common& common) {
+    ShadingOptions options = line.options;
+    options.command        = common.command;
+    if (!line.no_shadows) options.method = parse_method(line.method);
+    const PreparedScene prepared =
+        prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size));
+    if (options.method)
+        if (const Service service = verdict(*options.method->make(), prepared.facts); !service) {
+            print_error("{} does not serve this scene: {}\n", options.method->text(), service.why);
+            return kNo;
+        }
+    StagedFolder staged(line.out);
+    const Json record = compare_shading(prepared, options, staged.folder());
+    write_text(staged.folder() / "results.json", json_text(record));
+    StagedFiles page;
+    write_shading_page(record, staged.folder(), page);
+    page.commit();
+    staged.commit();
+    if (line.as_json)
+        print_out("{}", json_text(record));
+    else if (!common.quiet)
+        print_out("{}{}\n", shading_text(record), (line.out / "index.html").string());
+    return kDone;
+}
+
+}  // namespace
+
+Action shading_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<ShadingLine>();
+    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("--method", line->method, "Method of the shadows, with settings")
+        ->capture_default_str()
+        ->type_name("METHOD");
+    app.add_flag("--no-shadows", line->no_shadows, "Every light reaches every point that faces it");
+    app.add_option("--runs", line->options.runs, "Runs of each model; the least counts as its time")
+        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
+    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    return [line, &common] { return shading(*line, common); };
+}
+
+}  // namespace umbra

@@ -1,0 +1,54 @@
+// Shading models: where the sum is evaluated, and what lies between. S_j is asked where the sum is, so that shadows are
+// as coarse as the shading.
+//
+// This work is based on:
+// Henri Gouraud. Continuous Shading of Curved Surfaces. 1971
+// Bui Tuong Phong. Illumination for Computer Generated Pictures. 1975
+// Cornelius van Overveld, Brian Wyvill. Phong Normal Interpolation Revisited. 1997
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "umbra/core/image/image.h"
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/visibility.h"
+
+namespace umbra {
+
+enum class ShadingModel : std::uint8_t {
+    constant,        ///< one value a triangle, without directions: I_e + I_a k_a O_d + sum_j I_j k_d O_d n_z, no S_j
+    flat,            ///< the sum at the centre of each triangle, with its face normal
+    gouraud,         ///< the sum at vertices, interpolated over the triangle
+    gouraud_screen,  ///< the same, interpolated in the picture: linear in pixels, not in space
+    every_second,    ///< the sum at every second pixel of a row, the mean of its neighbours between; where these show
+                     ///< another object, the sum
+    phong,           ///< the sum at each pixel, vertex normals interpolated
+    quadratic        ///< the same, normals interpolated quadratically
+};
+inline constexpr std::array kShadingModels{
+    ShadingModel::constant,     ShadingModel::flat,  ShadingModel::gouraud,  ShadingModel::gouraud_screen,
+    ShadingModel::every_second, ShadingModel::phong, ShadingModel::quadratic};
+[[nodiscard]] std::string_view to_string(ShadingModel model);
+
+/// S_j of all lights at the points of a batch without a raster, as a method answers it.
+using AskVisibility = std::function<std::vector<VisibilityPlane>(const PointBatch&)>;
+
+struct ShadedPicture {
+    Image linear;                 ///< R G B, scene-linear
+    std::size_t evaluations = 0;  ///< of the sum
+};
+
+/// A picture of a raster batch, faced to all lights. With `phong`, the picture is that of `shade`.
+[[nodiscard]] ShadedPicture shade_by(ShadingModel model, const Scene& scene, const PointBatch& points,
+                                     const AskVisibility& ask);
+
+/// The normal, unit, where u and v weigh the second and third corner, of a triangle with these corners and unit normals
+/// there: quadratic, with the middle of each edge as van Overveld and Wyvill have it. Along an edge d from n0 to n1
+///     n(s) = n0 + s a + s^2 b,   b = 3 ((n0 + n1) . d) / (d . d) d,   a = n1 - n0 - b.
+[[nodiscard]] dvec3 quadratic_normal(const std::array<dvec3, 3>& corners, const std::array<dvec3, 3>& normals, double u,
+                                     double v);
+
+}  // namespace umbra

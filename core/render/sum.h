@@ -1,0 +1,53 @@
+// The sum at one point: I = I_e + I_a k_a O_d + sum_j S_j f_att,j I_j ( k_d O_d (N.L_j) + k_s O_s (R_j.V)^n ).
+//
+// This work is based on:
+// Bui Tuong Phong. Illumination for Computer Generated Pictures. 1975
+// James Blinn. Models of Light Reflection for Computer Synthesized Pictures. 1977
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/visibility.h"
+
+namespace umbra {
+
+class PhongSum {
+public:
+    /// Of a picture by this camera. The scene must outlive this object.
+    PhongSum(const Scene& scene, const CameraFrame& camera);
+
+    /// R G B, scene-linear, at point i of a batch, which has a surface, with the unit normal n. `visibility`: one plane
+    /// a light, as long as the batch; undefined points count as lit. Terms that no material or light asks for are not
+    /// computed. Seen through the scene's fog. From any number of threads.
+    [[nodiscard]] dvec3 at(const PointBatch& points, std::size_t i, dvec3 n,
+                           std::span<const VisibilityPlane> visibility) const;
+
+    /// Without directions: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. What a surface gives where all lights are at
+    /// the eye and nothing is far away.
+    [[nodiscard]] dvec3 from_the_eye(TriangleId t, double cosine) const;
+
+private:
+    /// What of a material is the same at all its points.
+    struct Terms {
+        dvec3 unshadowed;  ///< I_e + I_a k_a O_d: no light can be blocked from it
+        dvec3 diffuse;     ///< k_d O_d
+        dvec3 specular;    ///< k_s O_s
+        bool is_specular;
+    };
+    [[nodiscard]] static dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p,
+                                         dvec3 n, dvec3 v);
+    [[nodiscard]] dvec3 in_fog(dvec3 light, vec3 p) const;
+    [[nodiscard]] std::uint32_t material(TriangleId t) const {
+        return scene_->objects[scene_->triangle_object[t]].material;
+    }
+
+    const Scene* scene_;
+    std::vector<Terms> terms_;  ///< one a material
+    dvec3 eye_, backward_;      ///< the latter against the view direction
+    bool orthographic_;
+    bool constant_v_;  ///< an eye at infinity sees every point from the same side
+};
+
+}  // namespace umbra

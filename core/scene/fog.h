@@ -1,0 +1,34 @@
+// Fog between a surface and the eye: I' = f I + (1 - f) C. Between a surface and a light there is none.
+#pragma once
+
+#include <cstdint>
+
+#include "umbra/core/base/math.h"
+
+namespace umbra {
+
+enum class FogLaw : std::uint8_t {
+    none,
+    linear,              ///< f falls from near_share at `start` to far_share at `end`, and is constant beyond them
+    exponential,         ///< f = e^(-density d)
+    exponential_squared  ///< f = e^(-(density d)^2)
+};
+/// What d is.
+enum class FogDistance : std::uint8_t {
+    radial,  ///< the distance from the eye (to the window of an orthographic camera)
+    depth    ///< its part along the view direction: what rasterizers have at hand; a picture changes as the eye turns
+};
+
+struct Fog {
+    FogLaw law           = FogLaw::none;
+    FogDistance distance = FogDistance::radial;
+    vec3 colour{0.5f};                    ///< C
+    float density = 0;                    ///< >= 0, per world unit
+    float start = 0, end = 1;             ///< world units; start < end
+    float near_share = 1, far_share = 0;  ///< [0, 1]
+};
+
+/// f at a distance >= 0: the share of a surface's light that arrives, [0, 1].
+[[nodiscard]] double fog_share(const Fog& fog, double distance);
+
+}  // namespace umbra

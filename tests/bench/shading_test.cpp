@@ -1,0 +1,115 @@
+// `umbra shading`: what its record, its table and its pictures say of a scene whose differences are known.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/shading/shading_page.h"
+#include "umbra/bench/shading/shading_study.h"
+#include "umbra/core/image/image_io.h"
+#include "umbra/core/scene/primitives.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A coarse shiny ball over a floor, and its shadow.
+PreparedScene shiny_ball() {
+    Scene scene;
+    scene.name = "ball", scene.title = "Ball";
+    scene.materials.resize(1);
+    scene.materials[0].k_s = vec3(0.8f), scene.materials[0].shininess = 60;
+    const Mesh sphere = make_sphere(1, 12, 6), floor = make_plane(8, 8);
+    add_object(scene, "ball", sphere.positions, sphere.normals, sphere.triangles, 0);
+    std::vector<vec3> low = floor.positions;
+    for (vec3& p : low) p.y -= 1.5f;
+    add_object(scene, "floor", low, {}, floor.triangles, 0);
+    Light lamp;
+    lamp.name = "lamp", lamp.position = {2, 4, 2};
+    scene.lights.push_back(lamp);
+    scene.camera.eye = {0, 2, 6};
+    scene.width = 96, scene.height = 64;
+    return prepare_scene(std::move(scene), "ball", {});
+}
+
+const Json& model(const Json& record, const std::string& name) {
+    return *std::ranges::find_if(record["models"], [&](const Json& m) { return m["name"] == name; });
+}
+
+TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
+    const TemporaryFolder folder;
+    const PreparedScene prepared = shiny_ball();
+    ShadingOptions options;
+    options.method    = parse_method("exact");
+    options.runs      = 1;
+    const Json record = compare_shading(prepared, options, folder.path());
+    const auto at     = [&](const char* name, const char* figure) { return model(record, name)[figure].get<double>(); };
+    ASSERT_EQ(record["models"].size(), 7u);
+    const auto surfaces = static_cast<double>(
+        prepared.points.size() - static_cast<std::size_t>(std::ranges::count(prepared.points.triangle, kNoTriangle)));
+    EXPECT_EQ(at("phong", "evaluations"), surfaces);
+    for (const auto& [figure, value] : {std::pair{"rmse", 0.0}, {"flip", 0.0}, {"highlight", 1.0}, {"kink", 1.0}})
+        EXPECT_EQ(at("phong", figure), value) << figure;
+    EXPECT_EQ(at("constant", "asked"), 0);
+    EXPECT_EQ(at("phong", "asked"), [&] {
+        double asked = 0;
+        for (std::size_t i = 0; i < prepared.points.size(); ++i) asked += prepared.points.asks(0, i) ? 1 : 0;
+        return asked;
+    }());
+    EXPECT_LT(at("flat", "evaluations"), 100);
+    EXPECT_LT(at("gouraud", "evaluations"), 100);
+    // Faces show edges, and highlights between vertices are missed.
+    EXPECT_GT(at("flat", "kink"), 1.2);
+    EXPECT_LT(at("gouraud", "highlight"), 0.9);
+    EXPECT_GT(at("flat", "rmse"), at("gouraud", "rmse"));
+    EXPECT_GT(at("gouraud", "rmse"), at("every_second", "rmse"));
+    EXPECT_GT(at("every_second", "rmse"), 0);
+
+    for (const Json& m : record["models"]) {
+        const Image picture    = read_image(folder.path() / m["picture"].get<std::string>()).image,
+                    difference = read_image(folder.path() / m["difference"].get<std::string>()).image,
+                    phong      = read_image(folder.path() / "phong.png").image;
+        double largest         = 0;
+        for (std::size_t k = 0; k < picture.data.size(); ++k) {
+            const double expected = std::clamp(0.5 + double(picture.data[k]) - double(phong.data[k]), 0.0, 1.0);
+            largest               = std::max(largest, std::abs(double(difference.data[k]) - expected));
+        }
+        EXPECT_LT(largest, 2.0 / 255) << m["name"];
+    }
+}
+
+TEST(ShadingStudy, TableAndPageShowTheRecord) {
+    const TemporaryFolder folder;
+    Json record = {
+        {"schema", 1},       {"version", "1"},         {"command", "umbra shading"}, {"scene", {{"title", "T"}}},
+        {"method", "exact"}, {"models", Json::array()}};
+    record["models"].push_back({{"name", "flat"},
+                                {"evaluations", 1234},
+                                {"asked", 567},
+                                {"ms", 8.25},
+                                {"rmse", 0.0625},
+                                {"flip", 0.1875},
+                                {"highlight", 0.75},
+                                {"kink", 2.5},
+                                {"picture", "flat.png"},
+                                {"difference", "flat_difference.png"}});
+    EXPECT_NE(shading_text(record).find(
+                  "flat                     1234          567      8.25   0.06250   0.18750      0.750    2.50"),
+              std::string::npos)
+        << shading_text(record);
+    StagedFiles staged;
+    write_shading_page(record, folder.path(), staged);
+    staged.commit();
+    std::ifstream in(folder.path() / "index.html");
+    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    const std::string cells =
+        "<td>" + count(1234) + "</td><td>567</td><td>8.2</td><td>0.06250</td><td>0.1875</td><td>0.75</td><td>2.50</td>";
+    EXPECT_NE(page.find(cells), std::string::npos) << page.substr(page.find("<tbody>"), 400);
+}
+
+}  // namespace
+}  // namespace umbra
