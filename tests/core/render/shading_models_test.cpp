@@ -133,7 +133,8 @@ TEST(ShadingModels, ScreenLinearGouraudIsLinearInPixels) {
     double apart    = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.triangle[i] == kNoTriangle) continue;
-        const dvec2 pixel(static_cast<double>(i % 64) + 0.5, static_cast<double>(i / 64) + 0.5);
+        const std::size_t row = i / 64;
+        const dvec2 pixel(static_cast<double>(i % 64) + 0.5, static_cast<double>(row) + 0.5);
         const double whole = area(at[0], at[1], at[2]), u = area(at[0], pixel, at[2]) / whole,
                      v = area(at[0], at[1], pixel) / whole;
         EXPECT_NEAR(screen.at(i, 0), (1 - u - v) * c[0] + u * c[1] + v * c[2], 1e-5);

@@ -122,7 +122,7 @@ TEST(Elements, AreCutWhereTheValueChangesAndInterpolateIt) {
 TEST(Exchange, FillsARoomEvenly) {
     for (const float k_d : {0.0f, 0.5f, 0.8f}) {
         const Scene scene = room(k_d, 0.25f);
-        Exchange exchange(scene, {0.1, 1});
+        Exchange exchange(scene, {0.2, 1});
         EXPECT_EQ(exchange.unshot(), 1);
         for (int step = 0; step < 200'000 && exchange.unshot() > 1e-5; ++step) exchange.shoot();
         EXPECT_LE(exchange.unshot(), 1e-5);
@@ -131,7 +131,7 @@ TEST(Exchange, FillsARoomEvenly) {
             EXPECT_NEAR(exchange.direct(side).x, 0.25, 1e-7);
             EXPECT_NEAR(exchange.direct(side).y + exchange.indirect(side).y, expected, 2e-4);
         }
-        EXPECT_NEAR(exchange.arrived(), 1, 0.02);  // a patch's centre stands for all of it where it is received
+        EXPECT_NEAR(exchange.arrived(), 1, 0.03);  // a patch's centre stands for all of it where it is received
     }
 }
 
