@@ -15,6 +15,23 @@ constexpr float kRise = 1e-6f;
 
 constexpr float kBeforeTheLight = 1 - 0x1p-16f;
 
+/// A ray of unit direction in ray space: Embree takes neither directions nor distances of any length.
+struct Way {
+    vec3 direction{0};
+    float rise = 0, tnear = 0, tfar = 0;  ///< rise: of the direction over the point's plane; not above 0: no ray
+};
+Way way_to(const SurfacePoint& from, dvec3 to, bool infinite, float reach, const RaySpace& space) {
+    const double length = glm::length(to);
+    Way way;
+    way.direction = vec3(to / length);
+    way.rise      = glm::dot(vec3(from.normal), way.direction);
+    way.tnear     = kRise / std::max(way.rise, 1e-20f);
+    way.tfar      = infinite ? kInfinity
+                             : static_cast<float>(
+                              std::min(static_cast<double>(reach) * length * static_cast<double>(space.scale), 1e18));
+    return way;
+}
+
 /// Targets on a light, up to eight at a time, with the irradiance that each one sends if it is seen.
 template <class Visit>
 void visit_targets(const SurfacePoint& from, const Light& light, int samples, const Visit& visit) {
@@ -44,18 +61,15 @@ void visit_targets(const SurfacePoint& from, const Light& light, int samples, co
 
 unsigned Sight::seen(const SurfacePoint& from, std::span<const dvec3> to, bool infinite, float reach) const {
     const FlushDenormals flush;
-    const RaySpace& space = rays_.space();
-    const vec3 start      = space.point(from.position);
+    const vec3 start = rays_.space().point(from.position);
     ShadowPacket packet;
     for (std::size_t k = 0; k < to.size(); ++k) {
-        const vec3 d     = infinite ? vec3(glm::normalize(to[k])) : space.vector(to[k]);
-        const float rise = glm::dot(vec3(from.normal), d);
+        const Way way   = way_to(from, to[k], infinite, reach, rays_.space());
         packet.org_x[k] = start.x, packet.org_y[k] = start.y, packet.org_z[k] = start.z;
-        packet.dir_x[k] = d.x, packet.dir_y[k] = d.y, packet.dir_z[k] = d.z;
-        packet.tnear[k] = kRise / std::max(rise, 1e-30f);
-        packet.tfar[k]  = infinite ? kInfinity : reach;
+        packet.dir_x[k] = way.direction.x, packet.dir_y[k] = way.direction.y, packet.dir_z[k] = way.direction.z;
+        packet.tnear[k] = way.tnear, packet.tfar[k] = way.tfar;
         packet.id[k]    = from.triangle;
-        packet.valid[k] = rise > 0 ? -1 : 0;
+        packet.valid[k] = way.rise > 0 ? -1 : 0;
     }
     rays_.occluded(packet);
     unsigned seen = 0;
@@ -66,12 +80,11 @@ unsigned Sight::seen(const SurfacePoint& from, std::span<const dvec3> to, bool i
 
 TriangleId Sight::first_hit(const SurfacePoint& from, dvec3 to, bool infinite, float reach) const {
     const FlushDenormals flush;
-    const RaySpace& space = rays_.space();
-    const vec3 start = space.point(from.position), d = infinite ? vec3(glm::normalize(to)) : space.vector(to);
-    const float rise = glm::dot(vec3(from.normal), d);
-    if (!(rise > 0)) return kNoTriangle;
-    return rays_.first_hit({start.x, start.y, start.z, kRise / std::max(rise, 1e-30f), d.x, d.y, d.z, 0,
-                            infinite ? kInfinity : reach, ~0u, from.triangle, 0});
+    const vec3 start = rays_.space().point(from.position);
+    const Way way    = way_to(from, to, infinite, reach, rays_.space());
+    if (!(way.rise > 0)) return kNoTriangle;
+    return rays_.first_hit({start.x, start.y, start.z, way.tnear, way.direction.x, way.direction.y, way.direction.z, 0,
+                            way.tfar, ~0u, from.triangle, 0});
 }
 
 float light_share(const Sight& sight, const SurfacePoint& from, const Light& light, int samples) {
