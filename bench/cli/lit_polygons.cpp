@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <glm/gtc/constants.hpp>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
 
 #include "umbra/bench/out/files.h"
 #include "umbra/shadows/atherton/atherton_weiler.h"

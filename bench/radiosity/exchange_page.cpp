@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "report_assets.h"
 #include "umbra/bench/pages/chart_parts.h"
 #include "umbra/bench/pages/page_template.h"

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"

@@ -7,6 +7,7 @@
 // Cornelius van Overveld, Brian Wyvill. Phong Normal Interpolation Revisited. 1997
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string_view>

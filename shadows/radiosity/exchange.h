@@ -12,6 +12,7 @@
 // Image Generation. 1988
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "umbra/core/render/points.h"

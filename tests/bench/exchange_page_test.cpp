@@ -1,6 +1,7 @@
 // `umbra radiosity`: its pictures, its record and its page of a room whose light is known.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>

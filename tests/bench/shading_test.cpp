@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/pages/report_text.h"
@@ -14,8 +18,6 @@
 
 namespace umbra {
 namespace {
-
-namespace fs = std::filesystem;
 
 /// A coarse shiny ball over a floor, and its shadow.
 PreparedScene shiny_ball() {
