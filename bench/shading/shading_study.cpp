@@ -93,6 +93,11 @@ double kink(ShadingModel model, const PreparedScene& prepared) {
 
 double ratio(double a, double b) { return b > 0 ? a / b : a > 0 ? std::numeric_limits<double>::infinity() : 1; }
 
+/// A figure that may be infinite, which JSON has not.
+std::string figure(const Json& value, int digits) {
+    return value.is_null() ? "-" : fmt::format("{:.{}f}", value.get<double>(), digits);
+}
+
 /// Grey where both are the same, brighter where the first is.
 Image difference_of(const Image& a, const Image& b) {
     Image difference(a.width, a.height, {"R", "G", "B"});
@@ -158,11 +163,10 @@ std::string shading_text(const Json& record) {
     std::string text = fmt::format("{:<16} {:>12} {:>12} {:>9} {:>9} {:>9} {:>10} {:>7}\n", "model", "evaluations",
                                    "S_j asked", "ms", "RMSE", "FLIP", "highlight", "kinks");
     for (const Json& m : record["models"])
-        text += fmt::format("{:<16} {:>12} {:>12} {:>9.2f} {:>9.5f} {:>9.5f} {:>10.3f} {:>7.2f}\n",
+        text += fmt::format("{:<16} {:>12} {:>12} {:>9.2f} {:>9.5f} {:>9.5f} {:>10} {:>7}\n",
                             m["name"].get<std::string>(), m["evaluations"].get<std::uint64_t>(),
                             m["asked"].get<std::uint64_t>(), m["ms"].get<double>(), m["rmse"].get<double>(),
-                            m["flip"].get<double>(), m["highlight"].is_null() ? 0 : m["highlight"].get<double>(),
-                            m["kink"].is_null() ? 0 : m["kink"].get<double>());
+                            m["flip"].get<double>(), figure(m["highlight"], 3), figure(m["kink"], 2));
     return text;
 }
 

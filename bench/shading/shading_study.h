@@ -20,8 +20,9 @@ struct ShadingOptions {
 /// The method must serve the scene. Writes into `folder`, of each model, MODEL.png and MODEL_difference.png, the
 /// difference from `phong`. Returns {schema, version, command, scene, method, models: [{name, evaluations, asked, ms,
 /// rmse, flip, highlight, kink, picture, difference}]}: of the sum; of S_j; least of the runs, aim and visibility
-/// included; two image errors against `phong`; the largest value in the picture over that of `phong`; the mean absolute
-/// second difference along rows, inside of objects, over that of `phong`: Mach bands. Throws InputError.
+/// included; two image errors against `phong`; the largest value in the picture over that of `phong`; the root mean
+/// square of second differences along rows, inside of objects, of the diffuse light without shadows, over that of
+/// `phong`: Mach bands. Throws InputError.
 [[nodiscard]] Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options,
                                    const std::filesystem::path& folder);
 

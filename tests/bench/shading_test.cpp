@@ -103,6 +103,9 @@ TEST(ShadingStudy, TableAndPageShowTheRecord) {
                   "flat                     1234          567      8.25   0.06250   0.18750      0.750    2.50"),
               std::string::npos)
         << shading_text(record);
+    record["models"][0]["highlight"] = nullptr;
+    EXPECT_NE(shading_text(record).find("0.18750          -    2.50"), std::string::npos) << shading_text(record);
+    record["models"][0]["highlight"] = 0.75;
     StagedFiles staged;
     write_shading_page(record, folder.path(), staged);
     staged.commit();

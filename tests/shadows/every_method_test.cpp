@@ -309,9 +309,10 @@ TEST_P(Contract, BlamesATriangleThatBlocks) {
         const PointBatch raster = primary(known.scene);
         // What a method samples, as texels of a map, may lie off the segment to the light. One that answers by
         // irradiance interpolates between patches: near a shadow's edge points are dark that nothing hides.
-        const bool approximates = run.serves().how < How::to_rounding;
-        const double allowed = approximates ? 5e-3 : 1e-9, at_most = approximates ? 0.05 : allowed;
-        const std::size_t one_in = run.method->measures() == Measure::irradiance ? 5 : 100;
+        const bool interpolates  = run.method->measures() == Measure::irradiance;
+        const double allowed     = run.serves().how >= How::to_rounding ? 1e-9 : 5e-3;
+        const double at_most     = interpolates ? 0.05 : allowed;
+        const std::size_t one_in = interpolates ? 5 : 100;
         for (LightId j = 0; j < known.scene.lights.size(); ++j) {
             run.prepare(j);
             const PointBatch dark = dark_points(known.scene, raster, j, run.visibility(raster, j));

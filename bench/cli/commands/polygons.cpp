@@ -7,6 +7,7 @@
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/shadows/atherton/atherton_weiler.h"
 
 namespace umbra {
 namespace {
@@ -19,7 +20,7 @@ struct PolygonsLine {
 
 int polygons(const PolygonsLine& line, const Common& common) {
     const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});
-    if (const Service service = verdict(*find_method("atherton_weiler").make(), prepared.facts); !service) {
+    if (const Service service = verdict(AthertonWeiler(), prepared.facts); !service) {
         print_error("no lit polygons of this scene: {}\n", service.why);
         return kNo;
     }
