@@ -46,7 +46,7 @@ void write_records(const SweepOptions& options, const SweepDone& done) {
 }  // namespace
 
 ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOptions options, const Common& common,
-                               const std::vector<fs::path>& also) {
+                               const std::vector<fs::path>& also, Language language) {
     options.command = common.command;
     options.threads = thread_count();
     ScenesDone done;
@@ -68,7 +68,7 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
     for (const std::string& name : done.names) folders.push_back(options.out / name);
     if (!folders.empty()) {
         folders.insert(folders.end(), also.begin(), also.end());
-        write_report(folders, options.out, {.failed = done.failed});
+        write_report(folders, options.out, {.failed = done.failed, .language = language});
     }
     if (!common.quiet && !folders.empty()) print_out("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) print_error("{}\n", message);

@@ -4,14 +4,16 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/ladder_command.h"
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/report/lecture_texts.h"
 #include "umbra/bench/sweep/sweep.h"
 
 namespace umbra {
 
 /// Compares the scenes and writes the pages of the results, and of the folders `also`. Prints the first page's path,
-/// and to standard error the messages of the scenes that failed.
+/// and to standard error the messages of the scenes that failed. `language` is that of the page of the lectures.
 ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, CompareOptions options,
-                               const Common& common, const std::vector<std::filesystem::path>& also = {});
+                               const Common& common, const std::vector<std::filesystem::path>& also = {},
+                               Language language = Language::english);
 
 /// 0; 4 where scenes could not be read; 5 where a method failed.
 [[nodiscard]] int exit_code(const ScenesDone& done);

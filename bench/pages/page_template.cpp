@@ -35,6 +35,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
     view["head_title"]           = head.title;
     view["root"]                 = head.root;
     view["scripts"]              = head.scripts;
+    view["language"]             = head.language;
     kainjow::mustache::data data = template_data(view);
     for (const auto& [name, partial] : {std::pair{"head", assets::head_html},
                                         {"bias_map", assets::bias_map_html},

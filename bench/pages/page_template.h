@@ -19,6 +19,7 @@ struct PageHead {
     std::string title;                 ///< of the browser's tab
     std::string root;                  ///< address of the folder of style and scripts, seen from the page; "" or "x/"
     std::vector<std::string> scripts;  ///< "slider.js", ...: files of bench/pages/assets
+    std::string language = "en";       ///< of the page's text, as HTML names it
 };
 
 /// A page from its template. Parts that pages share are partials, named as their files. Of a view's values, strings,

@@ -82,6 +82,7 @@ json SceneFiles::rings(const Field& classes) const {
 json SceneFiles::exr(const Field& files) const {
     const Field file = files["exr"];
     if (!file.present() || !is_file(scene_.data / file.required_text())) return false;
+    if (!scene_.with_exr && scene_.page != scene_.data) return false;
     return link(file, scene_.page);
 }
 

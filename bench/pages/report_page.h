@@ -19,6 +19,7 @@ struct ScenePage {
     std::filesystem::path page;  ///< the folder of the page; in the report's folder
     std::string name, title;
     double triangles = 0;
+    bool with_exr    = true;  ///< EXRs are copied where the page lies in another folder than the data
 };
 
 /// Links to the files that one results.json names. They must be there and lie in its folder; where the page is
@@ -42,8 +43,8 @@ public:
     /// The entries of the legend that a class picture needs: the classes with a point on it. Throws InputError.
     [[nodiscard]] nlohmann::json legend(const Field& classes) const;
 
-    /// The address of `files/exr`; false where it is not there. EXRs are large and may have been left out of a folder
-    /// that is handed out.
+    /// The address of `files/exr`; false where it is not there or not to be copied: EXRs are large and may be left out
+    /// of a folder that is handed out.
     [[nodiscard]] nlohmann::json exr(const Field& files) const;
 
     [[nodiscard]] const ScenePage& scene() const { return scene_; }

@@ -23,6 +23,7 @@
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/report_index.h"
 #include "umbra/bench/report/report_scene.h"
 #include "umbra/bench/trade/trade_page.h"
@@ -163,6 +164,20 @@ json trade_section(const std::vector<fs::path>& sweeps, const fs::path& out, Sta
     return {{"page", page}, {"lines", std::move(lines)}};
 }
 
+/// The page of the lectures; false where no scene of theirs is there.
+json lectures_section(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
+                      const ReportOptions& options, StagedFiles& staged) {
+    json view = lectures_view(scenes, files, out, options.language);
+    if (!view.is_object()) return false;
+    const std::string title = view["title"];
+    staged.write(
+        out / "lectures.html",
+        render_page(assets::lectures_html,
+                    {.title = title, .root = "", .scripts = {}, .language = std::string(code_of(options.language))},
+                    std::move(view)));
+    return {{"page", "lectures.html"}};
+}
+
 /// Everything that failed, in words, for the first page.
 void add_failures(json& index, const std::vector<std::string>& scenes_failed, const std::vector<ScenePage>& scenes,
                   const std::optional<fs::path>& ladders) {
@@ -213,8 +228,9 @@ bool links_hold(const fs::path& page) {
 void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const ReportOptions& options) {
     if (dirs.empty()) throw UsageError("report: no folder given, expected one that umbra compare wrote");
     const fs::path root                  = fs::weakly_canonical(fs::absolute(out));
-    const Found found                    = find_results(dirs, root);
+    Found found                          = find_results(dirs, root);
     const std::vector<ScenePage>& scenes = found.scenes;
+    for (ScenePage& scene : found.scenes) scene.with_exr = options.with_exr;
     const std::vector<std::string> order = method_ids(scenes);
 
     StagedFiles staged;
@@ -237,6 +253,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     json index         = index_view(scenes, files, root, options.title);
     index["stability"] = ladder_section(found.ladders, root, staged);
     index["trade"]     = trade_section(found.sweeps, root, staged);
+    index["lectures"]  = lectures_section(scenes, files, root, options, staged);
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));

@@ -5,15 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/report/lecture_texts.h"
+
 namespace umbra {
 
 struct ReportOptions {
     std::string title = "Shadow methods compared";  ///< heading of the first page
     std::vector<std::string> failed{};              ///< messages for the first page, of scenes that have no results
+    Language language = Language::english;          ///< of the page of the lectures; all else is in English
+    bool with_exr     = true;                       ///< copy the EXRs of scenes whose folder is not in the report's
 };
 
 /// Folders that `umbra ladder` wrote may be among them: the first page then says where each method breaks. Of folders
 /// that `umbra sweep` wrote, out/trade/index.html shows error against frame cost, and the first page what was found.
+/// Where scenes of docs/lectures.md are among them, out/lectures.html shows its topics with their pictures.
 /// Writes out/index.html, a page per scene, their style and their scripts. Reads DIR/<scene>/results.json of each
 /// folder, or DIR/results.json where there is none of those. A scene whose folder lies in `out` gets its page beside
 /// its pictures; of others the pictures are copied to out/<scene>, so that `out` can be handed out whole. The pages

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
@@ -15,6 +16,7 @@
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/canonical.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/core/base/error.h"
 
 namespace umbra {
 namespace {
@@ -24,6 +26,8 @@ namespace fs = std::filesystem;
 struct ReportLine {
     std::vector<std::string> folders;
     std::string out;
+    std::string language = "en";
+    bool without_exr     = false;
 };
 
 /// A part of `umbra sweep` on three of the canonical scenes that takes seconds: presets, and a coarse line a method.
@@ -44,7 +48,7 @@ SweepOptions canonical_sweep(const fs::path& out) {
 }
 
 /// All canonical scenes, all ladders, and the trade on some scenes.
-int run_everything(const fs::path& out, const Common& common) {
+int run_everything(const fs::path& out, Language language, const Common& common) {
     LadderOptions ladders;
     ladders.out              = out / "ladders";
     const bool climbed       = climb_on_terminal(ladders, common)["failed"].empty();
@@ -59,19 +63,24 @@ int run_everything(const fs::path& out, const Common& common) {
     options.out           = out;
     options.pixel_samples = kPictureSamples;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
-    const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, also);
+    const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, also, language);
     const int code        = exit_code(done);
     if (!climbed || !swept) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
 int report(const ReportLine& line, const Common& common) {
+    const std::optional<Language> language = language_named(line.language);
+    if (!language) throw UsageError(fmt::format("report: --lang {}: expected en, de or el", line.language));
+    if (line.without_exr && line.folders.empty())
+        throw UsageError("report: --no-exr: no DIR given, expected a folder whose results to copy without EXRs");
     fs::path out = line.out;
     if (out.empty()) out = line.folders.size() == 1 ? line.folders[0] : "results";
     check_writable_beside(out);
     const PlaceLock lock = PlaceLock::inside(out);
-    if (line.folders.empty()) return run_everything(out, common);
-    write_report({line.folders.begin(), line.folders.end()}, out, {});
+    if (line.folders.empty()) return run_everything(out, *language, common);
+    write_report({line.folders.begin(), line.folders.end()}, out,
+                 {.language = *language, .with_exr = !line.without_exr});
     if (!common.quiet) print_out("{}\n", (out / "index.html").string());
     return kDone;
 }
@@ -84,6 +93,9 @@ Action report_command(CLI::App& app, const Common& common) {
         ->type_name("");
     app.add_option("-o,--output", line->out, "Folder to write to (default: results; given one DIR, that folder)")
         ->type_name("DIR");
+    app.add_option("--lang", line->language, "Language of the page of the lectures: en, de or el (default: en)")
+        ->type_name("LANG");
+    app.add_flag("--no-exr", line->without_exr, "Leave out the EXRs of results that are copied to the output folder");
     return [line, &common] { return report(*line, common); };
 }
 

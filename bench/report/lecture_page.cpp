@@ -1,0 +1,120 @@
+#include "umbra/bench/report/lecture_page.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "report_assets.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/finding.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A cell without blanks around it and without backquotes; empty for a dash.
+std::string plain(std::string cell) {
+    std::erase(cell, '`');
+    const auto first = cell.find_first_not_of(' ');
+    if (first == std::string::npos) return {};
+    cell = cell.substr(first, cell.find_last_not_of(' ') - first + 1);
+    return cell == kNone ? "" : cell;
+}
+
+std::vector<LectureRow> rows_of(std::string_view page) {
+    std::vector<LectureRow> rows;
+    std::istringstream lines{std::string(page)};
+    for (std::string line; std::getline(lines, line);) {
+        if (line.size() < 4 || !line.starts_with("| ") || line[2] < 'A' || line[2] > 'F' || line[3] < '0' ||
+            line[3] > '9')
+            continue;
+        std::vector<std::string> cells;
+        std::istringstream in(line.substr(1));
+        for (std::string cell; std::getline(in, cell, '|');) cells.push_back(plain(cell));
+        if (cells.size() == 7) rows.push_back({cells[0], cells[1], cells[2], cells[3], cells[6]});
+    }
+    return rows;
+}
+
+std::string text(const Translated& words, Language language) { return std::string(words.in(language)); }
+
+/// The state of a row: in English with what is missing, in other languages the state alone.
+std::string state_in_words(const std::string& state, Language language) {
+    if (language == Language::english) return state;
+    const LecturePhrases& words = lecture_phrases();
+    if (state.starts_with("in part")) return text(words.in_part, language);
+    return text(state.starts_with("not yet") ? words.not_yet : words.works, language);
+}
+
+const LectureText* text_of(const std::string& id) {
+    const auto texts = lecture_texts();
+    const auto found = std::ranges::find(texts, id, &LectureText::id);
+    return found == texts.end() ? nullptr : &*found;
+}
+
+std::string topic(const LectureRow& row, const LectureText* words, Language language) {
+    if (words == nullptr || language == Language::english) return row.topic;
+    return std::string(language == Language::german ? words->german : words->greek);
+}
+
+json row_view(const LectureRow& row, const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files,
+              const fs::path& out, Language language) {
+    const LectureText* words = text_of(row.id);
+    json view                = {{"id", row.id},
+                                {"topic", topic(row, words, language)},
+                                {"source", row.source},
+                                {"state", state_in_words(row.state, language)},
+                                {"unfinished", !row.state.starts_with("works")},
+                                {"shown", false}};
+    const auto scene         = std::ranges::find(scenes, row.scene, &ScenePage::name);
+    if (row.scene.empty() || scene == scenes.end()) return view;
+    const SceneFiles& shown = files[std::size_t(scene - scenes.begin())];
+    view["shown"]           = {{"href", url((scene->page / "index.html").lexically_relative(out))},
+                               {"scene", scene->title},
+                               {"proves", words == nullptr ? "" : text(words->proves, language)},
+                               {"finding", finding(scene->root)},
+                               {"picture", shown.figure(scene->root["reference"]["files"]["png"], "", "", "", out)}};
+    return view;
+}
+
+}  // namespace
+
+const std::vector<LectureRow>& lecture_rows() {
+    static const std::vector<LectureRow> rows = rows_of(assets::lectures_md);
+    return rows;
+}
+
+json lectures_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
+                   Language language) {
+    const LecturePhrases& words = lecture_phrases();
+    json chapters               = json::array();
+    bool any                    = false;
+    for (const LectureChapter& chapter : lecture_chapters()) {
+        json rows = json::array();
+        for (const LectureRow& row : lecture_rows()) {
+            if (row.id[0] != chapter.letter) continue;
+            rows.push_back(row_view(row, scenes, files, out, language));
+            any |= rows.back()["shown"].is_object();
+        }
+        chapters.push_back({{"letter", std::string(1, chapter.letter)},
+                            {"title", text(chapter.title, language)},
+                            {"exercise", text(chapter.exercise, language)},
+                            {"answer", text(chapter.answer, language)},
+                            {"rows", std::move(rows)}});
+    }
+    if (!any) return false;
+    return {{"title", text(words.title, language)},
+            {"lead", text(words.lead, language)},
+            {"measured_word", text(words.measured, language)},
+            {"exercise_word", text(words.exercise, language)},
+            {"answer_word", text(words.answer, language)},
+            {"source_word", text(words.source, language)},
+            {"back", text(words.back, language)},
+            {"chapters", std::move(chapters)}};
+}
+
+}  // namespace umbra

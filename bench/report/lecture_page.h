@@ -1,0 +1,27 @@
+// The page of the lectures: docs/lectures.md in the lectures' order, with the pictures of a report.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+#include <vector>
+
+#include "umbra/bench/pages/report_page.h"
+#include "umbra/bench/report/lecture_texts.h"
+
+namespace umbra {
+
+/// A row of docs/lectures.md, as text without markup.
+struct LectureRow {
+    std::string id, topic, source, scene, state;  ///< `scene` is empty where no scene shows the topic
+};
+
+/// The rows of the page that was compiled in, in its order.
+[[nodiscard]] const std::vector<LectureRow>& lecture_rows();
+
+/// What the template lectures.html shows: each topic in the lectures' order, with the picture of its scene where the
+/// report has that scene, what the picture proves, and the sentence on what the comparison found. Addresses are seen
+/// from `out`, the report's folder. False where the report has none of the lectures' scenes.
+[[nodiscard]] nlohmann::json lectures_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files,
+                                           const std::filesystem::path& out, Language language);
+
+}  // namespace umbra

@@ -1,0 +1,407 @@
+#include "umbra/bench/report/lecture_texts.h"
+
+#include <array>
+#include <utility>
+
+namespace umbra {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, Language>, 3> kLanguages{
+    {{"en", Language::english}, {"de", Language::german}, {"el", Language::greek}}};
+
+constexpr Translated kSixLights{
+    "Six lights shine on one scene, and their terms add up: each has a shadow of its own, which the others fill.",
+    "Sechs Lichtquellen beleuchten eine Szene, und ihre Terme addieren sich: Jede wirft ihren eigenen Schatten, den "
+    "die "
+    "anderen aufhellen.",
+    "Έξι φωτεινές πηγές φωτίζουν μία σκηνή και οι όροι τους αθροίζονται: καθεμία ρίχνει τη δική της σκιά, την οποία "
+    "φωτίζουν οι άλλες."};
+constexpr Translated kShading{
+    "The same solids under each shading model: umbra shading draws them side by side and measures what the cheaper "
+    "models "
+    "miss.",
+    "Dieselben Körper unter jedem Schattierungsverfahren: umbra shading zeichnet sie nebeneinander und misst, was den "
+    "billigeren fehlt.",
+    "Τα ίδια στερεά με κάθε μοντέλο φωτοσκίασης: η εντολή umbra shading τα σχεδιάζει δίπλα δίπλα και μετρά τι χάνουν "
+    "τα "
+    "φθηνότερα."};
+constexpr Translated kPenumbra{
+    "Behind an occluder lies an umbra, where S_j is 0, and around it a penumbra, where the point sees a part of the "
+    "light.",
+    "Hinter einem Hindernis liegt der Kernschatten mit S_j = 0, um ihn der Halbschatten, aus dem man einen Teil der "
+    "Lichtquelle sieht.",
+    "Πίσω από ένα εμπόδιο βρίσκεται η κύρια σκιά, όπου S_j = 0, και γύρω της η παρασκιά, από όπου φαίνεται μέρος της "
+    "πηγής."};
+
+constexpr std::array kTexts{
+    LectureText{"A1",
+                "Umgebungslicht, I_a k_a",
+                "φως περιβάλλοντος, I_a k_a",
+                {"Where no light reaches, the ambient term I_a k_a is what is left: no shadow is black.",
+                 "Wohin keine Lichtquelle reicht, bleibt der ambiente Term I_a k_a: Kein Schatten ist schwarz.",
+                 "Όπου δεν φτάνει καμία πηγή, απομένει ο όρος περιβάλλοντος I_a k_a: καμία σκιά δεν είναι μαύρη."}},
+    LectureText{"A2",
+                "Richtungslicht (Lichtquelle im Unendlichen)",
+                "κατευθυντικό φως (πηγή στο άπειρο)",
+                {"The rays of the sun are parallel, so that the shadow is a parallel projection.",
+                 "Die Strahlen der Sonne sind parallel, der Schatten ist also eine Parallelprojektion.",
+                 "Οι ακτίνες του ήλιου είναι παράλληλες, άρα η σκιά είναι παράλληλη προβολή."}},
+    LectureText{"A3",
+                "Punktlichtquelle, E = I cos(θ) / d²",
+                "σημειακή πηγή, E = I cos(θ) / d²",
+                {"The rays of a point light spread, so that the shadow is larger than its occluder.",
+                 "Die Strahlen einer Punktlichtquelle laufen auseinander, der Schatten ist größer als das Hindernis.",
+                 "Οι ακτίνες μιας σημειακής πηγής αποκλίνουν, άρα η σκιά είναι μεγαλύτερη από το εμπόδιο."}},
+    LectureText{"A4",
+                "Spotlicht: Potenz des Kosinus, Öffnungswinkel",
+                "προβολέας: δύναμη του συνημιτόνου, γωνία αποκοπής",
+                {"A spot light fades with a power of the cosine, and ends at its cut-off angle.",
+                 "Ein Spotlicht fällt mit einer Potenz des Kosinus ab und endet am Öffnungswinkel.",
+                 "Ο προβολέας εξασθενεί με μια δύναμη του συνημιτόνου και τελειώνει στη γωνία αποκοπής."}},
+    LectureText{"A5",
+                "Spotlicht nach Zachmann",
+                "προβολέας κατά Zachmann",
+                {"The printed law is negative near the rim for n > 1; here it ends at 0.",
+                 "Das gedruckte Gesetz wird für n > 1 nahe am Rand negativ; hier endet es bei 0.",
+                 "Ο τυπωμένος νόμος γίνεται αρνητικός κοντά στο χείλος για n > 1· εδώ τελειώνει στο 0."}},
+    LectureText{"A6", "goniometrische Lichtquelle aus IES-LM-63-Dateien", "γωνιομετρική πηγή από αρχεία IES LM-63", {}},
+    LectureText{"A7",
+                "Rechteck, Kreisscheibe, Kugel; Halbschatten",
+                "ορθογώνιο, δίσκος, σφαίρα· παρασκιά",
+                {"The larger the light, the smaller the umbra and the wider the penumbra.",
+                 "Je größer die Lichtquelle, desto kleiner der Kernschatten und desto breiter der Halbschatten.",
+                 "Όσο μεγαλύτερη η πηγή, τόσο μικρότερη η κύρια σκιά και τόσο πλατύτερη η παρασκιά."}},
+    LectureText{"A8", "getrennte ambiente, diffuse und spiegelnde Farben",
+                "χωριστά χρώματα περιβάλλοντος, διάχυτα και κατοπτρικά", kSixLights},
+    LectureText{"A9", "Abschwächung, auf 1 begrenzt oder nicht", "εξασθένιση, με ή χωρίς όριο 1", {}},
+    LectureText{"A10", "bewegte Lichtquellen, Objekte und Kameras", "κινούμενες πηγές, αντικείμενα και κάμερες", {}},
+    LectureText{"A11",
+                "Lichtquellen an- und ausschalten; an der Kamera befestigt",
+                "πηγές που ανάβουν και σβήνουν· στερεωμένες στην κάμερα",
+                {}},
+    LectureText{"A12",
+                "welche Lichtquelle es ist, am beleuchteten Teil einer Kugel",
+                "ποια πηγή είναι, από το φωτισμένο μέρος μιας σφαίρας",
+                {}},
+    LectureText{"A13",
+                "Warnocks Regel: Die Intensität fällt mit der Tiefe",
+                "κανόνας του Warnock: η ένταση πέφτει με το βάθος",
+                {}},
+    LectureText{"A14",
+                "fotometrische Größen; die Bestrahlungsstärke fällt quadratisch",
+                "φωτομετρικά μεγέθη· η πυκνότητα ροής πέφτει με το τετράγωνο",
+                {}},
+
+    LectureText{"B1",
+                "Lamberts diffuser Term",
+                "διάχυτος όρος του Lambert",
+                {"The plane is equally bright everywhere, since N · L is the same at each of its points.",
+                 "Die Ebene ist überall gleich hell, denn N · L ist in jedem ihrer Punkte gleich.",
+                 "Το επίπεδο έχει παντού την ίδια φωτεινότητα, αφού το N · L είναι ίδιο σε κάθε σημείο του."}},
+    LectureText{"B2",
+                "Phongs spiegelnder Term",
+                "κατοπτρικός όρος του Phong",
+                {"Highlights lie where the mirrored light direction R meets the direction V to the eye.",
+                 "Glanzlichter liegen dort, wo die gespiegelte Lichtrichtung R auf die Richtung V zum Auge fällt.",
+                 "Οι στιλπνές κηλίδες βρίσκονται όπου η ανακλώμενη κατεύθυνση R συμπίπτει με την κατεύθυνση V προς τον "
+                 "παρατηρητή."}},
+    LectureText{"B3", "Blinn-Phong, und wie sich die Exponenten verhalten", "Blinn-Phong και η σχέση των εκθετών", {}},
+    LectureText{"B4", "Emission", "εκπομπή", {}},
+    LectureText{"B5",
+                "Material je Farbkanal; Bilanz k_d + k_s + k_t",
+                "υλικό ανά χρώμα· ισοζύγιο k_d + k_s + k_t",
+                {"Coloured light on coloured surfaces: each channel is computed on its own.",
+                 "Farbiges Licht auf farbigen Flächen: Jeder Farbkanal wird für sich berechnet.",
+                 "Έγχρωμο φως σε έγχρωμες επιφάνειες: κάθε χρώμα υπολογίζεται χωριστά."}},
+    LectureText{"B6", "Summe über die Lichtquellen", "άθροισμα πάνω στις πηγές", kSixLights},
+    LectureText{"B7",
+                "Werte über 1: abschneiden, teilen, Farbton behalten",
+                "τιμές πάνω από 1: αποκοπή, διαίρεση, διατήρηση απόχρωσης",
+                {}},
+    LectureText{"B8",
+                "ein- und zweiseitige Beleuchtung",
+                "μονόπλευρος και αμφίπλευρος φωτισμός",
+                {"Sheets without thickness are lit on the side that the eye sees, and throw shadows from both.",
+                 "Flächen ohne Dicke sind auf der sichtbaren Seite beleuchtet und werfen von beiden Seiten Schatten.",
+                 "Φύλλα χωρίς πάχος φωτίζονται στην πλευρά που φαίνεται και ρίχνουν σκιά και από τις δύο."}},
+    LectureText{"B9", "Betrachter im Unendlichen und am Ort", "παρατηρητής στο άπειρο και τοπικός", {}},
+    LectureText{"B10", "Lafortunes Keulen", "λοβοί του Lafortune", {}},
+    LectureText{"B11",
+                "Reziprozität, Energie, Isotropie durch Abtasten",
+                "αμοιβαιότητα, ενέργεια, ισοτροπία με δειγματοληψία",
+                {}},
+    LectureText{"B12", "spektral gegen RGB", "φασματικά και RGB", {}},
+    LectureText{"B13", "Whitteds Summe mit k_r und k_t", "το άθροισμα του Whitted με k_r και k_t", {}},
+    LectureText{"B14", "Varianten der Summe", "παραλλαγές του αθροίσματος", {}},
+    LectureText{"B15", "interpolierte Normalen ohne Normieren", "παρεμβολή κανονικών χωρίς κανονικοποίηση", {}},
+    LectureText{"B16",
+                "Normalen unter Transformationen: inverse Transponierte",
+                "κανονικά διανύσματα και μετασχηματισμοί: αντίστροφος ανάστροφος",
+                {}},
+    LectureText{"B17", "Anpassung eines Lafortune-Modells", "προσαρμογή μοντέλου Lafortune", {}},
+    LectureText{"B18", "die Bilder der Vorlesungen", "οι εικόνες των διαλέξεων", {}},
+
+    LectureText{"C1", "konstante, flache, Gouraud- und Phong-Schattierung",
+                "σταθερή, επίπεδη, Gouraud και Phong φωτοσκίαση", kShading},
+    LectureText{"C2",
+                "gemittelte Eckennormalen",
+                "κανονικά κορυφών από μέσους όρους",
+                {"The balls are made of flat triangles; normals averaged at the vertices make them look round.",
+                 "Die Kugeln bestehen aus flachen Dreiecken; gemittelte Normalen an den Ecken lassen sie rund wirken.",
+                 "Οι σφαίρες αποτελούνται από επίπεδα τρίγωνα· οι μέσες κανονικές στις κορυφές τις κάνουν να φαίνονται "
+                 "στρογγυλές."}},
+    LectureText{"C3", "quadratische Interpolation der Normalen", "τετραγωνική παρεμβολή κανονικών", kShading},
+    LectureText{"C4", "jeder zweite Bildpunkt", "κάθε δεύτερο εικονοστοιχείο", kShading},
+    LectureText{"C5", "Fehler der Gouraud-Schattierung, gemessen", "σφάλματα της φωτοσκίασης Gouraud, μετρημένα",
+                kShading},
+    LectureText{"C6", "Transparenz", "διαφάνεια", {}},
+    LectureText{"C7", "Nebel", "ομίχλη", {}},
+    LectureText{"C8", "wo flache Schattierung richtig ist", "πού η επίπεδη φωτοσκίαση είναι σωστή", {}},
+    LectureText{"C9", "weitere Fehler der Interpolation", "άλλα σφάλματα της παρεμβολής", {}},
+    LectureText{"C10", "Einfluss der Triangulierung", "επίδραση της τριγωνοποίησης", {}},
+    LectureText{"C11", "Schnelligkeit gegen Genauigkeit beim Schattieren", "ταχύτητα και ακρίβεια στη φωτοσκίαση", {}},
+    LectureText{"C12", "eine Szene durch alle Stufen", "μία σκηνή σε όλα τα στάδια", {}},
+
+    LectureText{"D1",
+                "Projektion auf Ebenen",
+                "προβολή σε επίπεδα",
+                {"Each step is a plane, and on a plane the shadow is the projection of its occluder.",
+                 "Jede Stufe ist eine Ebene, und auf einer Ebene ist der Schatten die Projektion des Hindernisses.",
+                 "Κάθε σκαλοπάτι είναι επίπεδο, και σε ένα επίπεδο η σκιά είναι η προβολή του εμποδίου."}},
+    LectureText{
+        "D2",
+        "Schatten im Scanline-Verfahren",
+        "σκιές με γραμμές σάρωσης",
+        {"On one plane with one light, edges projected from the light cut each span into lit and dark parts.",
+         "Auf einer Ebene mit einer Lichtquelle teilen projizierte Kanten jede Spanne in helle und dunkle Stücke.",
+         "Σε ένα επίπεδο με μία πηγή, οι προβεβλημένες ακμές κόβουν κάθε διάστημα σε φωτεινά και σκοτεινά μέρη."}},
+    LectureText{
+        "D3",
+        "Schattenvolumen",
+        "όγκοι σκιάς",
+        {"Meshes with holes and turned faces have no inside, and still cast the right shadow if each edge counts as "
+         "often as its faces say.",
+         "Netze mit Löchern und gedrehten Flächen haben kein Inneres und werfen doch den richtigen Schatten, wenn "
+         "jede Kante so oft zählt, wie ihre Flächen es sagen.",
+         "Πλέγματα με τρύπες και ανεστραμμένες έδρες δεν έχουν εσωτερικό, κι όμως ρίχνουν σωστή σκιά, αν κάθε ακμή "
+         "μετρά όσες φορές λένε οι έδρες της."}},
+    LectureText{"D4",
+                "beleuchtete Polygone",
+                "φωτισμένα πολύγωνα",
+                {"Surfaces that the light does not see are cut away once; what is left is lit for every camera.",
+                 "Was die Lichtquelle nicht sieht, wird einmal abgeschnitten; der Rest ist für jede Kamera beleuchtet.",
+                 "Ό,τι δεν βλέπει η πηγή αποκόπτεται μία φορά· το υπόλοιπο είναι φωτισμένο για κάθε κάμερα."}},
+    LectureText{
+        "D5",
+        "Schatten-z-Puffer",
+        "z-buffer σκιάς",
+        {"Thin boards in grazing light are what a depth map finds hardest: texels are wider than the shadows.",
+         "Dünne Latten in streifendem Licht sind für eine Tiefenkarte am schwersten: Ihre Texel sind breiter als die "
+         "Schatten.",
+         "Λεπτές σανίδες σε πλάγιο φως είναι το δυσκολότερο για έναν χάρτη βάθους: τα texel του είναι πλατύτερα από "
+         "τις σκιές."}},
+    LectureText{"D6",
+                "Schattenstrahlen",
+                "ακτίνες σκιάς",
+                {"Rays to many points of the light count which part of it is seen.",
+                 "Strahlen zu vielen Punkten der Lichtquelle zählen, welcher Teil von ihr zu sehen ist.",
+                 "Ακτίνες προς πολλά σημεία της πηγής μετρούν ποιο μέρος της φαίνεται."}},
+    LectureText{
+        "D7",
+        "Radiosity",
+        "radiosity (αμοιβαία ακτινοβολία)",
+        {"Patches exchange light, so that penumbrae come with the direct light, at the fineness of the patches.",
+         "Flächenstücke tauschen Licht aus; Halbschatten entstehen von selbst, so fein wie die Stücke.",
+         "Τα τμήματα των επιφανειών ανταλλάσσουν φως· οι παρασκιές προκύπτουν μόνες τους, όσο λεπτά είναι τα "
+         "τμήματα."}},
+    LectureText{"D8", "Kern- und Halbschatten, unterschieden", "κύρια σκιά και παρασκιά, σε διάκριση", kPenumbra},
+    LectureText{
+        "D9",
+        "der Ort der Lichtquelle",
+        "η θέση της πηγής",
+        {"With the only light at the eye, no shadow is seen: what the eye sees, the light sees.",
+         "Liegt die einzige Lichtquelle am Auge, sieht man keinen Schatten: Was das Auge sieht, sieht auch sie.",
+         "Με τη μόνη πηγή στο μάτι δεν φαίνεται σκιά: ό,τι βλέπει το μάτι, το βλέπει και η πηγή."}},
+    LectureText{"D10",
+                "Punktlichtquellen werfen nur Kernschatten",
+                "οι σημειακές πηγές δίνουν μόνο κύρια σκιά",
+                {"The edge of the shadow is sharp: S_j of a point light is 0 or 1 and nothing between.",
+                 "Der Rand des Schattens ist scharf: S_j einer Punktlichtquelle ist 0 oder 1 und nichts dazwischen.",
+                 "Το όριο της σκιάς είναι οξύ: το S_j μιας σημειακής πηγής είναι 0 ή 1 και τίποτα ενδιάμεσο."}},
+    LectureText{
+        "D11",
+        "was neu berechnet wird, wenn sich etwas bewegt",
+        "τι υπολογίζεται ξανά όταν κάτι κινείται",
+        {"Shadows depend on lights and objects alone; which methods use that, the table of build, aim and visibility "
+         "shows.",
+         "Schatten hängen nur von Lichtquellen und Objekten ab; welche Verfahren das nutzen, zeigt die Tabelle der "
+         "Zeiten.",
+         "Οι σκιές εξαρτώνται μόνο από πηγές και αντικείμενα· ποιες μέθοδοι το εκμεταλλεύονται δείχνει ο πίνακας "
+         "των χρόνων."}},
+    LectureText{
+        "D12",
+        "der ambiente Term bleibt im Schatten",
+        "ο όρος περιβάλλοντος μένει στη σκιά",
+        {"S_j scales the light's own terms alone: emission and ambient light stay in the umbra.",
+         "S_j wirkt nur auf die Terme der Lichtquelle: Emission und Umgebungslicht bleiben im Kernschatten.",
+         "Το S_j επηρεάζει μόνο τους όρους της πηγής: η εκπομπή και το φως περιβάλλοντος μένουν στην κύρια σκιά."}},
+    LectureText{"D13", "was der Ort der Lichtquelle kostet", "τι κοστίζει η θέση της πηγής", {}},
+    LectureText{"D14", "drei Lichtquellen, drei Gründe", "τρεις πηγές, τρεις αιτίες", {}},
+    LectureText{"D15", "Energie aus S_j", "ενέργεια από το S_j", {}},
+    LectureText{"D16", "verdeckte Schatten rauer Flächen", "απόκρυψη σκιών σε τραχείς επιφάνειες", {}},
+
+    LectureText{"E1", "Rekursion", "αναδρομή", {}},
+    LectureText{"E2", "Kugel und Quader als Formel", "σφαίρα και κουτί με τύπο", {}},
+    LectureText{"E3", "Überabtastung", "υπερδειγματοληψία", {}},
+    LectureText{"E4", "wohin die Zeit geht", "πού πηγαίνει ο χρόνος", {}},
+    LectureText{"E5",
+                "alle Dreiecke gegen Bäume",
+                "όλα τα τρίγωνα ή δέντρα",
+                {"Few triangles suffice to see that testing all of them costs rays times triangles.",
+                 "Schon wenige Dreiecke zeigen, dass das Prüfen aller so viel kostet wie Strahlen mal Dreiecke.",
+                 "Λίγα τρίγωνα αρκούν για να φανεί ότι ο έλεγχος όλων κοστίζει ακτίνες επί τρίγωνα."}},
+    LectureText{"E6", "was Strahlverfolgung nicht sehen kann", "τι δεν βλέπει η ανίχνευση ακτίνων", {}},
+    LectureText{"E7", "Strahlen nur, wo Flächen spiegeln", "ακτίνες μόνο όπου οι επιφάνειες ανακλούν", {}},
+    LectureText{"E8", "Beleuchtung im falschen Raum", "φωτισμός σε λάθος χώρο", {}},
+
+    LectureText{"F1", "alle Verfahren auf einer Szene, ein Bericht", "όλες οι μέθοδοι σε μία σκηνή, μία αναφορά",
+                kPenumbra},
+    LectureText{"F2", "Schnelligkeit gegen Genauigkeit: Reihe, Front, Empfehlung",
+                "ταχύτητα και ακρίβεια: σειρά, μέτωπο, σύσταση", kPenumbra},
+    LectureText{"F3", "Leitern: wo Verfahren versagen", "κλίμακες: πού αποτυγχάνουν οι μέθοδοι", {}},
+    LectureText{
+        "F4",
+        "nur, was eine Szene verlangt",
+        "μόνο ό,τι ζητά η σκηνή",
+        {"One light and one plane ask for no attenuation, no spot and no area: none of it is computed.",
+         "Eine Lichtquelle und eine Ebene verlangen weder Abschwächung noch Spot noch Fläche: Nichts davon wird "
+         "berechnet.",
+         "Μία πηγή και ένα επίπεδο δεν ζητούν εξασθένιση, προβολέα ή επιφάνεια: τίποτα από αυτά δεν υπολογίζεται."}},
+    LectureText{"F5",
+                "eine exakte Referenz",
+                "μία ακριβής αναφορά",
+                {"The share of the disk that is seen is computed as an area, with a bound, and not by sampling.",
+                 "Der sichtbare Anteil der Scheibe wird als Fläche mit Fehlerschranke berechnet, nicht abgetastet.",
+                 "Το ορατό μέρος του δίσκου υπολογίζεται ως εμβαδόν με φράγμα σφάλματος, όχι με δειγματοληψία."}},
+    LectureText{"F6",
+                "Tests durch Bildvergleich",
+                "έλεγχοι με σύγκριση εικόνων",
+                {"Accepted planes of S_j gate each change of the program.",
+                 "Abgenommene S_j-Bilder sichern jede Änderung am Programm ab.",
+                 "Εγκεκριμένες εικόνες S_j ελέγχουν κάθε αλλαγή του προγράμματος."}},
+    LectureText{"F7",
+                "ein Bericht zur Vorlesung",
+                "μία αναφορά για το μάθημα",
+                {"This page: every topic of the lectures, with the picture that shows it.",
+                 "Diese Seite: jedes Thema der Vorlesungen mit dem Bild, das es zeigt.",
+                 "Αυτή η σελίδα: κάθε θέμα των διαλέξεων με την εικόνα που το δείχνει."}},
+    LectureText{"F8",
+                "ein neues Verfahren ist eine Datei und eine Zeile",
+                "μία νέα μέθοδος είναι ένα αρχείο και μία γραμμή",
+                {}},
+};
+
+constexpr std::array kChapters{
+    LectureChapter{
+        'A',
+        {"Light sources", "Lichtquellen", "Φωτεινές πηγές"},
+        {"A ball has radius 1, a sun at infinity lights it. Which share of its surface is lit? And by a point light "
+         "at distance 2 from its centre?",
+         "Eine Kugel vom Radius 1 wird von einer Sonne im Unendlichen beleuchtet. Welcher Teil ihrer Oberfläche ist "
+         "beleuchtet? Und von einer Punktlichtquelle im Abstand 2 vom Mittelpunkt?",
+         "Μια σφαίρα ακτίνας 1 φωτίζεται από έναν ήλιο στο άπειρο. Ποιο μέρος της επιφάνειάς της φωτίζεται; Και από "
+         "σημειακή πηγή σε απόσταση 2 από το κέντρο;"},
+        {"One half; (1 − 1/2) / 2 = one quarter.", "Die Hälfte; (1 − 1/2) / 2 = ein Viertel.",
+         "Το μισό· (1 − 1/2) / 2 = ένα τέταρτο."}},
+    LectureChapter{
+        'B',
+        {"Illumination", "Beleuchtung", "Φωτισμός"},
+        {"A plane has k_d = 0.8, and the sun is 60° from its normal. How bright is the diffuse term for I = 1?",
+         "Eine Ebene hat k_d = 0,8, die Sonne steht 60° von der Normalen entfernt. Wie groß ist der diffuse Term für "
+         "I = 1?",
+         "Ένα επίπεδο έχει k_d = 0,8 και ο ήλιος απέχει 60° από την κανονική. Πόσος είναι ο διάχυτος όρος για I = 1;"},
+        {"0.8 cos 60° = 0.4.", "0,8 cos 60° = 0,4.", "0,8 cos 60° = 0,4."}},
+    LectureChapter{
+        'C',
+        {"Shading, transparency, fog", "Schattierung, Transparenz, Nebel", "Φωτοσκίαση, διαφάνεια, ομίχλη"},
+        {"A highlight falls into the middle of a large triangle. What does Gouraud shading make of it?",
+         "Ein Glanzlicht fällt mitten in ein großes Dreieck. Was macht die Gouraud-Schattierung daraus?",
+         "Μια στιλπνή κηλίδα πέφτει στη μέση ενός μεγάλου τριγώνου. Τι κάνει με αυτήν η φωτοσκίαση Gouraud;"},
+        {"Nothing is left of it: the sum is evaluated at the vertices alone.",
+         "Es verschwindet: Die Summe wird nur an den Ecken ausgewertet.",
+         "Χάνεται: το άθροισμα υπολογίζεται μόνο στις κορυφές."}},
+    LectureChapter{
+        'D',
+        {"Shadows", "Schatten", "Σκιές"},
+        {"A disk light of radius 1 is 4 above the floor; a ball of radius 0.5 hangs half-way. How wide is the umbra "
+         "about?",
+         "Eine Scheibe vom Radius 1 leuchtet 4 über dem Boden; eine Kugel vom Radius 0,5 hängt auf halber Höhe. Wie "
+         "breit ist der Kernschatten etwa?",
+         "Ένας φωτεινός δίσκος ακτίνας 1 βρίσκεται 4 πάνω από το δάπεδο· μια σφαίρα ακτίνας 0,5 κρέμεται στη μέση. "
+         "Πόσο πλατιά είναι περίπου η κύρια σκιά;"},
+        {"It just vanishes: the lines from the light's rim past the ball meet on the floor (2 · 0.5 − 1 = 0).",
+         "Er verschwindet gerade: Die Linien vom Rand der Lichtquelle an der Kugel vorbei treffen sich am Boden "
+         "(2 · 0,5 − 1 = 0).",
+         "Μόλις εξαφανίζεται: οι ευθείες από το χείλος της πηγής δίπλα στη σφαίρα συναντιούνται στο δάπεδο "
+         "(2 · 0,5 − 1 = 0)."}},
+    LectureChapter{
+        'E',
+        {"Ray tracing", "Strahlverfolgung", "Ανίχνευση ακτίνων"},
+        {"A lamp shines on a mirror, the mirror on a wall. Why does no method here brighten the wall?",
+         "Eine Lampe beleuchtet einen Spiegel, der Spiegel eine Wand. Warum wird die Wand hier nicht heller?",
+         "Μια λάμπα φωτίζει έναν καθρέφτη και ο καθρέφτης έναν τοίχο. Γιατί εδώ ο τοίχος δεν γίνεται φωτεινότερος;"},
+        {"S_j asks for the straight line to the light alone.", "S_j fragt nur nach der geraden Linie zur Lichtquelle.",
+         "Το S_j ρωτά μόνο για την ευθεία προς την πηγή."}},
+    LectureChapter{'F',
+                   {"The testbed", "Das Testbett", "Το πεδίο δοκιμών"},
+                   {"A method errs at 0 of 300 points. How large may its error rate be?",
+                    "Ein Verfahren irrt an 0 von 300 Punkten. Wie groß kann seine Fehlerrate sein?",
+                    "Μια μέθοδος σφάλλει σε 0 από 300 σημεία. Πόσο μεγάλο μπορεί να είναι το ποσοστό σφαλμάτων της;"},
+                   {"With 95 % confidence up to 3/300 = 1 %.", "Mit 95 % Sicherheit bis zu 3/300 = 1 %.",
+                    "Με βεβαιότητα 95 % έως 3/300 = 1 %."}},
+};
+
+constexpr LecturePhrases kPhrases{
+    .title = {"The lectures, in pictures", "Die Vorlesungen in Bildern", "Οι διαλέξεις σε εικόνες"},
+    .lead =
+        {"Each topic of the lectures, with the picture that shows it, what the picture proves, and what was measured "
+         "on it.",
+         "Jedes Thema der Vorlesungen mit dem Bild, das es zeigt, was das Bild beweist und was daran gemessen wurde.",
+         "Κάθε θέμα των διαλέξεων με την εικόνα που το δείχνει, τι αποδεικνύει η εικόνα και τι μετρήθηκε σε αυτήν."},
+    .works    = {"works", "geht", "λειτουργεί"},
+    .in_part  = {"in part", "zum Teil", "εν μέρει"},
+    .not_yet  = {"not yet", "noch nicht", "όχι ακόμη"},
+    .measured = {"Measured", "Gemessen", "Μετρήθηκε"},
+    .exercise = {"Exercise", "Aufgabe", "Άσκηση"},
+    .answer   = {"Answer", "Antwort", "Απάντηση"},
+    .source   = {"Source", "Quelle", "Πηγή"},
+    .back     = {"The report", "Der Bericht", "Η αναφορά"}};
+
+}  // namespace
+
+std::optional<Language> language_named(std::string_view code) {
+    for (const auto& [name, language] : kLanguages)
+        if (name == code) return language;
+    return std::nullopt;
+}
+
+std::string_view code_of(Language language) {
+    for (const auto& [name, known] : kLanguages)
+        if (known == language) return name;
+    return "en";
+}
+
+std::string_view Translated::in(Language language) const {
+    switch (language) {
+        case Language::german: return de;
+        case Language::greek: return el;
+        case Language::english: break;
+    }
+    return en;
+}
+
+std::span<const LectureText> lecture_texts() { return kTexts; }
+std::span<const LectureChapter> lecture_chapters() { return kChapters; }
+const LecturePhrases& lecture_phrases() { return kPhrases; }
+
+}  // namespace umbra
