@@ -1,5 +1,7 @@
 // The page of the lectures: every topic in order, each picture with its own words, in three languages.
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -53,7 +55,9 @@ TEST(LectureTexts, RowsAreThoseOfThePageInTheDocumentation) {
         EXPECT_TRUE(line.starts_with("| " + row.id + " | ")) << line;
         EXPECT_TRUE(contains(line, "| " + row.state + " |") || contains(row.state, "\"") || contains(line, "`"))
             << line;
-        if (!row.scene.empty()) EXPECT_TRUE(contains(line, "`" + row.scene + "`")) << line;
+        if (!row.scene.empty()) {
+            EXPECT_TRUE(contains(line, "`" + row.scene + "`")) << line;
+        }
     }
     EXPECT_EQ(rows, lecture_rows().size());
     EXPECT_EQ(rows, 76u);

@@ -1,0 +1,152 @@
+// Teaching scenes show what they say: known answers on the scene files themselves.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/facing.h"
+#include "umbra/core/render/shade.h"
+#include "umbra/core/render/shading_models.h"
+#include "umbra/core/scene/fog.h"
+#include "umbra/shadows/radiosity/exchange.h"
+#include "umbra/tests/support/method_case.h"
+
+namespace umbra {
+namespace {
+
+Scene scene_named(const std::string& name) { return load_scene(std::string(UMBRA_SCENES) + "/" + name + ".json"); }
+
+std::vector<VisibilityPlane> exact_planes(const Scene& scene, const PointBatch& points) {
+    std::vector<VisibilityPlane> planes;
+    MethodCase run("exact", scene);
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        run.prepare(light);
+        planes.push_back(run.visibility(points, light));
+    }
+    return planes;
+}
+
+std::string object_at(const Scene& scene, const PointBatch& points, std::size_t i) {
+    const TriangleId t = points.triangle[i];
+    return t == kNoTriangle ? "" : scene.objects[scene.triangle_object[t]].name;
+}
+
+double triangle_area(const Scene& scene, TriangleId t) {
+    const dvec3 a(scene.vertex(t, 0)), b(scene.vertex(t, 1)), c(scene.vertex(t, 2));
+    return 0.5 * glm::length(glm::cross(b - a, c - a));
+}
+
+/// The hollow: the side of the ring's far part that faces its middle.
+TEST(LectureScenes, TheHollowIsDarkForThreeReasons) {
+    const Scene scene       = scene_named("three_reasons");
+    const PointBatch points = primary(scene);
+    std::vector<std::uint32_t> hollow;
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        if (object_at(scene, points, i) == "ring" && points.normal(i).x < -0.9f && points.px[i] > 0.6f &&
+            std::abs(points.pz[i]) < 0.15f)
+            hollow.push_back(i);
+    ASSERT_GT(hollow.size(), 50u);
+    const PointBatch asked = pick(points, hollow);
+    MethodCase run("exact", scene);
+    const std::array<std::string, 3> reasons{"faces away", "board", "ring"};
+    for (LightId light = 0; light < 3; ++light) {
+        run.prepare(light);
+        const VisibilityPlane plane = run.visibility(asked, light);
+        std::vector<TriangleId> who(asked.size(), kNoTriangle);
+        run.method->blame(asked, light, who);
+        for (std::size_t i = 0; i < asked.size(); ++i) {
+            if (asked.facing[light][i] == Facing::away) {
+                EXPECT_EQ(reasons[light], "faces away");
+                continue;
+            }
+            ASSERT_TRUE(plane.defined(i));
+            EXPECT_EQ(plane.s[i], 0) << scene.lights[light].name;
+            ASSERT_NE(who[i], kNoTriangle);
+            EXPECT_EQ(scene.objects[scene.triangle_object[who[i]]].name, reasons[light]);
+        }
+    }
+}
+
+/// Of the area, by triangles: half for the sun, (1 - r / d) / 2 for a lamp at the distance d from the middle.
+TEST(LectureScenes, TheLitShareIsAHalfOrLess) {
+    const Scene scene = scene_named("lit_share");
+    for (const char* ball : {"left_ball", "right_ball"}) {
+        double all = 0, lit[2]{};
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+            if (scene.objects[scene.triangle_object[t]].name != ball) continue;
+            all += triangle_area(scene, t);
+            for (LightId light = 0; light < 2; ++light)
+                if (side_of_light(scene.lights[light], scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)) > 0)
+                    lit[light] += triangle_area(scene, t);
+        }
+        EXPECT_NEAR(lit[0] / all, 0.5, 0.01) << ball;
+        EXPECT_NEAR(lit[1] / all, 0.25, 0.015) << ball;
+    }
+}
+
+TEST(LectureScenes, FogHidesShadowsAndLeavesVisibility) {
+    const Scene scene       = scene_named("fog_colonnade");
+    const PointBatch points = primary(scene);
+    Scene clear             = scene;
+    clear.fog.law           = FogLaw::none;
+    const auto planes       = exact_planes(scene, points);
+    EXPECT_EQ(planes[0].s, exact_planes(clear, points)[0].s);
+    const Image foggy = shade(scene, points, planes), bare = shade(clear, points, planes);
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points.triangle[i] == kNoTriangle) continue;
+        seen.insert(object_at(scene, points, i));
+        const double d = glm::length(exact_position(scene, points, i) - dvec3(scene.camera.eye));
+        const double f = std::exp(-std::pow(double(scene.fog.density) * d, 2));
+        ASSERT_NEAR(foggy.at(i, 0), f * bare.at(i, 0) + (1 - f) * scene.fog.colour.x, 2e-6);
+    }
+    EXPECT_TRUE(seen.contains("column_1") && seen.contains("column_8"));
+}
+
+TEST(LectureScenes, NothingLeavesTheClosedRoom) {
+    const Scene scene       = scene_named("closed_room");
+    const PointBatch points = primary(scene);
+    EXPECT_EQ(std::ranges::count(points.triangle, kNoTriangle), 0);
+    Exchange exchange(scene, {.size = 0.1, .light_samples = 4});
+    for (int step = 0; step < 40; ++step) exchange.shoot();
+    // Form factors are taken from centre to patch, so that a coarse patch sends somewhat more or less than all.
+    EXPECT_NEAR(exchange.arrived(), 1, 0.08);
+}
+
+TEST(LectureScenes, FlatShadingIsRightOnFacesUnderSunAndInfiniteViewer) {
+    const Scene scene       = scene_named("flat_is_right");
+    const PointBatch points = primary(scene);
+    const auto lit          = [&](const PointBatch& at) {
+        std::vector<VisibilityPlane> planes(1, VisibilityPlane(at.size()));
+        for (std::size_t i = 0; i < at.size(); ++i) planes[0].s[i] = at.asks(0, i) ? 1.0f : 0.0f;
+        return planes;
+    };
+    const Image flat    = shade_by(ShadingModel::flat, scene, points, lit).linear,
+                gouraud = shade_by(ShadingModel::gouraud, scene, points, lit).linear,
+                phong   = shade_by(ShadingModel::phong, scene, points, lit).linear;
+    std::size_t faces = 0, bent = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const std::string object = object_at(scene, points, i);
+        if (object.empty()) continue;
+        if (object == "drum") {
+            bent += flat.at(i, 0) != phong.at(i, 0);
+            continue;
+        }
+        ++faces;
+        for (std::size_t c = 0; c < 3; ++c) {
+            ASSERT_EQ(flat.at(i, c), phong.at(i, c)) << object;
+            ASSERT_NEAR(gouraud.at(i, c), phong.at(i, c), 1e-6) << object;
+        }
+    }
+    EXPECT_GT(faces, 20000u);
+    EXPECT_GT(bent, 500u);
+}
+
+}  // namespace
+}  // namespace umbra
