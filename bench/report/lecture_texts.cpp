@@ -172,8 +172,22 @@ constexpr std::array kTexts{
          "sind gleich.",
          "Ο ήλιος και ο παρατηρητής είναι στο άπειρο και οι έδρες είναι η επιφάνεια: η επίπεδη φωτοσκίαση ισούται με "
          "του Phong."}},
-    LectureText{"C9", "weitere Fehler der Interpolation", "άλλα σφάλματα της παρεμβολής", {}},
-    LectureText{"C10", "Einfluss der Triangulierung", "επίδραση της τριγωνοποίησης", {}},
+    LectureText{"C9",
+                "weitere Fehler der Interpolation",
+                "άλλα σφάλματα της παρεμβολής",
+                {"Interpolated normals round off a coarse ball inside; its outline and its shadow keep their corners.",
+                 "Interpolierte Normalen runden eine grobe Kugel innen; Umriss und Schatten behalten ihre Ecken.",
+                 "Οι παρεμβαλλόμενες κανονικές στρογγυλεύουν μια χονδροειδή σφαίρα εσωτερικά· το περίγραμμα και η σκιά "
+                 "της κρατούν τις γωνίες τους."}},
+    LectureText{"C10",
+                "Einfluss der Triangulierung",
+                "επίδραση της τριγωνοποίησης",
+                {"The same square in 1, 2, 3, 5, 10 and 40 rows of faces: Gouraud shading finds the highlight only if "
+                 "a vertex lies in it.",
+                 "Dasselbe Quadrat in 1, 2, 3, 5, 10 und 40 Reihen von Flächen: Gouraud-Schattierung findet das "
+                 "Glanzlicht nur, wenn eine Ecke darin liegt.",
+                 "Το ίδιο τετράγωνο σε 1, 2, 3, 5, 10 και 40 σειρές εδρών: η φωτοσκίαση Gouraud βρίσκει τη στιλπνή "
+                 "κηλίδα μόνο αν μια κορυφή βρίσκεται μέσα της."}},
     LectureText{"C11", "Schnelligkeit gegen Genauigkeit beim Schattieren", "ταχύτητα και ακρίβεια στη φωτοσκίαση", {}},
     LectureText{"C12", "eine Szene durch alle Stufen", "μία σκηνή σε όλα τα στάδια", {}},
 
@@ -269,7 +283,15 @@ constexpr std::array kTexts{
          "Die Höhlung ist der ersten Lichtquelle abgewandt, das Brett verdeckt die zweite, der Ring selbst die dritte.",
          "Το κοίλωμα κοιτά μακριά από την πρώτη πηγή, η σανίδα κρύβει τη δεύτερη και ο ίδιος ο δακτύλιος την τρίτη."}},
     LectureText{"D15", "Energie aus S_j", "ενέργεια από το S_j", {}},
-    LectureText{"D16", "verdeckte Schatten rauer Flächen", "απόκρυψη σκιών σε τραχείς επιφάνειες", {}},
+    LectureText{
+        "D16",
+        "verdeckte Schatten rauer Flächen",
+        "απόκρυψη σκιών σε τραχείς επιφάνειες",
+        {"Seen along the sun's direction rough ground hides its shadows; against the sun they cover much of it.",
+         "In Richtung der Sonne gesehen verdeckt rauer Boden seine Schatten; gegen die Sonne bedecken sie viel von "
+         "ihm.",
+         "Κοιτώντας προς την κατεύθυνση του ήλιου το τραχύ έδαφος κρύβει τις σκιές του· αντίθετα προς τον ήλιο "
+         "καλύπτουν μεγάλο μέρος του."}},
 
     LectureText{"E1", "Rekursion", "αναδρομή", {}},
     LectureText{"E2", "Kugel und Quader als Formel", "σφαίρα και κουτί με τύπο", {}},

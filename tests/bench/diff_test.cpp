@@ -379,13 +379,13 @@ TEST_F(Diff, PageShowsFiguresAndPictures) {
 TEST_F(Diff, JunitCountsEachVerdict) {
     DiffSet set{"a", "b", true, {}};
     for (const Verdict v : {Verdict::same, Verdict::close, Verdict::close, Verdict::differs, Verdict::differs,
-                            Verdict::unlike, Verdict::unreadable}) {
+                            Verdict::unlike, Verdict::unreadable, Verdict::unreadable}) {
         set.images.emplace_back();
         set.images.back().verdict = v;
         set.images.back().name    = to_string(v);
     }
     const std::string text = diff_set_junit(set);
-    EXPECT_NE(text.find("tests=\"7\" failures=\"3\" errors=\"1\""), std::string::npos) << text;
+    EXPECT_NE(text.find("tests=\"8\" failures=\"3\" errors=\"2\""), std::string::npos) << text;
     EXPECT_NE(text.find("name=\"close\"/>"), std::string::npos) << text;
     EXPECT_EQ(text.find("<failure type=\"close\""), std::string::npos) << text;
     EXPECT_EQ(set.worst(), Verdict::unreadable);

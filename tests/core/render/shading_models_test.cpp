@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/core/render/gbuffer.h"
-#include "umbra/core/render/ray.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/scene/primitives.h"
+#include "umbra/tests/support/lit_everywhere.h"
 
 namespace umbra {
 namespace {
@@ -34,24 +33,6 @@ Scene bent_triangle() {
                {{0, 1, 2}}, 0);
     scene.camera.eye = {0, 1.5f, 3}, scene.camera.target = {0, 0, -1};
     return scene;
-}
-
-PointBatch points_of(const Scene& scene) {
-    return primary_points(RayScene(scene), scene, scene.camera, scene.width, scene.height);
-}
-
-/// Every light reaches every point that faces it.
-std::vector<VisibilityPlane> all_lit(const Scene& scene, const PointBatch& points) {
-    std::vector<VisibilityPlane> planes;
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
-        VisibilityPlane& plane = planes.emplace_back(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) plane.s[i] = points.asks(light, i) ? 1.0f : 0.0f;
-    }
-    return planes;
-}
-
-ShadedPicture shaded(ShadingModel model, const Scene& scene, const PointBatch& points) {
-    return shade_by(model, scene, points, [&](const PointBatch& at) { return all_lit(scene, at); });
 }
 
 std::size_t surfaces(const PointBatch& points) {
