@@ -334,6 +334,26 @@ TEST_F(Cli, UnreadableInputEndsWithFourAndLeavesNothing) {
     EXPECT_EQ(umbra("render " + kScene + " --size 32x18 -o /nonexistent/folder/a.png").exit_code, 4);
 }
 
+TEST_F(Cli, RenderEndsWithOneWhereTheMethodDoesNotServe) {
+    std::ofstream(file("ball.json")) << R"({"camera": {"eye": [0, 1, 5], "target": [0, 0, 0]},
+        "lights": [{"name": "lamp", "type": "point", "position": [0, 4, 3]}],
+        "objects": [{"name": "ball", "type": "sphere"}]})";
+    const Answer answer =
+        umbra("render " + file("ball.json") + " --size 32x18 --method planar_projection -o " + file("a.png"));
+    EXPECT_EQ(answer.exit_code, 1);
+    EXPECT_TRUE(contains(answer.output, "does not serve this scene")) << answer.output;
+    EXPECT_FALSE(fs::exists(file("a.png")));
+}
+
+TEST_F(Cli, AMeshThatIsMissingEndsWithFourAndTheOtherScenesAreThere) {
+    std::ofstream(file("gone.json")) << R"({"objects": [{"name": "x", "type": "mesh", "file": "gone.obj"}]})";
+    const Answer answer =
+        umbra("compare " + file("gone.json") + " " + kScene + " --size 32x18 --methods exact -o " + file("out"));
+    EXPECT_EQ(answer.exit_code, 4) << answer.output;
+    EXPECT_TRUE(contains(answer.output, "gone.obj")) << answer.output;
+    EXPECT_TRUE(fs::exists(file("out/sun_on_plane/results.json")));
+}
+
 /// Names in the table of commands.
 std::vector<std::string> command_names() {
     std::vector<std::string> names;

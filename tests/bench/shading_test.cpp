@@ -42,6 +42,26 @@ const Json& model(const Json& record, const std::string& name) {
     return *std::ranges::find_if(record["models"], [&](const Json& m) { return m["name"] == name; });
 }
 
+/// Seen from straight above, Gouraud shading of one triangle is linear in pixels, which has no kinks; Phong's bends.
+TEST(ShadingStudy, KinksAreBendsAndNotSlopes) {
+    const TemporaryFolder folder;
+    Scene scene;
+    scene.materials.resize(1);
+    add_object(scene, "triangle", {{-9, 0, 9}, {9, 0, 9}, {0, 0, -12}}, {}, {{0, 1, 2}}, 0);
+    Light lamp;
+    lamp.name = "lamp", lamp.position = {0.5f, 1, 0.2f};
+    scene.lights.push_back(lamp);
+    scene.camera.eye = {0, 5, 0}, scene.camera.up = {0, 0, -1};
+    scene.camera.projection = Projection::orthographic, scene.camera.height = 4;
+    scene.width = scene.height = 64;
+    ShadingOptions options;
+    options.runs      = 1;
+    const Json record = compare_shading(prepare_scene(std::move(scene), "triangle", {}), options, folder.path());
+    EXPECT_LT(model(record, "gouraud")["kink"].get<double>(), 0.01);
+    EXPECT_EQ(model(record, "phong")["kink"].get<double>(), 1);
+    EXPECT_EQ(model(record, "flat")["kink"].get<double>(), 0);
+}
+
 TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
     const TemporaryFolder folder;
     const PreparedScene prepared = shiny_ball();

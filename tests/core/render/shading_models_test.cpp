@@ -64,6 +64,22 @@ TEST(ShadingModels, PhongIsTheSumOfEveryPixel) {
     EXPECT_EQ(phong.evaluations, surfaces(points));
 }
 
+/// One value a face: that of the middle between its corners.
+TEST(ShadingModels, FlatIsTheSumAtTheMiddleOfTheFace) {
+    Scene scene          = white_scene();
+    scene.lights[0].kind = LightKind::point, scene.lights[0].position = {1.5f, 2, 0.5f};
+    add_object(scene, "triangle", {{-2, 0, 2}, {2, 0, 2}, {-1, 0, -3}}, {}, {{0, 1, 2}}, 0);
+    scene.camera.eye        = {0, 4, 4};
+    const PointBatch points = points_of(scene);
+    const Image flat        = shaded(ShadingModel::flat, scene, points).linear;
+    const dvec3 to_lamp     = dvec3(scene.lights[0].position) - dvec3(-1, 0, 1) / 3.0;
+    ASSERT_GT(surfaces(points), 100u);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points.triangle[i] == kNoTriangle) continue;
+        ASSERT_NEAR(flat.at(i, 0), to_lamp.y / glm::length(to_lamp), 1e-6);
+    }
+}
+
 /// With light and viewer at infinity nothing in the sum changes over a face.
 TEST(ShadingModels, FlatIsPhongWhereLightAndViewerAreAtInfinity) {
     Scene scene            = white_scene();
