@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/shadows/atherton/atherton_weiler.h"
 
 namespace umbra {
@@ -63,21 +64,6 @@ std::string in_one_line(std::string name) {
     for (char& c : name)
         if (static_cast<unsigned char>(c) < ' ') c = '_';
     return name;
-}
-
-std::string in_xml(const std::string& text) {
-    std::string escaped;
-    for (const char c : text) {
-        if (c == '&')
-            escaped += "&amp;";
-        else if (c == '<')
-            escaped += "&lt;";
-        else if (c == '>')
-            escaped += "&gt;";
-        else
-            escaped += static_cast<unsigned char>(c) < ' ' ? '_' : c;
-    }
-    return escaped;
 }
 
 std::string mesh_text(const Scene& scene, const AthertonWeiler& method, const std::string& title) {
@@ -148,7 +134,7 @@ std::string drawing_text(const Scene& scene, const AthertonWeiler& method, const
     std::string text = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{} {} {} {}\">\n<title>{}</title>\n"
         "<g stroke-width=\"{}\" stroke-linejoin=\"round\">\n",
-        low.x - margin, low.y - margin, size.x + 2 * margin, size.y + 2 * margin, in_xml(title), line_width);
+        low.x - margin, low.y - margin, size.x + 2 * margin, size.y + 2 * margin, xml_text(title), line_width);
     const auto add = [&](std::string_view name, const std::string& path, std::string_view fill, std::string_view line) {
         if (!path.empty())
             fmt::format_to(Out(text), "<path class=\"{}\" fill=\"{}\" stroke=\"{}\" d=\"{}\"/>\n", name, fill, line,

@@ -9,6 +9,7 @@
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 
@@ -62,22 +63,6 @@ DiffResult pair_of_folders(const fs::path& a, const fs::path& b, const fs::path&
         fs::remove(of.map, ignored);
     }
     return result;
-}
-
-/// Valid UTF-8 without the characters that XML 1.0 forbids, and with markup escaped.
-std::string xml(const std::string& text) {
-    const std::string valid =
-        nlohmann::json::parse(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-    std::string escaped;
-    for (const char c : valid) switch (c) {
-            case '&': escaped += "&amp;"; break;
-            case '<': escaped += "&lt;"; break;
-            case '>': escaped += "&gt;"; break;
-            case '"': escaped += "&quot;"; break;
-            case '\n': escaped += "&#10;"; break;
-            default: escaped += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-        }
-    return escaped;
 }
 
 }  // namespace
@@ -150,14 +135,14 @@ std::string diff_set_junit(const DiffSet& set) {
         "<testsuite name=\"umbra diff\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
         set.images.size(), set.count(Verdict::differs) + set.count(Verdict::unlike), set.count(Verdict::unreadable));
     for (const DiffResult& image : set.images) {
-        text += fmt::format("<testcase classname=\"umbra.diff\" name=\"{}\"", xml(image.name));
+        text += fmt::format("<testcase classname=\"umbra.diff\" name=\"{}\"", xml_text(image.name));
         if (image.verdict <= Verdict::close) {
             text += "/>\n";
             continue;
         }
         const char* element = image.verdict == Verdict::unreadable ? "error" : "failure";
         text += fmt::format(">\n<{} type=\"{}\" message=\"{}\">{}</{}>\n</testcase>\n", element,
-                            to_string(image.verdict), xml(diff_line(image)), xml(diff_text(image)), element);
+                            to_string(image.verdict), xml_text(diff_line(image)), xml_text(diff_text(image)), element);
     }
     return text + "</testsuite>\n</testsuites>\n";
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace umbra {
 
@@ -105,6 +106,21 @@ std::filesystem::path path_of_url(const std::string& url) {
         }
     }
     return path;
+}
+
+std::string xml_text(const std::string& text) {
+    const std::string valid =
+        nlohmann::json::parse(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    std::string escaped;
+    for (const char c : valid) switch (c) {
+            case '&': escaped += "&amp;"; break;
+            case '<': escaped += "&lt;"; break;
+            case '>': escaped += "&gt;"; break;
+            case '"': escaped += "&quot;"; break;
+            case '\n': escaped += "&#10;"; break;
+            default: escaped += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+        }
+    return escaped;
 }
 
 }  // namespace umbra
