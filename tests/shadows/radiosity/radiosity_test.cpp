@@ -121,6 +121,15 @@ TEST(Elements, AreCutWhereTheValueChangesAndInterpolateIt) {
     EXPECT_GT(seen.size(), step.leaves() / 2);
 }
 
+/// A shadow that lies between the corners is seen where it crosses the middle of an edge.
+TEST(Elements, AreCutWhereOnlyTheMiddleOfAnEdgeDiffers) {
+    Elements elements;
+    elements.grow([](double u, double v) { return std::hypot(u - 0.5, v) < 0.2 ? 0.0f : 1.0f; }, 5, 0.05f);
+    EXPECT_GT(elements.leaves(), 20u);
+    EXPECT_EQ(elements.at(0.5, 0.01, true), 0);
+    EXPECT_EQ(elements.at(0.1, 0.01, true), 1);
+}
+
 /// All that leaves a wall arrives at others: everywhere I = emission / (1 - k_d).
 TEST(Exchange, FillsARoomEvenly) {
     for (const float k_d : {0.0f, 0.5f, 0.8f}) {
