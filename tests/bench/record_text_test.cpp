@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/compare/record.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/tests/support/temporary_folder.h"
@@ -20,6 +21,25 @@ TEST(RecordText, ReplacesWhatIsNotUtf8) {
                           "che"}}),
               "{\n \"name\": \"K\xc3\xbc"
               "che\"\n}\n");
+}
+
+/// Sums over the lights, each phase under its own name.
+TEST(RecordText, ReferencesHaveTheTimesOfTheirPhases) {
+    Scene scene;
+    scene.lights.resize(2);
+    ReferenceRun ran{.run = {.choice = parse_method("exact")}, .judged = 3, .of = 4, .stand_in = {}};
+    ran.run.build      = {100, 90, 120, 5};
+    ran.run.aim        = {{10, 9, 12, 5}, {20, 18, 24, 5}};
+    ran.run.visibility = {{1, 0.5, 2, 5}, {2, 1.5, 3, 5}};
+    const Json record  = reference_json({.choice = parse_method("exact"), .exact = true, .note = {}}, ran, scene, {});
+    EXPECT_EQ(record["times"]["build_ms"]["median"], 100);
+    EXPECT_EQ(record["times"]["build_ms"]["max"], 120);
+    EXPECT_EQ(record["times"]["aim_ms"]["median"], 30);
+    EXPECT_EQ(record["times"]["aim_ms"]["min"], 27);
+    EXPECT_EQ(record["times"]["visibility_ms"]["median"], 3);
+    EXPECT_EQ(record["times"]["visibility_ms"]["max"], 5);
+    EXPECT_EQ(record["judged"]["points"], 3);
+    EXPECT_EQ(record["judged"]["of"], 4);
 }
 
 TEST(RecordText, AMeshWithNamesInLatin1IsComparedAndReported) {

@@ -307,6 +307,25 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
     EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60}, {})["settings"][1]["cost_ms"].get<double>(), 2 + 10 + 100, 1e-12);
 }
 
+/// What a sweep says of a setting is its error in the view that is hardest for it.
+TEST(Sweep, ValuesAreThoseOfTheWorstView) {
+    const auto cell = [](int view, double rmse) {
+        return Json{{"text", "ray_traced:samples=1"},
+                    {"name", "ray_traced"},
+                    {"title", "t"},
+                    {"parameters", Json::object()},
+                    {"view", view},
+                    {"key", "k"},
+                    {"serves", {{"how", "approximately"}, {"why", "."}}},
+                    {"undefined", 0},
+                    {"errors", {{{"light", "l"}, {"points", 1000}, {"rmse", rmse}, {"bracket", nullptr}}}}};
+    };
+    const MeasuredSetting setting{parse_method("ray_traced:samples=1"), {cell(0, 0.1), cell(1, 0.3), cell(2, 0.2)}, {}};
+    const Json record = sweep_json({{setting}}, 3, {60, 0, 0}, {});
+    EXPECT_EQ(record["settings"][0]["values"]["rmse"], 0.3);
+    EXPECT_EQ(record["settings"][0]["views"][2]["metrics"]["rmse"], 0.2);
+}
+
 std::string text_of(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
@@ -407,6 +426,11 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
     const Recommendation tight = recommend(lab, o);
     ASSERT_TRUE(tight.chosen.has_value());
     EXPECT_GE(tight.candidates[*tight.chosen].choice.settings.value("samples"), 64);
+    double least = 1;
+    for (const Candidate& c : tight.candidates)
+        if (c.cost && c.bounds[0]) least = std::min(least, *c.bounds[0]);
+    ASSERT_FALSE(tight.staircase.empty());
+    EXPECT_EQ(tight.staircase.back().error, least);
     for (std::size_t k = 1; k < tight.staircase.size(); ++k) {
         EXPECT_LT(tight.staircase[k].error, tight.staircase[k - 1].error);
         EXPECT_GE(*tight.candidates[tight.staircase[k].candidate].cost,
