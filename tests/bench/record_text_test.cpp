@@ -27,7 +27,7 @@ TEST(RecordText, ReplacesWhatIsNotUtf8) {
 TEST(RecordText, ReferencesHaveTheTimesOfTheirPhases) {
     Scene scene;
     scene.lights.resize(2);
-    ReferenceRun ran{.run = {.choice = parse_method("exact")}, .judged = 3, .of = 4, .stand_in = {}};
+    ReferenceRun ran{.run = {.choice = parse_method("exact")}, .judged = 3, .of = 4, .stand_in = "ray_traced"};
     ran.run.build      = {100, 90, 120, 5};
     ran.run.aim        = {{10, 9, 12, 5}, {20, 18, 24, 5}};
     ran.run.visibility = {{1, 0.5, 2, 5}, {2, 1.5, 3, 5}};
