@@ -1,7 +1,6 @@
 #include "umbra/core/render/brdf.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace umbra {
@@ -46,10 +45,10 @@ void measure_from(const Brdf& f, dvec3 l, int steps, BrdfFigures& figures) {
             with += value * v.z;
             without += value;
         }
-    const double solid_angle =
-        2 * kPi / (static_cast<double>(kAzimuths) * steps * steps);  // of one v: steps are of equal cosine
-    figures.energy         = std::max(figures.energy, with * solid_angle);
-    figures.without_cosine = std::max(figures.without_cosine, without * solid_angle);
+    // Of one v: all are equal, since steps are of equal cosine.
+    const double solid_angle = 2 * kPi / (static_cast<double>(kAzimuths) * steps * steps);
+    figures.energy           = std::max(figures.energy, with * solid_angle);
+    figures.without_cosine   = std::max(figures.without_cosine, without * solid_angle);
 }
 
 }  // namespace

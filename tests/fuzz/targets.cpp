@@ -57,8 +57,8 @@ void mtl(Bytes bytes) {
 }
 
 void ies(Bytes bytes) {
-    static const fs::path scene = folder().write(
-        "goniometric.json", R"({"lights": [{"type": "point", "position": [0, 2, 0], "ies": "light.ies"}],
+    static const fs::path scene =
+        folder().write("goniometric.json", R"({"lights": [{"type": "point", "position": [0, 2, 0], "ies": "light.ies"}],
             "objects": [{"type": "box"}]})");
     (void)folder().write("light.ies", text_of(bytes));
     read_or_refuse([&] { (void)load_scene(scene); });

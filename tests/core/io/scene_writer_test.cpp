@@ -213,8 +213,8 @@ TEST_P(WrittenScene, IsTheSceneThatWasRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WrittenScene,
-                         testing::Values("eclipse", "faulty_meshes", "goniometric", "self_shadow", "six_lights", "spot_stage",
-                                         "umbra_penumbra", "warnock"),
+                         testing::Values("eclipse", "faulty_meshes", "goniometric", "self_shadow", "six_lights",
+                                         "spot_stage", "umbra_penumbra", "warnock"),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace
