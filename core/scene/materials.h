@@ -41,7 +41,7 @@ struct Material {
     float transmit            = 0;     ///< Whitted's transmitted share; not computed
     float index_of_refraction = 1;
     std::vector<LafortuneLobe> lobes{};  ///< added to the specular term
-    vec3 tangent{1, 0, 0};             ///< of `lobes`, world space, any length > 0
+    vec3 tangent{1, 0, 0};               ///< of `lobes`, world space, any length > 0
 };
 
 }  // namespace umbra

@@ -29,7 +29,7 @@ struct Photometry {
     std::vector<float> vertical;    ///< C: within [0, 180]; A, B: within [-90, 90]. At least one
     std::vector<float> horizontal;  ///< C: 0; 0 to 90, 180 or 360; 90 to 270. A, B: 0 to 90, -90 to 90. The part that
                                     ///< is missing is symmetric
-    std::vector<float> candela;  ///< one a pair: candela[h * vertical.size() + v], >= 0
+    std::vector<float> candela;     ///< one a pair: candela[h * vertical.size() + v], >= 0
 };
 
 /// What makes a table unusable, as "the horizontal angles end at 120 degrees, expected ...", or empty.
