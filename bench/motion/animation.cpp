@@ -61,6 +61,9 @@ Animation::Animation(const Scene& start, const SceneFacts& facts, Movement movem
     axis_  = unit_axis(vertical_);
     if (movement == Movement::camera) {
         if (camera_.eye == camera_.target) cannot_ = "the eye is at its target";
+        for (const Light& light : start.lights)
+            if (light.camera_pose)
+                cannot_ = fmt::format("light {} is fixed to the camera, so that it would move, too", light.name);
     } else if (movement == Movement::light) {
         if (start.lights.empty()) {
             cannot_ = "the scene has no light";
@@ -147,6 +150,8 @@ void Animation::pose(Scene& scene, double time) const {
             Light& light = scene.lights[this->light()];
             light        = light_;
             if (start) return;
+            light.camera_pose.reset();  // it leaves the camera
+            light.along     = turned_direction(light_.along, axis_, time);
             light.direction = turned_direction(light_.direction, axis_, time);
             if (light.kind == LightKind::directional) return;
             light.position = vec3(pivot_ + turned(dvec3(light_.position) - pivot_, axis_, time));

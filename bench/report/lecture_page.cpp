@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 #include <string>
 
@@ -16,8 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A cell without blanks around it and without backquotes; empty for a dash.
+/// A cell as text: without blanks around it, backquotes and the addresses of links; empty for a dash.
 std::string plain(std::string cell) {
+    static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
+    cell = std::regex_replace(cell, link, "$1");
     std::erase(cell, '`');
     const auto first = cell.find_first_not_of(' ');
     if (first == std::string::npos) return {};

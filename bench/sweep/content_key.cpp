@@ -56,8 +56,9 @@ private:
 
 // A member that is added to one of these structs has to be added below, too.
 #if defined(__GLIBCXX__) && defined(__x86_64__)
-static_assert(sizeof(Scene) == 448 && sizeof(Fog) == 36 && sizeof(Camera) == 48 && sizeof(Light) == 160 &&
-              sizeof(Material) == 128 && sizeof(Object) == 48);
+static_assert(sizeof(Scene) == 448 && sizeof(Fog) == 36 && sizeof(Camera) == 48 && sizeof(Light) == 280 &&
+              sizeof(LightPose) == 60 && sizeof(Photometry) == 80 && sizeof(Material) == 168 &&
+              sizeof(LafortuneLobe) == 52 && sizeof(Object) == 48);
 #endif
 
 Hasher& operator<<(Hasher& h, const Camera& c) {
@@ -69,15 +70,31 @@ Hasher& operator<<(Hasher& h, const Object& o) {
 }
 
 Hasher& operator<<(Hasher& h, const Material& m) {
+    h << m.lobes.size();
+    for (const LafortuneLobe& lobe : m.lobes)
+        h << lobe.rows[0] << lobe.rows[1] << lobe.rows[2] << lobe.k_s << lobe.shininess;
     return h << m.name << m.k_a << m.k_d << m.k_s << m.O_d << m.O_s << m.emission << m.shininess << m.lobe
-             << m.two_sided << m.opacity << m.reflect << m.transmit << m.index_of_refraction;
+             << m.two_sided << m.opacity << m.reflect << m.transmit << m.index_of_refraction << m.tangent;
 }
 
 Hasher& operator<<(Hasher& h, const Light& l) {
     h << l.name << l.kind << l.position << l.direction << l.edge_u << l.edge_v << l.radius << l.range;
     h << l.ambient << l.diffuse << l.specular;
     h << l.attenuation.c1 << l.attenuation.c2 << l.attenuation.c3 << l.attenuation.clamp;
-    return h << l.spot.falloff << l.spot.exponent << l.spot.cutoff << l.spot.inner;
+    h << l.spot.falloff << l.spot.exponent << l.spot.cutoff << l.spot.inner;
+    h << (l.photometry != nullptr);
+    if (l.photometry)
+        (h << l.photometry->type)
+            .list(l.photometry->vertical)
+            .list(l.photometry->horizontal)
+            .list(l.photometry->candela);
+    h << l.along << l.except.size();
+    for (const std::string& name : l.except) h << name;
+    h << l.camera_pose.has_value();
+    if (l.camera_pose)
+        h << l.camera_pose->position << l.camera_pose->direction << l.camera_pose->edge_u << l.camera_pose->edge_v
+          << l.camera_pose->along;
+    return h;
 }
 
 Hasher& operator<<(Hasher& h, const Fog& f) {
@@ -101,7 +118,8 @@ std::string scene_key(const Scene& scene) {
     each(h, scene.materials);
     each(h, scene.lights);
     h << scene.camera << scene.width << scene.height << scene.ambient << scene.background << scene.tone
-      << scene.exposure << scene.local_viewer << scene.fog;
+      << scene.exposure << scene.local_viewer << scene.light_ambient << scene.specular_colour
+      << scene.ambient_coefficient << scene.fog;
     return h.digits();
 }
 

@@ -90,7 +90,9 @@ Scene view_of(const Scene& scene, int view) {
     const dvec3 middle = 0.5 * (dvec3(box.min) + dvec3(box.max));
     Draw draw(view);
     move_camera(moved.camera, rays, draw);
-    for (Light& light : moved.lights) move_light(light, middle, rays, draw);
+    place_fixed_lights(moved);
+    for (Light& light : moved.lights)
+        if (!light.camera_pose) move_light(light, middle, rays, draw);
     return moved;
 }
 

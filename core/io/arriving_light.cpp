@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "umbra/core/scene/photometry.h"
+
 namespace umbra {
 namespace {
 
@@ -25,7 +27,8 @@ double at_most(const Scene& scene, const Light& light, TriangleId t) {
     const dvec3 nearest   = glm::clamp(dvec3(light.position), dvec3(box.min), dvec3(box.max));
     const double distance = glm::distance(nearest, dvec3(light.position));
     if (light.range > 0 && distance > double(light.range)) return 0;
-    return own * double(attenuation_factor(light.attenuation, static_cast<float>(distance)));
+    const double candela = light.photometry ? double(peak(*light.photometry)) : 1;
+    return own * candela * double(attenuation_factor(light.attenuation, static_cast<float>(distance)));
 }
 
 double median(std::vector<double>& values) {

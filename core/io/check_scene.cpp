@@ -79,6 +79,12 @@ void check_material(const Material& m, const path& file) {
     terms.number("transmit", m.transmit, kShare);
     terms.number("shininess", m.shininess, kNotNegative);
     terms.number("index_of_refraction", m.index_of_refraction, kPositive);
+    for (const LafortuneLobe& lobe : m.lobes) {
+        for (const vec3 row : lobe.rows) terms.vector("a row of C", row, kAnyNumber);
+        terms.vector("k_s of a lobe", lobe.k_s, kNotNegative);
+        terms.number("shininess of a lobe", lobe.shininess, kNotNegative);
+    }
+    if (!m.lobes.empty()) terms.direction("tangent", m.tangent);
 }
 
 void check_spot(const Spot& s, const Terms& terms) {
@@ -94,6 +100,14 @@ void check_spot(const Spot& s, const Terms& terms) {
     terms.number("exponent", s.exponent, kNotNegative);
 }
 
+void check_photometry(const Light& light, const Terms& terms) {
+    if (const std::string fault = fault_of(*light.photometry); !fault.empty()) terms.fail(fault);
+    terms.direction("direction", light.direction);
+    terms.direction("along", light.along);
+    if (glm::cross(dvec3(light.direction), dvec3(light.along)) == dvec3(0))
+        terms.fail("along is parallel to the light's direction");
+}
+
 void check_light(const Light& light, const path& file) {
     const Terms terms(file, fmt::format("light \"{}\"", light.name));
     terms.vector("ambient", light.ambient, kNotNegative);
@@ -107,7 +121,9 @@ void check_light(const Light& light, const path& file) {
     terms.number("range", light.range, kNotNegative);
 
     switch (light.kind) {
-        case LightKind::point: break;
+        case LightKind::point:
+            if (light.photometry) check_photometry(light, terms);
+            break;
         case LightKind::directional: terms.direction("direction", light.direction); break;
         case LightKind::spot:
             terms.direction("direction", light.direction);

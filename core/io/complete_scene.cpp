@@ -171,6 +171,7 @@ Scene complete_scene(SceneFile&& read, const std::filesystem::path& file) {
         assume_camera(scene);
         check_camera(scene, file);
     }
+    place_fixed_lights(scene);
     for (Light& light : scene.lights) normalise_direction(light);
     if (scene.lights.empty() && !read.may_be_dark) assume_light(scene);
     name_lights(scene);

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "umbra/core/image/image.h"
 #include "umbra/core/io/limits.h"
@@ -41,6 +43,10 @@ vec3 colour_or(const JsonText& json, const JsonFields& fields, std::string_view 
 }
 
 Attenuation read_attenuation(const JsonText& json, const JsonValue& v) {
+    if (std::holds_alternative<std::string>(v.data)) {
+        (void)json.choice(v, "attenuation", {"photometric"});
+        return {0, 0, 1, false};
+    }
     const vec3 c(json.vector(v, "attenuation", kNotNegative));
     if (c == vec3(0))
         json.fail(
@@ -59,11 +65,53 @@ void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene) {
 }
 
 const std::vector<std::string_view>& material_keys() {
-    static const std::vector<std::string_view> keys{
-        "k_a",  "k_d",       "k_s",     "O_d",     "O_s",      "emission",           "shininess",
-        "lobe", "two_sided", "opacity", "reflect", "transmit", "index_of_refraction"};
+    static const std::vector<std::string_view> keys{"k_a",
+                                                    "k_d",
+                                                    "k_s",
+                                                    "O_d",
+                                                    "O_s",
+                                                    "emission",
+                                                    "shininess",
+                                                    "lobe",
+                                                    "two_sided",
+                                                    "opacity",
+                                                    "reflect",
+                                                    "transmit",
+                                                    "index_of_refraction",
+                                                    "lobes",
+                                                    "tangent"};
     return keys;
 }
+
+namespace {
+
+/// Three numbers for a diagonal matrix, or three rows.
+std::array<vec3, 3> read_matrix(const JsonText& json, const JsonValue& v) {
+    const JsonArray& list = json.array(v, "C", "[x, y, z] of a diagonal, or three rows [x, y, z]");
+    if (list.empty() || !std::holds_alternative<JsonArray>(list[0].data)) {
+        const vec3 d(json.vector(v, "C", kAnyNumber));
+        return {vec3(d.x, 0, 0), vec3(0, d.y, 0), vec3(0, 0, d.z)};
+    }
+    if (list.size() != 3) json.wrong_type(v, "C", "[x, y, z] of a diagonal, or three rows [x, y, z]");
+    std::array<vec3, 3> rows;
+    for (std::size_t k = 0; k < 3; ++k) rows.at(k) = vec3(json.vector(list[k], "a row of C", kAnyNumber));
+    return rows;
+}
+
+std::vector<LafortuneLobe> read_lobes(const JsonText& json, const JsonValue& v) {
+    std::vector<LafortuneLobe> lobes;
+    for (const JsonValue& entry : json.array(v, "lobes", "a list of lobes")) {
+        const JsonFields fields(json, entry, "a lobe", {"C", "k_s", "shininess"});
+        LafortuneLobe lobe;
+        if (const JsonValue* matrix = fields.find("C")) lobe.rows = read_matrix(json, *matrix);
+        lobe.k_s       = read_colour(json, fields.require("k_s"), "k_s");
+        lobe.shininess = number_or(fields, "shininess", kNotNegative, lobe.shininess);
+        lobes.push_back(lobe);
+    }
+    return lobes;
+}
+
+}  // namespace
 
 void apply_material_terms(const JsonText& json, const JsonFields& fields, Material& m) {
     m.k_a      = colour_or(json, fields, "k_a", m.k_a);
@@ -79,6 +127,11 @@ void apply_material_terms(const JsonText& json, const JsonFields& fields, Materi
     m.reflect             = number_or(fields, "reflect", kShare, m.reflect);
     m.transmit            = number_or(fields, "transmit", kShare, m.transmit);
     m.index_of_refraction = number_or(fields, "index_of_refraction", kPositive, m.index_of_refraction);
+    if (const JsonValue* lobes = fields.find("lobes")) m.lobes = read_lobes(json, *lobes);
+    if (const JsonValue* tangent = fields.find("tangent")) {
+        m.tangent = vec3(json.vector(*tangent, "tangent", kAnyNumber));
+        if (m.tangent == vec3(0)) json.fail(*tangent, "tangent is (0, 0, 0), expected a vector with a direction");
+    }
 }
 
 namespace {
@@ -118,6 +171,12 @@ void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& 
     if (const JsonValue* fog = fields.find("fog")) read_fog(json, *fog, scene.fog);
     if (const JsonValue* viewer = fields.find("viewer"))
         scene.local_viewer = json.choice<Viewer>(*viewer, "viewer") == Viewer::local;
+    if (const JsonValue* v = fields.find("light_ambient"))
+        scene.light_ambient = json.choice<LightAmbient>(*v, "light_ambient");
+    if (const JsonValue* v = fields.find("specular_colour"))
+        scene.specular_colour = json.choice<SpecularColour>(*v, "specular_colour");
+    if (const JsonValue* v = fields.find("ambient_coefficient"))
+        scene.ambient_coefficient = json.choice<AmbientCoefficient>(*v, "ambient_coefficient");
 }
 
 }  // namespace umbra

@@ -13,7 +13,7 @@ namespace umbra {
 [[nodiscard]] vec3 read_colour(const JsonText& json, const JsonValue& v, std::string_view what);
 [[nodiscard]] vec3 colour_or(const JsonText& json, const JsonFields& fields, std::string_view key, vec3 fallback);
 
-/// [c1, c2, c3], not all of them 0; clamped.
+/// [c1, c2, c3], not all of them 0; clamped. Or "photometric": 1 / d^2, not clamped.
 [[nodiscard]] Attenuation read_attenuation(const JsonText& json, const JsonValue& v);
 
 /// [width, height] in pixels.
@@ -23,7 +23,8 @@ void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene);
 [[nodiscard]] const std::vector<std::string_view>& material_keys();
 void apply_material_terms(const JsonText& json, const JsonFields& fields, Material& material);
 
-/// ambient, background, tone, exposure, viewer and fog; a term that is not given keeps its value.
+/// ambient, background, tone, exposure, viewer, the variants of the sum, and fog; a term that is not given keeps its
+/// value.
 void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& scene);
 
 }  // namespace umbra

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -57,6 +58,33 @@ std::string camera_text(const Camera& c) {
     return m.text();
 }
 
+template <class Items, class Text>
+std::string list(const Items& items, const Text& text) {
+    std::string all;
+    for (const auto& item : items) all += (all.empty() ? "" : ", ") + text(item);
+    return "[" + all + "]";
+}
+
+std::string lobe_text(const LafortuneLobe& lobe) {
+    Members m;
+    m.add("C", list(lobe.rows, vector));
+    m.add("k_s", vector(lobe.k_s));
+    m.add("shininess", number(lobe.shininess));
+    return m.text();
+}
+
+std::string distribution_text(const Photometry& table) {
+    Members m;
+    m.add("type", json_string(name_of(table.type)));
+    m.add("vertical", list(table.vertical, number));
+    m.add("horizontal", list(table.horizontal, number));
+    std::vector<std::vector<float>> planes;
+    for (auto at = table.candela.begin(); at != table.candela.end(); at += std::ptrdiff_t(table.vertical.size()))
+        planes.emplace_back(at, at + std::ptrdiff_t(table.vertical.size()));
+    m.add("candela", list(planes, [](const std::vector<float>& plane) { return list(plane, number); }));
+    return m.text();
+}
+
 std::string material_text(const Material& material) {
     const Material fallback;
     Members m;
@@ -73,6 +101,8 @@ std::string material_text(const Material& material) {
     m.differing("reflect", material.reflect, fallback.reflect);
     m.differing("transmit", material.transmit, fallback.transmit);
     m.differing("index_of_refraction", material.index_of_refraction, fallback.index_of_refraction);
+    if (!material.lobes.empty()) m.add("lobes", list(material.lobes, lobe_text));
+    m.differing("tangent", material.tangent, fallback.tangent);
     return m.text();
 }
 
@@ -85,17 +115,42 @@ void add_spot(Members& m, const Spot& spot) {
     m.add("exponent", number(spot.exponent));
 }
 
-std::string light_text(const Light& light) {
+void add_pose(Members& m, const Light& light) {
+    const LightPose pose = light.camera_pose ? *light.camera_pose : pose_of(light);
+    if (light.kind != LightKind::directional) m.add("position", vector(pose.position));
+    if (light.kind == LightKind::directional || light.kind == LightKind::spot || light.kind == LightKind::disk ||
+        light.photometry)
+        m.add("direction", vector(pose.direction));
+    if (light.kind == LightKind::rectangle) {
+        m.add("edge_u", vector(pose.edge_u));
+        m.add("edge_v", vector(pose.edge_v));
+    }
+    if (light.photometry) {
+        m.add("along", vector(pose.along));
+        m.add("distribution", distribution_text(*light.photometry));
+    }
+}
+
+/// The names under "except" that an object of the scene has: a part of a scene may have lost some.
+std::vector<std::string> exceptions_in(const Scene& scene, const Light& light) {
+    std::vector<std::string> names;
+    for (const std::string& name : light.except) {
+        Light one;
+        one.except = {name};
+        if (std::any_of(scene.objects.begin(), scene.objects.end(),
+                        [&](const Object& object) { return !lights_object(one, object.name); }))
+            names.push_back(name);
+    }
+    return names;
+}
+
+std::string light_text(const Scene& scene, const Light& light) {
     Members m;
     m.add("type", json_string(name_of(light.kind)));
     m.add("name", json_string(light.name));
-    if (light.kind != LightKind::directional) m.add("position", vector(light.position));
-    if (light.kind == LightKind::directional || light.kind == LightKind::spot || light.kind == LightKind::disk)
-        m.add("direction", vector(light.direction));
-    if (light.kind == LightKind::rectangle) {
-        m.add("edge_u", vector(light.edge_u));
-        m.add("edge_v", vector(light.edge_v));
-    }
+    if (const auto names = exceptions_in(scene, light); !names.empty()) m.add("except", list(names, json_string));
+    if (light.camera_pose) m.add("fixed_to", json_string(name_of(FixedTo::camera)));
+    add_pose(m, light);
     if (light.kind == LightKind::disk || light.kind == LightKind::sphere) m.add("radius", number(light.radius));
     if (light.kind == LightKind::spot) add_spot(m, light.spot);
     m.differing("diffuse", light.diffuse, vec3(1));
@@ -103,7 +158,7 @@ std::string light_text(const Light& light) {
     m.differing("ambient", light.ambient, vec3(0));
     if (light.kind != LightKind::directional) {
         const Attenuation& a = light.attenuation;
-        m.differing("attenuation", vec3(a.c1, a.c2, a.c3), vec3(1, 0, 0));
+        m.differing("attenuation", vec3(a.c1, a.c2, a.c3), light.photometry ? vec3(0) : vec3(1, 0, 0));
         if (!a.clamp) m.add("clamp", "false");
         m.differing("range", light.range, 0);
     }
@@ -182,11 +237,18 @@ std::string native_text(const Scene& scene) {
         fmt::format("  \"ambient\": {}, \"background\": {}, \"tone\": \"{}\", \"exposure\": {}, \"viewer\": \"{}\",\n",
                     vector(scene.ambient), vector(scene.background), name_of(scene.tone), number(scene.exposure),
                     name_of(Viewer{scene.local_viewer}));
+    if (scene.light_ambient != LightAmbient::constant)
+        text += fmt::format("  \"light_ambient\": \"{}\",\n", name_of(scene.light_ambient));
+    if (scene.specular_colour != SpecularColour::O_s)
+        text += fmt::format("  \"specular_colour\": \"{}\",\n", name_of(scene.specular_colour));
+    if (scene.ambient_coefficient != AmbientCoefficient::k_a)
+        text += fmt::format("  \"ambient_coefficient\": \"{}\",\n", name_of(scene.ambient_coefficient));
     if (scene.fog.law != FogLaw::none) text += fmt::format("  \"fog\": {},\n", fog_text(scene.fog));
     text += fmt::format("  \"materials\": {{{}\n  }},\n", lines(material_list, [&](std::size_t i) {
                             return fmt::format("{}: {}", json_string(names[i]), material_text(scene.materials[i]));
                         }));
-    text += fmt::format("  \"lights\": [{}\n  ],\n", lines(scene.lights, light_text));
+    text += fmt::format("  \"lights\": [{}\n  ],\n",
+                        lines(scene.lights, [&](const Light& light) { return light_text(scene, light); }));
     text += fmt::format("  \"objects\": [{}\n  ]\n}}\n", lines(scene.objects, [&](const Object& object) {
                             return object_text(scene, object, names[object.material]);
                         }));

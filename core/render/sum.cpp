@@ -1,38 +1,47 @@
 #include "umbra/core/render/sum.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "umbra/core/render/brdf.h"
 
 namespace umbra {
 namespace {
 
-/// (R.V)^n or (N.H)^n with unit N, L, V. In double, since in float a cosine near 1 is off by 6e-8, which a shininess
-/// of 1e6 turns into 6 % of the highlight.
-double specular_lobe(const Material& material, dvec3 n, dvec3 l, dvec3 v) {
-    double cosine = 0;
-    if (material.lobe == Lobe::phong) {
-        cosine = glm::dot(2 * glm::dot(n, l) * n - l, v);
-    } else {
-        const dvec3 h       = l + v;
-        const double length = glm::length(h);
-        if (length > 0) cosine = glm::dot(n, h) / length;  // V = -L: no half vector, no highlight
-    }
-    return std::pow(std::clamp(cosine, 0.0, 1.0), double(material.shininess));
+/// One an object and light; empty where every light lights every object.
+std::vector<bool> find_left_out(const Scene& scene) {
+    std::vector<bool> left_out;
+    const auto leaves_out = [](const Light& light) { return !light.except.empty(); };
+    if (!std::any_of(scene.lights.begin(), scene.lights.end(), leaves_out)) return left_out;
+    for (const Object& object : scene.objects)
+        for (const Light& light : scene.lights) left_out.push_back(!lights_object(light, object.name));
+    return left_out;
+}
+
+bool has_attenuated_ambient(const Scene& scene) {
+    return scene.light_ambient == LightAmbient::attenuated &&
+           std::any_of(scene.lights.begin(), scene.lights.end(),
+                       [](const Light& light) { return light.ambient != vec3(0); });
 }
 
 }  // namespace
 
 PhongSum::PhongSum(const Scene& scene, const CameraFrame& camera)
     : scene_(&scene),
+      left_out_(find_left_out(scene)),
       eye_(camera.eye),
       backward_(-camera.forward),
       orthographic_(camera.projection == Projection::orthographic),
+      attenuated_ambient_(has_attenuated_ambient(scene)),
       constant_v_(!scene.local_viewer || orthographic_) {
-    dvec3 ambient = scene.ambient;
-    for (const Light& light : scene.lights) ambient += dvec3(light.ambient);
-    for (const Material& m : scene.materials) {
-        const dvec3 specular = dvec3(m.k_s) * dvec3(m.O_s);
-        terms_.push_back({.unshadowed  = dvec3(m.emission) + ambient * dvec3(m.k_a) * dvec3(m.O_d),
+    for (std::uint32_t o = 0; o < scene.objects.size(); ++o) {
+        dvec3 ambient = scene.ambient;
+        for (std::size_t j = 0; j < scene.lights.size() && !attenuated_ambient_; ++j)
+            if (lights(j, o)) ambient += dvec3(scene.lights[j].ambient);
+        const Material& m    = scene.materials[scene.objects[o].material];
+        const dvec3 k_a      = scene.ambient_coefficient == AmbientCoefficient::k_d ? m.k_d : m.k_a;
+        const dvec3 specular = dvec3(m.k_s) * dvec3(scene.specular_colour == SpecularColour::O_d ? m.O_d : m.O_s);
+        terms_.push_back({.unshadowed  = dvec3(m.emission) + ambient * k_a * dvec3(m.O_d),
+                          .ambient     = k_a * dvec3(m.O_d),
                           .diffuse     = dvec3(m.k_d) * dvec3(m.O_d),
                           .specular    = specular,
                           .is_specular = specular != dvec3(0)});
@@ -52,21 +61,27 @@ dvec3 PhongSum::unblocked(const Light& light, const Material& material, const Te
     dvec3 reflected = dvec3(light.diffuse) * terms.diffuse * cosine;
     if (terms.is_specular && light.specular != vec3(0))
         reflected += dvec3(light.specular) * terms.specular * specular_lobe(material, n, l, v);
+    if (!material.lobes.empty()) reflected += dvec3(light.specular) * lafortune_lobes(material, n, l, v);
     return f_att * reflected;
 }
 
 dvec3 PhongSum::at(const PointBatch& points, std::size_t i, dvec3 n,
                    std::span<const VisibilityPlane> visibility) const {
-    const std::uint32_t id   = material(points.triangle[i]);
-    const Material& material = scene_->materials[id];
-    const vec3 p             = points.position(i);
-    const dvec3 v            = glm::normalize(constant_v_ ? backward_ : dvec3(points.eye) - dvec3(p));
+    const std::uint32_t object = scene_->triangle_object[points.triangle[i]];
+    const Material& material   = scene_->materials[scene_->objects[object].material];
+    const Terms& terms         = terms_[object];
+    const vec3 p               = points.position(i);
+    const dvec3 v              = glm::normalize(constant_v_ ? backward_ : dvec3(points.eye) - dvec3(p));
 
-    dvec3 sum = terms_[id].unshadowed;
+    dvec3 sum = terms.unshadowed;
     for (std::size_t j = 0; j < scene_->lights.size(); ++j) {
+        if (!lights(j, object)) continue;
+        const Light& light = scene_->lights[j];
+        if (attenuated_ambient_ && light.ambient != vec3(0))
+            sum += static_cast<double>(falloff(light, p)) * dvec3(light.ambient) * terms.ambient;
         if (points.facing[j][i] == Facing::away) continue;  // S_j = 0
         const double s_j = visibility[j].defined(i) ? visibility[j].s[i] : 1.0f;
-        if (s_j > 0) sum += s_j * unblocked(scene_->lights[j], material, terms_[id], p, n, v);
+        if (s_j > 0) sum += s_j * unblocked(light, material, terms, p, n, v);
     }
     return scene_->fog.law == FogLaw::none ? sum : in_fog(sum, p);
 }
@@ -81,9 +96,15 @@ dvec3 PhongSum::in_fog(dvec3 light, vec3 p) const {
 }
 
 dvec3 PhongSum::from_the_eye(TriangleId t, double cosine) const {
-    const Terms& terms = terms_[material(t)];
-    dvec3 sum          = terms.unshadowed;
-    for (const Light& light : scene_->lights) sum += dvec3(light.diffuse) * terms.diffuse * std::max(cosine, 0.0);
+    const std::uint32_t object = scene_->triangle_object[t];
+    const Terms& terms         = terms_[object];
+    dvec3 sum                  = terms.unshadowed;
+    for (std::size_t j = 0; j < scene_->lights.size(); ++j) {
+        if (!lights(j, object)) continue;
+        const Light& light = scene_->lights[j];
+        if (attenuated_ambient_) sum += dvec3(light.ambient) * terms.ambient;
+        sum += dvec3(light.diffuse) * terms.diffuse * std::max(cosine, 0.0);
+    }
     return sum;
 }
 

@@ -3,6 +3,9 @@
 // This work is based on:
 // Bui Tuong Phong. Illumination for Computer Generated Pictures. 1975
 // James Blinn. Models of Light Reflection for Computer Synthesized Pictures. 1977
+//
+// A scene may choose variants: see LightAmbient, SpecularColour and AmbientCoefficient. Materials may add Lafortune's
+// lobes to the specular term.
 #pragma once
 
 #include <span>
@@ -24,14 +27,16 @@ public:
     [[nodiscard]] dvec3 at(const PointBatch& points, std::size_t i, dvec3 n,
                            std::span<const VisibilityPlane> visibility) const;
 
-    /// Without directions: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. What a surface gives where all lights are at
-    /// the eye and nothing is far away.
+    /// Without directions and distances: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. What a surface gives where all
+    /// lights are at the eye and nothing is far away.
     [[nodiscard]] dvec3 from_the_eye(TriangleId t, double cosine) const;
 
 private:
-    /// What of a material is the same at all its points.
+    /// What is the same at all points of an object.
     struct Terms {
-        dvec3 unshadowed;  ///< I_e + I_a k_a O_d: no light can be blocked from it
+        dvec3 unshadowed;  ///< I_e + I_a k_a O_d: no light can be blocked from it. I_a has those of the lights that
+                           ///< light the object, where these are not attenuated
+        dvec3 ambient;     ///< k_a O_d
         dvec3 diffuse;     ///< k_d O_d
         dvec3 specular;    ///< k_s O_s
         bool is_specular;
@@ -39,15 +44,18 @@ private:
     [[nodiscard]] static dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p,
                                          dvec3 n, dvec3 v);
     [[nodiscard]] dvec3 in_fog(dvec3 light, vec3 p) const;
-    [[nodiscard]] std::uint32_t material(TriangleId t) const {
-        return scene_->objects[scene_->triangle_object[t]].material;
+    /// Whether light j lights an object.
+    [[nodiscard]] bool lights(std::size_t j, std::uint32_t object) const {
+        return left_out_.empty() || !left_out_[object * scene_->lights.size() + j];
     }
 
     const Scene* scene_;
-    std::vector<Terms> terms_;  ///< one a material
-    dvec3 eye_, backward_;      ///< the latter against the view direction
+    std::vector<Terms> terms_;    ///< one an object
+    std::vector<bool> left_out_;  ///< one an object and light; empty where every light lights every object
+    dvec3 eye_, backward_;        ///< the latter against the view direction
     bool orthographic_;
-    bool constant_v_;  ///< an eye at infinity sees every point from the same side
+    bool attenuated_ambient_;  ///< some light has an ambient term that its f_att acts on
+    bool constant_v_;          ///< an eye at infinity sees every point from the same side
 };
 
 }  // namespace umbra

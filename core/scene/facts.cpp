@@ -158,12 +158,19 @@ void find_terms(const Scene& scene, SceneFacts& facts) {
                                                                  [](const Light& light) { return any(light.ambient); });
     const bool specular_light =
         std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) { return any(light.specular); });
-    facts.has_fog = scene.fog.law != FogLaw::none;
+    facts.has_fog        = scene.fog.law != FogLaw::none;
+    const auto k_ambient = [&](const Material& m) {
+        return scene.ambient_coefficient == AmbientCoefficient::k_d ? m.k_d : m.k_a;
+    };
+    const auto O_specular = [&](const Material& m) {
+        return scene.specular_colour == SpecularColour::O_d ? m.O_d : m.O_s;
+    };
     for (const Object& object : scene.objects) {
         if (object.triangle_count == 0) continue;
         const Material& m = scene.materials[object.material];
-        facts.has_ambient |= ambient_light && any(m.k_a * m.O_d);
-        facts.has_specular |= specular_light && any(m.k_s * m.O_s);
+        facts.has_ambient |= ambient_light && any(k_ambient(m) * m.O_d);
+        facts.has_specular |= specular_light && any(m.k_s * O_specular(m));
+        facts.has_lobes |= specular_light && !m.lobes.empty();
         facts.has_emission |= any(m.emission);
         facts.has_transparency |= m.opacity < 1 || m.transmit > 0;
         facts.has_mirrors |= m.reflect > 0;
@@ -172,6 +179,10 @@ void find_terms(const Scene& scene, SceneFacts& facts) {
     for (const Light& light : scene.lights) {
         const Attenuation& a = light.attenuation;
         const bool constant  = a.c1 == 1 && a.c2 == 0 && a.c3 == 0;
+        facts.has_goniometric |= light.photometry != nullptr;
+        facts.has_fixed_light |= light.camera_pose.has_value();
+        facts.has_exceptions |= !light.except.empty();
+        facts.has_attenuated_ambient |= scene.light_ambient == LightAmbient::attenuated && any(light.ambient);
         facts.has_attenuation |= light.kind != LightKind::directional && (!constant || light.range > 0);
     }
 }
@@ -205,6 +216,11 @@ std::vector<Trait> traits(const SceneFacts& facts) {
         {facts.has_emission, "emission"},
         {facts.has_attenuation, "attenuation with distance"},
         {facts.has_one_sided, "one-sided lighting"},
+        {facts.has_goniometric, "goniometric lights"},
+        {facts.has_fixed_light, "lights fixed to the camera"},
+        {facts.has_exceptions, "lights that leave out objects"},
+        {facts.has_attenuated_ambient, "attenuated ambient terms of lights"},
+        {facts.has_lobes, "Lafortune lobes"},
         {facts.has_fog, "fog"},
         {facts.has_transparency, "transparency"},
         {facts.has_mirrors, "mirrors"},

@@ -54,7 +54,8 @@ struct SceneFacts {
     std::uint32_t closed_objects = 0, open_objects = 0, nonmanifold_objects = 0, misoriented_objects = 0;
     std::uint64_t degenerate_triangles = 0, duplicate_triangles = 0;
     bool has_specular = false, has_emission = false, has_transparency = false, has_mirrors = false, has_ambient = false,
-         has_attenuation = false, has_one_sided = false, has_fog = false;
+         has_attenuation = false, has_one_sided = false, has_fog = false, has_goniometric = false,
+         has_fixed_light = false, has_exceptions = false, has_lobes = false, has_attenuated_ambient = false;
     std::vector<UncomputedTerm> uncomputed;  ///< what materials ask for and no method or picture has
     bool hard_lights_only         = true;
     bool eye_inside_closed_object = false;

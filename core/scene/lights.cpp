@@ -4,10 +4,33 @@
 #include <cmath>
 
 #include "umbra/core/scene/names.h"
+#include "umbra/core/scene/photometry.h"
 
 namespace umbra {
 
+namespace {
+constexpr double kLargestFactor = 1e30;  ///< keeps f_att, and products with it, finite
+}
+
 std::string_view to_string(LightKind kind) { return name_of(kind); }
+
+bool lights_object(const Light& light, std::string_view object) {
+    return std::none_of(light.except.begin(), light.except.end(), [&](const std::string& name) {
+        return object == name || (object.starts_with(name) && object[name.size()] == '/');
+    });
+}
+
+LightPose pose_of(const Light& light) {
+    return {light.position, light.direction, light.edge_u, light.edge_v, light.along};
+}
+
+void set_pose(Light& light, const LightPose& pose) {
+    light.position  = pose.position;
+    light.direction = pose.direction;
+    light.edge_u    = pose.edge_u;
+    light.edge_v    = pose.edge_v;
+    light.along     = pose.along;
+}
 
 ToLight to_light(const Light& light, vec3 p) {
     // In double: a light far away must not lose its direction, nor a tiny scene its distances.
@@ -25,7 +48,7 @@ float attenuation_factor(const Attenuation& a, float distance) {
     // Positive coefficients make a zero denominator possible only at d = 0 with c1 = 0: the limit is capped, so that
     // the sum stays finite and still falls monotonically.
     const double factor = denominator > 0 ? 1 / denominator : static_cast<double>(std::numeric_limits<float>::max());
-    return static_cast<float>(std::min(factor, a.clamp ? 1.0 : 1e30));
+    return static_cast<float>(std::min(factor, a.clamp ? 1.0 : kLargestFactor));
 }
 
 namespace {
@@ -61,6 +84,12 @@ float falloff(const Light& light, vec3 p) {
         if (to.distance == 0) return 0;  // in no direction from it
         const dvec3 from_light = glm::normalize(dvec3(p) - dvec3(light.position));
         factor *= spot_factor_of(light.spot, glm::dot(glm::normalize(dvec3(light.direction)), from_light));
+    }
+    if (light.photometry) {
+        if (to.distance == 0) return 0;  // in no direction from it
+        const double intensity =
+            intensity_towards(*light.photometry, dvec3(light.direction), dvec3(light.along), -dvec3(to.direction));
+        factor = static_cast<float>(std::min(static_cast<double>(factor) * intensity, kLargestFactor));
     }
     return factor;
 }

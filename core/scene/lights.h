@@ -1,10 +1,14 @@
 // Lights: what they are and what they give, but not what blocks them (that is S_j, see shadows/method.h).
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "umbra/core/base/math.h"
+#include "umbra/core/scene/photometry.h"
 
 namespace umbra {
 
@@ -36,6 +40,15 @@ struct Spot {
     float inner         = 0;           ///< radians, in [0, cutoff); `smooth` only
 };
 
+/// Where a light is and how it is turned, in some space; members as in Light.
+struct LightPose {
+    vec3 position{0};
+    vec3 direction{0, -1, 0};
+    vec3 edge_u{1, 0, 0};
+    vec3 edge_v{0, 0, 1};
+    vec3 along{1, 0, 0};
+};
+
 /// One light j. Which members mean something depends on `kind`; the others keep their defaults. World space.
 struct Light {
     std::string name;  ///< unique in its scene, no spaces or dots; the channel S.<name> in images
@@ -43,16 +56,30 @@ struct Light {
     vec3 position{0};          ///< all but directional; for area lights the centre
     vec3 direction{0, -1, 0};  ///< directional: where the light travels to (any length > 0). spot: its axis.
                                ///< disk: its normal. rectangle: cross(edge_u, edge_v). Unit except directional.
+                               ///< point with `photometry`: that of the vertical angle 0, any length > 0.
     vec3 edge_u{1, 0, 0};      ///< rectangle: full edges; corners are position +- edge_u/2 +- edge_v/2
     vec3 edge_v{0, 0, 1};      ///< rectangle
     float radius = 0;          ///< disk, sphere; > 0
     float range  = 0;          ///< beyond this distance it gives nothing; 0: no limit
-    vec3 ambient{0};           ///< adds to the scene's global ambient; never shadowed, never attenuated
+    vec3 ambient{0};           ///< adds to the scene's global ambient; never shadowed, attenuated if the scene says so
     vec3 diffuse{1};           ///< I_j for the diffuse term
     vec3 specular{1};          ///< I_j for the specular term
     Attenuation attenuation;
     Spot spot;
+    std::shared_ptr<const Photometry> photometry;  ///< point: intensities by direction, which I_j is multiplied by;
+                                                   ///< null: 1 in all directions. Without a fault, and never changed
+    vec3 along{1, 0, 0};  ///< with `photometry`: turns the table about `direction`, to which it is not parallel
+    std::vector<std::string> except;       ///< names of objects that it does not light; S_j stays as it is
+    std::optional<LightPose> camera_pose;  ///< fixed to the camera, with this pose in the space of the camera: x right,
+                                           ///< y up, -z forward, the eye at 0. The pose above follows from it, see
+                                           ///< place_fixed_lights
 };
+
+/// Whether the light lights objects of this name: false if `except` has it, or has NAME of an object NAME/PART.
+[[nodiscard]] bool lights_object(const Light& light, std::string_view object);
+
+[[nodiscard]] LightPose pose_of(const Light& light);  ///< in world space
+void set_pose(Light& light, const LightPose& pose);   ///< in world space
 
 /// Unit vector from `p` to the light (to the centre of an area light), and the distance (infinite for directional).
 struct ToLight {
@@ -61,7 +88,8 @@ struct ToLight {
 };
 [[nodiscard]] ToLight to_light(const Light& light, vec3 p);
 
-/// Attenuation times spot falloff times range cut-off at `p`: the f_att,j of the sum. Finite for every p.
+/// Attenuation times spot falloff times range cut-off at `p`, times the intensity that `photometry` has in its
+/// direction: the f_att,j of the sum. Finite for every p.
 [[nodiscard]] float falloff(const Light& light, vec3 p);
 
 /// The spot factor alone for the cosine of the angle from the axis, in [0, 1].

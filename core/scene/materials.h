@@ -1,7 +1,9 @@
 // Phong materials, per channel.
 #pragma once
 
+#include <array>
 #include <string>
+#include <vector>
 
 #include "umbra/core/base/math.h"
 
@@ -10,6 +12,16 @@ namespace umbra {
 enum class Lobe : std::uint8_t {
     phong,       ///< (R.V)^n   [Bui Tuong Phong, Illumination for Computer Generated Pictures, 1975]
     blinn_phong  ///< (N.H)^n   [James Blinn, Models of Light Reflection for Computer Synthesized Pictures, 1977]
+};
+
+/// One lobe k_s (e . C l)^n with e to the eye and l to the light, in a local frame: z is the normal, x the part of the
+/// material's tangent that is perpendicular to it. C = diag(-1, -1, 1) is Phong's (R.V)^n.
+/// [Eric Lafortune, Sing-Choong Foo, Kenneth Torrance, Donald Greenberg, Non-Linear Approximation of Reflectance
+/// Functions, 1997]
+struct LafortuneLobe {
+    std::array<vec3, 3> rows{vec3(-1, 0, 0), vec3(0, -1, 0), vec3(0, 0, 1)};  ///< of C
+    vec3 k_s{0};
+    float shininess = 1;  ///< n, >= 0
 };
 
 /// I = I_e + I_a k_a O_d + sum_j S_j f_att,j I_j ( k_d O_d (N.L_j) + k_s O_s (R_j.V)^n )
@@ -28,6 +40,8 @@ struct Material {
     float reflect             = 0;     ///< Whitted's mirror share; not computed
     float transmit            = 0;     ///< Whitted's transmitted share; not computed
     float index_of_refraction = 1;
+    std::vector<LafortuneLobe> lobes{};  ///< added to the specular term
+    vec3 tangent{1, 0, 0};               ///< of `lobes`, world space, any length > 0
 };
 
 }  // namespace umbra

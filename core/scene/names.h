@@ -8,6 +8,7 @@
 
 #include "umbra/core/scene/lights.h"
 #include "umbra/core/scene/materials.h"
+#include "umbra/core/scene/photometry.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
@@ -50,6 +51,30 @@ struct EnumNames<ToneMap> {
 };
 
 template <>
+struct EnumNames<LightAmbient> {
+    static constexpr std::array<Named<LightAmbient>, 2> table{
+        {{LightAmbient::constant, "constant"}, {LightAmbient::attenuated, "attenuated"}}};
+};
+
+template <>
+struct EnumNames<SpecularColour> {
+    static constexpr std::array<Named<SpecularColour>, 2> table{
+        {{SpecularColour::O_s, "O_s"}, {SpecularColour::O_d, "O_d"}}};
+};
+
+template <>
+struct EnumNames<AmbientCoefficient> {
+    static constexpr std::array<Named<AmbientCoefficient>, 2> table{
+        {{AmbientCoefficient::k_a, "k_a"}, {AmbientCoefficient::k_d, "k_d"}}};
+};
+
+template <>
+struct EnumNames<PhotometricType> {
+    static constexpr std::array<Named<PhotometricType>, 3> table{
+        {{PhotometricType::C, "C"}, {PhotometricType::B, "B"}, {PhotometricType::A, "A"}}};
+};
+
+template <>
 struct EnumNames<FogLaw> {
     static constexpr std::array<Named<FogLaw>, 4> table{{{FogLaw::none, "none"},
                                                          {FogLaw::linear, "linear"},
@@ -74,6 +99,13 @@ enum class Viewer : bool { infinite = false, local = true };
 template <>
 struct EnumNames<Viewer> {
     static constexpr std::array<Named<Viewer>, 2> table{{{Viewer::local, "local"}, {Viewer::infinite, "infinite"}}};
+};
+
+/// Whether Light::camera_pose is set, as an enum, for its names alone.
+enum class FixedTo : bool { scene = false, camera = true };
+template <>
+struct EnumNames<FixedTo> {
+    static constexpr std::array<Named<FixedTo>, 2> table{{{FixedTo::scene, "scene"}, {FixedTo::camera, "camera"}}};
 };
 
 template <class Enum>

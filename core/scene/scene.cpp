@@ -6,6 +6,23 @@
 
 namespace umbra {
 
+void place_fixed_lights(Scene& scene) {
+    const CameraFrame camera = frame(scene.camera, 1, 1);
+    const auto turned        = [&](vec3 v) {
+        return static_cast<double>(v.x) * camera.right + static_cast<double>(v.y) * camera.up -
+               static_cast<double>(v.z) * camera.forward;
+    };
+    for (Light& light : scene.lights) {
+        if (!light.camera_pose) continue;
+        const LightPose& pose = *light.camera_pose;
+        const dvec3 direction = turned(pose.direction);
+        set_pose(light, {vec3(camera.eye + turned(pose.position)), vec3(glm::normalize(direction)),
+                         vec3(turned(pose.edge_u)), vec3(turned(pose.edge_v)), vec3(turned(pose.along))});
+        if (light.kind == LightKind::rectangle)
+            light.direction = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
+    }
+}
+
 Box bounds(const Scene& scene) {
     Box box;
     for (const uvec3& t : scene.triangles)

@@ -30,6 +30,14 @@ enum class ToneMap : std::uint8_t {
     hue      ///< compresses the largest channel, scales the others with it: keeps hue and saturation
 };
 
+/// Variants of the sum that the lectures print. The first of each is the default.
+enum class LightAmbient : std::uint8_t {
+    constant,   ///< a light's own ambient term is the same at all points
+    attenuated  ///< it is multiplied by the light's f_att, as OpenGL has it
+};
+enum class SpecularColour : std::uint8_t { O_s, O_d };      ///< the specular term is k_s O_s (...) or k_s O_d (...)
+enum class AmbientCoefficient : std::uint8_t { k_a, k_d };  ///< the ambient term is I_a k_a O_d or I_a k_d O_d
+
 /// Pixels along a side of a picture, in a scene file and on the command line.
 inline constexpr int kMaxPictureSide = 16384;
 
@@ -55,7 +63,10 @@ struct Scene {
     ToneMap tone   = ToneMap::clamp;
     float exposure = 1;  ///< factor before the tone map
     Fog fog;
-    bool local_viewer = true;  ///< false: V is constant, against the view direction
+    bool local_viewer                      = true;  ///< false: V is constant, against the view direction
+    LightAmbient light_ambient             = LightAmbient::constant;
+    SpecularColour specular_colour         = SpecularColour::O_s;
+    AmbientCoefficient ambient_coefficient = AmbientCoefficient::k_a;
 
     std::vector<std::string> warnings;  ///< what loading assumed, a sentence each
 
@@ -64,6 +75,9 @@ struct Scene {
         return materials[objects[triangle_object[t]].material];
     }
 };
+
+/// Gives every light that is fixed to the camera its pose in world space. Whoever moves the camera calls it.
+void place_fixed_lights(Scene& scene);
 
 /// Bounds of all triangles' vertices (unused positions do not count).
 [[nodiscard]] Box bounds(const Scene& scene);

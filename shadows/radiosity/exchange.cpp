@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <string>
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/radiosity/form_factor.h"
@@ -59,8 +60,10 @@ void Exchange::place(PatchId patch) {
 }
 
 dvec3 Exchange::find_direct(const Side& side, const Material& material) const {
+    const std::string& object = scene_->objects[scene_->triangle_object[side.centre.triangle]].name;
     dvec3 light_sum{0};
     for (const Light& light : scene_->lights) {
+        if (!lights_object(light, object)) continue;
         const vec3 position    = vec3(side.centre.position);
         const double cosine    = glm::dot(side.centre.normal, dvec3(to_light(light, position).direction));
         const double intensity = static_cast<double>(falloff(light, position));

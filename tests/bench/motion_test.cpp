@@ -146,6 +146,15 @@ TEST(Animation, SaysWhyASceneCannotHaveIt) {
     shared.objects.push_back({"flap", 2, 1, 0});
     const Animation flap(shared, find_facts(shared), Movement::object);
     EXPECT_NE(flap.cannot().find("shares vertices"), std::string::npos) << flap.cannot();
+
+    // A light that is fixed to the camera moves with it: not a movement of the camera alone.
+    Scene fixed                 = stage();
+    fixed.lights[0].camera_pose = LightPose{};
+    const Animation camera(fixed, find_facts(fixed), Movement::camera);
+    EXPECT_NE(camera.cannot().find("is fixed to the camera"), std::string::npos) << camera.cannot();
+    Scene posed = fixed;
+    Animation(fixed, find_facts(fixed), Movement::light).pose(posed, 0.5);
+    EXPECT_FALSE(posed.lights[0].camera_pose) << "it leaves the camera";
 }
 
 TEST(ViewFacts, AreThoseOfTheSceneAsItIs) {

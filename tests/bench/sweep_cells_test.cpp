@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <fstream>
 #include <functional>
+#include <memory>
 
 #include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/run/explain.h"
@@ -20,6 +21,7 @@
 #include "umbra/bench/sweep/views.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
+#include "umbra/core/scene/photometry.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -57,6 +59,26 @@ TEST(SceneKey, ChangesWithEverythingThatAnAnswerDependsOn) {
         [](Scene& s) { s.local_viewer = !s.local_viewer; },
         [](Scene& s) { s.fog.law = FogLaw::linear; },
         [](Scene& s) { s.fog.far_share = 0.5f; },
+        [](Scene& s) { s.light_ambient = LightAmbient::attenuated; },
+        [](Scene& s) { s.specular_colour = SpecularColour::O_d; },
+        [](Scene& s) { s.ambient_coefficient = AmbientCoefficient::k_d; },
+        [](Scene& s) { s.materials[0].lobes.emplace_back(); },
+        [](Scene& s) {
+            s.materials[0].tangent = {0, 0, 1};
+        },
+        [](Scene& s) { s.lights[0].except = {"x"}; },
+        [](Scene& s) { s.lights[0].camera_pose = pose_of(s.lights[0]); },
+        [](Scene& s) {
+            s.lights[0].along = {0, 0, 1};
+        },
+        [](Scene& s) {
+            s.lights[0].photometry = std::make_shared<const Photometry>(
+                Photometry{.type = {}, .vertical = {0, 90}, .horizontal = {0}, .candela = {1, 0}});
+        },
+        [](Scene& s) {
+            s.lights[0].photometry = std::make_shared<const Photometry>(
+                Photometry{.type = {}, .vertical = {0, 90}, .horizontal = {0}, .candela = {1, 2}});
+        },
     };
     std::vector<std::string> keys = {scene_key(scene)};
     for (const auto& change : changes) {
@@ -145,6 +167,15 @@ TEST(Views, StayWithinWalls) {
         const Scene view = view_of(scene, v);
         EXPECT_TRUE(inside(view.lights[0].position, light)) << v;
         EXPECT_TRUE(inside(view.camera.eye, eye)) << v;
+    }
+}
+
+TEST(Views, KeepLightsAtTheCameraThatAreFixedToIt) {
+    const Scene scene = load_scene(scene_file("warnock"));
+    for (int v = 1; v <= 5; ++v) {
+        const Scene view = view_of(scene, v);
+        EXPECT_NE(view.camera.eye, scene.camera.eye);
+        EXPECT_EQ(view.lights[0].position, view.camera.eye);
     }
 }
 

@@ -56,6 +56,14 @@ void mtl(Bytes bytes) {
     read_or_refuse([&] { (void)load_scene(mesh); });
 }
 
+void ies(Bytes bytes) {
+    static const fs::path scene =
+        folder().write("goniometric.json", R"({"lights": [{"type": "point", "position": [0, 2, 0], "ies": "light.ies"}],
+            "objects": [{"type": "box"}]})");
+    (void)folder().write("light.ies", text_of(bytes));
+    read_or_refuse([&] { (void)load_scene(scene); });
+}
+
 /// The ending under which the bytes are most likely to be read far.
 std::string image_ending(Bytes bytes) {
     constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kinds{{{"\x76\x2f\x31\x01", ".exr"},
@@ -107,6 +115,7 @@ constexpr std::array kTargets{FuzzTarget{"json", json, true},
                               FuzzTarget{"stl", stl},
                               FuzzTarget{"off", off},
                               FuzzTarget{"nff", nff},
+                              FuzzTarget{"ies", ies},
                               FuzzTarget{"image", image},
                               FuzzTarget{"report", report, true},
                               FuzzTarget{"pipeline", pipeline, true}};

@@ -7,6 +7,9 @@
 //                     tone                     "clamp", "divide" or "hue"
 //                     exposure                 a positive number
 //                     viewer                   "local" or "infinite"
+//                     light_ambient            "constant" or "attenuated"
+//                     specular_colour          "O_s" or "O_d"
+//                     ambient_coefficient      "k_a" or "k_d"
 //                     size                     [width, height]
 //   materials         k_a k_d k_s O_d O_s emission   a colour, or one number for grey
 //                     shininess                at least 0
@@ -14,10 +17,11 @@
 //                     two_sided                true or false
 //                     opacity reflect transmit 0 to 1
 //                     index_of_refraction      a positive number
+//                     lobes, tangent           Lafortune lobes; a vector
 //   lights (of KHR_lights_punctual) and a node's "light"
 //                     ambient diffuse specular a colour, or one number for grey: I_j
 //                     colour, intensity        instead of diffuse and specular; I_j = intensity x colour
-//                     attenuation, clamp       [c1, c2, c3]; true or false
+//                     attenuation, clamp       [c1, c2, c3] or "photometric"; true or false
 //                     range                    a positive number
 //                     falloff, exponent        spots: "cosine", "zachmann" or "smooth"
 //   nodes             light                    an area light with the node's position:
@@ -130,7 +134,8 @@ std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbr
 
 SceneExtras apply_scene_extras(const JsonText& json, const JsonValue& umbra, Scene& scene) {
     const JsonFields fields(json, umbra, "extras.umbra of a scene",
-                            {"title", "shows", "ambient", "background", "tone", "exposure", "viewer", "fog", "size"});
+                            {"title", "shows", "ambient", "background", "tone", "exposure", "viewer", "light_ambient",
+                             "specular_colour", "ambient_coefficient", "fog", "size"});
     scene.title = fields.string("title", scene.title);
     scene.shows = fields.string("shows", "");
     apply_picture_terms(json, fields, scene);

@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/ies.h"
 #include "umbra/core/io/native/directions.h"
 #include "umbra/core/io/scene_terms.h"
 
@@ -21,12 +26,12 @@ LightKind read_kind(const JsonText& json, const JsonValue& v) {
 }
 
 Keys keys_of(LightKind kind) {
-    Keys keys{"type", "name", "colour", "intensity", "diffuse", "specular", "ambient"};
+    Keys keys{"type", "name", "on", "fixed_to", "except", "colour", "intensity", "diffuse", "specular", "ambient"};
     const auto add = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
     if (kind != LightKind::directional) add({"position", "attenuation", "clamp", "range"});
     switch (kind) {
         case LightKind::directional: add({"direction"}); break;
-        case LightKind::point: break;
+        case LightKind::point: add({"ies", "distribution", "direction", "target", "along"}); break;
         case LightKind::spot: add({"direction", "target", "falloff", "exponent", "cutoff", "inner"}); break;
         case LightKind::rectangle: add({"size", "direction", "target", "up", "edge_u", "edge_v"}); break;
         case LightKind::disk: add({"direction", "target", "radius"}); break;
@@ -48,7 +53,68 @@ void read_position(const JsonText& json, const JsonFields& f, Light& light) {
     light.position = vec3(json.vector(f.require("position"), "position", kAnyNumber));
     light.range    = static_cast<float>(f.number("range", kPositive, 0));
     if (const JsonValue* a = f.find("attenuation")) light.attenuation = read_attenuation(json, *a);
-    light.attenuation.clamp = f.boolean("clamp", true);
+    light.attenuation.clamp = f.boolean("clamp", light.attenuation.clamp);
+}
+
+std::vector<float> read_numbers(const JsonText& json, const JsonValue& v, std::string_view what) {
+    std::vector<float> numbers;
+    for (const JsonValue& number : json.array(v, what, "a list of numbers"))
+        numbers.push_back(static_cast<float>(json.number(number, what, kAnyNumber)));
+    return numbers;
+}
+
+/// The table of intensities, written out: a list of them for each horizontal angle.
+Photometry read_distribution(const JsonText& json, const JsonValue& v) {
+    const JsonFields f(json, v, "a distribution", {"type", "vertical", "horizontal", "candela"});
+    Photometry table;
+    if (const JsonValue* type = f.find("type")) table.type = json.choice<PhotometricType>(*type, "photometric type");
+    table.vertical = read_numbers(json, f.require("vertical"), "vertical");
+    table.horizontal =
+        f.find("horizontal") ? read_numbers(json, *f.find("horizontal"), "horizontal") : std::vector<float>{0};
+    const JsonValue& candela = f.require("candela");
+    const JsonArray& planes  = json.array(candela, "candela", "a list of lists, one for each horizontal angle");
+    if (planes.size() != table.horizontal.size())
+        json.fail(candela, fmt::format("candela has {} lists, expected one for each of the {} horizontal angles",
+                                       planes.size(), table.horizontal.size()));
+    for (const JsonValue& plane : planes) {
+        const std::vector<float> values = read_numbers(json, plane, "candela");
+        if (values.size() != table.vertical.size())
+            json.fail(plane, fmt::format("{} intensities, expected one for each of the {} vertical angles",
+                                         values.size(), table.vertical.size()));
+        table.candela.insert(table.candela.end(), values.begin(), values.end());
+    }
+    if (const std::string fault = fault_of(table); !fault.empty()) json.fail(v, fault);
+    return table;
+}
+
+Photometry read_ies_of(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder) {
+    try {
+        return read_ies(folder / json.string(v, "ies"));
+    } catch (const InputError& e) {
+        json.fail(v, fmt::format("the photometric file cannot be read: {}", e.what()));
+    }
+}
+
+/// The direction of a goniometric light, and what turns its table about it.
+void read_goniometric(const JsonText& json, const JsonFields& f, const std::filesystem::path& folder, Light& light) {
+    f.exclude("ies", "distribution");
+    const JsonValue *ies = f.find("ies"), *distribution = f.find("distribution");
+    if (ies == nullptr && distribution == nullptr) {
+        for (const std::string_view key : {"direction", "target", "along"})
+            if (const JsonValue* given = f.find(key))
+                json.fail(*given, fmt::format("{} is of a point light with ies or distribution", key));
+        return;
+    }
+    light.photometry = std::make_shared<const Photometry>(ies != nullptr ? read_ies_of(json, *ies, folder)
+                                                                         : read_distribution(json, *distribution));
+    if (f.find("attenuation") == nullptr) light.attenuation = {0, 0, 1, f.boolean("clamp", false)};
+    light.direction = direction_or_target(json, f, light.position, vec3(0, -1, 0));
+    const dvec3 axis(light.direction);
+    light.along = is_parallel(dvec3(1, 0, 0), axis) ? vec3(0, 0, 1) : vec3(1, 0, 0);
+    if (const JsonValue* along = f.find("along")) {
+        light.along = read_direction(json, *along, "along");
+        if (is_parallel(dvec3(light.along), axis)) json.fail(*along, "along is parallel to the light's direction");
+    }
 }
 
 void read_spot(const JsonText& json, const JsonFields& f, Light& light) {
@@ -93,24 +159,72 @@ void read_rectangle(const JsonText& json, const JsonFields& f, Light& light) {
     light.edge_v  = vec3(json.number(size[1], "height", kPositive) * glm::cross(axis, u));
 }
 
-}  // namespace
+/// "except": a list of names of objects.
+std::vector<std::string> read_exceptions(const JsonText& json, const JsonFields& f) {
+    std::vector<std::string> names;
+    if (const JsonValue* v = f.find("except"))
+        for (const JsonValue& name : json.array(*v, "except", "a list of names of objects"))
+            names.push_back(json.string(name, "the name of an object"));
+    return names;
+}
 
-Light read_native_light(const JsonText& json, const JsonValue& v) {
+Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder, bool& on) {
     Light light;
     light.kind = read_kind(json, v);
     const JsonFields f(json, v, fmt::format("a {} light", to_string(light.kind)), keys_of(light.kind));
-    light.name = f.string("name", "");
+    light.name   = f.string("name", "");
+    on           = f.boolean("on", true);
+    light.except = read_exceptions(json, f);
     read_intensities(json, f, light);
     if (light.kind == LightKind::directional)
         light.direction = read_direction(json, f.require("direction"), "direction");
     else
         read_position(json, f, light);
+    if (light.kind == LightKind::point) read_goniometric(json, f, folder, light);
     if (light.kind == LightKind::spot) read_spot(json, f, light);
     if (light.kind == LightKind::rectangle) read_rectangle(json, f, light);
     if (light.kind == LightKind::disk) light.direction = direction_or_target(json, f, light.position, vec3(0, -1, 0));
     if (light.kind == LightKind::disk || light.kind == LightKind::sphere)
         light.radius = static_cast<float>(json.number(f.require("radius"), "radius", kPositive));
+    const JsonValue* fixed = f.find("fixed_to");
+    if (fixed != nullptr && json.choice<FixedTo>(*fixed, "fixed_to") == FixedTo::camera)
+        light.camera_pose = pose_of(light);
     return light;
+}
+
+/// Names of objects, and NAME of NAME/PART: what lights_object() knows.
+std::set<std::string_view> names_and_beginnings(const std::vector<Object>& objects) {
+    std::set<std::string_view> names;
+    for (const Object& object : objects) {
+        const std::string_view name = object.name;
+        names.insert(name);
+        for (std::size_t slash = name.find('/'); slash != name.npos; slash = name.find('/', slash + 1))
+            names.insert(name.substr(0, slash));
+    }
+    return names;
+}
+
+}  // namespace
+
+void read_native_lights(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder,
+                        std::vector<Light>& lights) {
+    for (const JsonValue& entry : json.array(v, "lights", "a list of lights")) {
+        if (lights.size() >= kMaxLights) json.fail(entry, fmt::format("more than {} lights", kMaxLights));
+        bool on     = true;
+        Light light = read_light(json, entry, folder, on);
+        if (on) lights.push_back(std::move(light));
+    }
+}
+
+void check_exceptions(const JsonText& json, const JsonValue& lights, const std::vector<Object>& objects) {
+    const std::set<std::string_view> names = names_and_beginnings(objects);
+    for (const JsonValue& light : json.array(lights, "lights", "a list of lights"))
+        for (const JsonMember& member : json.object(light, "a light")) {
+            if (member.key != "except") continue;
+            for (const JsonValue& entry : json.array(member.value, "except", "a list of names of objects"))
+                if (const std::string& name = json.string(entry, "the name of an object"); !names.contains(name))
+                    json.unknown(entry.offset, "object", name, {names.begin(), names.end()});
+        }
 }
 
 }  // namespace umbra

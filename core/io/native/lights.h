@@ -1,11 +1,20 @@
 // The lights of a native scene file. Internal to core.
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "umbra/core/io/json_text.h"
-#include "umbra/core/scene/lights.h"
+#include "umbra/core/scene/scene.h"
 
 namespace umbra {
 
-[[nodiscard]] Light read_native_light(const JsonText& json, const JsonValue& v);
+/// Adds the lights of a list that are switched on; those that are off are checked and left out. Photometric files are
+/// looked for from `folder`. A light that is fixed to the camera has its camera_pose alone.
+void read_native_lights(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder,
+                        std::vector<Light>& lights);
+
+/// Refuses names under "except" that no object has. Called after the objects of the same file are read.
+void check_exceptions(const JsonText& json, const JsonValue& lights, const std::vector<Object>& objects);
 
 }  // namespace umbra

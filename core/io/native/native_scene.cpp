@@ -1,6 +1,4 @@
 // The native scene format: JSON written by hand. scenes/README.md describes every key; this file follows its order.
-#include <fmt/format.h>
-
 #include "umbra/core/io/native/camera.h"
 #include "umbra/core/io/native/lights.h"
 #include "umbra/core/io/native/materials.h"
@@ -10,22 +8,12 @@
 #include "umbra/core/io/scene_terms.h"
 
 namespace umbra {
-namespace {
-
-void read_lights(const JsonText& json, const JsonValue& v, std::vector<Light>& lights) {
-    for (const JsonValue& light : json.array(v, "lights", "a list of lights")) {
-        if (lights.size() >= kMaxLights) json.fail(light, fmt::format("more than {} lights", kMaxLights));
-        lights.push_back(read_native_light(json, light));
-    }
-}
-
-}  // namespace
-
 SceneFile read_native(const std::filesystem::path& file) {
     const JsonText json(read_text(file, kMaxNativeFile));
-    const JsonFields f(json, json.root(), "a scene",
-                       {"$schema", "title", "shows", "size", "camera", "ambient", "background", "tone", "exposure",
-                        "viewer", "fog", "materials", "lights", "objects"});
+    const JsonFields f(
+        json, json.root(), "a scene",
+        {"$schema", "title", "shows", "size", "camera", "ambient", "background", "tone", "exposure", "viewer",
+         "light_ambient", "specular_colour", "ambient_coefficient", "fog", "materials", "lights", "objects"});
     SceneFile read;
     Scene& scene = read.scene;
     scene.title  = f.string("title", "");
@@ -39,13 +27,14 @@ SceneFile read_native(const std::filesystem::path& file) {
     NativeMaterials materials(json, scene);
     if (const JsonValue* v = f.find("materials")) materials.read_all(*v);
     if (const JsonValue* v = f.find("lights")) {
-        read_lights(json, *v, scene.lights);
+        read_native_lights(json, *v, file.parent_path(), scene.lights);
         read.may_be_dark = true;  // an empty list says that no light is meant
     }
     MeshFiles files(json, file.parent_path(), scene);
     NativeObjects objects(json, files, materials, scene);
     if (const JsonValue* v = f.find("objects"))
         for (const JsonValue& object : json.array(*v, "objects", "a list of objects")) objects.read(object);
+    if (const JsonValue* v = f.find("lights")) check_exceptions(json, *v, scene.objects);
     return read;
 }
 

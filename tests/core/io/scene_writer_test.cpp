@@ -44,6 +44,13 @@ void expect_same_light(const Light& a, const Light& b) {
     EXPECT_EQ(bits(a.spot.exponent), bits(b.spot.exponent));
     EXPECT_EQ(bits(a.spot.cutoff), bits(b.spot.cutoff)) << a.name;
     EXPECT_EQ(bits(a.spot.inner), bits(b.spot.inner)) << a.name;
+    EXPECT_EQ(bits(a.along), bits(b.along));
+    EXPECT_EQ(a.except, b.except);
+    EXPECT_EQ(a.photometry != nullptr, b.photometry != nullptr);
+    if (a.photometry && b.photometry) {
+        EXPECT_EQ(a.photometry->candela, b.photometry->candela);
+    }
+    EXPECT_EQ(a.camera_pose.has_value(), b.camera_pose.has_value());
 }
 
 void expect_same_material(const Material& a, const Material& b) {
@@ -60,6 +67,8 @@ void expect_same_material(const Material& a, const Material& b) {
     EXPECT_EQ(bits(a.reflect), bits(b.reflect));
     EXPECT_EQ(bits(a.transmit), bits(b.transmit));
     EXPECT_EQ(bits(a.index_of_refraction), bits(b.index_of_refraction));
+    EXPECT_EQ(bits(a.tangent), bits(b.tangent));
+    EXPECT_EQ(a.lobes.size(), b.lobes.size());
 }
 
 void expect_same(const Scene& a, const Scene& b) {
@@ -94,6 +103,9 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.tone, b.tone);
     EXPECT_EQ(bits(a.exposure), bits(b.exposure));
     EXPECT_EQ(a.local_viewer, b.local_viewer);
+    EXPECT_EQ(a.light_ambient, b.light_ambient);
+    EXPECT_EQ(a.specular_colour, b.specular_colour);
+    EXPECT_EQ(a.ambient_coefficient, b.ambient_coefficient);
 }
 
 /// Floats of all magnitudes that scenes may have, and the awkward ones.
@@ -201,8 +213,8 @@ TEST_P(WrittenScene, IsTheSceneThatWasRead) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, WrittenScene,
-                         testing::Values("eclipse", "faulty_meshes", "self_shadow", "six_lights", "spot_stage",
-                                         "umbra_penumbra"),
+                         testing::Values("eclipse", "faulty_meshes", "goniometric", "self_shadow", "six_lights",
+                                         "spot_stage", "umbra_penumbra", "warnock"),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace

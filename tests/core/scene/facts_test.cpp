@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <memory>
 
 #include "umbra/core/scene/primitives.h"
 
@@ -251,6 +252,23 @@ TEST(Lists, EachPropertyOfMaterialsAndLightsIsATrait) {
     scene         = plain;
     scene.fog.law = FogLaw::exponential;
     expect(scene, "fog");
+    scene                      = plain;
+    scene.lights[0].photometry = std::make_shared<const Photometry>();
+    expect(scene, "goniometric lights");
+    scene                       = plain;
+    scene.lights[0].camera_pose = pose_of(scene.lights[0]);
+    expect(scene, "lights fixed to the camera");
+    scene                  = plain;
+    scene.lights[0].except = {"box"};
+    expect(scene, "lights that leave out objects");
+    scene                   = plain;
+    scene.light_ambient     = LightAmbient::attenuated;
+    scene.lights[0].ambient = vec3(0.5f);
+    expect(scene, "attenuated ambient terms of lights");
+    scene                    = plain;
+    scene.lights[0].specular = vec3(1);
+    scene.materials[0].lobes.emplace_back();
+    expect(scene, "Lafortune lobes");
     scene                 = plain;
     scene.lights[0].range = 5;
     expect(scene, "attenuation");

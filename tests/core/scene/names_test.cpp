@@ -28,6 +28,11 @@ TEST(Names, TablesHoldWhatSceneFilesWrite) {
     expect_table<Viewer>({"local", "infinite"});
     expect_table<FogLaw>({"none", "linear", "exponential", "exponential_squared"});
     expect_table<FogDistance>({"radial", "depth"});
+    expect_table<LightAmbient>({"constant", "attenuated"});
+    expect_table<SpecularColour>({"O_s", "O_d"});
+    expect_table<AmbientCoefficient>({"k_a", "k_d"});
+    expect_table<PhotometricType>({"C", "B", "A"});
+    expect_table<FixedTo>({"scene", "camera"});
     expect_table<Projection>({"perspective", "orthographic"});
 }
 

@@ -157,6 +157,25 @@ TEST(Exchange, FormFactorsOfARoomAddUpToOne) {
     }
 }
 
+TEST(Exchange, LightsLeaveOutTheirExceptions) {
+    Scene scene;
+    scene.materials.resize(1);
+    for (const float x : {0.0f, 2.0f})
+        add_object(scene, x == 0 ? "near" : "far", {{x, 0, 0}, {x, 0, 1}, {x + 1, 0, 0}}, {}, {{0, 1, 2}}, 0);
+    Light sun;
+    sun.kind      = LightKind::directional;
+    sun.direction = {0, -1, 0};
+    sun.except    = {"far"};
+    scene.lights.push_back(sun);
+    const Exchange exchange(scene, {0.2, 1});
+    PointBatch points;
+    points.eye = {0, 5, 0};
+    points.resize(2);
+    for (TriangleId t = 0; t < 2; ++t) set_point(points, t, scene, t, 0.3f, 0.3f);
+    EXPECT_GT(exchange.direct(exchange.side_at(points, 0)).x, 0.5);
+    EXPECT_EQ(exchange.direct(exchange.side_at(points, 1)).x, 0);
+}
+
 /// Two plates that face each other exchange light; with a sheet between them they do not.
 TEST(Exchange, DoesNotPassThroughSurfaces) {
     for (const bool sheet : {false, true}) {
