@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -38,7 +37,7 @@ ShadowRay in_ray_space(const RaySpace& space, const Ray& ray) {
     traced.org_x = o.x, traced.org_y = o.y, traced.org_z = o.z;
     traced.dir_x = d.x, traced.dir_y = d.y, traced.dir_z = d.z;
     traced.tnear = ray.from == kNoTriangle ? 0 : start_height(o, n) / std::max(std::abs(glm::dot(n, d)), 1e-30f);
-    traced.tfar  = kInfinity;
+    traced.tfar  = static_cast<float>(ray.reach * static_cast<double>(space.scale));
     traced.id    = ray.from;
     return traced;
 }
@@ -151,10 +150,13 @@ public:
 
 private:
     void add(std::size_t parent, dvec3 direction, double factor, RayKind kind) {
-        const double weight = factor * (level_ == 0 ? 1 : tree_.levels[level_].rays[parent].weight);
-        if (weight < options_.least_weight && !options_.everywhere)
+        double weight = factor * (level_ == 0 ? 1 : tree_.levels[level_].rays[parent].weight);
+        if (weight < options_.least_weight) {
             ++counts.too_light;
-        else if (static_cast<int>(level_) + 1 >= options_.depth)
+            if (!options_.everywhere) return;
+            factor = weight = 0;  // traced in vain
+        }
+        if (static_cast<int>(level_) + 1 >= options_.depth)
             ++counts.too_deep;
         else
             rays.push_back({direction, factor, weight, static_cast<std::uint32_t>(parent), kind});
@@ -272,7 +274,7 @@ TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& 
     const double start =
         static_cast<double>(in_ray_space(rays.space(), ray).tnear) / static_cast<double>(rays.space().scale);
     TriangleId first = kNoTriangle;
-    double nearest   = std::numeric_limits<double>::infinity();
+    double nearest   = ray.reach;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
         if (t == ray.from) continue;
         const OnPlane on = meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
@@ -280,6 +282,12 @@ TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& 
         if (on.u >= 0 && on.v >= 0 && on.u + on.v <= 1 && on.t > start && on.t < nearest) first = t, nearest = on.t;
     }
     return first;
+}
+
+double distance_to_plane(const Scene& scene, const Ray& ray, TriangleId t) {
+    return meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
+                      dvec3(scene.vertex(t, 2)))
+        .t;
 }
 
 dvec3 incoming(const RayTree& tree, std::size_t level, std::size_t i) {

@@ -16,10 +16,10 @@
 namespace umbra {
 
 struct TreeOptions {
-    int depth           = 5;  ///< rays on a path, the eye ray included; >= 1
-    double least_weight = 0;  ///< a ray is not traced where the product of k_r and k_t on its path is below that
-    bool everywhere = false;  ///< a mirrored ray starts from every surface, also where its factor is 0, whatever its
-                              ///< weight: the algorithm as lectures write it down
+    int depth           = 5;      ///< rays on a path, the eye ray included; >= 1
+    double least_weight = 0;      ///< a ray is not traced where the product of k_r and k_t on its path is below that
+    bool everywhere     = false;  ///< a mirrored ray starts from every surface, also where its factor is 0, and rays
+                                  ///< below least_weight are traced and count 0: the same picture with more rays
 };
 
 enum class RayKind : std::uint8_t { reflected, refracted };
@@ -74,9 +74,10 @@ struct RayTree {
 
 /// One ray, in world space.
 struct Ray {
-    dvec3 origin{0}, direction{0};  ///< the latter unit
-    TriangleId from = kNoTriangle;  ///< on which it starts, and which it does not meet
-    dvec3 normal{0};                ///< of that triangle, unit, any side
+    dvec3 origin{0}, direction{0};                  ///< the latter unit
+    TriangleId from = kNoTriangle;                  ///< on which it starts, and which it does not meet
+    dvec3 normal{0};                                ///< of that triangle, unit, any side
+    double reach = static_cast<double>(kInfinity);  ///< what is farther away is not met
 };
 [[nodiscard]] Ray secondary_ray(const Scene& scene, const RayTree& tree, std::size_t level, std::size_t i);
 
@@ -84,6 +85,9 @@ struct Ray {
 /// every triangle, in double. Both ignore what lies within the rounding of the start.
 [[nodiscard]] TriangleId first_by_tree(const RayScene& rays, const Ray& ray);  ///< call under FlushDenormals
 [[nodiscard]] TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& ray);
+
+/// Distance from a ray's origin to the plane of a triangle, along the ray; not finite where it runs along the plane.
+[[nodiscard]] double distance_to_plane(const Scene& scene, const Ray& ray, TriangleId t);
 
 /// Direction of the ray that met point i of a level: unit, world.
 [[nodiscard]] dvec3 incoming(const RayTree& tree, std::size_t level, std::size_t i);

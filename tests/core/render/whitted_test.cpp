@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/mirrored_light.h"
 #include "umbra/core/render/optics.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/scene/facts.h"
@@ -159,6 +160,10 @@ TEST(Whitted, PictureIsTheSameWhicheverRaysAreTraced) {
               static_cast<std::uint64_t>(std::ranges::count_if(
                   packets.triangle, [&](TriangleId t) { return t != kNoTriangle && scene.triangle_object[t] == 0; })));
     EXPECT_EQ(everywhere.levels[1].counts.reflected, raster.levels[0].counts.met);
+    const RayTree few = tree_of(scene, {.least_weight = 0.5}),
+                  all = trace_rays(rays, scene, eye_points(scene), {.least_weight = 0.5, .everywhere = true});
+    EXPECT_EQ(picture_of(scene, all).data, picture_of(scene, few).data);
+    EXPECT_NE(picture_of(scene, few).data, picture_of(scene, raster).data);
     scene.camera.projection = Projection::orthographic, scene.camera.height = 3;
     EXPECT_EQ(trace_eye_rays(rays, scene, frame(scene.camera, 64, 48)).u, eye_points(scene).u);
 }
@@ -381,6 +386,21 @@ TEST(Whitted, LightByWayOfAMirrorIsNotSeen) {
     EXPECT_NEAR(glm::length(glm::normalize(light - at) - mirrored(glm::normalize(at - p), dvec3(1, 0, 0))), 0, 1e-12);
     EXPECT_EQ(first_by_search(rays, scene, {at, glm::normalize(light - at), met, dvec3(1, 0, 0)}), kNoTriangle);
 
+    // The same path, found by the program; it ends where a body is between mirror and floor.
+    const std::vector<MirrorPlane> planes = mirror_planes(scene);
+    ASSERT_EQ(planes.size(), 1u);
+    EXPECT_NEAR(planes[0].area, 18, 1e-6);
+    EXPECT_EQ(lit_by_mirrors(rays, scene, eye_points(scene), 0, planes), std::vector<std::uint8_t>{1});
+    Scene blocked = scene;
+    add_quad(blocked, {-1, 0.2f, 1}, {-1, 0.2f, -1}, {-1, 0.6f, -1}, {-1, 0.6f, 1}, 0);
+    EXPECT_EQ(lit_by_mirrors(RayScene(blocked), blocked, eye_points(scene), 0, planes), std::vector<std::uint8_t>{0});
+    Scene sunny               = scene;
+    sunny.lights[0].kind      = LightKind::directional;
+    sunny.lights[0].direction = vec3(at - light);
+    EXPECT_EQ(lit_by_mirrors(rays, sunny, eye_points(scene), 0, planes), std::vector<std::uint8_t>{1});
+    sunny.lights[0].direction.x = 3;
+    EXPECT_EQ(lit_by_mirrors(rays, sunny, eye_points(scene), 0, planes), std::vector<std::uint8_t>{0});
+
     const SceneFacts facts = find_facts(scene);
     const RayTree tree     = tree_of(scene);
     std::size_t asked      = 0;
@@ -428,6 +448,16 @@ TEST(Whitted, AsksForShadowsByDepthAndCountsUndefinedAnswers) {
         EXPECT_EQ(tree.levels[level].counts.shadow, here);
         pairs += here;
     }
+    std::size_t turned = 0;  // away from the eye: the ball is seen from below in the floor
+    for (std::size_t level = 1; level < 3; ++level)
+        for (std::size_t i = 0; i < sizes[level]; ++i) {
+            const PointBatch& points = tree.levels[level].points;
+            if (points.triangle[i] == kNoTriangle) continue;
+            const dvec3 n(points.normal(i));
+            EXPECT_LE(glm::dot(n, tree.levels[level].rays[i].direction), 1e-6) << level << ' ' << i;
+            turned += glm::dot(n, dvec3(points.eye) - dvec3(points.position(i))) < 0 ? 1 : 0;
+        }
+    EXPECT_GT(turned, 20u);
     std::uint64_t of_the_lamp = 0;
     for (std::size_t i = 0; i < sizes[1]; ++i) of_the_lamp += tree.levels[1].points.asks(0, i) ? 1 : 0;
     EXPECT_EQ(light.undefined, of_the_lamp);
