@@ -158,7 +158,13 @@ constexpr std::array kTexts{
                  "Ο κατοπτρικός όρος του Phong, όπως είναι στο άθροισμα, δεν τηρεί ούτε αμοιβαιότητα ούτε ενέργεια· οι "
                  "λοβοί του Lafortune τηρούν την αμοιβαιότητα."}},
     LectureText{"B12", "spektral gegen RGB", "φασματικά και RGB", {}},
-    LectureText{"B13", "Whitteds Summe mit k_r und k_t", "το άθροισμα του Whitted με k_r και k_t", {}},
+    LectureText{"B13",
+                "Whitteds Summe mit k_r und k_t",
+                "το άθροισμα του Whitted με k_r και k_t",
+                {"Mirrors add k_r times what the mirrored ray sees, glass adds k_t times what the refracted one sees.",
+                 "Spiegel fügen k_r mal das hinzu, was der gespiegelte Strahl sieht, Glas k_t mal das des gebrochenen.",
+                 "Οι καθρέφτες προσθέτουν k_r επί ό,τι βλέπει η ανακλώμενη ακτίνα, το γυαλί k_t επί ό,τι βλέπει η "
+                 "διαθλώμενη."}},
     LectureText{"B14", "Varianten der Summe", "παραλλαγές του αθροίσματος", {}},
     LectureText{"B15", "interpolierte Normalen ohne Normieren", "παρεμβολή κανονικών χωρίς κανονικοποίηση", {}},
     LectureText{"B16",
@@ -323,18 +329,52 @@ constexpr std::array kTexts{
          "Κοιτώντας προς την κατεύθυνση του ήλιου το τραχύ έδαφος κρύβει τις σκιές του· αντίθετα προς τον ήλιο "
          "καλύπτουν μεγάλο μέρος του."}},
 
-    LectureText{"E1", "Rekursion", "αναδρομή", {}},
+    LectureText{"E1",
+                "Rekursion",
+                "αναδρομή",
+                {"A mirror seen in a mirror: rays follow rays, down to a depth of 5, and those that add too little are "
+                 "not traced.",
+                 "Ein Spiegel im Spiegel: Strahlen folgen Strahlen bis zur Tiefe 5; was zu wenig beiträgt, wird nicht "
+                 "verfolgt.",
+                 "Καθρέφτης μέσα σε καθρέφτη: ακτίνες ακολουθούν ακτίνες έως βάθος 5· όσες προσφέρουν πολύ λίγο δεν "
+                 "ανιχνεύονται."}},
     LectureText{"E2", "Kugel und Quader als Formel", "σφαίρα και κουτί με τύπο", {}},
-    LectureText{"E3", "Überabtastung", "υπερδειγματοληψία", {}},
-    LectureText{"E4", "wohin die Zeit geht", "πού πηγαίνει ο χρόνος", {}},
-    LectureText{"E5",
-                "alle Dreiecke gegen Bäume",
-                "όλα τα τρίγωνα ή δέντρα",
-                {"Few triangles suffice to see that testing all of them costs rays times triangles.",
-                 "Schon wenige Dreiecke zeigen, dass das Prüfen aller so viel kostet wie Strahlen mal Dreiecke.",
-                 "Λίγα τρίγωνα αρκούν για να φανεί ότι ο έλεγχος όλων κοστίζει ακτίνες επί τρίγωνα."}},
-    LectureText{"E6", "was Strahlverfolgung nicht sehen kann", "τι δεν βλέπει η ανίχνευση ακτίνων", {}},
-    LectureText{"E7", "Strahlen nur, wo Flächen spiegeln", "ακτίνες μόνο όπου οι επιφάνειες ανακλούν", {}},
+    LectureText{
+        "E3",
+        "Überabtastung",
+        "υπερδειγματοληψία",
+        {"Edges seen in mirrors and through glass are smooth with more rays a pixel.",
+         "Kanten in Spiegeln und hinter Glas werden mit mehr Strahlen je Bildpunkt glatt.",
+         "Οι ακμές μέσα σε καθρέφτες και πίσω από γυαλί γίνονται λείες με περισσότερες ακτίνες ανά εικονοστοιχείο."}},
+    LectureText{
+        "E4",
+        "wohin die Zeit geht",
+        "πού πηγαίνει ο χρόνος",
+        {"umbra whitted measures how much of the time goes into intersections, how much into shadows and shading.",
+         "umbra whitted misst, wie viel Zeit in Schnitte geht und wie viel in Schatten und Beleuchtung.",
+         "Η εντολή umbra whitted μετρά πόσος χρόνος πηγαίνει στις τομές και πόσος στις σκιές και τον φωτισμό."}},
+    LectureText{
+        "E5",
+        "alle Dreiecke gegen Bäume",
+        "όλα τα τρίγωνα ή δέντρα",
+        {"Testing every triangle for every ray costs rays times triangles; a tree finds the same points.",
+         "Jedes Dreieck für jeden Strahl zu prüfen kostet Strahlen mal Dreiecke; ein Baum findet dieselben Punkte.",
+         "Ο έλεγχος κάθε τριγώνου για κάθε ακτίνα κοστίζει ακτίνες επί τρίγωνα· ένα δέντρο βρίσκει τα ίδια σημεία."}},
+    LectureText{
+        "E6",
+        "was Strahlverfolgung nicht sehen kann",
+        "τι δεν βλέπει η ανίχνευση ακτίνων",
+        {"Light that a mirror would throw on the floor is missing: shadow rays look straight at the lamp.",
+         "Licht, das ein Spiegel auf den Boden würfe, fehlt: Schattenstrahlen blicken geradewegs zur Lampe.",
+         "Το φως που θα έριχνε ένας καθρέφτης στο δάπεδο λείπει: οι ακτίνες σκιάς κοιτούν κατευθείαν τη λάμπα."}},
+    LectureText{
+        "E7",
+        "Strahlen nur, wo Flächen spiegeln",
+        "ακτίνες μόνο όπου οι επιφάνειες ανακλούν",
+        {"Only mirrors and glass need rays; everything else comes from the raster, and the picture is the same.",
+         "Nur Spiegel und Glas brauchen Strahlen; alles andere kommt aus dem Raster, und das Bild ist dasselbe.",
+         "Μόνο οι καθρέφτες και το γυαλί χρειάζονται ακτίνες· όλα τα άλλα έρχονται από το πλέγμα, και η εικόνα είναι η "
+         "ίδια."}},
     LectureText{"E8", "Beleuchtung im falschen Raum", "φωτισμός σε λάθος χώρο", {}},
 
     LectureText{"F1", "alle Verfahren auf einer Szene, ein Bericht", "όλες οι μέθοδοι σε μία σκηνή, μία αναφορά",

@@ -24,9 +24,7 @@ PointBatch subpixel_points(const RayScene& rays, const Scene& scene, int width, 
     return primary_points(rays, scene, scene.camera, width * side, height * side);
 }
 
-Image antialiased(const Scene& scene, const PointBatch& subpixels, std::span<const VisibilityPlane> visibility,
-                  int side) {
-    const Image fine = shade(scene, subpixels, visibility);
+Image box_filtered(const Image& fine, int side) {
     Image image(fine.width / side, fine.height / side, fine.channels);
     const float weight = 1.0f / static_cast<float>(side * side);
     for (int y = 0; y < image.height; ++y)
@@ -40,6 +38,11 @@ Image antialiased(const Scene& scene, const PointBatch& subpixels, std::span<con
                 image.at(std::size_t(y) * std::size_t(image.width) + std::size_t(x), c) = sum * weight;
             }
     return image;
+}
+
+Image antialiased(const Scene& scene, const PointBatch& subpixels, std::span<const VisibilityPlane> visibility,
+                  int side) {
+    return box_filtered(shade(scene, subpixels, visibility), side);
 }
 
 }  // namespace umbra

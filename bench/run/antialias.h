@@ -23,6 +23,9 @@ inline constexpr int kPictureSamples = 4;
 /// Throws UsageError where that is more than 2^26 points.
 [[nodiscard]] PointBatch subpixel_points(const RayScene& rays, const Scene& scene, int width, int height, int side);
 
+/// The mean of each `side` x `side` pixels: a picture of 1 / side of the size. Both sizes are multiples of `side`.
+[[nodiscard]] Image box_filtered(const Image& fine, int side);
+
 /// The sum at subpixel points with S_j there, box filtered to one value a pixel: R G B, linear.
 /// `visibility` has one plane a light.
 [[nodiscard]] Image antialiased(const Scene& scene, const PointBatch& subpixels,

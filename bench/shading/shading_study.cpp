@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
+#include "umbra/bench/run/asked_method.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/render/shade.h"
@@ -16,44 +16,6 @@ namespace umbra {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// S_j where nothing hides anything.
-std::vector<VisibilityPlane> lit(const Scene& scene, const PointBatch& points) {
-    std::vector<VisibilityPlane> planes;
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
-        VisibilityPlane& plane = planes.emplace_back(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) plane.s[i] = points.asks(light, i) ? 1.0f : 0.0f;
-    }
-    return planes;
-}
-
-/// S_j of one method at any points, and how often it was asked.
-class Shadows {
-public:
-    Shadows(const PreparedScene& prepared, const std::optional<MethodChoice>& choice) : scene_(&prepared.scene) {
-        if (!choice) return;
-        method_ = choice->make();
-        method_->build(prepared.scene, prepared.facts);
-    }
-
-    [[nodiscard]] std::vector<VisibilityPlane> operator()(const PointBatch& points) {
-        std::vector<VisibilityPlane> planes = lit(*scene_, points);
-        asked_                              = 0;
-        for (LightId light = 0; light < scene_->lights.size() && method_; ++light) {
-            for (std::size_t i = 0; i < points.size(); ++i) asked_ += points.asks(light, i) ? 1 : 0;
-            planes[light].clear();
-            method_->aim(light);
-            method_->visibility(points, light, planes[light].out());
-        }
-        return planes;
-    }
-    [[nodiscard]] std::size_t asked() const { return asked_; }
-
-private:
-    const Scene* scene_;
-    std::unique_ptr<Method> method_;
-    std::size_t asked_ = 0;
-};
 
 double luminance(const Image& linear, std::size_t i) {
     return 0.2126 * static_cast<double>(linear.at(i, 0)) + 0.7152 * static_cast<double>(linear.at(i, 1)) +
@@ -74,12 +36,13 @@ double kink(ShadingModel model, const PreparedScene& prepared) {
     Scene diffuse = prepared.scene;
     for (Material& material : diffuse.materials) material.k_s = vec3(0);
     const PointBatch& points = prepared.points;
-    const Image linear =
-        shade_by(model, diffuse, points, [&](const PointBatch& asked) { return lit(diffuse, asked); }).linear;
-    double sum           = 0;
-    std::size_t triples  = 0;
-    const auto width     = static_cast<std::size_t>(linear.width);
-    const auto object_at = [&](std::size_t i) {
+    const Image linear       = shade_by(model, diffuse, points, [&](const PointBatch& asked) {
+                             return lit_everywhere(diffuse, asked);
+                         }).linear;
+    double sum               = 0;
+    std::size_t triples      = 0;
+    const auto width         = static_cast<std::size_t>(linear.width);
+    const auto object_at     = [&](std::size_t i) {
         return points.triangle[i] == kNoTriangle ? ~0u : diffuse.triangle_object[points.triangle[i]];
     };
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -112,7 +75,8 @@ struct Measured {
     std::size_t asked = 0;
 };
 
-Measured measure(ShadingModel model, const PreparedScene& prepared, const ShadingOptions& options, Shadows& shadows) {
+Measured measure(ShadingModel model, const PreparedScene& prepared, const ShadingOptions& options,
+                 AskedMethod& shadows) {
     Measured measured;
     for (int run = 0; run < options.runs; ++run) {
         const double ms = timed_ms([&] {
@@ -129,7 +93,7 @@ Measured measure(ShadingModel model, const PreparedScene& prepared, const Shadin
 }  // namespace
 
 Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options, const fs::path& folder) {
-    Shadows shadows(prepared, options.method);
+    AskedMethod shadows(prepared.scene, prepared.facts, options.method);
     const Measured phong   = measure(ShadingModel::phong, prepared, options, shadows);
     const double brightest = highlight(phong.shaded.linear, prepared.points),
                  smooth    = kink(ShadingModel::phong, prepared);

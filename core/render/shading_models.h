@@ -8,14 +8,12 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "umbra/core/image/image.h"
+#include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/render/points.h"
-#include "umbra/core/render/visibility.h"
 
 namespace umbra {
 
@@ -33,9 +31,6 @@ inline constexpr std::array kShadingModels{
     ShadingModel::constant,     ShadingModel::flat,  ShadingModel::gouraud,  ShadingModel::gouraud_screen,
     ShadingModel::every_second, ShadingModel::phong, ShadingModel::quadratic};
 [[nodiscard]] std::string_view to_string(ShadingModel model);
-
-/// S_j of all lights at the points of a batch without a raster, as a method answers it.
-using AskVisibility = std::function<std::vector<VisibilityPlane>(const PointBatch&)>;
 
 struct ShadedPicture {
     Image linear;                 ///< R G B, scene-linear

@@ -65,13 +65,21 @@ dvec3 PhongSum::unblocked(const Light& light, const Material& material, const Te
     return f_att * reflected;
 }
 
+dvec3 PhongSum::to_viewer(const PointBatch& points, std::size_t i) const {
+    return glm::normalize(constant_v_ ? backward_ : dvec3(points.eye) - dvec3(points.position(i)));
+}
+
 dvec3 PhongSum::at(const PointBatch& points, std::size_t i, dvec3 n,
                    std::span<const VisibilityPlane> visibility) const {
+    return at_the_eye(leaving(points, i, n, to_viewer(points, i), visibility), points.position(i));
+}
+
+dvec3 PhongSum::leaving(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
+                        std::span<const VisibilityPlane> visibility) const {
     const std::uint32_t object = scene_->triangle_object[points.triangle[i]];
     const Material& material   = scene_->materials[scene_->objects[object].material];
     const Terms& terms         = terms_[object];
     const vec3 p               = points.position(i);
-    const dvec3 v              = glm::normalize(constant_v_ ? backward_ : dvec3(points.eye) - dvec3(p));
 
     dvec3 sum = terms.unshadowed;
     for (std::size_t j = 0; j < scene_->lights.size(); ++j) {
@@ -83,11 +91,11 @@ dvec3 PhongSum::at(const PointBatch& points, std::size_t i, dvec3 n,
         const double s_j = visibility[j].defined(i) ? visibility[j].s[i] : 1.0f;
         if (s_j > 0) sum += s_j * unblocked(light, material, terms, p, n, v);
     }
-    return scene_->fog.law == FogLaw::none ? sum : in_fog(sum, p);
+    return sum;
 }
 
-/// What arrives at the eye of the light that leaves p.
-dvec3 PhongSum::in_fog(dvec3 light, vec3 p) const {
+dvec3 PhongSum::at_the_eye(dvec3 light, vec3 p) const {
+    if (scene_->fog.law == FogLaw::none) return light;
     const dvec3 way    = dvec3(p) - eye_;
     const double depth = glm::dot(way, -backward_);
     const bool radial  = scene_->fog.distance == FogDistance::radial && !orthographic_;

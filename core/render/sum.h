@@ -27,6 +27,16 @@ public:
     [[nodiscard]] dvec3 at(const PointBatch& points, std::size_t i, dvec3 n,
                            std::span<const VisibilityPlane> visibility) const;
 
+    /// The same without fog, as it leaves the point in the direction `v`, unit.
+    [[nodiscard]] dvec3 leaving(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
+                                std::span<const VisibilityPlane> visibility) const;
+
+    /// What arrives at the eye, through the scene's fog, of light that leaves p.
+    [[nodiscard]] dvec3 at_the_eye(dvec3 light, vec3 p) const;
+
+    /// V at point i of a batch, unit: to the eye, or against the view direction where that is constant.
+    [[nodiscard]] dvec3 to_viewer(const PointBatch& points, std::size_t i) const;
+
     /// Without directions and distances: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. What a surface gives where all
     /// lights are at the eye and nothing is far away.
     [[nodiscard]] dvec3 from_the_eye(TriangleId t, double cosine) const;
@@ -43,7 +53,6 @@ private:
     };
     [[nodiscard]] static dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p,
                                          dvec3 n, dvec3 v);
-    [[nodiscard]] dvec3 in_fog(dvec3 light, vec3 p) const;
     /// Whether light j lights an object.
     [[nodiscard]] bool lights(std::size_t j, std::uint32_t object) const {
         return left_out_.empty() || !left_out_[object * scene_->lights.size() + j];

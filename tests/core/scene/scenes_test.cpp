@@ -38,9 +38,12 @@ TEST_P(EveryScene, LoadsWithoutWarningAndIsSeen) {
         }
     }
     const Scene scene = load_scene(GetParam());
+    // Scanned meshes have faces without area; mirrors and glass are for umbra whitted alone.
+    const bool mirrors = GetParam().stem() == "mirror_and_glass";
     for (const std::string& w : scene.warnings)
-        if (!real || w.find("have no area") == std::string::npos)
-            ADD_FAILURE() << w;  // scanned meshes do have such faces
+        if (!(real && w.find("have no area") != std::string::npos) &&
+            !(mirrors && w.find("is not computed") != std::string::npos && w.find("opacity") == std::string::npos))
+            ADD_FAILURE() << w;
     EXPECT_GE(scene.shows.size(), 40u);
     EXPECT_TRUE(scene.shows.ends_with(".")) << "a sentence";
     EXPECT_NE(scene.title, scene.name);

@@ -1,0 +1,95 @@
+#include <CLI/CLI.hpp>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/antialias.h"
+#include "umbra/bench/whitted/whitted_page.h"
+#include "umbra/bench/whitted/whitted_study.h"
+
+namespace umbra {
+namespace {
+
+struct WhittedLine {
+    std::string scene, size, method = "ray_traced";
+    std::filesystem::path out;
+    bool as_json = false, no_shadows = false;
+    WhittedOptions options;
+};
+
+/// Why the method gives no shadows for this scene; empty where it does.
+std::string refusal(const MethodChoice& choice, const SceneFacts& facts) {
+    const Service service = verdict(*choice.make(), facts);
+    return service ? refusal_of(*choice.info) : service.why;
+}
+
+int whitted(const WhittedLine& line, const Common& common) {
+    WhittedOptions options = line.options;
+    options.command        = common.command;
+    if (!line.no_shadows) options.method = parse_method(line.method);
+    static_cast<void>(samples_along_side(options.pixel_samples));
+    PreparedScene prepared =
+        prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size), 1, Work::picture);
+    correct_warnings(prepared.scene);
+    if (options.method)
+        if (const std::string why = refusal(*options.method, prepared.facts); !why.empty()) {
+            print_error("{} does not serve this scene: {}\n", options.method->text(), why);
+            return kNo;
+        }
+    StagedFolder staged(line.out);
+    Json record;
+    {
+        const Terminal terminal(common.quiet);
+        for (const std::string& warning : prepared.scene.warnings) terminal.warn(prepared.scene.name + ": " + warning);
+        options.progress = [&](const std::string& what) { terminal.progress(what); };
+        record           = trace_whitted(prepared, options, staged.folder());
+    }
+    write_text(staged.folder() / "results.json", json_text(record));
+    StagedFiles page;
+    write_whitted_page(record, staged.folder(), page);
+    page.commit();
+    staged.commit();
+    if (line.as_json)
+        print_out("{}", json_text(record));
+    else if (!common.quiet)
+        print_out("{}{}\n", whitted_text(record), (line.out / "index.html").string());
+    return kDone;
+}
+
+}  // namespace
+
+Action whitted_command(CLI::App& app, const Common& common) {
+    const auto line         = std::make_shared<WhittedLine>();
+    WhittedOptions& options = line->options;
+    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("--method", line->method, "Method of the shadows, with settings")
+        ->capture_default_str()
+        ->type_name("METHOD");
+    app.add_flag("--no-shadows", line->no_shadows, "Every light reaches every point that faces it");
+    app.add_option("--depth", options.depth, "Rays on a path, the eye ray included; 1: no mirrors, no glass")
+        ->check(number_in(1, 32, "an integer from 1 to 32"))
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--least-weight", options.least_weight,
+                   "Do not trace rays whose product of k_r and k_t is below this; 0: trace all")
+        ->check(number_in(0, 1, "a number from 0 to 1"))
+        ->capture_default_str()
+        ->type_name("W");
+    options.pixel_samples = kPictureSamples;
+    app.add_option("--pixel-samples", options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...")
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--runs", options.runs, "Runs of each way to trace; the fastest counts")
+        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
+        ->capture_default_str()
+        ->type_name("N");
+    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    app.add_flag("--json", line->as_json, "Print results.json instead of the tables");
+    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    return [line, &common] { return whitted(*line, common); };
+}
+
+}  // namespace umbra

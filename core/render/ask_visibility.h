@@ -1,0 +1,16 @@
+// How the core asks for S_j without knowing the methods.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/visibility.h"
+
+namespace umbra {
+
+/// S_j of all lights at the points of a batch, as a method answers it: one plane a light, as long as the batch. The
+/// batch is faced to all lights.
+using AskVisibility = std::function<std::vector<VisibilityPlane>(const PointBatch&)>;
+
+}  // namespace umbra

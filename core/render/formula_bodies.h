@@ -1,0 +1,32 @@
+// Bodies that rays meet by a formula, without triangles: sphere and box.
+//
+// This work is based on:
+// Timothy Kay, James Kajiya. Ray Tracing Complex Scenes. 1986
+#pragma once
+
+#include <optional>
+
+#include "umbra/core/base/math.h"
+
+namespace umbra {
+
+/// Where the line origin + t direction is inside a body: enter <= t <= leave, t in lengths of `direction`. Either may
+/// be negative, which is behind the origin.
+struct Passage {
+    double enter = 0, leave = 0;
+};
+
+/// Of a sphere: the two roots of |origin + t direction - centre|^2 = radius^2. World space, any length of `direction`
+/// above 0, radius > 0. Nothing where the line passes by. The root of larger magnitude is computed first and gives the
+/// other, so that neither loses digits where the origin is close to the sphere.
+[[nodiscard]] std::optional<Passage> through_sphere(dvec3 origin, dvec3 direction, dvec3 centre, double radius);
+
+/// Of a box with faces across the axes: the largest of the three entries, the smallest of the three exits; nothing
+/// where the former is larger. A line that runs along a face's plane is inside of it.
+[[nodiscard]] std::optional<Passage> through_box(dvec3 origin, dvec3 direction, dvec3 least, dvec3 greatest);
+
+/// The t at which a ray meets the body: the smallest that is above `least`, entry or exit. Nothing where both are
+/// behind. The lecture takes the entry alone and asks that it be above 0, which finds nothing from inside the body.
+[[nodiscard]] std::optional<double> first_meeting(const std::optional<Passage>& passage, double least = 0);
+
+}  // namespace umbra

@@ -1,0 +1,91 @@
+#include "umbra/core/render/whitted.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/base/stopwatch.h"
+#include "umbra/core/render/shade.h"
+#include "umbra/core/render/sum.h"
+
+namespace umbra {
+namespace {
+
+std::uint64_t undefined_answers(const PointBatch& points, const std::vector<VisibilityPlane>& planes) {
+    std::uint64_t undefined = 0;
+    for (LightId j = 0; j < planes.size(); ++j)
+        for (std::size_t i = 0; i < points.size(); ++i) undefined += points.asks(j, i) && !planes[j].defined(i) ? 1 : 0;
+    return undefined;
+}
+
+/// What arrives at the start of a secondary ray of the light that leaves its end.
+dvec3 through_fog(const Scene& scene, dvec3 light, vec3 from, vec3 to) {
+    if (scene.fog.law == FogLaw::none) return light;
+    const double f = fog_share(scene.fog, glm::length(dvec3(to) - dvec3(from)));
+    return f * light + (1 - f) * dvec3(scene.fog.colour);
+}
+
+void check_planes(const std::vector<VisibilityPlane>& planes, const Scene& scene, const PointBatch& points) {
+    bool fits = planes.size() == scene.lights.size();
+    for (const VisibilityPlane& plane : planes)
+        fits = fits && plane.s.size() == points.size() && plane.answer.size() == points.size();
+    if (!fits) throw std::logic_error("light_of_rays: S_j of another number of points or lights than asked for");
+}
+
+}  // namespace
+
+TreeLight light_of_rays(const Scene& scene, const RayTree& tree, const AskVisibility& ask) {
+    TreeLight light;
+    const PhongSum sum(scene, *tree.levels[0].points.raster);
+    for (std::size_t level = 0; level < tree.levels.size(); ++level) {
+        const PointBatch& points = tree.levels[level].points;
+        const Stopwatch start;
+        const std::vector<VisibilityPlane> planes = ask(points);
+        light.shadow_ms += start.ms();
+        check_planes(planes, scene, points);
+        light.undefined += undefined_answers(points, planes);
+        const Stopwatch asked;
+        std::vector<dvec3>& local = light.local.emplace_back(points.size(), dvec3(scene.background));
+        parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (points.triangle[i] == kNoTriangle) continue;
+                const dvec3 v = level == 0 ? sum.to_viewer(points, i) : -tree.levels[level].rays[i].direction;
+                local[i]      = sum.leaving(points, i, shading_normal(scene, points, i), v, planes);
+            }
+        });
+        light.sum_ms += asked.ms();
+    }
+    return light;
+}
+
+Image gather(const Scene& scene, const RayTree& tree, const TreeLight& light, int depth) {
+    std::vector<dvec3> arrives;  // of the level after, at the start of each ray
+    for (std::size_t level = std::min(tree.levels.size(), static_cast<std::size_t>(depth)); level-- > 0;) {
+        const PointBatch& points = tree.levels[level].points;
+        std::vector<dvec3> here  = light.local[level];
+        for (std::size_t k = 0; k < arrives.size(); ++k) {
+            const SecondaryRay& ray = tree.levels[level + 1].rays[k];
+            here[ray.parent] += ray.factor * arrives[k];
+        }
+        if (level > 0)
+            for (std::size_t i = 0; i < points.size(); ++i)
+                if (points.triangle[i] != kNoTriangle)
+                    here[i] = through_fog(scene, here[i],
+                                          tree.levels[level - 1].points.position(tree.levels[level].rays[i].parent),
+                                          points.position(i));
+        arrives = std::move(here);
+    }
+    const PointBatch& eye = tree.levels[0].points;
+    const PhongSum sum(scene, *eye.raster);
+    Image image(eye.raster->width, eye.raster->height, {"R", "G", "B"});
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < eye.size(); ++i) {
+        const dvec3 seen = eye.triangle[i] == kNoTriangle ? arrives[i] : sum.at_the_eye(arrives[i], eye.position(i));
+        for (int c = 0; c < 3; ++c) image.at(i, std::size_t(c)) = static_cast<float>(std::min(seen[c], kLargest));
+    }
+    return image;
+}
+
+}  // namespace umbra
