@@ -1,5 +1,7 @@
 #include "umbra/bench/run/asked_method.h"
 
+#include <utility>
+
 namespace umbra {
 
 std::vector<VisibilityPlane> lit_everywhere(const Scene& scene, const PointBatch& points) {
@@ -19,14 +21,22 @@ AskedMethod::AskedMethod(const Scene& scene, const SceneFacts& facts, const std:
 }
 
 std::vector<VisibilityPlane> AskedMethod::operator()(const PointBatch& points) {
+    const PointBatch* const batch = &points;
+    return std::move(of({&batch, 1}).front());
+}
+
+std::vector<std::vector<VisibilityPlane>> AskedMethod::of(std::span<const PointBatch* const> batches) {
     asked_ = 0;
-    if (!method_) return lit_everywhere(*scene_, points);
-    std::vector<VisibilityPlane> planes;
-    for (LightId light = 0; light < scene_->lights.size(); ++light) {
-        for (std::size_t i = 0; i < points.size(); ++i) asked_ += points.asks(light, i) ? 1 : 0;
-        planes.emplace_back(points.size());
+    std::vector<std::vector<VisibilityPlane>> planes;
+    for (const PointBatch* points : batches) planes.push_back(lit_everywhere(*scene_, *points));
+    for (LightId light = 0; light < scene_->lights.size() && method_; ++light) {
         method_->aim(light);
-        method_->visibility(points, light, planes.back().out());
+        for (std::size_t b = 0; b < batches.size(); ++b) {
+            const PointBatch& points = *batches[b];
+            for (std::size_t i = 0; i < points.size(); ++i) asked_ += points.asks(light, i) ? 1 : 0;
+            planes[b][light].clear();
+            method_->visibility(points, light, planes[b][light].out());
+        }
     }
     return planes;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "umbra/core/render/points.h"
@@ -23,6 +24,8 @@ public:
 
     /// One plane a light, as AskVisibility wants it: aim and visibility of each light. `points` is faced to all lights.
     [[nodiscard]] std::vector<VisibilityPlane> operator()(const PointBatch& points);
+    /// The same of several batches, [batch][light]: aims at each light once.
+    [[nodiscard]] std::vector<std::vector<VisibilityPlane>> of(std::span<const PointBatch* const> batches);
 
     /// Pairs of point and light that the method was asked for in the last call.
     [[nodiscard]] std::size_t asked() const { return asked_; }

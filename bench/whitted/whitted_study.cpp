@@ -83,8 +83,15 @@ Traced trace_once(const Study& study, Way way, AskedMethod& shadows) {
     PointBatch eye;
     traced.eye_ms = timed_ms([&] { eye = eye_points(study, way == Way::eye_rays || way == Way::everywhere); });
     traced.tree   = trace_rays(study.rays, study.scene(), std::move(eye), options);
-    traced.light = light_of_rays(study.scene(), traced.tree, [&](const PointBatch& points) { return shadows(points); });
-    traced.gather_ms = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
+    std::vector<std::vector<VisibilityPlane>> visibility;
+    const double shadow_ms = timed_ms([&] {
+        std::vector<const PointBatch*> batches;
+        for (const RayLevel& level : traced.tree.levels) batches.push_back(&level.points);
+        visibility = shadows.of(batches);
+    });
+    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
+    traced.light.shadow_ms = shadow_ms;
+    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
     return traced;
 }
 

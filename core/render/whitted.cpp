@@ -36,17 +36,18 @@ void check_planes(const std::vector<VisibilityPlane>& planes, const Scene& scene
 
 }  // namespace
 
-TreeLight light_of_rays(const Scene& scene, const RayTree& tree, const AskVisibility& ask) {
+TreeLight light_of_rays(const Scene& scene, const RayTree& tree,
+                        std::span<const std::vector<VisibilityPlane>> visibility) {
+    if (visibility.size() != tree.levels.size())
+        throw std::logic_error("light_of_rays: S_j of another number of levels than the tree has");
+    const Stopwatch start;
     TreeLight light;
     const PhongSum sum(scene, *tree.levels[0].points.raster);
     for (std::size_t level = 0; level < tree.levels.size(); ++level) {
-        const PointBatch& points = tree.levels[level].points;
-        const Stopwatch start;
-        const std::vector<VisibilityPlane> planes = ask(points);
-        light.shadow_ms += start.ms();
+        const PointBatch& points                   = tree.levels[level].points;
+        const std::vector<VisibilityPlane>& planes = visibility[level];
         check_planes(planes, scene, points);
         light.undefined += undefined_answers(points, planes);
-        const Stopwatch asked;
         std::vector<dvec3>& local = light.local.emplace_back(points.size(), dvec3(scene.background));
         parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -55,8 +56,18 @@ TreeLight light_of_rays(const Scene& scene, const RayTree& tree, const AskVisibi
                 local[i]      = sum.leaving(points, i, shading_normal(scene, points, i), v, planes);
             }
         });
-        light.sum_ms += asked.ms();
     }
+    light.sum_ms = start.ms();
+    return light;
+}
+
+TreeLight light_of_rays(const Scene& scene, const RayTree& tree, const AskVisibility& ask) {
+    const Stopwatch start;
+    std::vector<std::vector<VisibilityPlane>> visibility;
+    for (const RayLevel& level : tree.levels) visibility.push_back(ask(level.points));
+    const double asked = start.ms();
+    TreeLight light    = light_of_rays(scene, tree, visibility);
+    light.shadow_ms    = asked;
     return light;
 }
 

@@ -4,6 +4,7 @@
 // Turner Whitted. An Improved Illumination Model for Shaded Display. 1980
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "umbra/core/image/image.h"
@@ -16,13 +17,15 @@ namespace umbra {
 struct TreeLight {
     std::vector<std::vector<dvec3>> local;  ///< [level][point]: the sum without fog; the background where a ray left
     std::uint64_t undefined = 0;            ///< answers among RayCounts::shadow that the method left undefined: lit
-    double shadow_ms        = 0;            ///< S_j: `ask` of each level
+    double shadow_ms        = 0;            ///< S_j of all levels, where it was asked here
     double sum_ms           = 0;
 };
 
-/// `ask` is called once a level, with all its points. V is against the ray, also with a constant V for the eye.
-/// Parallel where `ask` is not. Throws what `ask` throws, std::logic_error where it answers for another number of
-/// points.
+/// `visibility`: [level][light], S_j at the points of each level. V is against the ray, also with a constant V for the
+/// eye. Parallel. Throws std::logic_error where `visibility` is of another number of points, lights or levels.
+[[nodiscard]] TreeLight light_of_rays(const Scene& scene, const RayTree& tree,
+                                      std::span<const std::vector<VisibilityPlane>> visibility);
+/// The same, with `ask` called once a level, with all its points. Throws what it throws.
 [[nodiscard]] TreeLight light_of_rays(const Scene& scene, const RayTree& tree, const AskVisibility& ask);
 
 /// R G B, scene-linear, of the raster: every level's light times its factors is added to the level before, up to
