@@ -37,8 +37,8 @@ struct Material {
     Lobe lobe                 = Lobe::phong;
     bool two_sided            = true;  ///< the side that faces the eye is lit; otherwise the side of the winding only
     float opacity             = 1;     ///< 1 opaque; every triangle is opaque to S_j as yet (see uncomputed.h)
-    float reflect             = 0;     ///< Whitted's mirror share; not computed
-    float transmit            = 0;     ///< Whitted's transmitted share; not computed
+    float reflect             = 0;     ///< k_r, Whitted's mirrored share; in ray_tree.h alone
+    float transmit            = 0;     ///< k_t, Whitted's transmitted share; in ray_tree.h alone
     float index_of_refraction = 1;
     std::vector<LafortuneLobe> lobes{};  ///< added to the specular term
     vec3 tangent{1, 0, 0};               ///< of `lobes`, world space, any length > 0
