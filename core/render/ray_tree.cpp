@@ -238,8 +238,9 @@ PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const Camera
     const double scale = static_cast<double>(space.scale), unit = 1 / scale;
     // As EyeRays in gbuffer.cpp has them, operation by operation.
     const auto ray_of = [&](std::size_t i) {
-        const auto x       = static_cast<double>(i % static_cast<std::size_t>(raster.width)),
-                   y       = static_cast<double>(i / static_cast<std::size_t>(raster.width));
+        const auto width       = static_cast<std::size_t>(raster.width);
+        const std::size_t line = i / width;
+        const auto x = static_cast<double>(i % width), y = static_cast<double>(line);
         const double zoom  = window ? scale : 1;
         const dvec3 column = raster.half_width * (2 * (x + 0.5) / raster.width - 1) * raster.right * zoom,
                     row    = raster.half_height * (2 * (y + 0.5) / raster.height - 1) * raster.up * zoom;
@@ -294,8 +295,8 @@ dvec3 incoming(const RayTree& tree, std::size_t level, std::size_t i) {
     if (level > 0) return tree.levels[level].rays[i].direction;
     const CameraFrame& raster = *tree.levels[0].points.raster;
     const auto width          = static_cast<std::size_t>(raster.width);
-    return glm::normalize(
-        raster.ray_direction(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5));
+    const std::size_t line    = i / width;
+    return glm::normalize(raster.ray_direction(static_cast<double>(i % width) + 0.5, static_cast<double>(line) + 0.5));
 }
 
 std::vector<std::uint32_t> rays_by_eye_ray(const RayTree& tree) {

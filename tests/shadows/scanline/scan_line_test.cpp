@@ -82,10 +82,11 @@ TEST(ScanLine, AsksPointsThatLieBesideTheirRow) {
     add_object(scene, "floor", floor.positions, {}, floor.triangles, 0);
     for (int n = 0; n < 12; ++n) {
         std::vector<vec3> raised = square.positions;
+        const int line           = n / 4;
         for (vec3& p : raised) {
             const double angle = 0.1 + 0.5 * n;
             p = vec3(float(p.x * std::cos(angle) - p.z * std::sin(angle)) - 1.6f + 1.1f * float(n % 4), 0.3f,
-                     float(p.x * std::sin(angle) + p.z * std::cos(angle)) - 1.2f + 1.1f * float(n / 4));
+                     float(p.x * std::sin(angle) + p.z * std::cos(angle)) - 1.2f + 1.1f * float(line));
         }
         add_object(scene, "square" + std::to_string(n), raised, {}, square.triangles, 0);
     }
