@@ -40,8 +40,8 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// A command line without the folders of the machine that it ran on: "/home/x/scenes/a.json" as "a.json".
 [[nodiscard]] std::string without_folders(const std::string& command);
 
-/// Text for an element or an attribute of XML: markup and line ends are escaped, other control characters become "?", and
-/// what is not UTF-8 becomes U+FFFD.
+/// Text for an element or an attribute of XML: markup and line ends are escaped, other control characters become "?",
+/// and what is not UTF-8 becomes U+FFFD.
 [[nodiscard]] std::string xml_text(const std::string& text);
 
 /// A relative path for an attribute: every byte with a meaning in a URL is encoded.
