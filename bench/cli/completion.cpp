@@ -209,7 +209,7 @@ std::string app_functions(const CLI::App& app) {
     kind_cases += kinds(app, "*");
     return function("_umbra_list", print_line("COMMANDS", names) + print_line("METHODS", method_names()) +
                                        print_line("LADDERS", ladder_names()) + print_line("SIZES", size_names()) +
-                                       print_line("SCENES", canonical_names())) +
+                                       print_line("SCENES", scene_names())) +
            function("_umbra_options", options) + function("_umbra_kind", kind_cases) +
            function("_umbra_positional", positionals);
 }

@@ -60,6 +60,18 @@ std::vector<std::string> canonical_names() {
     return names;
 }
 
+std::vector<std::string> scene_names() {
+    std::vector<std::string> names = canonical_names(), others;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(scenes_folder(), error))
+        if (const std::string name = entry.path().stem().string();
+            entry.path().extension() == ".json" && !contains(names, name))
+            others.push_back(name);
+    std::ranges::sort(others);
+    names.insert(names.end(), others.begin(), others.end());
+    return names;
+}
+
 std::vector<std::string> method_names() {
     std::vector<std::string> names;
     for (const MethodInfo* info : methods()) names.emplace_back(info->name);
@@ -74,13 +86,14 @@ std::vector<std::string> ladder_names() {
 
 fs::path scene_file(const std::string& scene) {
     if (is_file(scene)) return scene;
-    const std::vector<std::string> known = canonical_names();
-    if (contains(known, scene))
+    const std::vector<std::string> known = scene_names();
+    if (contains(canonical_names(), scene))
         for (const fs::path& file : canonical_scenes(scenes_folder()))
             if (file.stem() == scene) return file;
+    if (contains(known, scene)) return scenes_folder() / (scene + ".json");
     if (scene.find('/') != std::string::npos || fs::path(scene).has_extension()) return scene;
-    throw UsageError(
-        fmt::format("unknown scene \"{}\": neither a file nor a canonical scene{}", scene, did_you_mean(scene, known)));
+    throw UsageError(fmt::format("unknown scene \"{}\": neither a file nor a scene of {}{}", scene,
+                                 scenes_folder().string(), did_you_mean(scene, known)));
 }
 
 std::vector<fs::path> scene_files(const std::vector<std::string>& scenes) {
@@ -90,7 +103,7 @@ std::vector<fs::path> scene_files(const std::vector<std::string>& scenes) {
 }
 
 void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& positionals) {
-    const std::vector<std::string> known = canonical_names();
+    const std::vector<std::string> known = scene_names();
     return_to(positionals, methods, [&](const std::string& word) { return is_file(word) || contains(known, word); });
 }
 

@@ -14,16 +14,18 @@ namespace umbra {
 [[nodiscard]] std::filesystem::path golden_folder();
 
 [[nodiscard]] std::vector<std::string> canonical_names();  ///< empty where the list of them cannot be read
+/// All .json files of scenes_folder(): the canonical scenes in their order, then the others in the alphabet's.
+[[nodiscard]] std::vector<std::string> scene_names();
 [[nodiscard]] std::vector<std::string> method_names();
 [[nodiscard]] std::vector<std::string> ladder_names();
 
-/// The file that SCENE names: itself where there is such a file; else the canonical scene of that name; else, where
-/// it looks like a file name (a separator or an extension), itself. Throws UsageError with near matches.
+/// The file that SCENE names: itself where there is such a file; else the scene of that name in scenes_folder(); else,
+/// where it looks like a file name (a separator or an extension), itself. Throws UsageError with near matches.
 [[nodiscard]] std::filesystem::path scene_file(const std::string& scene);
 [[nodiscard]] std::vector<std::filesystem::path> scene_files(const std::vector<std::string>& scenes);
 
 /// An option that takes a list also takes the positionals that follow it. Moves to `positionals` what is a scene (a
-/// file, or a canonical name) and no method.
+/// file, or a name in scenes_folder()) and no method.
 void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& positionals);
 /// The same for ladders.
 void return_ladders(std::vector<std::string>& methods, std::vector<std::string>& positionals);

@@ -122,6 +122,8 @@ TEST_F(Cli, CanonicalNamesAreScenes) {
     const std::string by_file = umbra("inspect --json " + kScene).output;
     EXPECT_EQ(umbra("inspect --json sun_on_plane").output, by_file);
     EXPECT_EQ(umbra("render sun_on_plane --size 32x18 -o " + file("a.png")).exit_code, 0);
+    // Those that the report leaves out have names, too.
+    EXPECT_EQ(umbra("render mirror_and_glass --quiet --size 32x18 -o " + file("a.png")).exit_code, 0);
     // A file of that name comes first.
     EXPECT_EQ(
         run("cd " + folder_.string() + " && echo nothing > sun_on_plane && " + UMBRA_PROGRAM + " inspect sun_on_plane")

@@ -49,7 +49,7 @@ int bias(BiasLine line, const Common& common) {
 
 Action bias_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<BiasLine>();
-    app.add_option("SCENE", line->scenes, "Scenes: files or canonical names (default: all canonical scenes)")
+    app.add_option("SCENE", line->scenes, "Scenes: files or names of scenes (default: all canonical scenes)")
         ->type_name("");
     app.add_option("--map", line->options.map, "Settings of shadow_zbuffer other than its bias")->type_name("k=v,k=v");
     app.add_option("--size", line->size, "Size of the pictures (default: 320x180)")->type_name("WIDTHxHEIGHT");

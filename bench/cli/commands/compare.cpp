@@ -35,7 +35,7 @@ int compare(CompareLine line, const Common& common) {
 
 Action compare_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<CompareLine>();
-    app.add_option("SCENE", line->scenes, "Scenes: files or canonical names (required)")->type_name("");
+    app.add_option("SCENE", line->scenes, "Scenes: files or names of scenes (required)")->type_name("");
     app.add_option("--methods", line->options.methods, "Methods, with settings (default: all)")->type_name("METHOD");
     app.add_option("--reference", line->reference,
                    "Reference method (default: exact, or ray tracing where exact does not serve the scene)")

@@ -30,8 +30,7 @@ int inspect(const InspectLine& line) {
 
 Action inspect_command(CLI::App& app, const Common& /*common*/) {
     const auto line = std::make_shared<InspectLine>();
-    app.add_option("SCENE", line->scene,
-                   "Scene: a file (.json .gltf .glb .obj .nff .ply .off .stl) or a canonical name")
+    app.add_option("SCENE", line->scene, "Scene: a file (.json .gltf .glb .obj .nff .ply .off .stl) or a scene's name")
         ->type_name("")
         ->required();
     app.add_option("--silhouettes", line->silhouettes.directions,

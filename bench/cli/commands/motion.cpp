@@ -52,7 +52,7 @@ int motion(MotionLine line, const Common& common) {
 Action motion_command(CLI::App& app, const Common& common) {
     const auto line        = std::make_shared<MotionLine>();
     MotionCommand& command = line->command;
-    app.add_option("SCENE", line->scenes, "Scenes: files or canonical names (required)")->type_name("");
+    app.add_option("SCENE", line->scenes, "Scenes: files or names of scenes (required)")->type_name("");
     app.add_option("--methods", command.methods, "Methods, with settings (default: all)")->type_name("METHOD");
     app.add_option("--frames", command.options.frames, "Frames of each movement")
         ->check(number_in(1, 10000, "an integer from 1 to 10000"))

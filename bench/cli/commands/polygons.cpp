@@ -39,7 +39,7 @@ int polygons(const PolygonsLine& line, const Common& common) {
 
 Action polygons_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<PolygonsLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
     app.add_flag("--json", line->as_json, "Print results.json instead of the table");
     app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
     return [line, &common] { return polygons(*line, common); };

@@ -50,7 +50,7 @@ int radiosity(const RadiosityLine& line, const Common& common) {
 Action radiosity_command(CLI::App& app, const Common& common) {
     const auto line          = std::make_shared<RadiosityLine>();
     ExchangeOptions& options = line->options;
-    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
     app.add_option("--patch", options.size, "Longest edge of a patch, in scene diagonals")
         ->check(number_in(0.001, 1, "a number from 0.001 to 1"))
         ->capture_default_str()

@@ -70,7 +70,7 @@ int recommend(RecommendLine line, const Common& common) {
 
 Action recommend_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<RecommendLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("");
+    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("");
     app.add_option("--max", line->limits, "The largest error: METRIC=LIMIT (metrics: umbra list metrics); repeatable")
         ->type_name("METRIC=E")
         ->take_all();

@@ -38,7 +38,7 @@ int render(const RenderLine& line, const Common& common) {
 
 Action render_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<RenderLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
     app.add_option("--method", line->options.method, "Method, with settings")
         ->capture_default_str()
         ->type_name("METHOD");

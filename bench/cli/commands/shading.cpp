@@ -47,7 +47,7 @@ int shading(const ShadingLine& line, const Common& common) {
 
 Action shading_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<ShadingLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
     app.add_option("--method", line->method, "Method of the shadows, with settings")
         ->capture_default_str()
         ->type_name("METHOD");

@@ -109,7 +109,7 @@ int sweep(SweepLine line, const Common& common) {
 
 Action sweep_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<SweepLine>();
-    app.add_option("SCENE", line->scenes, "Scenes: files or canonical names")->type_name("");
+    app.add_option("SCENE", line->scenes, "Scenes: files or names of scenes")->type_name("");
     app.add_option("--methods", line->options.plan.settings,
                    "Settings: METHOD, METHOD@PRESET, METHOD:k=a|b|c,l=d|e (default: the methods' own sweeps)")
         ->type_name("METHOD");

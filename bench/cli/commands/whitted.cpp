@@ -64,7 +64,7 @@ int whitted(const WhittedLine& line, const Common& common) {
 Action whitted_command(CLI::App& app, const Common& common) {
     const auto line         = std::make_shared<WhittedLine>();
     WhittedOptions& options = line->options;
-    app.add_option("SCENE", line->scene, "Scene: a file or a canonical name")->type_name("")->required();
+    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
     app.add_option("--method", line->method, "Method of the shadows, with settings")
         ->capture_default_str()
         ->type_name("METHOD");
