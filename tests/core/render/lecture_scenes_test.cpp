@@ -12,9 +12,9 @@
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/shade.h"
-#include "umbra/core/render/shading_models.h"
 #include "umbra/core/scene/fog.h"
 #include "umbra/shadows/radiosity/exchange.h"
+#include "umbra/tests/support/lit_everywhere.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
@@ -141,14 +141,9 @@ TEST(LectureScenes, NothingLeavesTheClosedRoom) {
 TEST(LectureScenes, FlatShadingIsRightOnFacesUnderSunAndInfiniteViewer) {
     const Scene scene       = scene_named("flat_is_right");
     const PointBatch points = primary(scene);
-    const auto lit          = [&](const PointBatch& at) {
-        std::vector<VisibilityPlane> planes(1, VisibilityPlane(at.size()));
-        for (std::size_t i = 0; i < at.size(); ++i) planes[0].s[i] = at.asks(0, i) ? 1.0f : 0.0f;
-        return planes;
-    };
-    const Image flat    = shade_by(ShadingModel::flat, scene, points, lit).linear,
-                gouraud = shade_by(ShadingModel::gouraud, scene, points, lit).linear,
-                phong   = shade_by(ShadingModel::phong, scene, points, lit).linear;
+    const Image flat        = shaded(ShadingModel::flat, scene, points).linear,
+                gouraud     = shaded(ShadingModel::gouraud, scene, points).linear,
+                phong       = shaded(ShadingModel::phong, scene, points).linear;
     std::size_t faces = 0, bent = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::string object = object_at(scene, points, i);

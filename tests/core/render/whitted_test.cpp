@@ -13,6 +13,7 @@
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/lit_everywhere.h"
 
 namespace umbra {
 namespace {
@@ -42,21 +43,8 @@ void add_quad(Scene& scene, vec3 a, vec3 b, vec3 c, vec3 d, std::uint32_t materi
     add_object(scene, "quad", {a, b, c, d}, {}, {{0, 1, 2}, {0, 2, 3}}, material);
 }
 
-PointBatch eye_points(const Scene& scene) {
-    return primary_points(RayScene(scene), scene, scene.camera, scene.width, scene.height);
-}
-
 RayTree tree_of(const Scene& scene, const TreeOptions& options = {}) {
-    return trace_rays(RayScene(scene), scene, eye_points(scene), options);
-}
-
-std::vector<VisibilityPlane> all_lit(const Scene& scene, const PointBatch& points) {
-    std::vector<VisibilityPlane> planes;
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
-        VisibilityPlane& plane = planes.emplace_back(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) plane.s[i] = points.asks(light, i) ? 1.0f : 0.0f;
-    }
-    return planes;
+    return trace_rays(RayScene(scene), scene, points_of(scene), options);
 }
 
 Image picture_of(const Scene& scene, const RayTree& tree, int depth = 5) {
@@ -132,7 +120,7 @@ TEST(Whitted, WithoutMirrorsIsThePictureOfTheSum) {
     Scene scene = plain();
     for (const FogLaw law : {FogLaw::none, FogLaw::exponential}) {
         scene.fog.law = law, scene.fog.density = 0.1f;
-        const PointBatch points = eye_points(scene);
+        const PointBatch points = points_of(scene);
         const RayTree tree      = tree_of(scene);
         ASSERT_EQ(tree.levels.size(), 1u);
         EXPECT_EQ(picture_of(scene, tree).data, shade(scene, points, all_lit(scene, points)).data);
@@ -161,11 +149,11 @@ TEST(Whitted, PictureIsTheSameWhicheverRaysAreTraced) {
                   packets.triangle, [&](TriangleId t) { return t != kNoTriangle && scene.triangle_object[t] == 0; })));
     EXPECT_EQ(everywhere.levels[1].counts.reflected, raster.levels[0].counts.met);
     const RayTree few = tree_of(scene, {.least_weight = 0.5}),
-                  all = trace_rays(rays, scene, eye_points(scene), {.least_weight = 0.5, .everywhere = true});
+                  all = trace_rays(rays, scene, points_of(scene), {.least_weight = 0.5, .everywhere = true});
     EXPECT_EQ(picture_of(scene, all).data, picture_of(scene, few).data);
     EXPECT_NE(picture_of(scene, few).data, picture_of(scene, raster).data);
     scene.camera.projection = Projection::orthographic, scene.camera.height = 3;
-    EXPECT_EQ(trace_eye_rays(rays, scene, frame(scene.camera, 64, 48)).u, eye_points(scene).u);
+    EXPECT_EQ(trace_eye_rays(rays, scene, frame(scene.camera, 64, 48)).u, points_of(scene).u);
 }
 
 /// A wall of two halves that glow, over a floor that mirrors and gives off nothing.
@@ -205,7 +193,7 @@ TEST(Whitted, AMirrorShowsWhatTheMirroredEyeSees) {
     add_quad(scene, {-30, -30, -9}, {30, -30, -9}, {30, 30, -9}, {-30, 30, -9}, m);
     const Image mirror = picture_of(scene, tree_of(scene)), direct = picture_of(seen, tree_of(seen));
     std::size_t alike = 0, surfaces = 0;
-    const PointBatch points = eye_points(seen);
+    const PointBatch points = points_of(seen);
     for (std::size_t i = 0; i < points.size(); ++i) {
         const std::size_t flipped = i / 64 * 64 + 63 - i % 64;
         surfaces += points.triangle[i] != kNoTriangle ? 1 : 0;
@@ -378,7 +366,7 @@ TEST(Whitted, LightByWayOfAMirrorIsNotSeen) {
     // The light's mirror image is (-5, 2, 0): the path from the floor meets the mirror at (-2, 0.8, 0) and then
     // nothing.
     const dvec3 p(0), at(-2, 0.8, 0), light(1, 2, 0);
-    const TriangleId floor = eye_points(scene).triangle[0];
+    const TriangleId floor = points_of(scene).triangle[0];
     ASSERT_EQ(scene.triangle_object[floor], 0u);
     const TriangleId met = first_by_search(rays, scene, {p, glm::normalize(at - p), floor, dvec3(0, 1, 0)});
     ASSERT_NE(met, kNoTriangle);
@@ -390,16 +378,16 @@ TEST(Whitted, LightByWayOfAMirrorIsNotSeen) {
     const std::vector<MirrorPlane> planes = mirror_planes(scene);
     ASSERT_EQ(planes.size(), 1u);
     EXPECT_NEAR(planes[0].area, 18, 1e-6);
-    EXPECT_EQ(lit_by_mirrors(rays, scene, eye_points(scene), 0, planes), std::vector<std::uint8_t>{1});
+    EXPECT_EQ(lit_by_mirrors(rays, scene, points_of(scene), 0, planes), std::vector<std::uint8_t>{1});
     Scene blocked = scene;
     add_quad(blocked, {-1, 0.2f, 1}, {-1, 0.2f, -1}, {-1, 0.6f, -1}, {-1, 0.6f, 1}, 0);
-    EXPECT_EQ(lit_by_mirrors(RayScene(blocked), blocked, eye_points(scene), 0, planes), std::vector<std::uint8_t>{0});
+    EXPECT_EQ(lit_by_mirrors(RayScene(blocked), blocked, points_of(scene), 0, planes), std::vector<std::uint8_t>{0});
     Scene sunny               = scene;
     sunny.lights[0].kind      = LightKind::directional;
     sunny.lights[0].direction = vec3(at - light);
-    EXPECT_EQ(lit_by_mirrors(rays, sunny, eye_points(scene), 0, planes), std::vector<std::uint8_t>{1});
+    EXPECT_EQ(lit_by_mirrors(rays, sunny, points_of(scene), 0, planes), std::vector<std::uint8_t>{1});
     sunny.lights[0].direction.x = 3;
-    EXPECT_EQ(lit_by_mirrors(rays, sunny, eye_points(scene), 0, planes), std::vector<std::uint8_t>{0});
+    EXPECT_EQ(lit_by_mirrors(rays, sunny, points_of(scene), 0, planes), std::vector<std::uint8_t>{0});
 
     const SceneFacts facts = find_facts(scene);
     const RayTree tree     = tree_of(scene);
@@ -475,7 +463,7 @@ TEST(WrongSpace, AnglesChangeUnderThePerspectiveTransform) {
     scene.materials[0].k_a         = vec3(0);
     scene.materials[0].k_s         = vec3(0);
     scene.materials[0].k_d         = vec3(1);
-    const PointBatch points        = eye_points(scene);
+    const PointBatch points        = points_of(scene);
     const CameraFrame& view        = *points.raster;
     const Image sum                = shade(scene, points, all_lit(scene, points));
     const dvec3 light(scene.lights[0].position);
