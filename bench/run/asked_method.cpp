@@ -2,16 +2,9 @@
 
 #include <utility>
 
-namespace umbra {
+#include "umbra/core/render/ask_visibility.h"
 
-std::vector<VisibilityPlane> lit_everywhere(const Scene& scene, const PointBatch& points) {
-    std::vector<VisibilityPlane> planes;
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
-        VisibilityPlane& plane = planes.emplace_back(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) plane.s[i] = points.asks(light, i) ? 1.0f : 0.0f;
-    }
-    return planes;
-}
+namespace umbra {
 
 AskedMethod::AskedMethod(const Scene& scene, const SceneFacts& facts, const std::optional<MethodChoice>& choice)
     : scene_(&scene) {

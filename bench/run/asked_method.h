@@ -36,7 +36,4 @@ private:
     std::size_t asked_ = 0;
 };
 
-/// S_j where nothing hides anything.
-[[nodiscard]] std::vector<VisibilityPlane> lit_everywhere(const Scene& scene, const PointBatch& points);
-
 }  // namespace umbra

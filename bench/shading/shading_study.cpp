@@ -9,6 +9,7 @@
 #include "umbra/bench/run/asked_method.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
+#include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/render/shading_models.h"
 

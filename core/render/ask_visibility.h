@@ -13,4 +13,7 @@ namespace umbra {
 /// batch is faced to all lights.
 using AskVisibility = std::function<std::vector<VisibilityPlane>(const PointBatch&)>;
 
+/// S_j where nothing hides anything: 1 where some of the light is in front, else 0. The batch is faced to all lights.
+[[nodiscard]] std::vector<VisibilityPlane> lit_everywhere(const Scene& scene, const PointBatch& points);
+
 }  // namespace umbra

@@ -59,7 +59,7 @@ TEST(ShadingModels, PhongIsTheSumOfEveryPixel) {
     const Scene scene         = ball();
     const PointBatch points   = points_of(scene);
     const ShadedPicture phong = shaded(ShadingModel::phong, scene, points);
-    const Image sum           = shade(scene, points, all_lit(scene, points));
+    const Image sum           = shade(scene, points, lit_everywhere(scene, points));
     EXPECT_EQ(phong.linear.data, sum.data);
     EXPECT_EQ(phong.evaluations, surfaces(points));
 }

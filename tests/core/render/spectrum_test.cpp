@@ -135,7 +135,7 @@ TEST(Spectrum, OneSceneDiffersByWhatThePageSays) {
         }
     }
     const PointBatch points = points_of(product);
-    const auto planes       = all_lit(product, points);
+    const auto planes       = lit_everywhere(product, points);
     const double rmse       = image_error(shade(product, points, planes), shade(spectral, points, planes)).rmse;
     std::ifstream in(std::string(UMBRA_TOP) + "/docs/spectral.md");
     const std::string page{std::istreambuf_iterator<char>(in), {}};

@@ -48,7 +48,7 @@ RayTree tree_of(const Scene& scene, const TreeOptions& options = {}) {
 }
 
 Image picture_of(const Scene& scene, const RayTree& tree, int depth = 5) {
-    const AskVisibility ask = [&](const PointBatch& points) { return all_lit(scene, points); };
+    const AskVisibility ask = [&](const PointBatch& points) { return lit_everywhere(scene, points); };
     return gather(scene, tree, light_of_rays(scene, tree, ask), depth);
 }
 
@@ -123,7 +123,7 @@ TEST(Whitted, WithoutMirrorsIsThePictureOfTheSum) {
         const PointBatch points = points_of(scene);
         const RayTree tree      = tree_of(scene);
         ASSERT_EQ(tree.levels.size(), 1u);
-        EXPECT_EQ(picture_of(scene, tree).data, shade(scene, points, all_lit(scene, points)).data);
+        EXPECT_EQ(picture_of(scene, tree).data, shade(scene, points, lit_everywhere(scene, points)).data);
     }
 }
 
@@ -423,7 +423,7 @@ TEST(Whitted, AsksForShadowsByDepthAndCountsUndefinedAnswers) {
     std::vector<std::size_t> sizes;
     const TreeLight light = light_of_rays(scene, tree, [&](const PointBatch& points) {
         sizes.push_back(points.size());
-        std::vector<VisibilityPlane> planes = all_lit(scene, points);
+        std::vector<VisibilityPlane> planes = lit_everywhere(scene, points);
         if (sizes.size() == 2) std::ranges::fill(planes[0].answer, Answer::undefined);
         return planes;
     });
@@ -465,7 +465,7 @@ TEST(WrongSpace, AnglesChangeUnderThePerspectiveTransform) {
     scene.materials[0].k_d         = vec3(1);
     const PointBatch points        = points_of(scene);
     const CameraFrame& view        = *points.raster;
-    const Image sum                = shade(scene, points, all_lit(scene, points));
+    const Image sum                = shade(scene, points, lit_everywhere(scene, points));
     const dvec3 light(scene.lights[0].position);
     // Of a point, in units of half the window: x, y, and 1 - 1 / depth, as a z-buffer has it.
     const auto transformed = [&](dvec3 p) {
