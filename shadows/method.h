@@ -38,8 +38,8 @@ struct Service {
 
 class Method;
 
-/// What a method says of a scene (Method::serves), or less: where materials ask for a visibility that no method
-/// computes (SceneFacts::uncomputed), the best is `approximately`, and `why` names the materials.
+/// What a method says of a scene (Method::serves); `not_at_all` where occluders let a part of the light through and the
+/// method does not compute that (Method::multiplies).
 [[nodiscard]] Service verdict(const Method& method, const SceneFacts& facts);
 
 /// One method with one set of parameters. Calls come from one thread at a time, except that `visibility` and `blame`
@@ -63,9 +63,13 @@ public:
     /// changed parameter's on are called again (first_changed_phase), and what earlier phases made is still there.
     virtual void configure(const Settings& settings) = 0;
 
-    /// From the scene's facts alone, as if all triangles were opaque: callers ask `verdict`, which knows of the others.
-    /// The phases are called only where this is not `not_at_all`.
+    /// From the scene's facts alone, as if no triangle let a part of the light through: callers ask `verdict`, which
+    /// knows of those. The phases are called only where that is not `not_at_all`.
     [[nodiscard]] virtual Service serves(const SceneFacts& facts) const = 0;
+
+    /// Whether S_j is multiplied by Scene::lets_through of what lies between the point and the light. Every method
+    /// leaves triangles out that do not block (Scene::blocks).
+    [[nodiscard]] virtual bool multiplies() const { return false; }
 
     /// Which fraction it answers. A method is compared with the truth of the same measure.
     [[nodiscard]] virtual Measure measures() const { return Measure::area; }

@@ -56,13 +56,10 @@ const Preset* find_preset(const MethodInfo& info, std::string_view name) {
 
 Service verdict(const Method& method, const SceneFacts& facts) {
     Service service = method.serves(facts);
-    if (!service) return service;
-    for (const UncomputedTerm& term : facts.uncomputed) {
-        if (!term.changes_visibility) continue;
-        service.how = std::min(service.how, How::approximately);
-        if (service.why.ends_with('.')) service.why.pop_back();
-        service.why += fmt::format("; the {} is not computed: {}", in_words(term), term.consequence);
-    }
+    if (service && facts.has_filters && !method.multiplies())
+        return {How::not_at_all,
+                "It knows lit and blocked alone, and here occluders let a part of the light through "
+                "(\"transparent_occluders\": \"multiply\")."};
     return service;
 }
 

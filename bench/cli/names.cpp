@@ -12,6 +12,7 @@
 #include "umbra/bench/run/canonical.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
+#include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -84,6 +85,22 @@ std::vector<std::string> ladder_names() {
     return names;
 }
 
+std::vector<std::string> frames_of(const std::string& scene) {
+    const std::size_t at   = scene.find_last_of('@'),
+                      dots = scene.find("..", at == std::string::npos ? scene.size() : at);
+    if (is_file(scene) || at == std::string::npos || dots == std::string::npos) return {scene};
+    int first = 0, last = 0;
+    const auto read = [&](std::size_t begin, std::size_t end, int& value) {
+        const auto [stop, error] = std::from_chars(scene.data() + begin, scene.data() + end, value);
+        return error == std::errc() && stop == scene.data() + end && value >= 0;
+    };
+    if (!read(at + 1, dots, first) || !read(dots + 2, scene.size(), last) || last < first || last - first >= 10000)
+        throw UsageError(fmt::format("{}: not frames of a scene, expected SCENE@FIRST..LAST", scene));
+    std::vector<std::string> names;
+    for (int frame = first; frame <= last; ++frame) names.push_back(fmt::format("{}@{}", scene.substr(0, at), frame));
+    return names;
+}
+
 fs::path scene_file(const std::string& scene) {
     if (is_file(scene)) return scene;
     const std::vector<std::string> known = scene_names();
@@ -91,14 +108,19 @@ fs::path scene_file(const std::string& scene) {
         for (const fs::path& file : canonical_scenes(scenes_folder()))
             if (file.stem() == scene) return file;
     if (contains(known, scene)) return scenes_folder() / (scene + ".json");
-    if (scene.find('/') != std::string::npos || fs::path(scene).has_extension()) return scene;
+    if (split_frame(scene).frame.empty() && (scene.find('/') != std::string::npos || fs::path(scene).has_extension()))
+        return scene;
+    if (const auto [base, frame] = split_frame(scene); !frame.empty()) return scene_file(base).string() + frame;
     throw UsageError(fmt::format("unknown scene \"{}\": neither a file nor a scene of {}{}", scene,
                                  scenes_folder().string(), did_you_mean(scene, known)));
 }
 
 std::vector<fs::path> scene_files(const std::vector<std::string>& scenes) {
     std::vector<fs::path> files;
-    for (const std::string& scene : scenes) files.push_back(scene_file(scene));
+    for (const std::string& scene : scenes) {
+        const std::vector<std::string> frames = frames_of(scene);
+        for (const std::string& frame : frames) files.push_back(scene_file(frame));
+    }
     return files;
 }
 

@@ -83,7 +83,15 @@ constexpr std::array kTexts{
     LectureText{"A8", "getrennte ambiente, diffuse und spiegelnde Farben",
                 "χωριστά χρώματα περιβάλλοντος, διάχυτα και κατοπτρικά", kSixLights},
     LectureText{"A9", "Abschwächung, auf 1 begrenzt oder nicht", "εξασθένιση, με ή χωρίς όριο 1", {}},
-    LectureText{"A10", "bewegte Lichtquellen, Objekte und Kameras", "κινούμενες πηγές, αντικείμενα και κάμερες", {}},
+    LectureText{"A10",
+                "bewegte Lichtquellen, Objekte und Kameras",
+                "κινούμενες πηγές, αντικείμενα και κάμερες",
+                {"The sun moves from frame to frame, by keys in the scene file: shadows shrink to noon and grow again "
+                 "on the other side.",
+                 "Die Sonne wandert von Bild zu Bild, nach Schlüsselbildern in der Szenendatei: Die Schatten "
+                 "schrumpfen bis Mittag und wachsen auf der anderen Seite wieder.",
+                 "Ο ήλιος κινείται από καρέ σε καρέ, με καρέ-κλειδιά στο αρχείο της σκηνής: οι σκιές μικραίνουν ως το "
+                 "μεσημέρι και μεγαλώνουν ξανά από την άλλη πλευρά."}},
     LectureText{"A11",
                 "Lichtquellen an- und ausschalten; an der Kamera befestigt",
                 "πηγές που ανάβουν και σβήνουν· στερεωμένες στην κάμερα",
@@ -178,7 +186,15 @@ constexpr std::array kTexts{
                  "Σε ανομοιόμορφη κλιμάκωση οι κανονικές ακολουθούν τον αντίστροφο ανάστροφο· αν κλιμακώνονταν όπως τα "
                  "σημεία, θα έγερναν λάθος."}},
     LectureText{"B17", "Anpassung eines Lafortune-Modells", "προσαρμογή μοντέλου Lafortune", {}},
-    LectureText{"B18", "die Bilder der Vorlesungen", "οι εικόνες των διαλέξεων", {}},
+    LectureText{"B18",
+                "die Bilder der Vorlesungen",
+                "οι εικόνες των διαλέξεων",
+                {"Ambient, diffuse and specular term are added pixel by pixel: the fourth column is the sum of the "
+                 "first three, under light at 60, 25 and 0 degrees.",
+                 "Ambienter, diffuser und spiegelnder Term addieren sich Bildpunkt für Bildpunkt: Die vierte Spalte "
+                 "ist die Summe der ersten drei, bei Licht unter 60, 25 und 0 Grad.",
+                 "Ο όρος περιβάλλοντος, ο διάχυτος και ο κατοπτρικός αθροίζονται εικονοστοιχείο προς εικονοστοιχείο: η "
+                 "τέταρτη στήλη είναι το άθροισμα των τριών πρώτων, με φως στις 60, 25 και 0 μοίρες."}},
 
     LectureText{"C1", "konstante, flache, Gouraud- und Phong-Schattierung",
                 "σταθερή, επίπεδη, Gouraud και Phong φωτοσκίαση", kShading},
@@ -193,7 +209,15 @@ constexpr std::array kTexts{
     LectureText{"C4", "jeder zweite Bildpunkt", "κάθε δεύτερο εικονοστοιχείο", kShading},
     LectureText{"C5", "Fehler der Gouraud-Schattierung, gemessen", "σφάλματα της φωτοσκίασης Gouraud, μετρημένα",
                 kShading},
-    LectureText{"C6", "Transparenz", "διαφάνεια", {}},
+    LectureText{"C6",
+                "Transparenz",
+                "διαφάνεια",
+                {"Behind one sheet 60 or 30 percent of the light arrive, behind both their product, 18 percent: the "
+                 "transmittances multiply.",
+                 "Hinter einer Folie kommen 60 oder 30 Prozent des Lichts an, hinter beiden das Produkt, 18 Prozent: "
+                 "Die Durchlässigkeiten multiplizieren sich.",
+                 "Πίσω από ένα φύλλο φτάνει το 60 ή το 30 τοις εκατό του φωτός, πίσω και από τα δύο το γινόμενό τους, "
+                 "18 τοις εκατό: οι διαπερατότητες πολλαπλασιάζονται."}},
     LectureText{"C7",
                 "Nebel",
                 "ομίχλη",
@@ -226,7 +250,15 @@ constexpr std::array kTexts{
                  "Το ίδιο τετράγωνο σε 1, 2, 3, 5, 10 και 40 σειρές εδρών: η φωτοσκίαση Gouraud βρίσκει τη στιλπνή "
                  "κηλίδα μόνο αν μια κορυφή βρίσκεται μέσα της."}},
     LectureText{"C11", "Schnelligkeit gegen Genauigkeit beim Schattieren", "ταχύτητα και ακρίβεια στη φωτοσκίαση", {}},
-    LectureText{"C12", "eine Szene durch alle Stufen", "μία σκηνή σε όλα τα στάδια", {}},
+    LectureText{"C12",
+                "eine Szene durch alle Stufen",
+                "μία σκηνή σε όλα τα στάδια",
+                {"From wireframe to recursive rays, umbra shading draws the same scene in nine stages: each picture "
+                 "adds one term.",
+                 "Vom Drahtgitter bis zu rekursiven Strahlen zeichnet umbra shading dieselbe Szene in neun Stufen: "
+                 "Jedes Bild fügt einen Term hinzu.",
+                 "Από το συρματόπλεγμα ως τις αναδρομικές ακτίνες, η εντολή umbra shading σχεδιάζει την ίδια σκηνή σε "
+                 "εννέα στάδια: κάθε εικόνα προσθέτει έναν όρο."}},
 
     LectureText{"D1",
                 "Projektion auf Ebenen",
@@ -311,7 +343,15 @@ constexpr std::array kTexts{
         {"S_j scales the light's own terms alone: emission and ambient light stay in the umbra.",
          "S_j wirkt nur auf die Terme der Lichtquelle: Emission und Umgebungslicht bleiben im Kernschatten.",
          "Το S_j επηρεάζει μόνο τους όρους της πηγής: η εκπομπή και το φως περιβάλλοντος μένουν στην κύρια σκιά."}},
-    LectureText{"D13", "was der Ort der Lichtquelle kostet", "τι κοστίζει η θέση της πηγής", {}},
+    LectureText{"D13",
+                "was der Ort der Lichtquelle kostet",
+                "τι κοστίζει η θέση της πηγής",
+                {"One scene under a light at infinity, outside the view, inside it and at the eye: umbra compare "
+                 "light_places@0..3 measures what each place costs each method.",
+                 "Eine Szene mit der Lichtquelle im Unendlichen, außerhalb des Bildes, im Bild und am Auge: umbra "
+                 "compare light_places@0..3 misst, was jeder Ort jedes Verfahren kostet.",
+                 "Μία σκηνή με την πηγή στο άπειρο, έξω από την εικόνα, μέσα σε αυτήν και στο μάτι: η εντολή umbra "
+                 "compare light_places@0..3 μετρά τι κοστίζει κάθε θέση σε κάθε μέθοδο."}},
     LectureText{
         "D14",
         "drei Lichtquellen, drei Gründe",
@@ -319,7 +359,15 @@ constexpr std::array kTexts{
         {"The hollow faces away from one light, the board hides the second, and the ring itself hides the third.",
          "Die Höhlung ist der ersten Lichtquelle abgewandt, das Brett verdeckt die zweite, der Ring selbst die dritte.",
          "Το κοίλωμα κοιτά μακριά από την πρώτη πηγή, η σανίδα κρύβει τη δεύτερη και ο ίδιος ο δακτύλιος την τρίτη."}},
-    LectureText{"D15", "Energie aus S_j", "ενέργεια από το S_j", {}},
+    LectureText{"D15",
+                "Energie aus S_j",
+                "ενέργεια από το S_j",
+                {"The light that arrives at an object is the sum of S_j over its surface: umbra energy adds it up over "
+                 "a day, frame by frame.",
+                 "Das Licht, das ein Objekt empfängt, ist die Summe von S_j über seine Fläche: umbra energy addiert es "
+                 "über einen Tag, Bild für Bild.",
+                 "Το φως που δέχεται ένα αντικείμενο είναι το άθροισμα του S_j στην επιφάνειά του: η εντολή umbra "
+                 "energy το αθροίζει σε μία ημέρα, καρέ προς καρέ."}},
     LectureText{
         "D16",
         "verdeckte Schatten rauer Flächen",

@@ -91,8 +91,7 @@ Json facts_json(const SceneFacts& facts) {
                           {"triangles", p.triangles.size()}});
     Json uncomputed = Json::array();
     for (const UncomputedTerm& t : facts.uncomputed)
-        uncomputed.push_back(
-            {{"term", t.term}, {"materials", t.materials}, {"changes_visibility", t.changes_visibility}});
+        uncomputed.push_back({{"term", t.term}, {"materials", t.materials}});
     return {{"triangles", facts.triangles},
             {"extent", {{"min", vector_json(dvec3(facts.box.min))}, {"max", vector_json(dvec3(facts.box.max))}}},
             {"objects", objects},

@@ -43,15 +43,20 @@ void write_shading_page(const Json& record, const std::filesystem::path& folder,
                           {"ms", figure(m["ms"], "{:.1f}")},
                           {"rmse", figure(m["rmse"], "{:.5f}")},
                           {"flip", figure(m["flip"], "{:.4f}")},
+                          {"perceived", figure(m["perceived"], "{:.5f}")},
                           {"highlight", figure(m["highlight"], "{:.2f}")},
                           {"kink", figure(m["kink"], "{:.2f}")},
                           {"picture", m["picture"]},
                           {"difference", m["difference"]}});
+    json stages = json::array();
+    for (const Json& s : record["stages"])
+        stages.push_back({{"name", s["name"]}, {"about", s["about"]}, {"picture", s["picture"]}});
     const json view     = {{"title", record["scene"]["title"]},
                            {"command", without_folders(record["command"].get<std::string>())},
                            {"version", record["version"]},
                            {"method", record["method"].is_null() ? "none" : record["method"].get<std::string>()},
-                           {"models", std::move(models)}};
+                           {"models", std::move(models)},
+                           {"stages", std::move(stages)}};
     const PageHead head = {fmt::format("Shading: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::shading_html, head, view));
     write_page_assets(folder, head.scripts, staged);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "umbra/bench/run/asked_method.h"
+#include "umbra/bench/shading/stages.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/render/ask_visibility.h"
@@ -31,6 +32,34 @@ double highlight(const Image& linear, const PointBatch& points) {
     return largest;
 }
 
+/// Calls visit(i) for the middle of each three neighbours of a row that show one object.
+template <class Visit>
+void for_each_triple(const Scene& scene, const PointBatch& points, const Visit& visit) {
+    const auto width     = static_cast<std::size_t>(points.raster->width);
+    const auto object_at = [&](std::size_t i) {
+        return points.triangle[i] == kNoTriangle ? ~0u : scene.triangle_object[points.triangle[i]];
+    };
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+        if (i % width == 0 || (i + 1) % width == 0 || object_at(i) == ~0u) continue;
+        if (object_at(i - 1) == object_at(i) && object_at(i + 1) == object_at(i)) visit(i);
+    }
+}
+
+/// The root mean square difference of what the eye takes two pictures for, which is more than the light where that
+/// changes: the luminance and how much it changes from a pixel to the next.
+double perceived_difference(const PreparedScene& prepared, const Image& a, const Image& b) {
+    const auto perceived = [](const Image& linear, std::size_t i) {
+        return luminance(linear, i) + std::abs(luminance(linear, i + 1) - luminance(linear, i - 1)) / 2;
+    };
+    double sum          = 0;
+    std::size_t triples = 0;
+    for_each_triple(prepared.scene, prepared.points, [&](std::size_t i) {
+        sum += std::pow(perceived(a, i) - perceived(b, i), 2);
+        ++triples;
+    });
+    return triples > 0 ? std::sqrt(sum / static_cast<double>(triples)) : 0;
+}
+
 /// The root mean square of I(x - 1) - 2 I(x) + I(x + 1) of the luminance over triples of pixels that show one object,
 /// of the diffuse light without shadows: highlights and edges of shadows would outshine the bands.
 double kink(ShadingModel model, const PreparedScene& prepared) {
@@ -42,16 +71,10 @@ double kink(ShadingModel model, const PreparedScene& prepared) {
                          }).linear;
     double sum               = 0;
     std::size_t triples      = 0;
-    const auto width         = static_cast<std::size_t>(linear.width);
-    const auto object_at     = [&](std::size_t i) {
-        return points.triangle[i] == kNoTriangle ? ~0u : diffuse.triangle_object[points.triangle[i]];
-    };
-    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-        if (i % width == 0 || (i + 1) % width == 0 || object_at(i) == ~0u) continue;
-        if (object_at(i - 1) != object_at(i) || object_at(i + 1) != object_at(i)) continue;
+    for_each_triple(diffuse, points, [&](std::size_t i) {
         sum += std::pow(luminance(linear, i - 1) - 2 * luminance(linear, i) + luminance(linear, i + 1), 2);
         ++triples;
-    }
+    });
     return triples > 0 ? std::sqrt(sum / static_cast<double>(triples)) : 0;
 }
 
@@ -116,22 +139,30 @@ Json compare_shading(const PreparedScene& prepared, const ShadingOptions& option
                                     {"ms", number(here.ms)},
                                     {"rmse", number(image_error(phong.shaded.linear, linear).rmse)},
                                     {"flip", number(flip_ldr(phong.shown, here.shown).mean)},
+                                    {"perceived", number(perceived_difference(prepared, phong.shaded.linear, linear))},
                                     {"highlight", number(ratio(highlight(linear, prepared.points), brightest))},
                                     {"kink", number(ratio(kink(model, prepared), smooth))},
                                     {"picture", picture},
                                     {"difference", difference}});
     }
+    record["stages"] = Json::array();
+    for (const Stage& stage : draw_stages(prepared, [&](const PointBatch& points) { return shadows(points); })) {
+        const std::string picture = fmt::format("stage_{}_{}.png", record["stages"].size() + 1, stage.name);
+        write_image(folder / picture, stage.picture);
+        record["stages"].push_back({{"name", stage.name}, {"about", stage.about}, {"picture", picture}});
+    }
     return record;
 }
 
 std::string shading_text(const Json& record) {
-    std::string text = fmt::format("{:<16} {:>12} {:>12} {:>9} {:>9} {:>9} {:>10} {:>7}\n", "model", "evaluations",
-                                   "S_j asked", "ms", "RMSE", "FLIP", "highlight", "kinks");
+    std::string text = fmt::format("{:<16} {:>12} {:>12} {:>9} {:>9} {:>9} {:>9} {:>10} {:>7}\n", "model",
+                                   "evaluations", "S_j asked", "ms", "RMSE", "FLIP", "perceived", "highlight", "kinks");
     for (const Json& m : record["models"])
-        text += fmt::format("{:<16} {:>12} {:>12} {:>9.2f} {:>9.5f} {:>9.5f} {:>10} {:>7}\n",
+        text += fmt::format("{:<16} {:>12} {:>12} {:>9.2f} {:>9.5f} {:>9.5f} {:>9.5f} {:>10} {:>7}\n",
                             m["name"].get<std::string>(), m["evaluations"].get<std::uint64_t>(),
                             m["asked"].get<std::uint64_t>(), m["ms"].get<double>(), m["rmse"].get<double>(),
-                            m["flip"].get<double>(), figure(m["highlight"], 3), figure(m["kink"], 2));
+                            m["flip"].get<double>(), m["perceived"].get<double>(), figure(m["highlight"], 3),
+                            figure(m["kink"], 2));
     return text;
 }
 

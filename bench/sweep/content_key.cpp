@@ -56,7 +56,7 @@ private:
 
 // A member that is added to one of these structs has to be added below, too.
 #if defined(__GLIBCXX__) && defined(__x86_64__)
-static_assert(sizeof(Scene) == 448 && sizeof(Fog) == 36 && sizeof(Camera) == 48 && sizeof(Light) == 280 &&
+static_assert(sizeof(Scene) == 464 && sizeof(Fog) == 40 && sizeof(Camera) == 48 && sizeof(Light) == 280 &&
               sizeof(LightPose) == 60 && sizeof(Photometry) == 80 && sizeof(Material) == 168 &&
               sizeof(LafortuneLobe) == 52 && sizeof(Object) == 48);
 #endif
@@ -98,7 +98,8 @@ Hasher& operator<<(Hasher& h, const Light& l) {
 }
 
 Hasher& operator<<(Hasher& h, const Fog& f) {
-    return h << f.law << f.distance << f.colour << f.density << f.start << f.end << f.near_share << f.far_share;
+    return h << f.law << f.distance << f.colour << f.density << f.start << f.end << f.near_share << f.far_share
+             << f.dims_lights;
 }
 
 template <class T>
@@ -119,7 +120,7 @@ std::string scene_key(const Scene& scene) {
     each(h, scene.lights);
     h << scene.camera << scene.width << scene.height << scene.ambient << scene.background << scene.tone
       << scene.exposure << scene.local_viewer << scene.light_ambient << scene.specular_colour
-      << scene.ambient_coefficient << scene.fog;
+      << scene.ambient_coefficient << scene.transparent << scene.fog;
     return h.digits();
 }
 

@@ -94,6 +94,16 @@ json blind_view(const Json& blind) {
     return view;
 }
 
+json screen_door_view(const Json& door) {
+    json view = json::array();
+    if (door.is_null()) return view;
+    view.push_back({{"rmse", figure(door["rmse"], "{:.5f}")},
+                    {"flip", figure(door["flip"], "{:.4f}")},
+                    {"rays", counted(door["rays"].get<double>(), "ray")},
+                    {"picture", door["picture"]}});
+    return view;
+}
+
 }  // namespace
 
 void write_whitted_page(const Json& record, const std::filesystem::path& folder, StagedFiles& staged) {
@@ -129,7 +139,8 @@ void write_whitted_page(const Json& record, const std::filesystem::path& folder,
                               {"phases", std::move(phases)},
                               {"ways", std::move(ways)},
                               {"search", search_view(record["search"])},
-                              {"blind", blind_view(record["blind"])}};
+                              {"blind", blind_view(record["blind"])},
+                              {"screen_door", screen_door_view(record["screen_door"])}};
     const PageHead head    = {fmt::format("Ray tracing: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::whitted_html, head, view));
     write_page_assets(folder, head.scripts, staged);

@@ -75,10 +75,11 @@ PointBatch eye_points(const Study& study, bool one_by_one) {
                           frame(study.scene().camera, width * study.side, height * study.side));
 }
 
-Traced trace_once(const Study& study, Way way, AskedMethod& shadows) {
+Traced trace_once(const Study& study, Way way, AskedMethod& shadows, Transparency transparency = Transparency::blend) {
     const TreeOptions options{.depth        = study.options.depth,
                               .least_weight = way == Way::any_weight ? 0 : study.options.least_weight,
-                              .everywhere   = way == Way::everywhere};
+                              .everywhere   = way == Way::everywhere,
+                              .transparency = transparency};
     Traced traced;
     PointBatch eye;
     traced.eye_ms = timed_ms([&] { eye = eye_points(study, way == Way::eye_rays || way == Way::everywhere); });
@@ -252,6 +253,20 @@ Json blind_json(const Study& study, AskedMethod& shadows, const Image& shown, co
             {"picture", "blind.png"}};
 }
 
+/// Null where the eye sees through no surface.
+Json screen_door_json(const Study& study, const Traced& blended, AskedMethod& shadows, const Image& shown,
+                      const fs::path& folder) {
+    if (std::ranges::all_of(blended.tree.levels, [](const RayLevel& level) { return level.own.empty(); })) return {};
+    const Traced traced = trace_once(study, Way::raster, shadows, Transparency::screen_door);
+    const Image picture = study.shown(traced.linear);
+    write_image(folder / "screen_door.png", picture);
+    return {{"rmse", number(image_error(blended.linear, traced.linear).rmse)},
+            {"flip", number(flip_ldr(shown, picture).mean)},
+            {"rays", traced.rays()},
+            {"ms", number(traced.ms())},
+            {"picture", "screen_door.png"}};
+}
+
 std::string in_text(const Json& value, const char* format) {
     return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
@@ -260,12 +275,8 @@ std::string in_text(const Json& value, const char* format) {
 
 void correct_warnings(Scene& scene) {
     for (const UncomputedTerm& term : find_uncomputed(scene)) {
-        if (term.term == "opacity") continue;
         const std::string beginning = fmt::format("The {} is not computed", in_words(term));
         std::erase_if(scene.warnings, [&](const std::string& w) { return w.starts_with(beginning); });
-        if (term.changes_visibility)
-            scene.warnings.push_back(fmt::format(
-                "The {} is in the picture, but not in S_j: such surfaces throw full shadows.", in_words(term)));
     }
 }
 
@@ -300,6 +311,7 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
     study.say("testing every triangle");
     Json search = search_json(study, raster.tree);
     Json blind  = blind_json(study, *shadows, shown, folder);
+    Json door   = screen_door_json(study, raster, *shadows, shown, folder);
     return {{"schema", kResultsSchema},
             {"version", version()},
             {"command", options.command},
@@ -318,7 +330,8 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
             {"phases", phases_json(raster)},
             {"ways", std::move(ways)},
             {"search", std::move(search)},
-            {"blind", std::move(blind)}};
+            {"blind", std::move(blind)},
+            {"screen_door", std::move(door)}};
 }
 
 std::string whitted_text(const Json& record) {
@@ -346,6 +359,9 @@ std::string whitted_text(const Json& record) {
     if (const Json& b = record["blind"]; !b.is_null())
         text += fmt::format("light by way of a plane mirror, not seen: {} pixels, {} of them in shadow\n",
                             b["points"].get<std::uint64_t>(), b["points_in_shadow"].get<std::uint64_t>());
+    if (const Json& d = record["screen_door"]; !d.is_null())
+        text += fmt::format("screen door instead of blending: RMSE {}, {} rays\n", in_text(d["rmse"], "{:.5f}"),
+                            d["rays"].get<std::uint64_t>());
     if (const auto undefined = record["undefined"].get<std::uint64_t>(); undefined > 0)
         text += fmt::format("S_j left undefined and taken as lit: {}\n", undefined);
     return text;

@@ -28,8 +28,7 @@ struct WhittedOptions {
     std::function<void(const std::string&)> progress;
 };
 
-/// What of a scene's warnings is true of this command: not that mirrors and glass are not computed, but that glass
-/// throws the shadow of an opaque body.
+/// Takes the warnings away that are not true of this command: that mirrors and glass are not computed.
 void correct_warnings(Scene& scene);
 
 /// Why the method cannot answer for what mirrors show; empty where it can, for all that is known before it runs.
@@ -37,7 +36,8 @@ void correct_warnings(Scene& scene);
 
 /// The method must serve the scene, and points off a raster. Writes into `folder`: whitted.png, the picture;
 /// depth_D.png, the picture if rays stopped at depth D; rays.png, brighter where a pixel has more rays; blind.png,
-/// where light arrives by way of a plane mirror. Returns the record, whose members bench/whitted/whitted_page.cpp
+/// where light arrives by way of a plane mirror; screen_door.png, the picture with Transparency::screen_door, where a
+/// surface is seen through. Returns the record, whose members bench/whitted/whitted_page.cpp
 /// shows:
 ///
 /// depths: by depth, RayCounts, `left` (met nothing), errors of depth_D.png from the picture. phases: milliseconds of
@@ -46,7 +46,7 @@ void correct_warnings(Scene& scene);
 /// `raster`, but no ray is too light): rays, milliseconds, pixels that differ from `raster`, by how much at most.
 /// search: a sample of secondary rays by the tree and against every triangle; null without secondary rays. blind:
 /// diffuse points that a light reaches over a plane mirror, those of them where its S_j is 0; null without plane
-/// mirrors.
+/// mirrors. screen_door: that picture's errors from the whole; null where no surface is seen through.
 ///
 /// Throws InputError, UsageError.
 [[nodiscard]] Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,

@@ -5,7 +5,7 @@
 //
 //   NFF                   here
 //   f r g b Kd Ks n T i   O_d = rgb, k_d = k_a = Kd, k_s = reflect = Ks, O_s = 1, shininess n, transmit T,
-//                         index_of_refraction i; lit from behind only where T > 0
+//                         index_of_refraction i; lit from behind only where T > 0. Shadow rays end at every surface
 //   l x y z               a point light without attenuation. The format leaves intensity open: 1 / sqrt(lights) each
 //   (no ambient light)    I_a = 0.1
 //   s, c                  triangles with exact normals. Vertices lie on the surface. Their number around the axis is 8
@@ -287,7 +287,8 @@ SceneFile read_nff(const std::filesystem::path& file) {
     if (!reader.any_light_has_colour)
         for (Light& light : scene.lights)
             light.diffuse = light.specular = vec3(1 / std::sqrt(float(scene.lights.size())));
-    scene.ambient = vec3(0.1f);
+    scene.ambient     = vec3(0.1f);
+    scene.transparent = TransparentOccluders::block;
     scene.warnings.push_back("NFF has no ambient light: I_a = 0.1 is assumed.");
     reader.normals.warn(scene.warnings);
     if (reader.self_crossing > 0)

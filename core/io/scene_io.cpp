@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <string>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -48,12 +50,27 @@ SceneFile read_by_ending(const path& file, const std::vector<std::string_view>& 
     return format->read(file);
 }
 
-Scene load_scene(const path& file) {
+FrameOfFile split_frame(const std::string& file) {
+    std::error_code ignored;
+    const std::size_t at = file.find_last_of('@');
+    if (at == std::string::npos || at + 1 == file.size() || std::filesystem::exists(file, ignored)) return {file, ""};
+    if (file.find_first_not_of("0123456789", at + 1) != std::string::npos || file.size() - at > 7) return {file, ""};
+    return {file.substr(0, at), file.substr(at)};
+}
+
+Scene load_scene(const path& name) {
     std::vector<std::string_view> endings;
     for (const Format& format : kFormats) endings.push_back(format.ending);
-    SceneFile read = read_by_ending(file, endings);
+    const auto [file_name, frame] = split_frame(name.string());
+    const path file(file_name);
+    if (!frame.empty() && lower_ending(file) != ".json")
+        throw InputError(fmt::format("{}: only native scenes (.json) have frames", name.string()));
+    SceneFile read = frame.empty() ? read_by_ending(file, endings) : read_native(file, std::stoi(frame.substr(1)));
     check_scene(read, file);
-    return complete_scene(std::move(read), file);
+    Scene scene = complete_scene(std::move(read), file);
+    scene.name += frame;
+    scene.source += frame;
+    return scene;
 }
 
 }  // namespace umbra

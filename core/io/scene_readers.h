@@ -20,12 +20,14 @@ struct SceneFile {
 };
 
 [[nodiscard]] SceneFile read_native(const std::filesystem::path& file);  ///< .json
-[[nodiscard]] SceneFile read_gltf(const std::filesystem::path& file);    ///< .gltf .glb
-[[nodiscard]] SceneFile read_obj(const std::filesystem::path& file);     ///< .obj, with its .mtl
-[[nodiscard]] SceneFile read_nff(const std::filesystem::path& file);     ///< .nff
-[[nodiscard]] SceneFile read_ply(const std::filesystem::path& file);     ///< .ply
-[[nodiscard]] SceneFile read_off(const std::filesystem::path& file);     ///< .off
-[[nodiscard]] SceneFile read_stl(const std::filesystem::path& file);     ///< .stl
+/// A frame of its animation, counted from 0; read_native without a frame reads the first.
+[[nodiscard]] SceneFile read_native(const std::filesystem::path& file, int frame);
+[[nodiscard]] SceneFile read_gltf(const std::filesystem::path& file);  ///< .gltf .glb
+[[nodiscard]] SceneFile read_obj(const std::filesystem::path& file);   ///< .obj, with its .mtl
+[[nodiscard]] SceneFile read_nff(const std::filesystem::path& file);   ///< .nff
+[[nodiscard]] SceneFile read_ply(const std::filesystem::path& file);   ///< .ply
+[[nodiscard]] SceneFile read_off(const std::filesystem::path& file);   ///< .off
+[[nodiscard]] SceneFile read_stl(const std::filesystem::path& file);   ///< .stl
 
 /// The reader that the ending names; `endings` are those allowed here. Throws InputError that lists them.
 [[nodiscard]] SceneFile read_by_ending(const std::filesystem::path& file, const std::vector<std::string_view>& endings);

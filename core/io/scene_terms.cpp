@@ -138,12 +138,14 @@ namespace {
 
 /// Only what the law uses may be given.
 void read_fog(const JsonText& json, const JsonValue& v, Fog& fog) {
-    const JsonFields fields(json, v, "fog", {"law", "distance", "colour", "density", "start", "end", "near", "far"});
+    const JsonFields fields(json, v, "fog",
+                            {"law", "distance", "colour", "density", "start", "end", "near", "far", "dims_lights"});
     fog     = {};
     fog.law = json.choice<FogLaw>(fields.require("law"), "law");
     if (const JsonValue* distance = fields.find("distance"))
         fog.distance = json.choice<FogDistance>(*distance, "distance");
     fog.colour        = colour_or(json, fields, "colour", fog.colour);
+    fog.dims_lights   = fields.boolean("dims_lights", fog.dims_lights);
     const bool linear = fog.law == FogLaw::linear, none = fog.law == FogLaw::none;
     for (const std::string_view key : {"start", "end", "near", "far"})
         if (const JsonValue* given = fields.find(key); given != nullptr && !linear)
@@ -177,6 +179,8 @@ void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& 
         scene.specular_colour = json.choice<SpecularColour>(*v, "specular_colour");
     if (const JsonValue* v = fields.find("ambient_coefficient"))
         scene.ambient_coefficient = json.choice<AmbientCoefficient>(*v, "ambient_coefficient");
+    if (const JsonValue* v = fields.find("transparent_occluders"))
+        scene.transparent = json.choice<TransparentOccluders>(*v, "transparent_occluders");
 }
 
 }  // namespace umbra

@@ -210,6 +210,7 @@ std::string fog_text(const Fog& fog) {
                             number(fog.end), number(fog.near_share), number(fog.far_share));
     else
         text += fmt::format(", \"density\": {}", number(fog.density));
+    if (fog.dims_lights) text += ", \"dims_lights\": true";
     return text + "}";
 }
 
@@ -243,6 +244,8 @@ std::string native_text(const Scene& scene) {
         text += fmt::format("  \"specular_colour\": \"{}\",\n", name_of(scene.specular_colour));
     if (scene.ambient_coefficient != AmbientCoefficient::k_a)
         text += fmt::format("  \"ambient_coefficient\": \"{}\",\n", name_of(scene.ambient_coefficient));
+    if (scene.transparent != TransparentOccluders::ignore)
+        text += fmt::format("  \"transparent_occluders\": \"{}\",\n", name_of(scene.transparent));
     if (scene.fog.law != FogLaw::none) text += fmt::format("  \"fog\": {},\n", fog_text(scene.fog));
     text += fmt::format("  \"materials\": {{{}\n  }},\n", lines(material_list, [&](std::size_t i) {
                             return fmt::format("{}: {}", json_string(names[i]), material_text(scene.materials[i]));

@@ -50,7 +50,7 @@ RaySpace fit_space(const Box& box) {
 
 }  // namespace
 
-RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()), space_(fit_space(bounds(scene))) {
+RayScene::RayScene(const Scene& scene, Met met) : impl_(std::make_unique<Impl>()), space_(fit_space(bounds(scene))) {
     const std::size_t triangles = scene.triangles.size();
     if (triangles > 0) {
         static_assert(sizeof(vec3) == 12 && sizeof(uvec3) == 12);
@@ -62,7 +62,9 @@ RayScene::RayScene(const Scene& scene) : impl_(std::make_unique<Impl>()), space_
         if (vertices && indices) {
             std::transform(scene.positions.begin(), scene.positions.end(), vertices,
                            [&](vec3 p) { return space_.point(p); });
-            std::copy(scene.triangles.begin(), scene.triangles.end(), indices);
+            // What is not to be met has no area: triangles keep their numbers.
+            for (TriangleId t = 0; t < triangles; ++t)
+                indices[t] = met == Met::all || scene.blocks(t) ? scene.triangles[t] : uvec3(scene.triangles[t][0]);
             impl_->vertices  = {vertices, scene.positions.size()};
             impl_->triangles = {indices, triangles};
             rtcSetGeometryOccludedFilterFunction(geometry, skip_own_triangle);

@@ -59,11 +59,17 @@ private:
     unsigned saved_;
 };
 
-/// An Embree scene over all triangles of a Scene. Built once; all queries are const and may run from many threads at
+/// Which triangles rays may meet.
+enum class Met : std::uint8_t {
+    all,
+    blocking  ///< Scene::blocks: for rays to a light
+};
+
+/// An Embree scene over the triangles of a Scene. Built once; all queries are const and may run from many threads at
 /// once.
 class RayScene {
 public:
-    explicit RayScene(const Scene& scene);  ///< copies what it needs; `scene` need not outlive it
+    explicit RayScene(const Scene& scene, Met met = Met::all);  ///< copies what it needs; `scene` need not outlive it
     ~RayScene();
     RayScene(RayScene&&) noexcept;
     RayScene& operator=(RayScene&&) noexcept;

@@ -20,6 +20,13 @@ namespace {
 constexpr std::size_t kMostRays = std::size_t{1} << 24;
 constexpr std::size_t kChunk    = 2048;
 
+/// From which opacity on an eye ray sees the surface: by its row and its column. [Bryce Bayer, An Optimum Method for
+/// Two-Level Rendition of Continuous-Tone Pictures, 1973]
+constexpr float kScreenDoor[4][4] = {{0.5f / 16, 8.5f / 16, 2.5f / 16, 10.5f / 16},
+                                     {12.5f / 16, 4.5f / 16, 14.5f / 16, 6.5f / 16},
+                                     {3.5f / 16, 11.5f / 16, 1.5f / 16, 9.5f / 16},
+                                     {15.5f / 16, 7.5f / 16, 13.5f / 16, 5.5f / 16}};
+
 /// How far a start in ray space may lie off its triangle's plane, and that of a neighbour in this plane, by rounding to
 /// float: see StartPlaces::load in shadows/rays, which derives the bound.
 float start_height(vec3 o, vec3 n) {
@@ -130,7 +137,9 @@ public:
         ++counts.met;
         const Material& material = scene_.material(points.triangle[i]);
         double k_r = static_cast<double>(material.reflect), k_t = static_cast<double>(material.transmit);
-        if (k_r == 0 && k_t == 0 && !options_.everywhere) return;
+        const double behind = k_t == 0 && material.opacity < 1 ? seen_behind(i, material.opacity) : 0;
+        if (behind > 0) own.push_back({i, static_cast<float>(1 - behind)});
+        if (k_r == 0 && k_t == 0 && behind == 0 && !options_.everywhere) return;
         const dvec3 d   = incoming(tree_, level_, i);
         const Side side = side_of(scene_, points, i, d);
         std::optional<dvec3> through;
@@ -143,12 +152,22 @@ public:
         }
         if (k_r > 0 || options_.everywhere) add(i, mirrored_at(side, d), k_r, RayKind::reflected);
         if (through) add(i, *through, k_t, RayKind::refracted);
+        if (behind > 0) add(i, d, behind, RayKind::refracted);
     }
 
     std::vector<SecondaryRay> rays;
+    std::vector<std::pair<std::size_t, float>> own;  ///< RayLevel::own of the points where it is not 1
     RayCounts counts;
 
 private:
+    /// The share of what lies behind point i, on a surface of this opacity.
+    [[nodiscard]] double seen_behind(std::size_t i, float opacity) const {
+        if (options_.transparency == Transparency::blend) return 1 - static_cast<double>(opacity);
+        for (std::size_t level = level_; level > 0; --level) i = tree_.levels[level].rays[i].parent;
+        const auto width = static_cast<std::size_t>(tree_.levels[0].points.raster->width);
+        return kScreenDoor[i / width % 4][i % width % 4] < opacity ? 0 : 1;
+    }
+
     void add(std::size_t parent, dvec3 direction, double factor, RayKind kind) {
         double weight = factor * (level_ == 0 ? 1 : tree_.levels[level_].rays[parent].weight);
         if (weight < options_.least_weight) {
@@ -180,6 +199,8 @@ std::vector<SecondaryRay> spawn(const Scene& scene, RayTree& tree, std::size_t l
     RayCounts& counts = tree.levels[level].counts;
     for (const Spawner& chunk : chunks) {
         rays.insert(rays.end(), chunk.rays.begin(), chunk.rays.end());
+        if (!chunk.own.empty()) tree.levels[level].own.resize(n, 1);
+        for (const auto& [point, share] : chunk.own) tree.levels[level].own[point] = share;
         counts.met += chunk.counts.met, counts.total += chunk.counts.total;
         counts.too_light += chunk.counts.too_light, counts.too_deep += chunk.counts.too_deep;
     }

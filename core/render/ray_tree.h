@@ -15,14 +15,25 @@
 
 namespace umbra {
 
+/// How surfaces are drawn that let light through unbent: opacity below 1, and transmit 0.
+enum class Transparency : std::uint8_t {
+    blend,       ///< opacity of what they give by themselves and 1 - opacity of what is behind them
+    screen_door  ///< of 16 neighbouring eye rays, 16 times opacity see the surface alone and the others what is behind
+                 ///< it alone: the same rays for all surfaces, so that equal ones hide one another
+};
+
 struct TreeOptions {
     int depth           = 5;      ///< rays on a path, the eye ray included; >= 1
     double least_weight = 0;      ///< a ray is not traced where the product of k_r and k_t on its path is below that
     bool everywhere     = false;  ///< a mirrored ray starts from every surface, also where its factor is 0, and rays
                                   ///< below least_weight are traced and count 0: the same picture with more rays
+    Transparency transparency = Transparency::blend;
 };
 
-enum class RayKind : std::uint8_t { reflected, refracted };
+enum class RayKind : std::uint8_t {
+    reflected,
+    refracted  ///< or, through surfaces that do not bend light, continued
+};
 
 /// A ray that starts at a surface.
 struct SecondaryRay {
@@ -48,6 +59,7 @@ struct RayCounts {
 struct RayLevel {
     PointBatch points;               ///< of the first level a raster; normals are on the side that the ray sees
     std::vector<SecondaryRay> rays;  ///< by parent, mirrored before refracted; empty at the first level
+    std::vector<float> own;          ///< one a point: the share of what leaves it by itself that counts; empty: 1
     RayCounts counts;
 };
 
@@ -62,8 +74,9 @@ struct RayTree {
 ///
 /// From a surface with reflect > 0 starts a mirrored ray, with transmit > 0 one refracted by index_of_refraction: the
 /// inside is the side against the winding, around every body is vacuum. Beyond the critical angle the mirrored ray has
-/// the factor reflect + transmit, since nothing is lost there (Whitted drops the transmitted light). Normals are
-/// interpolated; where they would send a ray to the wrong side of its triangle, the triangle's own counts.
+/// the factor reflect + transmit, since nothing is lost there (Whitted drops the transmitted light). Through a surface
+/// of opacity below 1 that has no transmit, the ray runs on as it came: see Transparency. Normals are interpolated;
+/// where they would send a ray to the wrong side of its triangle, the triangle's own counts.
 ///
 /// Parallel; the same bits for any number of threads. Throws InputError where a depth has more than 2^24 secondary
 /// rays, std::logic_error for a batch without a raster.

@@ -48,20 +48,36 @@ PhongSum::PhongSum(const Scene& scene, const CameraFrame& camera)
     }
 }
 
-/// f_att I_j (k_d O_d (N.L) + k_s O_s lobe): what light j would give if nothing blocked it.
-dvec3 PhongSum::unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p, dvec3 n, dvec3 v) {
+/// The light's f_att at p, dimmed by fog where the scene's fog does that.
+double PhongSum::arriving(const Light& light, vec3 p) const {
+    const double f_att = falloff(light, p);
+    if (!scene_->fog.dims_lights || light.kind == LightKind::directional || f_att <= 0) return f_att;
+    return f_att * fog_share(scene_->fog, static_cast<double>(to_light(light, p).distance));
+}
+
+/// f_att I_j (k_d O_d (N.L) + k_s O_s lobe): what light j would give if nothing blocked it. Says count(term) of each
+/// term of SumCounts that it evaluates.
+template <class Count>
+dvec3 PhongSum::unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p, dvec3 n, dvec3 v,
+                          const Count& count) const {
     const dvec3 towards = to_light(light, p).direction;
     const double length = glm::length(towards);
     if (!(length > 0)) return dvec3(0);  // the light is at p
     const dvec3 l       = towards / length;
     const double cosine = glm::dot(n, l);
     if (cosine <= 0) return dvec3(0);
-    const double f_att = falloff(light, p);
+    const double f_att = arriving(light, p);
     if (f_att <= 0) return dvec3(0);
+    count(&SumCounts::diffuse);
     dvec3 reflected = dvec3(light.diffuse) * terms.diffuse * cosine;
-    if (terms.is_specular && light.specular != vec3(0))
+    if (terms.is_specular && light.specular != vec3(0)) {
+        count(&SumCounts::specular);
         reflected += dvec3(light.specular) * terms.specular * specular_lobe(material, n, l, v);
-    if (!material.lobes.empty()) reflected += dvec3(light.specular) * lafortune_lobes(material, n, l, v);
+    }
+    if (!material.lobes.empty()) {
+        count(&SumCounts::lobes);
+        reflected += dvec3(light.specular) * lafortune_lobes(material, n, l, v);
+    }
     return f_att * reflected;
 }
 
@@ -76,6 +92,19 @@ dvec3 PhongSum::at(const PointBatch& points, std::size_t i, dvec3 n,
 
 dvec3 PhongSum::leaving(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
                         std::span<const VisibilityPlane> visibility) const {
+    return add_up(points, i, n, v, visibility, [](auto) {});
+}
+
+void PhongSum::count(const PointBatch& points, std::size_t i, dvec3 n, std::span<const VisibilityPlane> visibility,
+                     SumCounts& counts) const {
+    ++counts.sums;
+    counts.fog += scene_->fog.law != FogLaw::none ? 1 : 0;
+    add_up(points, i, n, to_viewer(points, i), visibility, [&](auto term) { ++(counts.*term); });
+}
+
+template <class Count>
+dvec3 PhongSum::add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
+                       std::span<const VisibilityPlane> visibility, const Count& count) const {
     const std::uint32_t object = scene_->triangle_object[points.triangle[i]];
     const Material& material   = scene_->materials[scene_->objects[object].material];
     const Terms& terms         = terms_[object];
@@ -85,11 +114,13 @@ dvec3 PhongSum::leaving(const PointBatch& points, std::size_t i, dvec3 n, dvec3 
     for (std::size_t j = 0; j < scene_->lights.size(); ++j) {
         if (!lights(j, object)) continue;
         const Light& light = scene_->lights[j];
-        if (attenuated_ambient_ && light.ambient != vec3(0))
-            sum += static_cast<double>(falloff(light, p)) * dvec3(light.ambient) * terms.ambient;
+        if (attenuated_ambient_ && light.ambient != vec3(0)) {
+            count(&SumCounts::ambient);
+            sum += arriving(light, p) * dvec3(light.ambient) * terms.ambient;
+        }
         if (points.facing[j][i] == Facing::away) continue;  // S_j = 0
         const double s_j = visibility[j].defined(i) ? visibility[j].s[i] : 1.0f;
-        if (s_j > 0) sum += s_j * unblocked(light, material, terms, p, n, v);
+        if (s_j > 0) sum += s_j * unblocked(light, material, terms, p, n, v, count);
     }
     return sum;
 }

@@ -16,6 +16,16 @@
 
 namespace umbra {
 
+/// How often each term was evaluated. What a scene does not ask for stays 0.
+struct SumCounts {
+    std::uint64_t sums     = 0;  ///< points
+    std::uint64_t diffuse  = 0;  ///< pairs of a point and a light that reaches it, in front of it
+    std::uint64_t specular = 0;  ///< of these, where material and light have a specular term
+    std::uint64_t lobes    = 0;  ///< of these, where the material has Lafortune's lobes
+    std::uint64_t ambient  = 0;  ///< ambient terms of lights that f_att acts on: pairs of a point and a light
+    std::uint64_t fog      = 0;  ///< points seen through fog
+};
+
 class PhongSum {
 public:
     /// Of a picture by this camera. The scene must outlive this object.
@@ -30,6 +40,10 @@ public:
     /// The same without fog, as it leaves the point in the direction `v`, unit.
     [[nodiscard]] dvec3 leaving(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
                                 std::span<const VisibilityPlane> visibility) const;
+
+    /// What `at` evaluates at point i.
+    void count(const PointBatch& points, std::size_t i, dvec3 n, std::span<const VisibilityPlane> visibility,
+               SumCounts& counts) const;
 
     /// What arrives at the eye, through the scene's fog, of light that leaves p.
     [[nodiscard]] dvec3 at_the_eye(dvec3 light, vec3 p) const;
@@ -51,8 +65,13 @@ private:
         dvec3 specular;    ///< k_s O_s
         bool is_specular;
     };
-    [[nodiscard]] static dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p,
-                                         dvec3 n, dvec3 v);
+    template <class Count>
+    dvec3 add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v, std::span<const VisibilityPlane> visibility,
+                 const Count& count) const;
+    [[nodiscard]] double arriving(const Light& light, vec3 p) const;
+    template <class Count>
+    dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p, dvec3 n, dvec3 v,
+                    const Count& count) const;
     /// Whether light j lights an object.
     [[nodiscard]] bool lights(std::size_t j, std::uint32_t object) const {
         return left_out_.empty() || !left_out_[object * scene_->lights.size() + j];

@@ -54,6 +54,7 @@ TreeLight light_of_rays(const Scene& scene, const RayTree& tree,
                 if (points.triangle[i] == kNoTriangle) continue;
                 const dvec3 v = level == 0 ? sum.to_viewer(points, i) : -tree.levels[level].rays[i].direction;
                 local[i]      = sum.leaving(points, i, shading_normal(scene, points, i), v, planes);
+                if (!tree.levels[level].own.empty()) local[i] *= static_cast<double>(tree.levels[level].own[i]);
             }
         });
     }

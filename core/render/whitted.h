@@ -15,7 +15,8 @@ namespace umbra {
 
 /// What leaves each point of a tree towards its ray by itself, without what mirrors and glass bring.
 struct TreeLight {
-    std::vector<std::vector<dvec3>> local;  ///< [level][point]: the sum without fog; the background where a ray left
+    std::vector<std::vector<dvec3>> local;  ///< [level][point]: the sum without fog, times RayLevel::own; the
+                                            ///< background where a ray left
     std::uint64_t undefined = 0;            ///< answers among RayCounts::shadow that the method left undefined: lit
     double shadow_ms        = 0;            ///< S_j of all levels, where it was asked here
     double sum_ms           = 0;

@@ -172,7 +172,8 @@ void find_terms(const Scene& scene, SceneFacts& facts) {
         facts.has_specular |= specular_light && any(m.k_s * O_specular(m));
         facts.has_lobes |= specular_light && !m.lobes.empty();
         facts.has_emission |= any(m.emission);
-        facts.has_transparency |= m.opacity < 1 || m.transmit > 0;
+        facts.has_transparency |= transmittance(m) > 0;
+        facts.has_filters |= scene.transparent == TransparentOccluders::multiply && transmittance(m) > 0;
         facts.has_mirrors |= m.reflect > 0;
         facts.has_one_sided |= !m.two_sided;
     }
@@ -223,6 +224,7 @@ std::vector<Trait> traits(const SceneFacts& facts) {
         {facts.has_lobes, "Lafortune lobes"},
         {facts.has_fog, "fog"},
         {facts.has_transparency, "transparency"},
+        {facts.has_filters, "shadows of what lets a part of the light through"},
         {facts.has_mirrors, "mirrors"},
         {!facts.hard_lights_only, "penumbra (area light)"},
         {facts.open_objects + facts.nonmanifold_objects + facts.misoriented_objects > 0,

@@ -1,4 +1,5 @@
-// Fog between a surface and the eye: I' = f I + (1 - f) C. Between a surface and a light there is none.
+// Fog between a surface and the eye: I' = f I + (1 - f) C. Where the scene says so, also between a light and a surface,
+// where it takes light and adds none: the light arrives times f.
 #pragma once
 
 #include <cstdint>
@@ -26,6 +27,8 @@ struct Fog {
     float density = 0;                    ///< >= 0, per world unit
     float start = 0, end = 1;             ///< world units; start < end
     float near_share = 1, far_share = 0;  ///< [0, 1]
+    bool dims_lights = false;             ///< f of the distance from the light is part of f_att; lights at infinity,
+                                          ///< which would be dark, are not dimmed
 };
 
 /// f at a distance >= 0: the share of a surface's light that arrives, [0, 1].

@@ -1,6 +1,7 @@
 // Phong materials, per channel.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -36,12 +37,15 @@ struct Material {
     float shininess           = 1;  ///< n, >= 0
     Lobe lobe                 = Lobe::phong;
     bool two_sided            = true;  ///< the side that faces the eye is lit; otherwise the side of the winding only
-    float opacity             = 1;     ///< 1 opaque; every triangle is opaque to S_j as yet (see uncomputed.h)
+    float opacity             = 1;     ///< 1 opaque
     float reflect             = 0;     ///< k_r, Whitted's mirrored share; in ray_tree.h alone
     float transmit            = 0;     ///< k_t, Whitted's transmitted share; in ray_tree.h alone
     float index_of_refraction = 1;
     std::vector<LafortuneLobe> lobes{};  ///< added to the specular term
     vec3 tangent{1, 0, 0};               ///< of `lobes`, world space, any length > 0
 };
+
+/// The fraction of light that a surface of this material lets through, [0, 1]: 1 - opacity or k_t, whichever is more.
+[[nodiscard]] inline float transmittance(const Material& m) { return std::max(1 - m.opacity, m.transmit); }
 
 }  // namespace umbra

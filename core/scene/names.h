@@ -9,6 +9,7 @@
 #include "umbra/core/scene/lights.h"
 #include "umbra/core/scene/materials.h"
 #include "umbra/core/scene/photometry.h"
+#include "umbra/core/scene/primitives.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
@@ -66,6 +67,19 @@ template <>
 struct EnumNames<AmbientCoefficient> {
     static constexpr std::array<Named<AmbientCoefficient>, 2> table{
         {{AmbientCoefficient::k_a, "k_a"}, {AmbientCoefficient::k_d, "k_d"}}};
+};
+
+template <>
+struct EnumNames<TransparentOccluders> {
+    static constexpr std::array<Named<TransparentOccluders>, 3> table{{{TransparentOccluders::ignore, "ignore"},
+                                                                       {TransparentOccluders::block, "block"},
+                                                                       {TransparentOccluders::multiply, "multiply"}}};
+};
+
+template <>
+struct EnumNames<NormalWeights> {
+    static constexpr std::array<Named<NormalWeights>, 3> table{
+        {{NormalWeights::angle, "angle"}, {NormalWeights::area, "area"}, {NormalWeights::equal, "equal"}}};
 };
 
 template <>

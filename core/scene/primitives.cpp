@@ -196,14 +196,14 @@ std::vector<std::uint32_t> weld(const std::vector<vec3>& positions) {
 
 // Corners that meet at a position share a normal where one can walk from face to face around it over edges that are
 // no creases. So two bodies that touch in one position keep apart, and a crease may end inside a surface.
-Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees) {
+Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees, NormalWeights weights) {
     const auto welded       = weld(mesh.positions);
     const auto corner_of    = [&](std::size_t corner) { return welded[mesh.triangles[corner / 3][int(corner % 3)]]; };
     const std::size_t faces = mesh.triangles.size();
 
-    // Face normals (zero where degenerate) and the angle at each corner, which is its weight.
+    // Face normals (zero where degenerate) and the weight of each corner.
     std::vector<dvec3> face_normal(faces);
-    std::vector<double> angle(3 * faces);
+    std::vector<double> weight(3 * faces);
     for (std::size_t f = 0; f < faces; ++f) {
         std::array<dvec3, 3> p;
         for (unsigned k = 0; k < 3; ++k) p[k] = dvec3(mesh.positions[corner_of(3 * f + k)]);
@@ -212,7 +212,10 @@ Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees) {
         if (!(length > 0)) continue;
         face_normal[f] = n / length;
         for (unsigned k = 0; k < 3; ++k)
-            angle[3 * f + k] = std::atan2(length, glm::dot(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]));
+            weight[3 * f + k] = weights == NormalWeights::area ? length
+                                : weights == NormalWeights::equal
+                                    ? 1
+                                    : std::atan2(length, glm::dot(p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]));
     }
 
     // Faces that share an edge lie next to each other once sorted by its two ends; a smooth edge joins their corners.
@@ -244,7 +247,7 @@ Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees) {
 
     // One vertex a set, in order of first use.
     std::vector<dvec3> sum(3 * faces, dvec3(0));
-    for (std::uint32_t c = 0; c < 3 * faces; ++c) sum[sets.root(c)] += angle[c] * face_normal[c / 3];
+    for (std::uint32_t c = 0; c < 3 * faces; ++c) sum[sets.root(c)] += weight[c] * face_normal[c / 3];
     Mesh result;
     std::vector<std::uint32_t> vertex(3 * faces);
     for (std::uint32_t c = 0; c < 3 * faces; ++c) {

@@ -25,9 +25,17 @@ struct Mesh {
 /// Positions by `m`, normals by its inverse transpose, windings turned where `m` mirrors.
 [[nodiscard]] Mesh transformed(Mesh mesh, const mat4& m);
 
-/// Vertex normals averaged from the faces around each position, weighted by angle, across bit-equal positions;
-/// faces that meet at more than `crease` degrees keep their own (positions are split there).
-/// [Grit Thuermer, Charles Wuethrich, Computing Vertex Normals from Polygonal Facets, 1998]
-[[nodiscard]] Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees = 180);
+/// What the normal of a face counts at a vertex. Only with `angle` does it not matter how faces are cut into triangles.
+enum class NormalWeights : std::uint8_t {
+    angle,  ///< its angle there [Grit Thuermer, Charles Wuethrich, Computing Vertex Normals from Polygonal Facets,
+            ///< 1998]
+    area,   ///< its area
+    equal   ///< 1 a triangle [Henri Gouraud, Continuous Shading of Curved Surfaces, 1971]
+};
+
+/// Vertex normals averaged from the faces around each position, across bit-equal positions; faces that meet at more
+/// than `crease` degrees keep their own (positions are split there).
+[[nodiscard]] Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees = 180,
+                                         NormalWeights weights = NormalWeights::angle);
 
 }  // namespace umbra

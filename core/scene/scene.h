@@ -38,6 +38,13 @@ enum class LightAmbient : std::uint8_t {
 enum class SpecularColour : std::uint8_t { O_s, O_d };      ///< the specular term is k_s O_s (...) or k_s O_d (...)
 enum class AmbientCoefficient : std::uint8_t { k_a, k_d };  ///< the ambient term is I_a k_a O_d or I_a k_d O_d
 
+/// What a triangle whose material lets light through (see transmittance) does to S_j.
+enum class TransparentOccluders : std::uint8_t {
+    ignore,    ///< nothing: light is lost where an opaque triangle lies between, and nowhere else
+    block,     ///< it blocks light as an opaque one does
+    multiply,  ///< it lets its material's transmittance through, and triangles one behind the other the product
+};
+
 /// Pixels along a side of a picture, in a scene file and on the command line.
 inline constexpr int kMaxPictureSide = 16384;
 
@@ -67,12 +74,25 @@ struct Scene {
     LightAmbient light_ambient             = LightAmbient::constant;
     SpecularColour specular_colour         = SpecularColour::O_s;
     AmbientCoefficient ambient_coefficient = AmbientCoefficient::k_a;
+    TransparentOccluders transparent       = TransparentOccluders::ignore;
+
+    int frames = 0;  ///< of the file's animation; 0: nothing moves
+    int frame  = 0;  ///< the one that this scene is, [0, frames)
 
     std::vector<std::string> warnings;  ///< what loading assumed, a sentence each
 
     [[nodiscard]] vec3 vertex(TriangleId t, int k) const { return positions[triangles[t][k]]; }
     [[nodiscard]] const Material& material(TriangleId t) const {
         return materials[objects[triangle_object[t]].material];
+    }
+    /// Whether triangle t takes all light that meets it.
+    [[nodiscard]] bool blocks(TriangleId t) const {
+        return transparent == TransparentOccluders::block || transmittance(material(t)) == 0;
+    }
+    /// What triangle t leaves of light that passes through it: 0 where it blocks.
+    [[nodiscard]] float lets_through(TriangleId t) const {
+        if (blocks(t)) return 0;
+        return transparent == TransparentOccluders::multiply ? transmittance(material(t)) : 1;
     }
 };
 

@@ -9,17 +9,13 @@ namespace {
 
 struct Term {
     std::string_view name, consequence;
-    bool changes_visibility;
     bool (*asked)(const Material& m);
 };
 constexpr Term kTerms[] = {
-    {"opacity", "surfaces are drawn opaque and throw full shadows", true,
-     [](const Material& m) { return m.opacity < 1; }},
-    {"transmit", "surfaces are drawn opaque and throw full shadows", true,
-     [](const Material& m) { return m.transmit > 0; }},
-    {"reflect", "surfaces show no mirror images", false, [](const Material& m) { return m.reflect > 0; }},
-    {"index_of_refraction", "nothing is refracted", false,
-     [](const Material& m) { return m.index_of_refraction != 1; }},
+    {"opacity", "surfaces are drawn opaque", [](const Material& m) { return m.opacity < 1; }},
+    {"transmit", "surfaces are drawn opaque", [](const Material& m) { return m.transmit > 0; }},
+    {"reflect", "surfaces show no mirror images", [](const Material& m) { return m.reflect > 0; }},
+    {"index_of_refraction", "nothing is refracted", [](const Material& m) { return m.index_of_refraction != 1; }},
 };
 
 constexpr std::size_t kNamed = 3;  ///< a sentence names this many materials
@@ -32,7 +28,7 @@ std::vector<UncomputedTerm> find_uncomputed(const Scene& scene) {
         if (object.triangle_count > 0) used[object.material] = 1;
     std::vector<UncomputedTerm> found;
     for (const Term& term : kTerms) {
-        UncomputedTerm uncomputed{term.name, term.consequence, term.changes_visibility, {}};
+        UncomputedTerm uncomputed{term.name, term.consequence, {}};
         for (std::size_t m = 0; m < scene.materials.size(); ++m)
             if (used[m] && term.asked(scene.materials[m])) uncomputed.materials.push_back(scene.materials[m].name);
         if (!uncomputed.materials.empty()) found.push_back(std::move(uncomputed));

@@ -1,4 +1,5 @@
-// What materials ask for and nothing computes yet: found once, warned about by readers, and named by verdicts.
+// What materials ask for and pictures of the sum do not have (`umbra whitted` does): found once, warned about by
+// readers.
 #pragma once
 
 #include <string>
@@ -13,7 +14,6 @@ namespace umbra {
 struct UncomputedTerm {
     std::string_view term;               ///< as native scenes write it: "opacity"
     std::string_view consequence;        ///< what is drawn instead, for people
-    bool changes_visibility;             ///< S_j would be another, were it computed
     std::vector<std::string> materials;  ///< their names, in the scene's order; not empty
 };
 

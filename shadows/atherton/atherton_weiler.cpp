@@ -47,7 +47,7 @@ void AthertonWeiler::build(const Scene& scene, const SceneFacts&) {
 void AthertonWeiler::aim(LightId light) {
     light_ = &scene_->lights[light];
     find_sides();
-    outlines_ = find_outlines(*scene_, topology_, sides_);
+    outlines_ = find_outlines(*scene_, topology_, covers_);
     std::vector<Box> boxes;
     for (const OutlineEdge& edge : outlines_) boxes.push_back(extend(extend(Box{}, edge.from), edge.to));
     outline_tree_.emplace(std::move(boxes));
@@ -83,11 +83,13 @@ void AthertonWeiler::visibility(const PointBatch& points, LightId light, Visibil
 /// +1 for triangles that face the light, -1 for those that face away, 0 for those that it sees edge-on.
 void AthertonWeiler::find_sides() {
     sides_.resize(scene_->triangles.size());
+    covers_.resize(sides_.size());
     parallel_ranges(sides_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) {
             const auto id = static_cast<TriangleId>(t);
             sides_[t]     = static_cast<std::int8_t>(
                 side_of_light(*light_, scene_->vertex(id, 0), scene_->vertex(id, 1), scene_->vertex(id, 2)));
+            covers_[t] = scene_->blocks(id) ? sides_[t] : std::int8_t{0};
         }
     });
 }
@@ -114,7 +116,7 @@ void AthertonWeiler::visit_met(TriangleId own, float u, float v, const Visit& vi
     const ExactPoint point(*scene_, own, u, v);
     const Segment segment(point, *light_);
     triangles_->visit(segment.piece(), [&](TriangleId t) {
-        if (t == own || topology_.degenerate[t]) return true;
+        if (t == own || topology_.degenerate[t] || !scene_->blocks(t)) return true;
         const auto met = segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
         return met == Segment::Meeting::none || visit(t, met);
     });
@@ -175,7 +177,7 @@ void AthertonWeiler::add_cuts(TriangleId own, const Receiver& receiver, Pieces& 
     triangles_->visit(
         receiver.itself(), [](std::uint32_t, const Box&) { return true; },
         [&](TriangleId t) {
-            if (t != own && sides_[t] != 0) add_cut(own, t, receiver, pieces);
+            if (t != own && covers_[t] != 0) add_cut(own, t, receiver, pieces);
             return true;
         });
 }
@@ -227,7 +229,7 @@ std::size_t AthertonWeiler::memory_bytes() const {
                         (outline_tree_ ? outline_tree_->memory_bytes() : 0) +
                         topology_.triangles.size() * sizeof(uvec3) + topology_.edges.size() * sizeof(Edge) +
                         topology_.uses.size() * sizeof(EdgeUse) + topology_.position.size() * sizeof(std::uint32_t) +
-                        topology_.degenerate.size() + outlines_.size() * sizeof(OutlineEdge) + sides_.size() +
+                        topology_.degenerate.size() + outlines_.size() * sizeof(OutlineEdge) + 2 * sides_.size() +
                         seen_.size() + parts_.size() * sizeof(parts_[0]);
     for (const auto& part : parts_) bytes += part ? part->memory_bytes() : 0;
     return bytes;

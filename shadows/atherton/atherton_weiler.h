@@ -69,7 +69,8 @@ private:
     const Light* light_ = nullptr;
     Topology topology_;
     std::optional<TriangleTree> triangles_;
-    std::vector<std::int8_t> sides_;  ///< one a triangle: +1 if it faces the light, -1 if it faces away, 0 if edge-on
+    std::vector<std::int8_t> sides_;   ///< one a triangle: +1 if it faces the light, -1 if it faces away, 0 if edge-on
+    std::vector<std::int8_t> covers_;  ///< the same, 0 for triangles that do not block
     std::vector<atherton_detail::OutlineEdge> outlines_;
     std::optional<BoxTree> outline_tree_;
     std::vector<Seen> seen_;                                        ///< one a triangle

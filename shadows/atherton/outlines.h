@@ -17,7 +17,7 @@ struct OutlineEdge {
 };
 
 /// Of all triangles of `topology`, each counted as the light sees it: lights[t] is +1 where the light is on the side
-/// that triangle t faces, -1 on the other, 0 in its plane (or where it has no area).
+/// that triangle t faces, -1 on the other, 0 in its plane (or where it has no area or does not block).
 [[nodiscard]] std::vector<OutlineEdge> find_outlines(const Scene& scene, const Topology& topology,
                                                      const std::vector<std::int8_t>& lights);
 

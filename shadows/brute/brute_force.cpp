@@ -55,19 +55,27 @@ public:
         return {How::approximately, fmt::format("Area lights are sampled at {} points.", options.samples)};
     }
 
-    void build(const Scene& scene, const SceneFacts&) override { scene_ = &scene; }
+    [[nodiscard]] bool multiplies() const override { return true; }
+
+    void build(const Scene& scene, const SceneFacts&) override {
+        scene_ = &scene;
+        occluders_.clear();
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t)
+            if (scene.lets_through(t) < 1) occluders_.push_back(t);
+    }
+
     void aim(LightId light) override { light_ = light; }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 if (!points.asks(light, i)) continue;
-                int lit = 0;
+                float sum = 0;
                 for (int k = 0; k < samples(); ++k) {
                     const Segment s = segment(points, i, k);
-                    lit += !s.behind && first_blocker(points.triangle[i], s) == kNoTriangle;
+                    if (!s.behind) sum += passes(points.triangle[i], s);
                 }
-                out.s[i] = static_cast<float>(lit) / static_cast<float>(samples());
+                out.s[i] = sum / static_cast<float>(samples());
             }
         });
     }
@@ -83,7 +91,7 @@ public:
         });
     }
 
-    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
+    [[nodiscard]] std::size_t memory_bytes() const override { return occluders_.size() * sizeof(TriangleId); }
 
 private:
     /// The points p + t d, 0 < t < end.
@@ -105,16 +113,31 @@ private:
         return {p, d, 1, points.facing[light_][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), d) <= 0};
     }
 
+    [[nodiscard]] bool meets(TriangleId own, const Segment& s, TriangleId t) const {
+        return t != own && crosses(s.p, s.d, s.end, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
+                                   dvec3(scene_->vertex(t, 2)));
+    }
+
+    /// What is left of the light when it arrives: 1 where no triangle lies between, 0 where one blocks.
+    [[nodiscard]] float passes(TriangleId own, const Segment& s) const {
+        float share = 1;
+        for (const TriangleId t : occluders_) {
+            if (!meets(own, s, t)) continue;
+            share *= scene_->lets_through(t);
+            if (share == 0) break;
+        }
+        return share;
+    }
+
     [[nodiscard]] TriangleId first_blocker(TriangleId own, const Segment& s) const {
-        for (TriangleId t = 0; t < scene_->triangles.size(); ++t)
-            if (t != own && crosses(s.p, s.d, s.end, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
-                                    dvec3(scene_->vertex(t, 2))))
-                return t;
+        for (const TriangleId t : occluders_)
+            if (meets(own, s, t)) return t;
         return kNoTriangle;
     }
 
     const Scene* scene_ = nullptr;
     LightId light_      = 0;
+    std::vector<TriangleId> occluders_;  ///< that take any light
 };
 
 }  // namespace

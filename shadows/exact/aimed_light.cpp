@@ -52,7 +52,7 @@ void AimedLight::aim(const Light& light, const Occluders& occluders) {
     const Topology& topology = occluders.topology;
     for (TriangleId t = 0; t < topology.triangles.size(); ++t) {
         const uvec3 v = topology.triangles[t];
-        if (topology.degenerate[t]) continue;
+        if (occluders.casts_nothing[t]) continue;
         if (!side_.empty() && side_[v[0]] == side_[v[1]] && side_[v[1]] == side_[v[2]]) continue;
         const vec3 a = occluders.position(v[0]), b = occluders.position(v[1]), c = occluders.position(v[2]);
         bool apart = false;

@@ -60,7 +60,13 @@ public:
 
     [[nodiscard]] Measure measures() const override { return options.measure; }
 
+    /// Light lost on the way to a point of an area light would have to be added up layer by layer.
+    [[nodiscard]] bool multiplies() const override { return true; }
+
     Service serves(const SceneFacts& facts) const override {
+        if (facts.has_filters && !facts.hard_lights_only)
+            return {How::not_at_all,
+                    "Of area lights it finds the part that is seen, not what occluders let through of the rest."};
         bool round = false;
         for (const LightFacts& light : facts.lights)
             round = round || light.kind == LightKind::disk || light.kind == LightKind::sphere;
@@ -83,6 +89,7 @@ public:
                 no_area_[t]   = is_degenerate(scene.vertex(id, 0), scene.vertex(id, 1), scene.vertex(id, 2));
             }
         });
+        has_filters_ = facts.has_filters;
         tree_.emplace(scene);
         has_area_lights_ = !facts.hard_lights_only;
         if (has_area_lights_) area_.build(scene, *tree_);
@@ -127,9 +134,11 @@ private:
                 if (points.facing[light][i] != Facing::front) continue;
                 const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
                 const Segment segment(point, scene_->lights[light]);
-                const Segment::Meeting met = first_meeting(segment, points.triangle[i], last);
-                out.s[i]                   = met == Segment::Meeting::crosses ? 0.0f : 1.0f;
-                out.answer[i]              = met == Segment::Meeting::touches ? Answer::on_boundary : Answer::given;
+                Segment::Meeting met = first_meeting(segment, points.triangle[i], last);
+                out.s[i]             = met == Segment::Meeting::crosses ? 0.0f : 1.0f;
+                if (has_filters_ && met != Segment::Meeting::crosses)
+                    out.s[i] = passed(segment, points.triangle[i], met);
+                out.answer[i] = met == Segment::Meeting::touches ? Answer::on_boundary : Answer::given;
             }
         });
     }
@@ -155,7 +164,7 @@ private:
     Segment::Meeting first_meeting(const Segment& segment, TriangleId own, TriangleId& last) const {
         using Meeting   = Segment::Meeting;
         const auto with = [&](TriangleId t) {
-            return t == own || no_area_[t]
+            return t == own || no_area_[t] || !scene_->blocks(t)
                        ? Meeting::none
                        : segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
         };
@@ -170,6 +179,20 @@ private:
         return met;
     }
 
+    /// What all triangles that are crossed let through together, though none of them blocks. `met` becomes `touches`
+    /// where one is touched.
+    float passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
+        double share = 1;
+        tree_->visit(segment.piece(), [&](TriangleId t) {
+            if (t == own || no_area_[t] || scene_->blocks(t)) return true;
+            const auto m = segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
+            if (m == Segment::Meeting::crosses) share *= static_cast<double>(scene_->lets_through(t));
+            if (m == Segment::Meeting::touches) met = m;
+            return true;
+        });
+        return static_cast<float>(share);
+    }
+
     /// What is crossed is decided exactly, and which of that is nearest in double.
     TriangleId nearest_crossed(const Segment& segment, TriangleId own) const {
         const BoxTree::Piece piece = segment.piece();
@@ -177,7 +200,9 @@ private:
         double least               = std::numeric_limits<double>::infinity();
         tree_->visit(piece, [&](TriangleId t) {
             const vec3 x = scene_->vertex(t, 0), y = scene_->vertex(t, 1), z = scene_->vertex(t, 2);
-            if (t == own || no_area_[t] || segment.meeting(x, y, z) != Segment::Meeting::crosses) return true;
+            if (t == own || no_area_[t] || scene_->lets_through(t) == 1 ||
+                segment.meeting(x, y, z) != Segment::Meeting::crosses)
+                return true;
             const dvec3 n    = glm::cross(dvec3(y) - dvec3(x), dvec3(z) - dvec3(x));
             const double way = std::abs(glm::dot(n, dvec3(x) - piece.from) / glm::dot(n, piece.direction));
             if (way < least || (way == least && t < nearest)) least = way, nearest = t;
@@ -189,7 +214,7 @@ private:
     const Scene* scene_ = nullptr;
     std::optional<TriangleTree> tree_;
     std::vector<std::uint8_t> no_area_;  ///< one a triangle
-    bool has_area_lights_ = false;
+    bool has_area_lights_ = false, has_filters_ = false;
     ExactArea area_{ExactArea::Arithmetic::filtered, Measure::area};
 };
 

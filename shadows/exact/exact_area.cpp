@@ -91,7 +91,10 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
 }
 
 void ExactArea::build(const Scene& scene, const BoxTree& triangles) {
-    occluders_ = {&scene, &triangles, find_topology(scene, 0, static_cast<std::uint32_t>(scene.triangles.size()))};
+    occluders_ = {&scene, &triangles, find_topology(scene, 0, static_cast<std::uint32_t>(scene.triangles.size())), {}};
+    occluders_.casts_nothing = occluders_.topology.degenerate;
+    for (TriangleId t = 0; t < scene.triangles.size(); ++t)
+        if (!scene.blocks(t)) occluders_.casts_nothing[t] = 1;
     edges_.build(occluders_);
 }
 
@@ -101,7 +104,7 @@ std::size_t ExactArea::memory_bytes() const {
     const auto bytes         = [](const auto& list) { return list.size() * sizeof(list[0]); };
     const Topology& topology = occluders_.topology;
     return bytes(topology.triangles) + bytes(topology.position) + bytes(topology.edges) + bytes(topology.uses) +
-           bytes(topology.degenerate) + edges_.memory_bytes() + light_.memory_bytes();
+           bytes(topology.degenerate) + bytes(occluders_.casts_nothing) + edges_.memory_bytes() + light_.memory_bytes();
 }
 
 }  // namespace umbra::exact_detail

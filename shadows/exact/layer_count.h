@@ -78,7 +78,7 @@ Filtered<int> LayerCount<Space>::at(double x, double y, TriangleId& blocker) con
     Filtered<int> layers  = 0;
     sight.occluders.triangles->visit(BoxTree::Piece{p.rounded(), centre.value + across, 1.0, rounding},
                                      [&](TriangleId t) {
-                                         if (t == sight.viewpoint.own() || sight.occluders.topology.degenerate[t])
+                                         if (t == sight.viewpoint.own() || sight.occluders.casts_nothing[t])
                                              return true;
                                          const Filtered<bool> over = lies_over(t, x, y, Extent::any);
                                          if (!over) {

@@ -7,9 +7,10 @@
 namespace umbra::exact_detail {
 
 struct Occluders {
-    const Scene* scene       = nullptr;  ///< must outlive this
-    const BoxTree* triangles = nullptr;  ///< of the boxes of its triangles; must outlive this
-    Topology topology;                   ///< of all of them
+    const Scene* scene       = nullptr;       ///< must outlive this
+    const BoxTree* triangles = nullptr;       ///< of the boxes of its triangles; must outlive this
+    Topology topology;                        ///< of all of them
+    std::vector<std::uint8_t> casts_nothing;  ///< one a triangle: 1 without an area, or where it does not block
 
     /// Of a welded vertex.
     [[nodiscard]] vec3 position(std::uint32_t vertex) const { return scene->positions[topology.position[vertex]]; }

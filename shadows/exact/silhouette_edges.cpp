@@ -39,7 +39,7 @@ void SilhouetteEdges::add(const Edge& e) {
     const Topology& topology = occluders_->topology;
     CandidateEdge edge{e.a, e.b, static_cast<std::uint32_t>(uses_.size()), 0};
     for (std::uint32_t k = e.first; k < e.first + e.count; ++k)
-        if (!topology.degenerate[topology.uses[k].triangle]) uses_.push_back(topology.uses[k]);
+        if (!occluders_->casts_nothing[topology.uses[k].triangle]) uses_.push_back(topology.uses[k]);
     edge.count = static_cast<std::uint32_t>(uses_.size()) - edge.first;
     bool flat  = false;
     if (edge.count == 2) {

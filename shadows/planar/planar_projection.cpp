@@ -107,7 +107,7 @@ public:
             for (const int side : {1, -1}) receivers_.push_back(planar::make_receiver(scene, plane, index, side));
         }
         for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-            if (!is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
+            if (scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
                 occluders_.triangles.push_back(t);
     }
 

@@ -17,7 +17,7 @@ struct SurfacePoint {
 /// Const members may be called from any number of threads.
 class Sight {
 public:
-    explicit Sight(const Scene& scene) : rays_(scene) {}
+    explicit Sight(const Scene& scene) : rays_(scene, Met::blocking) {}
 
     /// Which of at most eight targets are seen, as bits: bit k of the k-th. `to`: from the point to each target, or,
     /// with `infinite`, the direction of what is infinitely far away. What is not in front of the point is not seen.

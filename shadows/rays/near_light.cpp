@@ -40,6 +40,7 @@ NearLight::NearLight(const Scene& scene, const RayScene& rays, LightId light) : 
     const dvec3 farthest   = glm::max(glm::abs(dvec3(box.min) - light_), glm::abs(dvec3(box.max) - light_));
     const double untraced2 = kUntraced * kUntraced * glm::dot(farthest, farthest);
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+        if (!scene.blocks(t)) continue;
         const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
         Occluder near{t, dvec3(a) - light_, dvec3(b) - light_, dvec3(c) - light_, 0};
         if (squared_distance(near) > untraced2) continue;

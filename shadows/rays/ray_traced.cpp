@@ -96,7 +96,7 @@ public:
     void build(const Scene& scene, const SceneFacts&) override {
         scene_    = &scene;
         diagonal_ = bounds(scene).diagonal();
-        rays_.emplace(scene);
+        rays_.emplace(scene, Met::blocking);
     }
 
     void aim(LightId light) override {

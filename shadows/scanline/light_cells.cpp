@@ -60,6 +60,7 @@ LightCells::LightCells(const Scene& scene, const Light& light)
     first_.assign(static_cast<std::size_t>(faces_) * side_ * side_ + 1, 0);
     const auto each = [&](const auto& put) {
         for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+            if (!scene.blocks(t)) continue;
             const std::array<dvec3, 3> corners{seen(dvec3(scene.vertex(t, 0))), seen(dvec3(scene.vertex(t, 1))),
                                                seen(dvec3(scene.vertex(t, 2)))};
             for (int face = 0; face < faces_; ++face)

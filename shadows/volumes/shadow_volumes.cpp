@@ -82,6 +82,7 @@ public:
     void aim(LightId light) override {
         const Light& l = scene_->lights[light];
         orientation_   = meshes_->facing(l);
+        leave_out_transparent();
         if (options.edges == Edges::silhouette) leave_out_back_faces(l);
         edges_ = options.edges == Edges::per_triangle ? all_edges() : meshes_->edges(orientation_);
     }
@@ -125,6 +126,12 @@ public:
     }
 
 private:
+    void leave_out_transparent() {
+        for (const Object& object : scene_->objects)
+            if (object.triangle_count > 0 && !scene_->blocks(object.first_triangle))
+                std::fill_n(orientation_.begin() + object.first_triangle, object.triangle_count, std::int8_t{0});
+    }
+
     /// From a solid that the light is outside of, a line to the light leaves as often as it enters, or once more: the
     /// triangles that face the light are enough.
     void leave_out_back_faces(const Light& light) {

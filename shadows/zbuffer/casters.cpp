@@ -23,6 +23,7 @@ Casters::Casters(const Scene& scene, const SceneFacts& facts, bool leave_out)
     for (const Object& object : scene.objects)
         for (std::uint32_t i = 0; i < object.triangle_count; ++i) {
             const TriangleId t = object.first_triangle + i;
+            if (!scene.blocks(t)) break;  // no triangle of the object does
             if (i == 0 || plane_of_triangle[t] != parts_.back().plane)
                 parts_.push_back({t, 0, plane_of_triangle[t], {}});
             parts_.back().count += 1;

@@ -55,6 +55,17 @@ public:
         });
     }
 
+    /// The least positive of the values that `value` gives for a position, over all that is drawn; infinite without
+    /// one.
+    template <class Value>
+    [[nodiscard]] double least_drawn(const Value& value) const {
+        const auto all = reduce<1>(planes_of_position_.size(), [&](std::size_t i, std::array<Extent, 1>& range) {
+            if ((planes_of_position_[i] & drawn_) == 0) return;
+            if (const double v = value(dvec3(scene_->positions[i])); v > 0) range[0].add(v);
+        });
+        return all[0].min;
+    }
+
     /// From p to the nearest point of what is fitted to.
     [[nodiscard]] double distance(dvec3 p) const;
 

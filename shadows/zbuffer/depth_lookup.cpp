@@ -101,6 +101,46 @@ float lit_share(const DepthMap& map, const Receiver& p, BiasMode mode, const Fil
     return static_cast<float>(std::clamp(lit / ((2 * radius + 1) * (2 * radius + 1)), 0.0, 1.0));
 }
 
+namespace {
+
+/// Point k of n, evenly over the unit disk.
+/// [Helmut Vogel, A Better Way to Construct the Sunflower Head, 1979]
+dvec2 on_disk(int k, int n) {
+    const double radius = std::sqrt((k + 0.5) / n), angle = k * 2.399963229728653;
+    return {radius * std::cos(angle), radius * std::sin(angle)};
+}
+
+}  // namespace
+
+float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode, const SoftFilter& filter) {
+    const LightFrame& f    = view.frame;
+    const dvec2 per_window = dvec2(view.map.width(), view.map.height()) / (2.0 * f.half);
+    // The lines from the point to the light's rim are that far apart where they pass the depth z, in samples.
+    const auto reach = [&](double z) {
+        const dvec2 wide = filter.size * (1 / std::max(z, f.near) - 1 / depth) * per_window;
+        return glm::clamp(wide, dvec2(0.5), dvec2(std::max(0.5, filter.texels)));
+    };
+    const auto blocked = [&](dvec2 within, int k, ivec2& at) {
+        const dvec2 offset = within * on_disk(k, filter.samples);
+        at = {static_cast<int>(std::floor(receiver.x + offset.x)), static_cast<int>(std::floor(receiver.y + offset.y))};
+        return is_blocked(view.map, receiver, at.x, at.y, mode);
+    };
+    const dvec2 search = reach(f.near);
+    double sum         = 0;
+    int blockers       = 0;
+    ivec2 at{0};
+    for (int k = 0; k < filter.samples; ++k) {
+        if (!blocked(search, k, at)) continue;
+        sum += f.depth(view.map.nearness(at.x, at.y));
+        ++blockers;
+    }
+    if (blockers == 0) return 1;
+    const dvec2 penumbra = reach(sum / blockers);
+    int lit              = 0;
+    for (int k = 0; k < filter.samples; ++k) lit += blocked(penumbra, k, at) ? 0 : 1;
+    return static_cast<float>(lit) / static_cast<float>(filter.samples);
+}
+
 std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& p, BiasMode mode, const Filter& filter) {
     const double shift = filter.bilinear ? 0.5 : 0.0;  // as in lit_share
     const int x        = static_cast<int>(std::floor(p.x - shift));

@@ -70,6 +70,19 @@ struct Receiver {
 /// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth.
 [[nodiscard]] float lit_share(const DepthMap& map, const Receiver& receiver, BiasMode mode, const Filter& filter);
 
+/// PCSS: a search for what blocks, and then PCF as wide as the penumbra that a light of this size has behind it.
+struct SoftFilter {
+    int samples   = 32;  ///< of the search, and of the filter
+    double size   = 0;   ///< of the light: the radius of a disk of its area, world units, > 0
+    double texels = 64;  ///< farthest from the point that a sample is taken
+};
+
+/// The share of a light with an area that reaches the receiver at `depth` along a perspective view, as if the light
+/// were a disk that faces the point and all that blocks lay at one depth, the mean of what the search finds.
+/// [Randima Fernando, Percentage-Closer Soft Shadows, 2005]
+[[nodiscard]] float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode,
+                               const SoftFilter& filter);
+
 /// Of those samples that lit_share finds blocked, the one nearest to the point; none where it finds none.
 [[nodiscard]] std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& receiver, BiasMode mode,
                                                   const Filter& filter);

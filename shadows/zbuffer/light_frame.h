@@ -22,6 +22,10 @@ struct LightFrame {
     [[nodiscard]] double nearness(double depth) const {
         return perspective ? near * (far - depth) / (depth * (far - near)) : (far - depth) / (far - near);
     }
+    /// The depth of a nearness.
+    [[nodiscard]] double depth(double nearness) const {
+        return perspective ? near * far / (nearness * (far - near) + near) : far - nearness * (far - near);
+    }
     /// How fast nearness falls with depth.
     [[nodiscard]] double nearness_per_depth(double depth) const {
         return perspective ? near * far / (depth * depth * (far - near)) : 1 / (far - near);

@@ -41,6 +41,8 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     // What casts without being fitted to may lie before the near plane, where it is drawn as nearness 1: what it shades
     // must stay behind that when a bias has moved it.
     const double room = options_.headroom * 2 * std::max(frame.half.x, frame.half.y) / resolution;
+    if (options_.all_depths)
+        frame.near = std::min(frame.near, casters_.least_drawn([&](dvec3 p) { return frame.light_space(p).z; }));
     if (frame.perspective) {
         // Of unorm depth, a step at `far` must not exceed a sample's width there: near bounds that step.
         const double floor = options_.format == DepthFormat::float32

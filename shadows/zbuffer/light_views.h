@@ -30,6 +30,8 @@ public:
         DepthFormat format  = DepthFormat::float32;
         Faces faces         = Faces::all;
         bool fit_to_casters = true;
+        bool all_depths     = false;  ///< the maps keep how near everything is that they show; otherwise what is nearer
+                                      ///< than all that they are fitted to has nearness 1
         double surround     = 0.5;
         double border       = 2;                 ///< samples by which a map reaches over its view
         double headroom     = 64;                ///< samples' widths by which a bias may move points towards the light

@@ -9,6 +9,7 @@
 // This work is based on:
 // Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
 // William Reeves, David Salesin, Robert Cook. Rendering Antialiased Shadows with Depth Maps. 1987 (PCF)
+// Randima Fernando. Percentage-Closer Soft Shadows. 2005 (PCSS)
 // Yulan Wang, Steven Molnar. Second-Depth Shadow Mapping. 1994 (faces=back)
 // Christian Schueler. Eliminating Surface Acne with Gradient Shadow Mapping. 2005 (the receiver's plane as bias)
 // Daniel Holbert. Saying Goodbye to Shadow Acne. 2011 (normal offset)
@@ -69,9 +70,11 @@ const std::vector<Parameter> kParameters{
                                         .min   = 0,
                                         .max   = 64}),
     parameter<&Options::filter>({.name    = "filter",
-                                 .doc     = "nearest: one comparison; pcf: the mean of several around the point.",
+                                 .doc     = "nearest: one comparison; pcf: the mean of several around the point; pcss: "
+                                            "for area lights a search for blockers, and pcf as wide as the penumbra "
+                                            "behind them, for other lights pcf.",
                                  .phase   = Phase::aim,
-                                 .choices = "nearest|pcf",
+                                 .choices = "nearest|pcf|pcss",
                                  .sweep   = "nearest|pcf"}),
     parameter<&Options::radius>({.name  = "radius",
                                  .doc   = "pcf: compares (2 radius + 1)^2 texels.",
@@ -83,6 +86,20 @@ const std::vector<Parameter> kParameters{
         {.name  = "bilinear",
          .doc   = "pcf: bilinear weights, so that the kernel does not step from texel to texel.",
          .phase = Phase::visibility}),
+    parameter<&Options::samples>({.name        = "samples",
+                                  .doc         = "pcss: texels compared, in the search and again in the filter.",
+                                  .unit        = "texels",
+                                  .phase       = Phase::aim,
+                                  .min         = 1,
+                                  .max         = 1024,
+                                  .area_lights = true}),
+    parameter<&Options::search>({.name        = "search",
+                                 .doc         = "pcss: how far from the point texels are compared, at most.",
+                                 .unit        = "sides of the map",
+                                 .phase       = Phase::aim,
+                                 .min         = 0,
+                                 .max         = 0.1,
+                                 .area_lights = true}),
     parameter<&Options::faces>({.name  = "faces",
                                 .doc   = "Which side of a triangle casts; back (second depth) and front expect closed "
                                          "occluders whose normals point outwards.",
@@ -107,15 +124,19 @@ const std::vector<Parameter> kParameters{
 void ShadowZBuffer::configure(const Settings& settings) {
     const Options o = settings.as<Options>();
     bias_           = {o.bias, o.constant, o.slope, o.normal_offset};
-    filter_         = o.filter == FilterKind::pcf ? Filter{o.radius, o.bilinear} : Filter{};
-    map_options_    = {.resolution     = o.resolution,
-                       .format         = o.depth,
-                       .faces          = o.faces,
-                       .fit_to_casters = o.fit == Fit::casters,
-                       .surround       = o.surround,
-                       // What the filter and the offset may ask for, and a rounding.
-                       .border   = filter_.radius + bias_.normal_offset + 2,
-                       .headroom = std::max(64.0, kMostAutomatic * (4 * filter_.radius + 2)) + bias_.constant};
+    filter_         = o.filter == FilterKind::nearest ? Filter{} : Filter{o.radius, o.bilinear};
+    finds_blockers_ = o.filter == FilterKind::pcss;
+    soft_           = {.samples = o.samples, .texels = o.search * o.resolution};
+    map_options_    = {
+           .resolution     = o.resolution,
+           .format         = o.depth,
+           .faces          = o.faces,
+           .fit_to_casters = o.fit == Fit::casters,
+           .all_depths     = finds_blockers_,
+           .surround       = o.surround,
+           // What the filter and the offset may ask for, and a rounding.
+           .border   = std::max<double>(filter_.radius, finds_blockers_ ? soft_.texels : 0) + bias_.normal_offset + 2,
+           .headroom = std::max(64.0, kMostAutomatic * (4 * filter_.radius + 2)) + bias_.constant};
     if (views_) views_->set_options(map_options_);
     if (4 * map_options_.border > map_options_.resolution)
         throw UsageError(fmt::format(
@@ -127,7 +148,9 @@ void ShadowZBuffer::configure(const Settings& settings) {
 
 Service ShadowZBuffer::serves(const SceneFacts& facts) const {
     std::string why = "any triangles and lights, through a map that samples depth";
-    if (!facts.hard_lights_only) why += "; area lights are taken as their centres, so that penumbrae are missing";
+    if (!facts.hard_lights_only)
+        why += finds_blockers_ ? "; penumbrae are as wide as those behind one blocker that is parallel to the light"
+                               : "; area lights are taken as their centres, so that penumbrae are missing";
     if (map_options_.faces != Faces::all && (facts.open_objects > 0 || facts.nonmanifold_objects > 0))
         why += "; open meshes cast with one side only";
     return {How::approximately, why + "."};
@@ -135,7 +158,20 @@ Service ShadowZBuffer::serves(const SceneFacts& facts) const {
 
 void ShadowZBuffer::build(const Scene& scene, const SceneFacts& facts) { views_.emplace(scene, facts, map_options_); }
 
+namespace {
+
+/// Of a disk that has the area of the light, as large as a sphere looks.
+double radius_of(const Light& light) {
+    if (light.kind != LightKind::rectangle) return static_cast<double>(light.radius);
+    return std::sqrt(glm::length(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))) / kPi);
+}
+
+}  // namespace
+
 void ShadowZBuffer::aim(LightId light) {
+    const Light& aimed = views_->scene().lights[light];
+    is_soft_           = finds_blockers_ && is_area(aimed.kind);
+    if (is_soft_) soft_.size = radius_of(aimed);
     views_->fit(light);
     views_->rasterise();
 }
@@ -167,7 +203,8 @@ void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibili
         }
         for (const MapView& view : views_->views())
             if (const std::optional<Receiver> biased = receive(view, facet, p, bias_, filter_)) {
-                out.s[i] = lit_share(view.map, *biased, bias_.mode, filter_);
+                out.s[i] = is_soft_ ? soft_share(view, *biased, view.frame.light_space(p).z, bias_.mode, soft_)
+                                    : lit_share(view.map, *biased, bias_.mode, filter_);
                 return;
             }
         // No view covers the point: nothing blocks the light there, or nobody looked.
@@ -183,10 +220,12 @@ void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<Tri
     };
     const std::vector<MapView>& views = views_->views();
     std::vector<Sample> samples(points.size());
+    // What the search of pcss may find lies farther off; few points are asked.
+    const Filter asked = is_soft_ ? Filter{static_cast<int>(std::ceil(soft_.texels)), false} : filter_;
     for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
         for (std::size_t v = 0; v < views.size(); ++v)
             if (const std::optional<Receiver> receiver = receive(views[v], facet, p, bias_, filter_)) {
-                if (const auto at = blocked_sample(views[v].map, *receiver, bias_.mode, filter_)) samples[i] = {v, *at};
+                if (const auto at = blocked_sample(views[v].map, *receiver, bias_.mode, asked)) samples[i] = {v, *at};
                 return;
             }
     });
@@ -226,6 +265,7 @@ const MethodInfo shadow_zbuffer{
     .presets    = {{"textbook", "bias=manual,constant=4,fit=scene",
                     "Williams 1978: one map of the whole scene and a constant bias of four texels."},
                    {"fast", "resolution=512", "A map of 512 x 512 texels."},
+                   {"soft", "filter=pcss", "Fernando 2005: penumbrae of area lights, by a search for blockers."},
                    {"best", "resolution=8192,filter=pcf", "A map of 8192 x 8192 texels, 3 x 3 comparisons."}},
     .create     = create<ShadowZBuffer>};
 

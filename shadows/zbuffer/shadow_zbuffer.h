@@ -8,7 +8,7 @@
 
 namespace umbra {
 
-enum class FilterKind : std::uint8_t { nearest, pcf };
+enum class FilterKind : std::uint8_t { nearest, pcf, pcss };
 enum class Fit : std::uint8_t { casters, scene };
 
 /// The parameters; shadow_zbuffer.cpp documents each.
@@ -22,6 +22,8 @@ struct ZBufferOptions {
     FilterKind filter    = FilterKind::nearest;
     int radius           = 1;
     bool bilinear        = true;
+    int samples          = 32;
+    double search        = 0.1;
     Faces faces          = Faces::all;
     Fit fit              = Fit::casters;
     double surround      = 0.5;
@@ -47,6 +49,9 @@ private:
 
     Bias bias_;
     Filter filter_;
+    SoftFilter soft_;              ///< of the light that it is aimed at
+    bool finds_blockers_ = false;  ///< filter=pcss
+    bool is_soft_        = false;  ///< and the light has an area
     LightViews::Options map_options_;
     std::optional<LightViews> views_;
 };

@@ -62,6 +62,32 @@ TEST(ShadingStudy, KinksAreBendsAndNotSlopes) {
     EXPECT_EQ(model(record, "flat")["kink"].get<double>(), 0);
 }
 
+/// Finer faces come closer to Phong shading for the eye, too.
+TEST(ShadingStudy, PerceivedIsTheLightAndItsChange) {
+    const auto perceived = [](int longitudes, const char* name) {
+        const TemporaryFolder folder;
+        Scene scene;
+        scene.materials.resize(1);
+        const Mesh sphere = make_sphere(1, longitudes, longitudes / 2);
+        add_object(scene, "ball", sphere.positions, sphere.normals, sphere.triangles, 0);
+        Light sun;
+        sun.kind = LightKind::directional, sun.direction = {-1, -1, -1};
+        scene.lights.push_back(sun);
+        scene.camera.eye = {0, 0, 4};
+        scene.width = scene.height = 96;
+        ShadingOptions options;
+        options.runs      = 1;
+        const Json record = compare_shading(prepare_scene(std::move(scene), "ball", {}), options, folder.path());
+        return std::pair{model(record, name)["perceived"].get<double>(), model(record, name)["rmse"].get<double>()};
+    };
+    const auto coarse = perceived(8, "flat"), fine = perceived(32, "flat"), finest = perceived(96, "flat");
+    EXPECT_GT(coarse.first, fine.first);
+    EXPECT_GT(fine.first, finest.first);
+    EXPECT_GT(finest.first, 0);
+    EXPECT_EQ(perceived(8, "phong").first, 0);
+    EXPECT_GT(coarse.first, perceived(8, "gouraud").first);
+}
+
 TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
     const TemporaryFolder folder;
     const PreparedScene prepared = shiny_ball();
@@ -74,7 +100,8 @@ TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
     const auto surfaces = static_cast<double>(
         prepared.points.size() - static_cast<std::size_t>(std::ranges::count(prepared.points.triangle, kNoTriangle)));
     EXPECT_EQ(at("phong", "evaluations"), surfaces);
-    for (const auto& [figure, value] : {std::pair{"rmse", 0.0}, {"flip", 0.0}, {"highlight", 1.0}, {"kink", 1.0}})
+    for (const auto& [figure, value] :
+         {std::pair{"rmse", 0.0}, {"flip", 0.0}, {"perceived", 0.0}, {"highlight", 1.0}, {"kink", 1.0}})
         EXPECT_EQ(at("phong", figure), value) << figure;
     EXPECT_EQ(at("constant", "asked"), 0);
     EXPECT_EQ(at("phong", "asked"), [&] {
@@ -109,30 +136,36 @@ TEST(ShadingStudy, TableAndPageShowTheRecord) {
     Json record = {
         {"schema", 1},       {"version", "1"},         {"command", "umbra shading"}, {"scene", {{"title", "T"}}},
         {"method", "exact"}, {"models", Json::array()}};
+    record["stages"].push_back({{"name", "ambient"}, {"about", "One value"}, {"picture", "stage_3_ambient.png"}});
     record["models"].push_back({{"name", "flat"},
                                 {"evaluations", 1234},
                                 {"asked", 567},
                                 {"ms", 8.25},
                                 {"rmse", 0.0625},
                                 {"flip", 0.1875},
+                                {"perceived", 0.125},
                                 {"highlight", 0.75},
                                 {"kink", 2.5},
                                 {"picture", "flat.png"},
                                 {"difference", "flat_difference.png"}});
-    EXPECT_NE(shading_text(record).find(
-                  "flat                     1234          567      8.25   0.06250   0.18750      0.750    2.50"),
-              std::string::npos)
+    EXPECT_NE(
+        shading_text(record).find(
+            "flat                     1234          567      8.25   0.06250   0.18750   0.12500      0.750    2.50"),
+        std::string::npos)
         << shading_text(record);
     record["models"][0]["highlight"] = nullptr;
-    EXPECT_NE(shading_text(record).find("0.18750          -    2.50"), std::string::npos) << shading_text(record);
+    EXPECT_NE(shading_text(record).find("0.12500          -    2.50"), std::string::npos) << shading_text(record);
     record["models"][0]["highlight"] = 0.75;
     StagedFiles staged;
     write_shading_page(record, folder.path(), staged);
     staged.commit();
     std::ifstream in(folder.path() / "index.html");
     const std::string page{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(page.find("src=\"stage_3_ambient.png\""), std::string::npos);
+    EXPECT_NE(page.find("<figcaption>One value</figcaption>"), std::string::npos);
     const std::string cells =
-        "<td>" + count(1234) + "</td><td>567</td><td>8.2</td><td>0.06250</td><td>0.1875</td><td>0.75</td><td>2.50</td>";
+        "<td>" + count(1234) +
+        "</td><td>567</td><td>8.2</td><td>0.06250</td><td>0.1875</td><td>0.12500</td><td>0.75</td><td>2.50</td>";
     EXPECT_NE(page.find(cells), std::string::npos) << page.substr(page.find("<tbody>"), 400);
 }
 

@@ -59,6 +59,8 @@ TEST(SceneKey, ChangesWithEverythingThatAnAnswerDependsOn) {
         [](Scene& s) { s.local_viewer = !s.local_viewer; },
         [](Scene& s) { s.fog.law = FogLaw::linear; },
         [](Scene& s) { s.fog.far_share = 0.5f; },
+        [](Scene& s) { s.fog.dims_lights = true; },
+        [](Scene& s) { s.transparent = TransparentOccluders::multiply; },
         [](Scene& s) { s.light_ambient = LightAmbient::attenuated; },
         [](Scene& s) { s.specular_colour = SpecularColour::O_d; },
         [](Scene& s) { s.ambient_coefficient = AmbientCoefficient::k_d; },

@@ -10,6 +10,7 @@
 //                     light_ambient            "constant" or "attenuated"
 //                     specular_colour          "O_s" or "O_d"
 //                     ambient_coefficient      "k_a" or "k_d"
+//                     transparent_occluders    "ignore", "block" or "multiply"
 //                     size                     [width, height]
 //   materials         k_a k_d k_s O_d O_s emission   a colour, or one number for grey
 //                     shininess                at least 0
@@ -135,7 +136,7 @@ std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbr
 SceneExtras apply_scene_extras(const JsonText& json, const JsonValue& umbra, Scene& scene) {
     const JsonFields fields(json, umbra, "extras.umbra of a scene",
                             {"title", "shows", "ambient", "background", "tone", "exposure", "viewer", "light_ambient",
-                             "specular_colour", "ambient_coefficient", "fog", "size"});
+                             "specular_colour", "ambient_coefficient", "transparent_occluders", "fog", "size"});
     scene.title = fields.string("title", scene.title);
     scene.shows = fields.string("shows", "");
     apply_picture_terms(json, fields, scene);

@@ -1,4 +1,5 @@
 // The native scene format: JSON written by hand. scenes/README.md describes every key; this file follows its order.
+#include "umbra/core/io/native/animation.h"
 #include "umbra/core/io/native/camera.h"
 #include "umbra/core/io/native/lights.h"
 #include "umbra/core/io/native/materials.h"
@@ -7,13 +8,17 @@
 #include "umbra/core/io/scene_readers.h"
 #include "umbra/core/io/scene_terms.h"
 
+#include <fmt/format.h>
+
 namespace umbra {
-SceneFile read_native(const std::filesystem::path& file) {
+SceneFile read_native(const std::filesystem::path& file) { return read_native(file, 0); }
+
+SceneFile read_native(const std::filesystem::path& file, int frame) {
     const JsonText json(read_text(file, kMaxNativeFile));
-    const JsonFields f(
-        json, json.root(), "a scene",
-        {"$schema", "title", "shows", "size", "camera", "ambient", "background", "tone", "exposure", "viewer",
-         "light_ambient", "specular_colour", "ambient_coefficient", "fog", "materials", "lights", "objects"});
+    const JsonFields f(json, json.root(), "a scene",
+                       {"$schema", "title", "shows", "size", "camera", "ambient", "background", "tone", "exposure",
+                        "viewer", "light_ambient", "specular_colour", "ambient_coefficient", "transparent_occluders",
+                        "fog", "materials", "lights", "objects", "animation"});
     SceneFile read;
     Scene& scene = read.scene;
     scene.title  = f.string("title", "");
@@ -35,6 +40,10 @@ SceneFile read_native(const std::filesystem::path& file) {
     if (const JsonValue* v = f.find("objects"))
         for (const JsonValue& object : json.array(*v, "objects", "a list of objects")) objects.read(object);
     if (const JsonValue* v = f.find("lights")) check_exceptions(json, *v, scene.objects);
+    if (const JsonValue* v = f.find("animation"))
+        apply_animation(json, *v, frame, scene);
+    else if (frame > 0)
+        json.fail(json.root(), fmt::format("frame {} is asked for, but the scene has no \"animation\"", frame));
     return read;
 }
 

@@ -21,7 +21,7 @@ JsonFields fields_of(const JsonText& json, const JsonValue& v) {
     if (given == members.end()) json.fail(v, "an object has no \"type\"");
     const std::string& type = json.string(given->value, "object type");
 
-    std::vector<std::string_view> keys{"type", "name", "material", "transform", "shading", "crease"};
+    std::vector<std::string_view> keys{"type", "name", "material", "transform", "shading", "crease", "weights"};
     const auto shape = std::find_if(shapes().begin(), shapes().end(), [&](const Shape& s) { return s.type == type; });
     if (shape != shapes().end()) {
         keys.insert(keys.end(), shape->keys.begin(), shape->keys.end());
@@ -59,12 +59,15 @@ void NativeObjects::apply_shading(const JsonFields& f, std::vector<NativePart>& 
     enum Shading : std::uint8_t { given, flat, averaged };
     const JsonValue* v = f.find("shading");
     const auto shading = v ? json_.choice(*v, "shading", {"given", "flat", "averaged"}) : std::size_t{given};
-    if (const JsonValue* crease = f.find("crease"); crease && shading != averaged)
-        json_.fail(*crease, "crease is for \"shading\": \"averaged\" only");
-    const auto crease = static_cast<float>(f.number("crease", kCrease, 180));
+    for (const std::string_view key : {"crease", "weights"})
+        if (const JsonValue* given = f.find(key); given && shading != averaged)
+            json_.fail(*given, fmt::format("{} is for \"shading\": \"averaged\" only", key));
+    const JsonValue* w = f.find("weights");
+    const auto weights = w ? json_.choice<NormalWeights>(*w, "weights") : NormalWeights::angle;
+    const auto crease  = static_cast<float>(f.number("crease", kCrease, 180));
     for (NativePart& part : parts) {
         if (shading == flat) part.mesh.normals.clear();
-        if (shading == averaged) part.mesh = with_averaged_normals(part.mesh, crease);
+        if (shading == averaged) part.mesh = with_averaged_normals(part.mesh, crease, weights);
     }
 }
 

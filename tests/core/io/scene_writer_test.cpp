@@ -106,6 +106,7 @@ void expect_same(const Scene& a, const Scene& b) {
     EXPECT_EQ(a.light_ambient, b.light_ambient);
     EXPECT_EQ(a.specular_colour, b.specular_colour);
     EXPECT_EQ(a.ambient_coefficient, b.ambient_coefficient);
+    EXPECT_EQ(a.transparent, b.transparent);
 }
 
 /// Floats of all magnitudes that scenes may have, and the awkward ones.

@@ -8,6 +8,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/io/scene_writer.h"
+#include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shading_models.h"
 #include "umbra/core/scene/primitives.h"
@@ -78,6 +79,30 @@ TEST(Fog, OfVerticesIsNotThatOfPixels) {
     EXPECT_NEAR(picture(scene).at(at, 0), std::exp(-0.4), 1e-6);
 }
 
+/// f of the distance to the light is part of its f_att; a light at infinity is as bright as without fog.
+TEST(Fog, DimsLightsWhereItSaysSo) {
+    Scene scene                 = glowing_wall(Projection::perspective);
+    scene.materials[0].emission = vec3(0);
+    scene.materials[0].k_d      = vec3(1);
+    scene.fog.colour            = vec3(0);
+    Light lamp;
+    lamp.position  = {0, 0, 6};
+    scene.lights   = {lamp};
+    const auto lit = [&] {
+        const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, scene.width, scene.height);
+        return double(shade_by(ShadingModel::phong, scene, points, [&](const PointBatch& asked) {
+                          return lit_everywhere(scene, asked);
+                      }).linear.at(16 * 33 + 16, 0));
+    };
+    const double clear = lit(), share = std::exp(-static_cast<double>(0.1f) * 6);
+    EXPECT_GT(clear, 0.5);
+    scene.fog.dims_lights = true;
+    EXPECT_NEAR(lit(), clear * share, 1e-6);
+    scene.lights[0].kind      = LightKind::directional;
+    scene.lights[0].direction = {0, 0, -1};
+    EXPECT_NEAR(lit(), clear, 1e-6);
+}
+
 TEST(Fog, IsReadAndWritten) {
     const TemporaryFolder folder;
     const auto read = [&](const std::string& fog) {
@@ -97,11 +122,12 @@ TEST(Fog, IsReadAndWritten) {
         (void)folder.write("again.json", native_text(scene));
         scene = load_scene(folder.path() / "again.json");
     }
-    scene = read(R"({"law": "exponential_squared", "density": 0.5})");
+    scene = read(R"({"law": "exponential_squared", "density": 0.5, "dims_lights": true})");
     (void)folder.write("again.json", native_text(scene));
     scene = load_scene(folder.path() / "again.json");
     EXPECT_EQ(scene.fog.law, FogLaw::exponential_squared);
     EXPECT_EQ(scene.fog.density, 0.5f);
+    EXPECT_TRUE(scene.fog.dims_lights);
 
     for (const auto& [fog, expected] : {std::pair{R"({})", "law"},
                                         {R"({"law": "thick"})", "exponential_squared"},

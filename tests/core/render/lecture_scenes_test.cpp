@@ -162,5 +162,77 @@ TEST(LectureScenes, FlatShadingIsRightOnFacesUnderSunAndInfiniteViewer) {
     EXPECT_GT(bent, 500u);
 }
 
+/// The picture as if nothing were hidden from the lights.
+Image lit_picture(const Scene& scene, const PointBatch& points) {
+    return shade(scene, points, lit_everywhere(scene, points));
+}
+
+/// Each pixel of a total is the sum of those of its terms, which are whole pixels apart.
+TEST(LectureScenes, TheTotalIsTheSumOfItsTerms) {
+    const Scene scene            = scene_named("terms_of_the_sum");
+    const PointBatch points      = primary(scene);
+    const Image image            = lit_picture(scene, points);
+    constexpr std::size_t kApart = 150;  // pixels between two columns
+    const auto green             = [&](std::size_t i) { return double(image.at(i, 1)); };
+    for (const char* degrees : {"60", "25", "0"}) {
+        const std::string row = std::string("_") + degrees;
+        std::size_t compared = 0, lit = 0, shining = 0;
+        for (std::size_t i = 0; i + 3 * kApart < points.size(); ++i) {
+            if (object_at(scene, points, i) != "ambient" + row ||
+                object_at(scene, points, i + kApart) != "diffuse" + row ||
+                object_at(scene, points, i + 2 * kApart) != "specular" + row ||
+                object_at(scene, points, i + 3 * kApart) != "total" + row)
+                continue;
+            ++compared;
+            lit += green(i + kApart) > 0, shining += green(i + 2 * kApart) > 0.1;
+            EXPECT_NEAR(green(i + 3 * kApart), green(i) + green(i + kApart) + green(i + 2 * kApart), 2e-3);
+        }
+        EXPECT_GT(compared, 6000u) << degrees;
+        EXPECT_GT(lit, 4000u) << degrees;
+        EXPECT_GT(shining, 100u) << degrees;
+    }
+}
+
+/// The specular part alone: its largest value is k_s, and fewer pixels see half of that the larger n is.
+TEST(LectureScenes, ShininessShrinksTheHighlightAndKsDimsIt) {
+    const Scene scene = scene_named("phong_parameters");
+    Scene matt        = scene;
+    for (Material& m : matt.materials) m.k_s = vec3(0);
+    const PointBatch points = primary(scene);
+    const Image whole = lit_picture(scene, points), diffuse = lit_picture(matt, points);
+    for (const int k : {100, 75, 50, 25, 0}) {
+        std::size_t before = points.size();
+        for (const int n : {5, 10, 20, 40}) {
+            const std::string name = "k" + std::to_string(k) + "_n" + std::to_string(n);
+            double peak            = 0;
+            std::size_t bright     = 0;
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                if (object_at(scene, points, i) != name) continue;
+                const double specular = double(whole.at(i, 0)) - double(diffuse.at(i, 0));
+                peak                  = std::max(peak, specular);
+                bright += specular > 0.005 * k;
+            }
+            EXPECT_NEAR(peak, k / 100.0, 0.02) << name;
+            if (k == 0) continue;
+            EXPECT_LT(bright, before) << name;
+            EXPECT_GT(bright, 20u) << name;
+            before = bright;
+        }
+    }
+}
+
+TEST(LectureScenes, OpenGLsMaterialsReflectMoreThanArrives) {
+    const Scene scene    = scene_named("opengl_materials");
+    std::size_t too_much = 0, named = 0;
+    for (const Material& m : scene.materials) too_much += std::max({m.k_d.r + m.k_s.r, m.k_d.g + m.k_s.g}) > 1.00001f;
+    for (const std::string& w : scene.warnings) named += w.find("reflects more light") != std::string::npos;
+    EXPECT_EQ(named, too_much);
+    EXPECT_EQ(too_much, 10u);
+    const auto gold = std::ranges::find(scene.materials, "gold", &Material::name);
+    ASSERT_NE(gold, scene.materials.end());
+    EXPECT_FLOAT_EQ(gold->shininess, 51.2f);
+    EXPECT_EQ(gold->k_a, vec3(0.24725f, 0.1995f, 0.0745f));
+}
+
 }  // namespace
 }  // namespace umbra

@@ -63,6 +63,63 @@ Scene one_ray(vec3 eye, vec3 target) {
     return scene;
 }
 
+/// Panes one behind the other, seen straight on: what each gives counts by its opacity and by what those before it let
+/// through, however they are ordered in the scene.
+TEST(Whitted, PanesAreBlendedFromTheNearest) {
+    Scene scene      = one_ray({0, 0, 5}, {0, 0, 0});
+    scene.background = vec3(0.25f, 0.5f, 1);
+    const auto pane  = [&](float z, float opacity, vec3 emission) {
+        const std::uint32_t m      = add_glow(scene, emission);
+        scene.materials[m].opacity = opacity;
+        add_quad(scene, {-1, -1, z}, {1, -1, z}, {1, 1, z}, {-1, 1, z}, m);
+    };
+    const vec3 red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
+    pane(-1, 0.7f, green), pane(1, 0.25f, red), pane(0, 0.5f, blue);
+    const auto expect = [&](const RayTree& tree, dvec3 right) {
+        const vec3 got = pixel(picture_of(scene, tree), 0);
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(double(got[c]), right[c], 1e-6) << c;
+    };
+    const RayTree tree = tree_of(scene);
+    ASSERT_EQ(tree.levels.size(), 4u);
+    const dvec3 behind_all(scene.background);
+    expect(tree, 0.25 * dvec3(red) + 0.75 * (0.5 * dvec3(blue) + 0.5 * (0.7 * dvec3(green) + 0.3 * behind_all)));
+    EXPECT_EQ(tree.levels[0].counts.total, 0u);
+    EXPECT_NEAR(tree.levels[3].rays[0].weight, 0.75 * 0.5 * 0.3, 1e-7);
+    // An opaque one hides what is behind it, and what transmits bends light instead.
+    scene.materials[2].opacity = 1;
+    const RayTree two          = tree_of(scene);
+    EXPECT_EQ(two.levels.size(), 2u);
+    expect(two, 0.25 * dvec3(red) + 0.75 * dvec3(blue));
+}
+
+/// Of 16 neighbouring pixels, 16 times opacity see the pane alone. Two panes of one opacity look like one.
+TEST(Whitted, ScreenDoorShowsAPaneOrWhatIsBehindIt) {
+    Scene scene;
+    scene.camera.eye = {0, 0, 5}, scene.camera.target = {0, 0, 0};
+    scene.camera.fov_y = 10;
+    scene.width = scene.height = 16;
+    const auto pane            = [&](float z, float opacity, vec3 emission) {
+        const std::uint32_t m      = add_glow(scene, emission);
+        scene.materials[m].opacity = opacity;
+        add_quad(scene, {-9, -9, z}, {9, -9, z}, {9, 9, z}, {-9, 9, z}, m);
+    };
+    const vec3 red(1, 0, 0), green(0, 1, 0), blue(0, 0, 1);
+    pane(1, 0.375f, red), pane(0, 0.375f, green), pane(-1, 1, blue);
+    const auto counts = [&] {
+        const Image image =
+            picture_of(scene, tree_of(scene, {.least_weight = 0, .transparency = Transparency::screen_door}));
+        std::array<int, 3> of{};
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+            for (std::size_t c = 0; c < 3; ++c) of[c] += image.at(i, c) == 1;
+        return of;
+    };
+    EXPECT_EQ(counts(), (std::array{96, 0, 160})) << "the second pane is hidden by the first";
+    scene.materials[1].opacity = 0.75f;
+    EXPECT_EQ(counts(), (std::array{96, 96, 64}));
+    scene.materials[0].opacity = 0;
+    EXPECT_EQ(counts(), (std::array{0, 192, 64}));
+}
+
 TEST(Optics, MirrorTurnsTheNormalPartAlone) {
     const dvec3 d = glm::normalize(dvec3(1, -2, 0.5)), n(0, 1, 0);
     EXPECT_EQ(mirrored(d, n), dvec3(d.x, -d.y, d.z));

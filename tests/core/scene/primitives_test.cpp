@@ -197,6 +197,25 @@ TEST(AveragedNormals, WeightByAngleMakesABoxSymmetric) {
         EXPECT_NEAR(glm::distance(mesh.normals[i], glm::normalize(mesh.positions[i])), 0, 1e-6);
 }
 
+/// A corner of a box whose three sides have areas 2, 3 and 6; the last, across z, is one triangle there.
+TEST(AveragedNormals, WeightsAreThoseThatAreAskedFor) {
+    const Mesh corner{{{0, 0, 0}, {3, 0, 0}, {3, 2, 0}, {0, 2, 0}, {0, 0, 1}, {3, 0, 1}, {0, 2, 1}},
+                      {},
+                      {{0, 1, 3}, {1, 2, 3}, {1, 0, 5}, {0, 4, 5}, {0, 3, 6}, {4, 0, 6}}};
+    const auto normal_at_corner = [&](NormalWeights weights) {
+        const Mesh mesh = with_averaged_normals(corner, 180, weights);
+        for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+            if (mesh.positions[i] == vec3(0)) return dvec3(mesh.normals[i]);
+        return dvec3(0);
+    };
+    const auto expect = [&](NormalWeights weights, dvec3 sum) {
+        EXPECT_NEAR(glm::distance(normal_at_corner(weights), glm::normalize(sum)), 0, 1e-6) << int(weights);
+    };
+    expect(NormalWeights::angle, {1, 1, 1});
+    expect(NormalWeights::area, {2, 3, 3});
+    expect(NormalWeights::equal, {2, 2, 1});
+}
+
 TEST(AveragedNormals, CreaseKeepsTheEdgesOfABox) {
     const Mesh mesh = with_averaged_normals(exploded_box(), 60);
     ASSERT_EQ(mesh.positions.size(), 24u);

@@ -1,0 +1,201 @@
+#include "umbra/bench/energy/energy.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/run/asked_method.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/points.h"
+#include "umbra/core/render/sampling.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+double luminance(vec3 colour) { return glm::dot(dvec3(colour), dvec3(0.2126, 0.7152, 0.0722)); }
+
+/// Points of every triangle that has an area, and where those of each begin; one entry more than triangles.
+struct FacePoints {
+    PointBatch points;
+    std::vector<std::size_t> first;
+};
+
+/// Points [begin, end) of the batch, evenly spread over triangle t.
+void spread_on(const Scene& scene, TriangleId t, std::size_t begin, std::size_t end, PointBatch& points) {
+    const SampleSet set(Sampler::r2, static_cast<int>(end - begin), 0);
+    Samples8 eight;
+    for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t k = (i - begin) % 8;
+        if (k == 0) set.eight(set.key(t), static_cast<int>(i - begin), eight);
+        const bool outside = eight.x[k] + eight.y[k] > 1;  // the other half of the square
+        set_point(points, i, scene, t, outside ? 1 - eight.x[k] : eight.x[k], outside ? 1 - eight.y[k] : eight.y[k]);
+        if (points.flipped[i] == 0) continue;  // two-sided materials turn to the eye
+        points.nx[i] = -points.nx[i], points.ny[i] = -points.ny[i], points.nz[i] = -points.nz[i];
+        points.flipped[i] = 0;
+    }
+}
+
+FacePoints spread_points(const Scene& scene, const std::vector<double>& areas, std::uint64_t wanted) {
+    double all = 0;
+    for (const double area : areas) all += area;
+    FacePoints spread;
+    spread.first.push_back(0);
+    for (const double area : areas) {
+        const double share = all > 0 ? area / all * static_cast<double>(wanted) : 0;
+        spread.first.push_back(spread.first.back() +
+                               (area > 0 ? std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(share))) : 0));
+    }
+    PointBatch& points = spread.points;
+    points.resize(spread.first.back());
+    for (TriangleId t = 0; t < areas.size(); ++t)
+        if (spread.first[t] < spread.first[t + 1]) spread_on(scene, t, spread.first[t], spread.first[t + 1], points);
+    face_lights(points, scene);
+    return spread;
+}
+
+/// f_att I_j max(N.L, 0) of light j at point i.
+double arriving(const Scene& scene, const PointBatch& points, LightId j, std::size_t i) {
+    const Light& light  = scene.lights[j];
+    const vec3 p        = points.position(i);
+    const double cosine = glm::dot(dvec3(points.normal(i)), dvec3(to_light(light, p).direction));
+    if (!(cosine > 0) || !lights_object(light, scene.objects[scene.triangle_object[points.triangle[i]]].name)) return 0;
+    return luminance(light.diffuse) * static_cast<double>(falloff(light, p)) * cosine;
+}
+
+Json energy_json(const ReceivedEnergy& e) {
+    return {{"area", number(e.area)},
+            {"irradiance", number(e.irradiance)},
+            {"unshadowed", number(e.unshadowed)},
+            {"fraction", e.unshadowed > 0 ? number(e.irradiance / e.unshadowed) : Json()}};
+}
+
+/// A field of a CSV file.
+std::string csv_field(const std::string& text) {
+    std::string field = "\"";
+    for (const char c : text) field += c == '"' ? "\"\"" : std::string(1, c);
+    return field + "\"";
+}
+
+/// The mean of all frames, by object.
+Json mean_of(const Json& frames) {
+    Json mean = Json::array();
+    for (std::size_t o = 0; !frames.empty() && o < frames[0]["objects"].size(); ++o) {
+        ReceivedEnergy sum;
+        const auto n = static_cast<double>(frames.size());
+        for (const Json& frame : frames) {
+            const Json& object = frame["objects"][o];
+            sum.area += object["area"].get<double>() / n;
+            sum.irradiance += object["irradiance"].get<double>() / n;
+            sum.unshadowed += object["unshadowed"].get<double>() / n;
+        }
+        Json entry    = energy_json(sum);
+        entry["name"] = frames[0]["objects"][o]["name"];
+        mean.push_back(std::move(entry));
+    }
+    return mean;
+}
+
+}  // namespace
+
+std::vector<ReceivedEnergy> received_by_faces(const Scene& scene, const SceneFacts& facts,
+                                              const EnergyOptions& options) {
+    std::vector<double> areas(scene.triangles.size());
+    for (TriangleId t = 0; t < areas.size(); ++t) areas[t] = glm::length(area_normal(scene, t)) / 2;
+    const FacePoints spread  = spread_points(scene, areas, options.points);
+    const PointBatch& points = spread.points;
+    const auto visibility    = AskedMethod(scene, facts, options.method)(points);
+    std::vector<ReceivedEnergy> faces(areas.size());
+    for (TriangleId t = 0; t < areas.size(); ++t) {
+        ReceivedEnergy& face = faces[t];
+        face.area            = areas[t];
+        for (std::size_t i = spread.first[t]; i < spread.first[t + 1]; ++i)
+            for (LightId j = 0; j < scene.lights.size(); ++j) {
+                if (points.triangle[i] == kNoTriangle || !points.asks(j, i)) continue;
+                const double all = arriving(scene, points, j, i);
+                face.unshadowed += all;
+                face.irradiance += all * (visibility[j].defined(i) ? static_cast<double>(visibility[j].s[i]) : 1);
+            }
+        const auto n = static_cast<double>(std::max<std::size_t>(1, spread.first[t + 1] - spread.first[t]));
+        face.irradiance /= n, face.unshadowed /= n;
+    }
+    return faces;
+}
+
+std::vector<ReceivedEnergy> received_by_objects(const Scene& scene, std::span<const ReceivedEnergy> faces) {
+    std::vector<ReceivedEnergy> objects(scene.objects.size());
+    for (TriangleId t = 0; t < faces.size(); ++t) {
+        ReceivedEnergy& object = objects[scene.triangle_object[t]];
+        object.area += faces[t].area;
+        object.irradiance += faces[t].area * faces[t].irradiance;
+        object.unshadowed += faces[t].area * faces[t].unshadowed;
+    }
+    for (ReceivedEnergy& object : objects)
+        if (object.area > 0) object.irradiance /= object.area, object.unshadowed /= object.area;
+    return objects;
+}
+
+Json measure_energy(std::span<const fs::path> scenes, const EnergyOptions& options, const fs::path& folder) {
+    Json frames = Json::array();
+    std::vector<std::string> names;
+    std::string face_rows = "scene,object,triangle,area,irradiance,unshadowed\n",
+                rows      = "scene,object,area,irradiance,unshadowed\n";
+    for (const fs::path& file : scenes) {
+        const Scene scene = load_scene(file);
+        if (options.progress) options.progress(scene.name);
+        const SceneFacts facts = find_facts(scene);
+        if (options.method)
+            if (const Service service = verdict(*options.method->make(), facts); !service)
+                throw UsageError(
+                    fmt::format("{} does not serve {}: {}", options.method->text(), scene.name, service.why));
+        std::vector<std::string> objects;
+        for (const Object& object : scene.objects) objects.push_back(object.name);
+        if (names.empty()) names = objects;
+        if (objects != names)
+            throw UsageError(fmt::format("{} has other objects than {}, expected frames of one scene", scene.name,
+                                         frames[0]["scene"].get<std::string>()));
+        const std::vector<ReceivedEnergy> faces = received_by_faces(scene, facts, options);
+        Json by_object                          = Json::array();
+        for (const ReceivedEnergy& e : received_by_objects(scene, faces)) {
+            Json entry    = energy_json(e);
+            entry["name"] = names[by_object.size()];
+            rows += fmt::format("{},{},{:g},{:g},{:g}\n", csv_field(scene.name), csv_field(names[by_object.size()]),
+                                e.area, e.irradiance, e.unshadowed);
+            by_object.push_back(std::move(entry));
+        }
+        for (TriangleId t = 0; t < faces.size(); ++t)
+            face_rows += fmt::format("{},{},{},{:g},{:g},{:g}\n", csv_field(scene.name),
+                                     csv_field(names[scene.triangle_object[t]]), t, faces[t].area, faces[t].irradiance,
+                                     faces[t].unshadowed);
+        frames.push_back({{"scene", scene.name}, {"title", scene.title}, {"objects", std::move(by_object)}});
+    }
+    write_text(folder / "objects.csv", rows);
+    write_text(folder / "faces.csv", face_rows);
+    Json mean = mean_of(frames);
+    return {{"schema", kResultsSchema},   {"version", version()},
+            {"command", options.command}, {"method", options.method ? Json(options.method->text()) : Json()},
+            {"points", options.points},   {"frames", std::move(frames)},
+            {"mean", std::move(mean)}};
+}
+
+std::string energy_text(const Json& record) {
+    std::size_t widest = 8;
+    for (const Json& object : record["mean"])
+        widest = std::max(widest, object["name"].get_ref<const std::string&>().size());
+    std::string text =
+        fmt::format("irradiance without shadows, with shadows, and their quotient; means of {} frame{}\n",
+                    record["frames"].size(), record["frames"].size() == 1 ? "" : "s");
+    for (const Json& object : record["mean"])
+        text +=
+            fmt::format("{:<{}} {:>10.4g} {:>10.4g} {:>6}\n", object["name"].get_ref<const std::string&>(), widest,
+                        object["unshadowed"].get<double>(), object["irradiance"].get<double>(),
+                        object["fraction"].is_null() ? "-" : fmt::format("{:.3f}", object["fraction"].get<double>()));
+    return text;
+}
+
+}  // namespace umbra

@@ -1,0 +1,53 @@
+// `umbra energy`: what S_j is used for beside pictures: the light that arrives at each object and each face, frame by
+// frame, as simulations of heating and of solar cells need it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/run/describe.h"
+#include "umbra/core/scene/facts.h"
+#include "umbra/core/scene/scene.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+struct EnergyOptions {
+    std::optional<MethodChoice> method;  ///< none: S_j = 1 where a light is in front
+    std::uint64_t points = 100'000;      ///< on all faces together; each face has one at least
+    std::string command;
+    std::function<void(const std::string&)> progress;  ///< may be empty
+};
+
+/// A face, or an object: all of its faces. Of the side of the winding.
+struct ReceivedEnergy {
+    double area       = 0;
+    double irradiance = 0;  ///< mean over the area of sum_j S_j f_att,j I_j max(N.L_j, 0), I_j by its luminance
+    double unshadowed = 0;  ///< the same with S_j = 1 where the light is in front
+};
+
+/// One a triangle: what arrives there, from points that are spread evenly over it, the more the larger it is. Points
+/// whose S_j the method leaves undefined count as lit. The method must serve the scene. Throws what it throws.
+[[nodiscard]] std::vector<ReceivedEnergy> received_by_faces(const Scene& scene, const SceneFacts& facts,
+                                                            const EnergyOptions& options);
+
+/// One an object, from its faces.
+[[nodiscard]] std::vector<ReceivedEnergy> received_by_objects(const Scene& scene,
+                                                              std::span<const ReceivedEnergy> faces);
+
+/// Scenes or frames of one, in their order: all have the same objects. Writes faces.csv and objects.csv into `folder`,
+/// one row a face (or object) and frame, and returns the record: by frame and object, area, irradiance, unshadowed and
+/// their quotient; `mean`: of all frames. Throws InputError, and UsageError where a scene is not served or has other
+/// objects than the first.
+[[nodiscard]] Json measure_energy(std::span<const std::filesystem::path> scenes, const EnergyOptions& options,
+                                  const std::filesystem::path& folder);
+
+/// The table for people: objects by frames.
+[[nodiscard]] std::string energy_text(const Json& record);
+
+}  // namespace umbra

@@ -1,0 +1,125 @@
+// The light that arrives at faces and objects, beside sums by hand.
+#include "umbra/bench/energy/energy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "umbra/core/base/error.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+/// A roof of 2 x 2 over a ground of 8 x 8, one unit of it apart, under a sun that turns from the zenith to 60 degrees.
+std::string write_roof(const TemporaryFolder& folder, const std::string& animation = "") {
+    return folder
+        .write("roof.json", R"({"camera": {"eye": [0, -5, 9], "target": [0, 0, 0]},
+        "lights": [{"name": "sun", "type": "directional", "direction": [0, -1, 0], "colour": [1, 2, 3]}],
+        "objects": [{"name": "ground", "type": "plane", "size": [8, 8]},
+                    {"name": "roof", "type": "plane", "size": [2, 2], "transform": [{"translate": [0, 1, 0]}]}])" +
+                                animation + "}")
+        .string();
+}
+
+const double kSun = 0.2126 * 1 + 0.7152 * 2 + 0.0722 * 3;
+
+EnergyOptions with(const char* method, std::uint64_t points = 40000) {
+    EnergyOptions options;
+    if (method != nullptr) options.method = parse_method(method);
+    options.points = points;
+    return options;
+}
+
+TEST(Energy, IsTheLightThatArrives) {
+    const TemporaryFolder folder;
+    const std::string scene = write_roof(folder);
+    const Json record       = measure_energy(std::vector<std::filesystem::path>{scene}, with("exact"), folder.path());
+    const Json &ground = record["frames"][0]["objects"][0], &roof = record["frames"][0]["objects"][1];
+    EXPECT_EQ(ground["name"], "ground");
+    EXPECT_NEAR(ground["area"].get<double>(), 64, 1e-5);
+    EXPECT_NEAR(ground["unshadowed"].get<double>(), kSun, 1e-5);
+    EXPECT_NEAR(ground["irradiance"].get<double>(), kSun * (1 - 4.0 / 64), 2e-3 * kSun);
+    EXPECT_NEAR(ground["fraction"].get<double>(), 1 - 4.0 / 64, 2e-3);
+    EXPECT_NEAR(roof["irradiance"].get<double>(), kSun, 1e-5) << "its upper side, though the eye sees the lower one";
+    EXPECT_NEAR(roof["fraction"].get<double>(), 1, 1e-9);
+    EXPECT_EQ(record["method"], "exact");
+
+    const Json bare = measure_energy(std::vector<std::filesystem::path>{scene}, with(nullptr), folder.path());
+    EXPECT_NEAR(bare["frames"][0]["objects"][0]["irradiance"].get<double>(), kSun, 1e-5);
+    EXPECT_TRUE(bare["method"].is_null());
+}
+
+TEST(Energy, FollowsTheSunFrameByFrame) {
+    const TemporaryFolder folder;
+    const std::string scene = write_roof(folder, R"(, "animation": {"frames": 3, "lights": {"sun": {"keys": [
+        {"frame": 0, "direction": [0, -1, 0]}, {"frame": 2, "direction": [0.8660254, -0.5, 0]}]}}})");
+    const std::vector<std::filesystem::path> frames{scene + "@0", scene + "@1", scene + "@2"};
+    const Json record = measure_energy(frames, with("exact"), folder.path());
+    ASSERT_EQ(record["frames"].size(), 3u);
+    double sum = 0, shadowed = 0;
+    for (int k = 0; k < 3; ++k) {
+        const Json& frame   = record["frames"][static_cast<std::size_t>(k)];
+        const double cosine = std::cos(k * kPi / 6);
+        EXPECT_EQ(frame["scene"], "roof@" + std::to_string(k));
+        EXPECT_NEAR(frame["objects"][1]["irradiance"].get<double>(), kSun * cosine, 1e-4);
+        // The shadow has the roof's size wherever the sun is.
+        EXPECT_NEAR(frame["objects"][0]["irradiance"].get<double>(), kSun * cosine * (1 - 4.0 / 64), 2e-3 * kSun);
+        sum += kSun * cosine / 3, shadowed += frame["objects"][0]["irradiance"].get<double>() / 3;
+    }
+    EXPECT_NEAR(record["mean"][1]["irradiance"].get<double>(), sum, 1e-4);
+    EXPECT_NEAR(record["mean"][0]["irradiance"].get<double>(), shadowed, 1e-9);
+    EXPECT_EQ(record["mean"][0]["name"], "ground");
+    const std::string text = energy_text(record);
+    EXPECT_NE(text.find("means of 3 frames"), std::string::npos) << text;
+    EXPECT_NE(text.find("0.93"), std::string::npos) << text;
+
+    std::ifstream in(folder.path() / "faces.csv");
+    std::string line;
+    std::vector<std::string> rows;
+    while (std::getline(in, line)) rows.push_back(line);
+    ASSERT_EQ(rows.size(), 1u + 3 * 4);
+    EXPECT_EQ(rows[0], "scene,object,triangle,area,irradiance,unshadowed");
+    EXPECT_EQ(rows[1].substr(0, 27), R"("roof@0","ground",0,32,1.74)");
+}
+
+/// Half of the faces in the umbra, half lit: faces differ where their object is between.
+TEST(Energy, IsOfFacesToo) {
+    const TemporaryFolder folder;
+    const Scene scene = [&] {
+        Scene s;
+        s.materials.resize(1);
+        add_object(s, "ground", {{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+        add_object(s, "lid", {{-2, 1, -2}, {2, 1, -2}, {2, 1, 2}}, {}, {{0, 2, 1}}, 0);
+        Light sun;
+        sun.kind      = LightKind::directional;
+        sun.direction = {0, -1, 0};
+        s.lights      = {sun};
+        return s;
+    }();
+    const std::vector<ReceivedEnergy> faces = received_by_faces(scene, find_facts(scene), with("exact", 3000));
+    ASSERT_EQ(faces.size(), 3u);
+    EXPECT_NEAR(faces[0].irradiance, 0, 1e-9);
+    EXPECT_NEAR(faces[1].irradiance, 1, 1e-6);
+    EXPECT_NEAR(faces[2].irradiance, 1, 1e-6);
+    const std::vector<ReceivedEnergy> objects = received_by_objects(scene, faces);
+    EXPECT_NEAR(objects[0].irradiance, 0.5, 1e-6);
+    EXPECT_NEAR(objects[0].unshadowed, 1, 1e-6);
+}
+
+TEST(Energy, RefusesWhatAMethodDoesNotServeAndOtherObjects) {
+    const TemporaryFolder folder;
+    const std::string roof = write_roof(folder);
+    const auto other       = folder.write("other.json", R"({"objects": [{"type": "box"}]})");
+    EXPECT_THROW((void)measure_energy(std::vector<std::filesystem::path>{roof, other}, with("exact"), folder.path()),
+                 UsageError);
+    const auto area = folder.write("area.json", R"({"objects": [{"type": "box"}],
+        "lights": [{"type": "sphere", "position": [0, 4, 0], "radius": 1}]})");
+    EXPECT_THROW((void)measure_energy(std::vector<std::filesystem::path>{area}, with("atherton_weiler"), folder.path()),
+                 UsageError);
+}
+
+}  // namespace
+}  // namespace umbra
