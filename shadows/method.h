@@ -123,10 +123,12 @@ struct MethodInfo {
     std::string_view summary;  ///< one or two sentences: what it does, where it errs
     std::vector<Parameter> parameters{};
     std::vector<Preset> presets{};
-    bool reference    = false;    ///< its answers may serve as truth: the first such method that serves a scene
-    bool by_default   = true;     ///< it runs where nobody says which methods; false for what is too slow for that
-    bool needs_raster = false;    ///< it serves only batches that have a raster
-    std::string_view seed{};      ///< the parameter that seeds its noise; empty: it has none
+    bool reference  = false;  ///< its answers may serve as truth: the first such method that serves a scene
+    bool by_default = true;   ///< it runs where nobody says which methods; false for what is too slow for that
+    std::vector<std::string_view> shown_on{};  ///< where it is not by default: canonical scenes on which it runs where
+                                               ///< nobody says which methods, so that reports show it
+    bool needs_raster = false;                 ///< it serves only batches that have a raster
+    std::string_view seed{};                   ///< the parameter that seeds its noise; empty: it has none
     std::string_view stand_in{};  ///< settings with which it is the substitute where no reference serves, or where one
                                   ///< takes too long at every point; empty: it never is
     std::unique_ptr<Method> (*create)() = nullptr;  ///< not configured yet

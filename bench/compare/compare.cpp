@@ -20,6 +20,7 @@
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
+#include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/shade.h"
 
 namespace umbra {
@@ -126,8 +127,9 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     return entry;
 }
 
-/// The methods of the options, in order. Throws UsageError, also where settings contradict one another.
-std::vector<MethodChoice> chosen(const CompareOptions& options) {
+/// The methods of the options, in order; where these name none, those that are the default on this scene. Throws
+/// UsageError, also where settings contradict one another.
+std::vector<MethodChoice> chosen(const CompareOptions& options, const std::string& scene) {
     std::vector<MethodChoice> choices;
     for (const std::string& text : options.methods) {
         choices.push_back(parse_method(text));
@@ -136,7 +138,8 @@ std::vector<MethodChoice> chosen(const CompareOptions& options) {
     choices.insert(choices.end(), options.choices.begin(), options.choices.end());
     if (choices.empty())
         for (const MethodInfo* info : methods())
-            if (info->by_default) choices.emplace_back(*info);
+            if (info->by_default || std::ranges::find(info->shown_on, scene) != info->shown_on.end())
+                choices.emplace_back(*info);
     return choices;
 }
 
@@ -152,7 +155,7 @@ std::vector<std::string> folders_of(const std::vector<fs::path>& files) {
     for (const fs::path& file : files) {
         if (!given.insert(fs::weakly_canonical(file)).second)
             throw UsageError(fmt::format("{}: is given twice, expected each scene once", file.string()));
-        const std::string name = folder_name(file.stem().string());
+        const std::string name = folder_name(scene_name(file));
         folders.push_back(name);
         for (int k = 2; !taken.insert(lower(folders.back())).second; ++k)
             folders.back() = fmt::format("{}-{}", name, k);
@@ -164,9 +167,9 @@ std::vector<std::string> folders_of(const std::vector<fs::path>& files) {
 
 Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const auto tell = [&](const std::string& what) {
-        if (options.progress) options.progress(fmt::format("{}: {}", file.stem().string(), what));
+        if (options.progress) options.progress(fmt::format("{}: {}", scene_name(file), what));
     };
-    const std::vector<MethodChoice> choices = chosen(options);
+    const std::vector<MethodChoice> choices = chosen(options, scene_name(file));
 
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size, options.pixel_samples);
@@ -295,7 +298,7 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
         } catch (const InputError& e) {
             done.failed.emplace_back(e.what());
         } catch (...) {
-            done.failed.push_back(fmt::format("{}: {}", file.stem().string(), current_message()));
+            done.failed.push_back(fmt::format("{}: {}", scene_name(file), current_message()));
             done.internal = true;
         }
     }

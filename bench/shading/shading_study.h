@@ -21,9 +21,10 @@ struct ShadingOptions {
 /// difference from `phong`. Returns {schema, version, command, scene, method, models: [{name, evaluations, asked, ms,
 /// rmse, flip, perceived, highlight, kink, picture, difference}]}: of the sum; of S_j; least of the runs, aim and
 /// visibility included; two image errors against `phong`; the root mean square difference from `phong`, inside of
-/// objects, of the luminance plus the size of its change along the row; the largest value in the picture over that of `phong`; the root mean
-/// square of second differences along rows, inside of objects, of the diffuse light without shadows, over that of
-/// `phong`: Mach bands. `stages`: [{name, about, picture}], as draw_stages has them. Throws InputError.
+/// objects, of the luminance plus the size of its change along the row; the largest value in the picture over that of
+/// `phong`; the root mean square of second differences along rows, inside of objects, of the diffuse light without
+/// shadows, over that of `phong`: Mach bands. `stages`: [{name, about, picture}], as draw_stages has them. Throws
+/// InputError.
 [[nodiscard]] Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options,
                                    const std::filesystem::path& folder);
 

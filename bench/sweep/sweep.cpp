@@ -78,7 +78,7 @@ std::vector<std::string> folder_names(const std::vector<fs::path>& scenes) {
     std::vector<std::string> names;
     std::set<std::string> taken;
     for (const fs::path& scene : scenes) {
-        const std::string name = folder_name(scene.stem().string());
+        const std::string name = folder_name(scene_name(scene));
         names.push_back(name);
         for (int k = 2; !taken.insert(names.back()).second; ++k) names.back() = fmt::format("{}-{}", name, k);
     }
@@ -190,7 +190,7 @@ SweepDone sweep(const SweepOptions& options) {
     done.folders = folder_names(options.plan.scenes);
     for (const fs::path& file : options.plan.scenes) {
         std::optional<Steps> steps;
-        const std::string name = file.stem().string();
+        const std::string name = scene_name(file);
         CellOptions cell       = cell_options(options.plan);
         cell.progress          = [&](const std::string& what) {
             if (steps)

@@ -58,6 +58,11 @@ FrameOfFile split_frame(const std::string& file) {
     return {file.substr(0, at), file.substr(at)};
 }
 
+std::string scene_name(const path& file) {
+    const auto [base, frame] = split_frame(file.string());
+    return path(base).stem().string() + frame;
+}
+
 Scene load_scene(const path& name) {
     std::vector<std::string_view> endings;
     for (const Format& format : kFormats) endings.push_back(format.ending);

@@ -22,4 +22,7 @@ struct FrameOfFile {
 };
 [[nodiscard]] FrameOfFile split_frame(const std::string& file);
 
+/// Scene::name of what load_scene reads: "day" of "scenes/day.json", "day@3" of "scenes/day.json@3".
+[[nodiscard]] std::string scene_name(const std::filesystem::path& file);
+
 }  // namespace umbra

@@ -245,6 +245,7 @@ const MethodInfo atherton_weiler{
         "polygons, once for all cameras, and a point is looked up in the polygons of its triangle. Limit: no area "
         "lights; the time to cut grows with the outlines that cross one another on a receiver.",
     .by_default = false,
+    .shown_on   = {"sun_on_plane", "stairs", "interpenetrating"},
     .create     = create<AthertonWeiler>};
 
 }  // namespace umbra

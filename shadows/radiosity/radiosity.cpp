@@ -177,6 +177,7 @@ const MethodInfo radiosity{
                    {"fast", "size=0.0625,levels=2", "Larger patches."},
                    {"best", "size=0.015625,levels=6,threshold=0.02,samples=64", "Smaller patches, more rays."}},
     .by_default = false,
+    .shown_on   = {"sun_on_plane", "umbra_penumbra", "closed_room"},
     .create     = create<Radiosity>};
 
 }  // namespace umbra

@@ -241,6 +241,7 @@ const MethodInfo scan_line{
         "which are looked up in a subdivision of space as the light sees it. Exact to rounding for hard lights. Limit: "
         "no area lights; time grows with the spans and with the triangles behind one another.",
     .by_default = false,
+    .shown_on   = {"sun_on_plane", "stairs", "interpenetrating", "self_shadow"},
     .create     = create<ScanLine>};
 
 }  // namespace umbra
