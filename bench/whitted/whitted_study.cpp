@@ -79,7 +79,8 @@ Traced trace_once(const Study& study, Way way, AskedMethod& shadows, Transparenc
     const TreeOptions options{.depth        = study.options.depth,
                               .least_weight = way == Way::any_weight ? 0 : study.options.least_weight,
                               .everywhere   = way == Way::everywhere,
-                              .transparency = transparency};
+                              .transparency = transparency,
+                              .glossy       = study.options.glossy};
     Traced traced;
     PointBatch eye;
     traced.eye_ms = timed_ms([&] { eye = eye_points(study, way == Way::eye_rays || way == Way::everywhere); });
@@ -320,6 +321,7 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
             {"depth", options.depth},
             {"least_weight", number(options.least_weight)},
             {"pixel_samples", options.pixel_samples},
+            {"glossy", options.glossy},
             {"picture", "whitted.png"},
             {"rays_picture", "rays.png"},
             {"most_rays_a_pixel", number(most_rays)},

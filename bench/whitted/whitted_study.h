@@ -22,8 +22,9 @@ struct WhittedOptions {
     /// Rays of less weight are not traced. By default those whose light, if it is 1 or less, changes an 8-bit sRGB
     /// value by less than one step, 1 / (255 * 12.92).
     double least_weight = 0.0003;
-    int pixel_samples   = 4;  ///< eye rays a pixel: 1, 4, 9, ... 64
-    int runs            = 1;  ///< of each way to trace; the fastest counts
+    int pixel_samples   = 4;      ///< eye rays a pixel: 1, 4, 9, ... 64
+    bool glossy         = false;  ///< see TreeOptions
+    int runs            = 1;      ///< of each way to trace; the fastest counts
     std::string command;
     std::function<void(const std::string&)> progress;
 };

@@ -74,6 +74,7 @@ Scene load_scene(const path& name) {
     check_scene(read, file);
     Scene scene = complete_scene(std::move(read), file);
     scene.name += frame;
+    if (scene.frames > 0 && !frame.empty()) scene.title += fmt::format(", frame {}", scene.frame);
     scene.source += frame;
     return scene;
 }

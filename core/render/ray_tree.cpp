@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/random_bits.h"
 #include "umbra/core/base/stopwatch.h"
 #include "umbra/core/render/optics.h"
 #include "umbra/core/render/shade.h"
@@ -150,7 +152,10 @@ public:
                 ++counts.total;
             }
         }
-        if (k_r > 0 || options_.everywhere) add(i, mirrored_at(side, d), k_r, RayKind::reflected);
+        if (k_r > 0 || options_.everywhere) {
+            const dvec3 out = mirrored_at(side, d);
+            add(i, options_.glossy ? spread(i, side, out, material.shininess) : out, k_r, RayKind::reflected);
+        }
         if (through) add(i, *through, k_t, RayKind::refracted);
         if (behind > 0) add(i, d, behind, RayKind::refracted);
     }
@@ -160,10 +165,31 @@ public:
     RayCounts counts;
 
 private:
+    /// The eye ray that point i comes of.
+    [[nodiscard]] std::size_t eye_ray(std::size_t i) const {
+        for (std::size_t level = level_; level > 0; --level) i = tree_.levels[level].rays[i].parent;
+        return i;
+    }
+
+    /// A direction about `axis`, of a density that is proportional to cos^n of its angle from it. Keyed by the eye ray
+    /// and the depth, so that it is the same whichever other rays are traced; `axis` where it would leave through the
+    /// surface.
+    [[nodiscard]] dvec3 spread(std::size_t i, const Side& side, dvec3 axis, float n) const {
+        const std::uint64_t bits = mixed_bits(mixed_bits(eye_ray(i)) + level_);
+        const double u           = (static_cast<double>(bits >> 32) + 0.5) * 0x1p-32,
+                     v           = (static_cast<double>(bits & 0xffffffffu) + 0.5) * 0x1p-32;
+        const double cosine      = std::pow(u, 1 / (static_cast<double>(n) + 1)),
+                     sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)), angle = 2 * kPi * v;
+        const Axes across = axes_across(axis);
+        const dvec3 out =
+            glm::normalize(cosine * axis + sine * (std::cos(angle) * across.u + std::sin(angle) * across.v));
+        return glm::dot(out, side.face) > 0 ? out : axis;
+    }
+
     /// The share of what lies behind point i, on a surface of this opacity.
     [[nodiscard]] double seen_behind(std::size_t i, float opacity) const {
         if (options_.transparency == Transparency::blend) return 1 - static_cast<double>(opacity);
-        for (std::size_t level = level_; level > 0; --level) i = tree_.levels[level].rays[i].parent;
+        i                = eye_ray(i);
         const auto width = static_cast<std::size_t>(tree_.levels[0].points.raster->width);
         return kScreenDoor[i / width % 4][i % width % 4] < opacity ? 0 : 1;
     }

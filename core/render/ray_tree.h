@@ -4,6 +4,7 @@
 // This work is based on:
 // Turner Whitted. An Improved Illumination Model for Shaded Display. 1980
 // Roy Hall, Donald Greenberg. A Testbed for Realistic Image Synthesis. 1983
+// Robert Cook, Thomas Porter, Loren Carpenter. Distributed Ray Tracing. 1984 (rough mirrors)
 #pragma once
 
 #include <cstdint>
@@ -28,6 +29,9 @@ struct TreeOptions {
     bool everywhere     = false;  ///< a mirrored ray starts from every surface, also where its factor is 0, and rays
                                   ///< below least_weight are traced and count 0: the same picture with more rays
     Transparency transparency = Transparency::blend;
+    bool glossy               = false;  ///< a mirrored ray is one of many of the material's lobe: the cosine of its
+                                        ///< angle from the mirrored direction, to the power of the shininess. What it
+                                        ///< brings is noise, which several eye rays a pixel average out
 };
 
 enum class RayKind : std::uint8_t {

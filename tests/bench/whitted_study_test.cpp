@@ -276,6 +276,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
         {"depth", 4},
         {"least_weight", 0.125},
         {"pixel_samples", 9},
+        {"glossy", false},
         {"picture", "whitted.png"},
         {"rays_picture", "rays.png"},
         {"most_rays_a_pixel", 7.5},
@@ -350,6 +351,8 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                                   "Something is missing.",
                                   "<code>exact</code>"})
         EXPECT_NE(page.find(part), std::string::npos) << part;
+    EXPECT_NE(page.find("every mirror here is perfect"), std::string::npos);
+    record["glossy"] = true;
     record["search"] = record["blind"] = record["screen_door"] = nullptr, record["undefined"] = 0;
     StagedFiles again;
     write_whitted_page(record, folder.path(), again);
@@ -359,6 +362,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
     EXPECT_EQ(plain.find("against each of"), std::string::npos);
     EXPECT_EQ(plain.find("Not seen:"), std::string::npos);
     EXPECT_EQ(plain.find("Screen door"), std::string::npos);
+    EXPECT_EQ(plain.find("every mirror here is perfect"), std::string::npos);
     EXPECT_EQ(plain.find("were undefined"), std::string::npos);
     EXPECT_NE(plain.find("This scene has no plane mirror."), std::string::npos);
 }

@@ -82,6 +82,9 @@ Action whitted_command(CLI::App& app, const Common& common) {
     app.add_option("--pixel-samples", options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...")
         ->capture_default_str()
         ->type_name("N");
+    app.add_flag("--glossy", options.glossy,
+                 "Spread mirrored rays by each material's shininess: rough mirrors, with noise that more "
+                 "--pixel-samples average out");
     app.add_option("--runs", options.runs, "Runs of each way to trace; the fastest counts")
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()

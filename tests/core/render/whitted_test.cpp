@@ -120,6 +120,39 @@ TEST(Whitted, ScreenDoorShowsAPaneOrWhatIsBehindIt) {
     EXPECT_EQ(counts(), (std::array{0, 192, 64}));
 }
 
+/// Rays of a lobe cos^n: their mean cosine from the mirrored direction is (n + 1) / (n + 2), evenly around it.
+TEST(Whitted, GlossyRaysAreSpreadByTheShininess) {
+    for (const float n : {4.0f, 50.0f, 1e6f}) {
+        Scene scene;
+        scene.camera.eye = {0, 3, 3}, scene.camera.target = {0, 0, 0};
+        scene.camera.fov_y = 0.01f;
+        scene.width = scene.height   = 100;
+        const std::uint32_t m        = add_mirror(scene, 1);
+        scene.materials[m].shininess = n;
+        add_quad(scene, {-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}, m);
+        const RayTree tree = tree_of(scene, {.least_weight = 0, .glossy = true});
+        ASSERT_EQ(tree.levels.size(), 2u);
+        const dvec3 mirrored = glm::normalize(dvec3(0, 1, -1));
+        double sum           = 0;
+        dvec3 mean(0);
+        for (const SecondaryRay& ray : tree.levels[1].rays) {
+            EXPECT_NEAR(glm::length(ray.direction), 1, 1e-12);
+            EXPECT_GT(ray.direction.y, 0);
+            sum += glm::dot(ray.direction, mirrored);
+            mean += ray.direction;
+        }
+        const auto rays     = static_cast<double>(tree.levels[1].rays.size());
+        const double cosine = (double(n) + 1) / (double(n) + 2);
+        EXPECT_EQ(rays, 1e4);
+        EXPECT_NEAR(sum / rays, cosine, 0.02 * (1 - cosine) + (n < 10 ? 0.02 : 1e-6));
+        EXPECT_NEAR(glm::dot(glm::normalize(mean), mirrored), 1, n < 10 ? 2e-3 : 1e-4);
+        // The same rays whichever others are traced.
+        const RayTree again = tree_of(scene, {.least_weight = 0, .everywhere = true, .glossy = true});
+        for (std::size_t i = 0; i < 100; ++i)
+            EXPECT_EQ(again.levels[1].rays[i].direction, tree.levels[1].rays[i].direction);
+    }
+}
+
 TEST(Optics, MirrorTurnsTheNormalPartAlone) {
     const dvec3 d = glm::normalize(dvec3(1, -2, 0.5)), n(0, 1, 0);
     EXPECT_EQ(mirrored(d, n), dvec3(d.x, -d.y, d.z));
