@@ -88,7 +88,9 @@ std::vector<std::string> ladder_names() {
 std::vector<std::string> frames_of(const std::string& scene) {
     const std::size_t at   = scene.find_last_of('@'),
                       dots = scene.find("..", at == std::string::npos ? scene.size() : at);
-    if (is_file(scene) || at == std::string::npos || dots == std::string::npos) return {scene};
+    if (is_file(scene) || at == std::string::npos || dots == std::string::npos ||
+        scene.find_first_not_of("0123456789.", at + 1) != std::string::npos)
+        return {scene};
     int first = 0, last = 0;
     const auto read = [&](std::size_t begin, std::size_t end, int& value) {
         const auto [stop, error] = std::from_chars(scene.data() + begin, scene.data() + end, value);

@@ -49,7 +49,7 @@ Action energy_command(CLI::App& app, const Common& common) {
         ->capture_default_str()
         ->type_name("METHOD");
     app.add_option("--points", line->options.points, "Points on all faces together; each face has one at least")
-        ->check(number_in(1, 1e9, "an integer from 1 to 1000000000"))
+        ->check(number_in(1, 1e7, "an integer from 1 to 10000000"))
         ->capture_default_str()
         ->type_name("N");
     app.add_flag("--json", line->as_json, "Print results.json instead of the table");

@@ -142,18 +142,19 @@ void move_object(const JsonText& json, const JsonMember& member, int frame, Scen
     const auto is_part = [&](const Object& object) {
         return object.name == member.key || object.name.starts_with(member.key + "/");
     };
-    std::vector<std::uint8_t> moves(scene.positions.size(), 0);
     Box box;
-    bool found = false;
-    for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
-        if (!is_part(scene.objects[scene.triangle_object[t]])) continue;
-        found = true;
-        for (int k = 0; k < 3; ++k) {
-            moves[scene.triangles[t][k]] = 1;
-            box                          = extend(box, scene.vertex(t, k));
-        }
+    std::vector<std::uint32_t> moved;  // positions
+    for (const Object& object : scene.objects) {
+        if (!is_part(object)) continue;
+        for (TriangleId t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
+            for (int k = 0; k < 3; ++k) {
+                moved.push_back(scene.triangles[t][k]);
+                box = extend(box, scene.vertex(t, k));
+            }
     }
-    if (!found) json.source().fail(member.offset, fmt::format("no object is named \"{}\"", member.key));
+    if (moved.empty()) json.source().fail(member.offset, fmt::format("no object is named \"{}\"", member.key));
+    std::ranges::sort(moved);
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
     const JsonValue* axis = fields.find("axis");
     const dvec3 about = axis != nullptr ? glm::normalize(dvec3(read_direction(json, *axis, "axis"))) : dvec3(0, 1, 0);
     const dvec3 move  = *track.point(frame, "move", dvec3(0));
@@ -161,8 +162,7 @@ void move_object(const JsonText& json, const JsonMember& member, int frame, Scen
     if (move == dvec3(0) && turn == 0) return;
     const dmat4 rotation = glm::rotate(dmat4(1), glm::radians(turn), about);
     const dvec3 pivot(box.centre());
-    for (std::size_t p = 0; p < moves.size(); ++p) {
-        if (moves[p] == 0) continue;
+    for (const std::uint32_t p : moved) {
         const dvec3 arm    = turn == 0 ? dvec3(0) : dvec3(scene.positions[p]) - pivot;
         const dvec3 turned = turn == 0 ? dvec3(scene.positions[p]) : pivot + dvec3(rotation * dvec4(arm, 0));
         scene.positions[p] = vec3(turned + move);
