@@ -12,6 +12,7 @@
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/sampling.h"
+#include "umbra/core/render/sum.h"
 
 namespace umbra {
 namespace {
@@ -65,7 +66,7 @@ double arriving(const Scene& scene, const PointBatch& points, LightId j, std::si
     const vec3 p        = points.position(i);
     const double cosine = glm::dot(dvec3(points.normal(i)), dvec3(to_light(light, p).direction));
     if (!(cosine > 0) || !lights_object(light, scene.objects[scene.triangle_object[points.triangle[i]]].name)) return 0;
-    return luminance(light.diffuse) * static_cast<double>(falloff(light, p)) * cosine;
+    return luminance(light.diffuse) * arriving_share(scene, light, p) * cosine;
 }
 
 Json energy_json(const ReceivedEnergy& e) {

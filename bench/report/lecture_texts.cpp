@@ -86,12 +86,12 @@ constexpr std::array kTexts{
     LectureText{"A10",
                 "bewegte Lichtquellen, Objekte und Kameras",
                 "κινούμενες πηγές, αντικείμενα και κάμερες",
-                {"The sun moves from frame to frame, by keys in the scene file: shadows shrink to noon and grow again "
-                 "on the other side.",
-                 "Die Sonne wandert von Bild zu Bild, nach Schlüsselbildern in der Szenendatei: Die Schatten "
-                 "schrumpfen bis Mittag und wachsen auf der anderen Seite wieder.",
-                 "Ο ήλιος κινείται από καρέ σε καρέ, με καρέ-κλειδιά στο αρχείο της σκηνής: οι σκιές μικραίνουν ως το "
-                 "μεσημέρι και μεγαλώνουν ξανά από την άλλη πλευρά."}},
+                {"The first of 13 frames: the sun is low, and shadows are long. Keys in the scene file move it; umbra "
+                 "compare a_day@0..12 shows the whole day.",
+                 "Das erste von 13 Bildern: Die Sonne steht tief, die Schatten sind lang. Schlüsselbilder in der "
+                 "Szenendatei bewegen sie; umbra compare a_day@0..12 zeigt den ganzen Tag.",
+                 "Το πρώτο από 13 καρέ: ο ήλιος είναι χαμηλά και οι σκιές μακριές. Καρέ-κλειδιά στο αρχείο της σκηνής "
+                 "τον κινούν· η εντολή umbra compare a_day@0..12 δείχνει όλη την ημέρα."}},
     LectureText{"A11",
                 "Lichtquellen an- und ausschalten; an der Kamera befestigt",
                 "πηγές που ανάβουν και σβήνουν· στερεωμένες στην κάμερα",

@@ -48,11 +48,10 @@ PhongSum::PhongSum(const Scene& scene, const CameraFrame& camera)
     }
 }
 
-/// The light's f_att at p, dimmed by fog where the scene's fog does that.
-double PhongSum::arriving(const Light& light, vec3 p) const {
+double arriving_share(const Scene& scene, const Light& light, vec3 p) {
     const double f_att = falloff(light, p);
-    if (!scene_->fog.dims_lights || light.kind == LightKind::directional || f_att <= 0) return f_att;
-    return f_att * fog_share(scene_->fog, static_cast<double>(to_light(light, p).distance));
+    if (!scene.fog.dims_lights || light.kind == LightKind::directional || f_att <= 0) return f_att;
+    return f_att * fog_share(scene.fog, static_cast<double>(to_light(light, p).distance));
 }
 
 /// f_att I_j (k_d O_d (N.L) + k_s O_s lobe): what light j would give if nothing blocked it. Says count(term) of each
@@ -66,7 +65,7 @@ dvec3 PhongSum::unblocked(const Light& light, const Material& material, const Te
     const dvec3 l       = towards / length;
     const double cosine = glm::dot(n, l);
     if (cosine <= 0) return dvec3(0);
-    const double f_att = arriving(light, p);
+    const double f_att = arriving_share(*scene_, light, p);
     if (f_att <= 0) return dvec3(0);
     count(&SumCounts::diffuse);
     dvec3 reflected = dvec3(light.diffuse) * terms.diffuse * cosine;
@@ -116,7 +115,7 @@ dvec3 PhongSum::add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v
         const Light& light = scene_->lights[j];
         if (attenuated_ambient_ && light.ambient != vec3(0)) {
             count(&SumCounts::ambient);
-            sum += arriving(light, p) * dvec3(light.ambient) * terms.ambient;
+            sum += arriving_share(*scene_, light, p) * dvec3(light.ambient) * terms.ambient;
         }
         if (points.facing[j][i] == Facing::away) continue;  // S_j = 0
         const double s_j = visibility[j].defined(i) ? visibility[j].s[i] : 1.0f;

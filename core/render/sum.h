@@ -26,6 +26,9 @@ struct SumCounts {
     std::uint64_t fog      = 0;  ///< points seen through fog
 };
 
+/// f_att,j of the sum at p: `falloff`, dimmed by the scene's fog where that dims lights.
+[[nodiscard]] double arriving_share(const Scene& scene, const Light& light, vec3 p);
+
 class PhongSum {
 public:
     /// Of a picture by this camera. The scene must outlive this object.
@@ -68,7 +71,6 @@ private:
     template <class Count>
     dvec3 add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v, std::span<const VisibilityPlane> visibility,
                  const Count& count) const;
-    [[nodiscard]] double arriving(const Light& light, vec3 p) const;
     template <class Count>
     dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p, dvec3 n, dvec3 v,
                     const Count& count) const;

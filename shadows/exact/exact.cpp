@@ -81,13 +81,9 @@ public:
 
     void build(const Scene& scene, const SceneFacts& facts) override {
         scene_ = &scene;
-        // A triangle without area is no surface: it has no inside to cross and bounds no shadow.
-        no_area_.resize(scene.triangles.size());
-        parallel_ranges(no_area_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) {
-                const auto id = static_cast<TriangleId>(t);
-                no_area_[t]   = is_degenerate(scene.vertex(id, 0), scene.vertex(id, 1), scene.vertex(id, 2));
-            }
+        takes_.resize(scene.triangles.size());
+        parallel_ranges(takes_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) takes_[t] = taken_by(scene, static_cast<TriangleId>(t));
         });
         has_filters_ = facts.has_filters;
         tree_.emplace(scene);
@@ -123,10 +119,21 @@ public:
     }
 
     std::size_t memory_bytes() const override {
-        return (tree_ ? tree_->memory_bytes() : 0) + no_area_.size() + (has_area_lights_ ? area_.memory_bytes() : 0);
+        return (tree_ ? tree_->memory_bytes() : 0) + takes_.size() + (has_area_lights_ ? area_.memory_bytes() : 0);
     }
 
 private:
+    /// What a triangle takes of the light that meets it.
+    enum class Takes : std::uint8_t { all, part, nothing };
+
+    /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
+    static Takes taken_by(const Scene& scene, TriangleId t) {
+        const float passes = scene.lets_through(t);
+        if (passes == 1 || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
+            return Takes::nothing;
+        return passes == 0 ? Takes::all : Takes::part;
+    }
+
     void see_hard(const PointBatch& points, LightId light, Visibility out) const {
         parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
             TriangleId last = kNoTriangle;  // what blocked a point often blocks its neighbour
@@ -164,7 +171,7 @@ private:
     Segment::Meeting first_meeting(const Segment& segment, TriangleId own, TriangleId& last) const {
         using Meeting   = Segment::Meeting;
         const auto with = [&](TriangleId t) {
-            return t == own || no_area_[t] || !scene_->blocks(t)
+            return t == own || takes_[t] != Takes::all
                        ? Meeting::none
                        : segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
         };
@@ -184,7 +191,7 @@ private:
     float passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
         double share = 1;
         tree_->visit(segment.piece(), [&](TriangleId t) {
-            if (t == own || no_area_[t] || scene_->blocks(t)) return true;
+            if (t == own || takes_[t] != Takes::part) return true;
             const auto m = segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
             if (m == Segment::Meeting::crosses) share *= static_cast<double>(scene_->lets_through(t));
             if (m == Segment::Meeting::touches) met = m;
@@ -200,8 +207,7 @@ private:
         double least               = std::numeric_limits<double>::infinity();
         tree_->visit(piece, [&](TriangleId t) {
             const vec3 x = scene_->vertex(t, 0), y = scene_->vertex(t, 1), z = scene_->vertex(t, 2);
-            if (t == own || no_area_[t] || scene_->lets_through(t) == 1 ||
-                segment.meeting(x, y, z) != Segment::Meeting::crosses)
+            if (t == own || takes_[t] == Takes::nothing || segment.meeting(x, y, z) != Segment::Meeting::crosses)
                 return true;
             const dvec3 n    = glm::cross(dvec3(y) - dvec3(x), dvec3(z) - dvec3(x));
             const double way = std::abs(glm::dot(n, dvec3(x) - piece.from) / glm::dot(n, piece.direction));
@@ -213,7 +219,7 @@ private:
 
     const Scene* scene_ = nullptr;
     std::optional<TriangleTree> tree_;
-    std::vector<std::uint8_t> no_area_;  ///< one a triangle
+    std::vector<Takes> takes_;  ///< one a triangle
     bool has_area_lights_ = false, has_filters_ = false;
     ExactArea area_{ExactArea::Arithmetic::filtered, Measure::area};
 };

@@ -109,6 +109,23 @@ TEST(Energy, IsOfFacesToo) {
     EXPECT_NEAR(objects[0].unshadowed, 1, 1e-6);
 }
 
+/// Fog that dims lights dims what arrives, as in the sum.
+TEST(Energy, HasTheFogOfTheSum) {
+    Scene scene;
+    scene.materials.resize(1);
+    add_object(scene, "patch", {{-1e-3f, 0, -1e-3f}, {1e-3f, 0, -1e-3f}, {0, 0, 1e-3f}}, {}, {{0, 2, 1}}, 0);
+    Light lamp;
+    lamp.position         = {0, 3, 0};
+    scene.lights          = {lamp};
+    scene.fog.law         = FogLaw::exponential;
+    scene.fog.density     = 0.25f;
+    scene.fog.dims_lights = true;
+    const auto lit        = [&] { return received_by_faces(scene, find_facts(scene), with("exact", 8))[0].irradiance; };
+    EXPECT_NEAR(lit(), std::exp(-0.75), 1e-5);
+    scene.fog.dims_lights = false;
+    EXPECT_NEAR(lit(), 1, 1e-5);
+}
+
 TEST(Energy, RefusesWhatAMethodDoesNotServeAndOtherObjects) {
     const TemporaryFolder folder;
     const std::string roof = write_roof(folder);

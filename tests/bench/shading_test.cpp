@@ -63,7 +63,7 @@ TEST(ShadingStudy, KinksAreBendsAndNotSlopes) {
 }
 
 /// Finer faces come closer to Phong shading for the eye, too.
-TEST(ShadingStudy, PerceivedIsTheLightAndItsChange) {
+TEST(ShadingStudy, FinerFacesComeCloserForTheEyeToo) {
     const auto perceived = [](int longitudes, const char* name) {
         const TemporaryFolder folder;
         Scene scene;
