@@ -104,6 +104,38 @@ json screen_door_view(const Json& door) {
     return view;
 }
 
+std::string about_kind(const std::string& kind) {
+    static const std::map<std::string, std::string> names{{"met", "rays that met a surface"},
+                                                          {"total_reflections", "total reflections"}};
+    const auto found = names.find(kind);
+    return found == names.end() ? kind + " rays" : found->second;
+}
+
+json formula_view(const Json& formula) {
+    json view = json::array();
+    if (formula.is_null()) return view;
+    json kinds = json::array();
+    for (const auto& [kind, rays] : formula["totals"].items())
+        kinds.push_back({{"kind", about_kind(kind)},
+                         {"triangles", count(formula["totals_of_triangles"][kind].get<double>())},
+                         {"formula", count(rays.get<double>())}});
+    const double boxes  = formula["bodies"]["boxes"].get<double>();
+    const Json& samples = formula["light_samples"];
+    view.push_back({{"spheres", counted(formula["bodies"]["spheres"].get<double>(), "sphere")},
+                    {"boxes", count(boxes) + (boxes == 1 ? " box" : " boxes")},
+                    {"replaced", counted(formula["triangles_replaced"].get<double>(), "triangle")},
+                    {"left", counted(formula["triangles_left"].get<double>(), "triangle")},
+                    {"rays", counted(formula["rays"].get<double>(), "ray")},
+                    {"ms", figure(formula["ms"], "{:.1f}")},
+                    {"rmse", figure(formula["rmse"], "{:.5f}")},
+                    {"flip", figure(formula["flip"], "{:.4f}")},
+                    {"largest", digits(formula["max_difference"])},
+                    {"samples", samples.is_null() ? std::string() : count(samples.get<double>())},
+                    {"kinds", std::move(kinds)},
+                    {"picture", formula["picture"]}});
+    return view;
+}
+
 }  // namespace
 
 void write_whitted_page(const Json& record, const std::filesystem::path& folder, StagedFiles& staged) {
@@ -141,7 +173,8 @@ void write_whitted_page(const Json& record, const std::filesystem::path& folder,
                               {"ways", std::move(ways)},
                               {"search", search_view(record["search"])},
                               {"blind", blind_view(record["blind"])},
-                              {"screen_door", screen_door_view(record["screen_door"])}};
+                              {"screen_door", screen_door_view(record["screen_door"])},
+                              {"formula", formula_view(record["formula"])}};
     const PageHead head    = {fmt::format("Ray tracing: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::whitted_html, head, view));
     write_page_assets(folder, head.scripts, staged);

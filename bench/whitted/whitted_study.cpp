@@ -14,6 +14,7 @@
 #include "umbra/bench/run/asked_method.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
+#include "umbra/core/render/formula_scene.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/mirrored_light.h"
 #include "umbra/core/render/shade.h"
@@ -105,30 +106,46 @@ Traced trace(const Study& study, Way way, AskedMethod& shadows) {
     return fastest;
 }
 
+Json counts_json(std::size_t level, const RayCounts& counts) {
+    return {{"depth", level + 1},
+            {"eye", counts.eye},
+            {"reflected", counts.reflected},
+            {"refracted", counts.refracted},
+            {"met", counts.met},
+            {"left", counts.traced() - counts.met},
+            {"shadow", counts.shadow},
+            {"total_reflections", counts.total},
+            {"too_light", counts.too_light},
+            {"too_deep", counts.too_deep}};
+}
+
+/// Rays of all depths by kind.
+Json totals_json(const RayTree& tree) {
+    RayCounts all;
+    for (const RayLevel& level : tree.levels) {
+        all.eye += level.counts.eye, all.reflected += level.counts.reflected;
+        all.refracted += level.counts.refracted, all.shadow += level.counts.shadow;
+        all.met += level.counts.met, all.total += level.counts.total;
+    }
+    return {{"eye", all.eye}, {"reflected", all.reflected}, {"refracted", all.refracted},
+            {"met", all.met}, {"shadow", all.shadow},       {"total_reflections", all.total}};
+}
+
 Json depths_json(const Study& study, const Traced& traced, const fs::path& folder) {
     Json depths        = Json::array();
     const Image& whole = traced.linear;
     const Image shown  = study.shown(whole);
     for (std::size_t level = 0; level < traced.tree.levels.size(); ++level) {
-        const RayCounts& counts = traced.tree.levels[level].counts;
-        const int depth         = static_cast<int>(level) + 1;
-        const Image linear      = study.picture(traced, depth);
-        const Image picture     = study.shown(linear);
-        const std::string file  = fmt::format("depth_{}.png", depth);
+        const int depth        = static_cast<int>(level) + 1;
+        const Image linear     = study.picture(traced, depth);
+        const Image picture    = study.shown(linear);
+        const std::string file = fmt::format("depth_{}.png", depth);
         write_image(folder / file, picture);
-        depths.push_back({{"depth", depth},
-                          {"eye", counts.eye},
-                          {"reflected", counts.reflected},
-                          {"refracted", counts.refracted},
-                          {"met", counts.met},
-                          {"left", counts.traced() - counts.met},
-                          {"shadow", counts.shadow},
-                          {"total_reflections", counts.total},
-                          {"too_light", counts.too_light},
-                          {"too_deep", counts.too_deep},
-                          {"rmse", number(image_error(whole, linear).rmse)},
-                          {"flip", number(flip_ldr(shown, picture).mean)},
-                          {"picture", file}});
+        Json counts       = counts_json(level, traced.tree.levels[level].counts);
+        counts["rmse"]    = number(image_error(whole, linear).rmse);
+        counts["flip"]    = number(flip_ldr(shown, picture).mean);
+        counts["picture"] = file;
+        depths.push_back(std::move(counts));
     }
     return depths;
 }
@@ -268,6 +285,58 @@ Json screen_door_json(const Study& study, const Traced& blended, AskedMethod& sh
             {"picture", "screen_door.png"}};
 }
 
+/// The picture in which rays meet bodies by formula.
+Traced trace_formula(const Study& study, const FormulaScene& bodies) {
+    const TreeOptions options{
+        .depth = study.options.depth, .least_weight = study.options.least_weight, .glossy = study.options.glossy};
+    const CameraFrame raster = frame(study.scene().camera, study.width() * study.side, study.height() * study.side);
+    Traced traced;
+    traced.tree = bodies.trace(raster, options);
+    std::vector<std::vector<VisibilityPlane>> visibility;
+    const double shadow_ms = timed_ms([&] {
+        for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
+            visibility.push_back(study.options.method
+                                     ? bodies.visibility(traced.tree, level)
+                                     : lit_everywhere(study.scene(), traced.tree.levels[level].points));
+    });
+    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
+    traced.light.shadow_ms = shadow_ms;
+    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
+    return traced;
+}
+
+/// Null without bodies.
+Json formula_json(const Study& study, const Traced& triangles, const Image& shown, const fs::path& folder) {
+    if (!study.options.bodies) return {};
+    const Bodies& bodies = *study.options.bodies;
+    std::optional<FormulaScene> scene;
+    const double build_ms = timed_ms([&] { scene.emplace(study.scene(), bodies); });
+    Traced traced         = trace_formula(study, *scene);
+    for (int run = 1; run < study.options.runs; ++run)
+        if (Traced again = trace_formula(study, *scene); again.ms() < traced.ms()) traced = std::move(again);
+    const Image picture = study.shown(traced.linear);
+    write_image(folder / "formula.png", picture);
+    const ImageError error = image_error(triangles.linear, traced.linear);
+    const bool sampled     = study.options.method && std::ranges::any_of(study.scene().lights, is_area, &Light::kind);
+    Json depths            = Json::array();
+    for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
+        depths.push_back(counts_json(level, traced.tree.levels[level].counts));
+    return {{"bodies", {{"spheres", bodies.count(BodyKind::sphere)}, {"boxes", bodies.count(BodyKind::box)}}},
+            {"triangles_replaced", bodies.triangles()},
+            {"triangles_left", study.scene().triangles.size() - bodies.triangles()},
+            {"light_samples", sampled ? Json(kFormulaLightSamples) : Json()},
+            {"depths", std::move(depths)},
+            {"totals", totals_json(traced.tree)},
+            {"totals_of_triangles", totals_json(triangles.tree)},
+            {"rays", traced.rays()},
+            {"build_ms", number(build_ms)},
+            {"ms", number(traced.ms())},
+            {"rmse", number(error.rmse)},
+            {"max_difference", number(error.max)},
+            {"flip", number(flip_ldr(shown, picture).mean)},
+            {"picture", "formula.png"}};
+}
+
 std::string in_text(const Json& value, const char* format) {
     return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
@@ -313,6 +382,8 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
     Json search = search_json(study, raster.tree);
     Json blind  = blind_json(study, *shadows, shown, folder);
     Json door   = screen_door_json(study, raster, *shadows, shown, folder);
+    if (options.bodies) study.say("tracing: formula");
+    Json formula = formula_json(study, raster, shown, folder);
     return {{"schema", kResultsSchema},
             {"version", version()},
             {"command", options.command},
@@ -333,8 +404,29 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
             {"ways", std::move(ways)},
             {"search", std::move(search)},
             {"blind", std::move(blind)},
-            {"screen_door", std::move(door)}};
+            {"screen_door", std::move(door)},
+            {"formula", std::move(formula)}};
 }
+
+namespace {
+
+/// Rays with triangles in place of bodies beside those with bodies.
+std::string formula_text(const Json& formula) {
+    if (formula.is_null()) return "";
+    std::string text = fmt::format(
+        "\nby formula (spheres: {}, boxes: {}, instead of {} triangles): {} ms; RMSE {}, FLIP {}, largest difference "
+        "{}\n{:<18} {:>12} {:>12}\n",
+        formula["bodies"]["spheres"].get<std::uint64_t>(), formula["bodies"]["boxes"].get<std::uint64_t>(),
+        formula["triangles_replaced"].get<std::uint64_t>(), in_text(formula["ms"], "{:.1f}"),
+        in_text(formula["rmse"], "{:.5f}"), in_text(formula["flip"], "{:.4f}"),
+        in_text(formula["max_difference"], "{:.4g}"), "rays", "triangles", "formula");
+    for (const auto& [kind, rays] : formula["totals"].items())
+        text += fmt::format("{:<18} {:>12} {:>12}\n", kind, formula["totals_of_triangles"][kind].get<std::uint64_t>(),
+                            rays.get<std::uint64_t>());
+    return text;
+}
+
+}  // namespace
 
 std::string whitted_text(const Json& record) {
     std::string text = fmt::format("{:>5} {:>9} {:>10} {:>10} {:>9} {:>9} {:>9} {:>10} {:>9} {:>9}\n", "depth", "eye",
@@ -364,6 +456,7 @@ std::string whitted_text(const Json& record) {
     if (const Json& d = record["screen_door"]; !d.is_null())
         text += fmt::format("screen door instead of blending: RMSE {}, {} rays\n", in_text(d["rmse"], "{:.5f}"),
                             d["rays"].get<std::uint64_t>());
+    text += formula_text(record["formula"]);
     if (const auto undefined = record["undefined"].get<std::uint64_t>(); undefined > 0)
         text += fmt::format("S_j left undefined and taken as lit: {}\n", undefined);
     return text;

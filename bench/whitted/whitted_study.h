@@ -12,6 +12,7 @@
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/core/scene/bodies.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -22,9 +23,10 @@ struct WhittedOptions {
     /// Rays of less weight are not traced. By default those whose light, if it is 1 or less, changes an 8-bit sRGB
     /// value by less than one step, 1 / (255 * 12.92).
     double least_weight = 0.0003;
-    int pixel_samples   = 4;      ///< eye rays a pixel: 1, 4, 9, ... 64
-    bool glossy         = false;  ///< see TreeOptions
-    int runs            = 1;      ///< of each way to trace; the fastest counts
+    int pixel_samples   = 4;       ///< eye rays a pixel: 1, 4, 9, ... 64
+    bool glossy         = false;   ///< see TreeOptions
+    int runs            = 1;       ///< of each way to trace; the fastest counts
+    std::optional<Bodies> bodies;  ///< of the scene: a second picture meets them by formula
     std::string command;
     std::function<void(const std::string&)> progress;
 };
@@ -38,8 +40,8 @@ void correct_warnings(Scene& scene);
 /// The method must serve the scene, and points off a raster. Writes into `folder`: whitted.png, the picture;
 /// depth_D.png, the picture if rays stopped at depth D; rays.png, brighter where a pixel has more rays; blind.png,
 /// where light arrives by way of a plane mirror; screen_door.png, the picture with Transparency::screen_door, where a
-/// surface is seen through. Returns the record, whose members bench/whitted/whitted_page.cpp
-/// shows:
+/// surface is seen through; formula.png, where bodies are given, the picture in which rays meet these by formula.
+/// Returns the record, whose members bench/whitted/whitted_page.cpp shows:
 ///
 /// depths: by depth, RayCounts, `left` (met nothing), errors of depth_D.png from the picture. phases: milliseconds of
 /// the fastest run and their fractions. ways: `raster` (eye rays from the raster, rays from mirrors and glass alone),
@@ -47,7 +49,9 @@ void correct_warnings(Scene& scene);
 /// `raster`, but no ray is too light): rays, milliseconds, pixels that differ from `raster`, by how much at most.
 /// search: a sample of secondary rays by the tree and against every triangle; null without secondary rays. blind:
 /// diffuse points that a light reaches over a plane mirror, those of them where its S_j is 0; null without plane
-/// mirrors. screen_door: that picture's errors from the whole; null where no surface is seen through.
+/// mirrors. screen_door: that picture's errors from the whole; null where no surface is seen through. formula: bodies
+/// by kind, how many triangles they replace, RayCounts by depth, milliseconds, rays to a light with an area (null: none
+/// is asked), and the picture's errors from the whole; null without bodies.
 ///
 /// Throws InputError, UsageError.
 [[nodiscard]] Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,

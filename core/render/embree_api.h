@@ -48,7 +48,30 @@ inline void occluded_list(RTCScene scene,
     }
 }
 inline void intersect_one(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
+
+/// What the callbacks of user geometry are given of the ray: derive from it.
+struct RayQuery : RTCRayQueryContext {
+    RayQuery() { rtcInitRayQueryContext(this); }
+};
+inline void intersect_one(RTCScene scene, RTCRayHit& ray, RayQuery& query) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.context = &query;
+    rtcIntersect1(scene, &ray, &arguments);
+}
+inline void occluded_one(RTCScene scene, RTCRay& ray, RayQuery& query) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.context = &query;
+    rtcOccluded1(scene, &ray, &arguments);
+}
 #else
+/// What the callbacks of user geometry are given of the ray: derive from it.
+struct RayQuery : RTCIntersectContext {
+    RayQuery() { rtcInitIntersectContext(this); }
+};
+inline void intersect_one(RTCScene scene, RTCRayHit& ray, RayQuery& query) { rtcIntersect1(scene, &query, &ray); }
+inline void occluded_one(RTCScene scene, RTCRay& ray, RayQuery& query) { rtcOccluded1(scene, &query, &ray); }
 inline void intersect_one(RTCScene scene, RTCRayHit& ray) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -74,31 +97,50 @@ inline void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {
 }
 #endif
 
+/// Of a callback's arguments.
+template <class Arguments>
+RayQuery& query_of(const Arguments* arguments) {
+    return *static_cast<RayQuery*>(arguments->context);
+}
+
 inline bool count_memory(void* counter, ssize_t bytes, bool) {
     *static_cast<std::atomic<std::ptrdiff_t>*>(counter) += bytes;
     return true;
 }
 
-struct RayScene::Impl {
+/// Embree's device and scene.
+struct EmbreeScene {
     std::atomic<std::ptrdiff_t> bytes{0};
     RTCDevice device = nullptr;
     RTCScene scene   = nullptr;
-    std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
-    std::span<const uvec3> triangles;
 
     /// UMBRA_EMBREE configures Embree's device: "isa=sse4.2" limits it to instructions that other machines have.
-    Impl() : device(rtcNewDevice(std::getenv("UMBRA_EMBREE"))) {
+    EmbreeScene() : device(rtcNewDevice(std::getenv("UMBRA_EMBREE"))) {
         if (!device)
             throw std::runtime_error("Embree gives no device, error " + std::to_string(rtcGetDeviceError(nullptr)));
         rtcSetDeviceMemoryMonitorFunction(device, count_memory, &bytes);
         scene = rtcNewScene(device);
     }
-    ~Impl() {
+    ~EmbreeScene() {
         rtcReleaseScene(scene);
         rtcReleaseDevice(device);
     }
-    Impl(const Impl&)            = delete;
-    Impl& operator=(const Impl&) = delete;
+    EmbreeScene(const EmbreeScene&)            = delete;
+    EmbreeScene& operator=(const EmbreeScene&) = delete;
+
+    /// Builds the trees of what was attached. Throws std::runtime_error.
+    void commit() {
+        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+        rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+        rtcCommitScene(scene);
+        if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
+            throw std::runtime_error("Embree cannot build its scene, error " + std::to_string(static_cast<int>(error)));
+    }
+};
+
+struct RayScene::Impl : EmbreeScene {
+    std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
+    std::span<const uvec3> triangles;
 };
 
 }  // namespace umbra

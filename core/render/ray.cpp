@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <string>
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/render/embree_api.h"
@@ -73,11 +72,7 @@ RayScene::RayScene(const Scene& scene, Met met) : impl_(std::make_unique<Impl>()
         }
         rtcReleaseGeometry(geometry);
     }
-    rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(impl_->scene, RTC_BUILD_QUALITY_MEDIUM);
-    rtcCommitScene(impl_->scene);
-    if (const RTCError error = rtcGetDeviceError(impl_->device); error != RTC_ERROR_NONE)
-        throw std::runtime_error("Embree cannot build its scene, error " + std::to_string(static_cast<int>(error)));
+    impl_->commit();
 }
 
 RayScene::~RayScene()                              = default;

@@ -93,12 +93,13 @@ void meet(const RayScene& rays, const Scene& scene, RayTree& tree, std::size_t l
             for (std::size_t i = begin; i < end; ++i)
                 met[i - begin] = first_by_tree(rays, secondary_ray(scene, tree, level, i));
         }
-        for (std::size_t i = begin; i < end; ++i) {
-            const Ray ray = secondary_ray(scene, tree, level, i);
-            write_point(points, i, scene, met[i - begin], ray);
-            face_ray(points, i, scene, ray.direction);
-        }
+        for (std::size_t i = begin; i < end; ++i)
+            set_met_point(points, i, scene, met[i - begin], secondary_ray(scene, tree, level, i));
     });
+}
+
+bool lies_on_body(const RayLevel& level, std::size_t i) {
+    return !level.on_body.empty() && level.on_body[i].body != kNoBody;
 }
 
 /// The side of a surface on which a ray arrives, with unit normals on that side.
@@ -106,10 +107,11 @@ struct Side {
     dvec3 face, smooth;
     bool outside;  ///< the side of the winding
 };
-Side side_of(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 d) {
-    const dvec3 normal = glm::normalize(dvec3(points.normal(i)));
+Side side_of(const Scene& scene, const RayLevel& level, std::size_t i, dvec3 d) {
+    const PointBatch& points = level.points;
+    const dvec3 normal = lies_on_body(level, i) ? level.on_body[i].normal : glm::normalize(dvec3(points.normal(i)));
     const double turn  = glm::dot(normal, d) > 0 ? -1 : 1;  // one-sided, from behind
-    Side side{turn * normal, turn * shading_normal(scene, points, i), (points.flipped[i] != 0) == (turn < 0)};
+    Side side{turn * normal, turn * shading_normal(scene, level, i), (points.flipped[i] != 0) == (turn < 0)};
     if (glm::dot(side.smooth, d) >= 0) side.smooth = side.face;
     return side;
 }
@@ -143,7 +145,7 @@ public:
         if (behind > 0) own.push_back({i, static_cast<float>(1 - behind)});
         if (k_r == 0 && k_t == 0 && behind == 0 && !options_.everywhere) return;
         const dvec3 d   = incoming(tree_, level_, i);
-        const Side side = side_of(scene_, points, i, d);
+        const Side side = side_of(scene_, tree_.levels[level_], i, d);
         std::optional<dvec3> through;
         if (k_t > 0) {
             through = refracted_at(side, d, material.index_of_refraction);
@@ -252,12 +254,12 @@ std::uint64_t asked(const PointBatch& points) {
 
 }  // namespace
 
-RayTree trace_rays(const RayScene& rays, const Scene& scene, PointBatch eye, const TreeOptions& options) {
-    if (!eye.raster) throw std::logic_error("trace_rays: the batch has no raster");
+RayTree trace_rays(const Scene& scene, RayLevel eye, const TreeOptions& options, const MeetRays& meet) {
+    if (!eye.points.raster) throw std::logic_error("trace_rays: the batch has no raster");
     RayTree tree;
-    tree.levels.emplace_back();
-    tree.levels[0].counts.eye = eye.size();
-    tree.levels[0].points     = std::move(eye);
+    eye.counts     = {};
+    eye.counts.eye = eye.points.size();
+    tree.levels.push_back(std::move(eye));
     for (std::size_t level = 0;; ++level) {
         const Stopwatch start;
         std::vector<SecondaryRay> next = spawn(scene, tree, level, options);
@@ -266,13 +268,30 @@ RayTree trace_rays(const RayScene& rays, const Scene& scene, PointBatch eye, con
         if (next.empty()) return tree;
         tree.levels.emplace_back().rays = std::move(next);
         count_kinds(tree.levels.back());
+        meet(tree, level + 1);
+    }
+}
+
+RayTree trace_rays(const RayScene& rays, const Scene& scene, PointBatch eye, const TreeOptions& options) {
+    RayLevel first;
+    first.points = std::move(eye);
+    return trace_rays(scene, std::move(first), options, [&](RayTree& tree, std::size_t level) {
         const Stopwatch traced;
-        meet(rays, scene, tree, level + 1);
+        meet(rays, scene, tree, level);
         tree.trace_ms += traced.ms();
         const Stopwatch met;
-        face_lights(tree.levels.back().points, scene);
+        face_lights(tree.levels[level].points, scene);
         tree.face_ms += met.ms();
-    }
+    });
+}
+
+dvec3 shading_normal(const Scene& scene, const RayLevel& level, std::size_t i) {
+    return lies_on_body(level, i) ? level.on_body[i].normal : shading_normal(scene, level.points, i);
+}
+
+void set_met_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, const Ray& ray) {
+    write_point(batch, i, scene, t, ray);
+    face_ray(batch, i, scene, ray.direction);
 }
 
 PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const CameraFrame& raster) {
@@ -308,8 +327,11 @@ PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const Camera
 }
 
 Ray secondary_ray(const Scene& scene, const RayTree& tree, std::size_t level, std::size_t i) {
-    const SecondaryRay& ray  = tree.levels[level].rays[i];
-    const PointBatch& points = tree.levels[level - 1].points;
+    const SecondaryRay& ray = tree.levels[level].rays[i];
+    const RayLevel& from    = tree.levels[level - 1];
+    if (lies_on_body(from, ray.parent))
+        return {from.on_body[ray.parent].position, ray.direction, kNoTriangle, dvec3(0)};
+    const PointBatch& points = from.points;
     return {exact_position(scene, points, ray.parent), ray.direction, points.triangle[ray.parent],
             dvec3(points.normal(ray.parent))};
 }

@@ -8,10 +8,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/ray.h"
+#include "umbra/core/scene/bodies.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
@@ -59,9 +61,16 @@ struct RayCounts {
     [[nodiscard]] std::uint64_t traced() const { return eye + reflected + refracted; }
 };
 
+/// Where a ray met a body by its formula, instead of one of the triangles that stand for it.
+struct OnBody {
+    std::uint32_t body = kNoBody;  ///< index into Bodies::list; kNoBody: it met a triangle, or nothing
+    dvec3 position{0}, normal{0};  ///< world; the latter unit, on the side of the point's normal
+};
+
 /// All rays of one depth: ray i met points[i]; kNoTriangle: it left the scene.
 struct RayLevel {
     PointBatch points;               ///< of the first level a raster; normals are on the side that the ray sees
+    std::vector<OnBody> on_body;     ///< one a point; empty: no ray met a body by formula
     std::vector<SecondaryRay> rays;  ///< by parent, mirrored before refracted; empty at the first level
     std::vector<float> own;          ///< one a point: the share of what leaves it by itself that counts; empty: 1
     RayCounts counts;
@@ -86,6 +95,15 @@ struct RayTree {
 /// rays, std::logic_error for a batch without a raster.
 [[nodiscard]] RayTree trace_rays(const RayScene& rays, const Scene& scene, PointBatch eye, const TreeOptions& options);
 
+/// The same where `meet` finds what the rays of a level meet. It is called with a tree whose last level is `level` and
+/// has rays, writes the points of that level, faced to all lights, and adds to the tree's times. `eye`: points alone,
+/// or those on bodies too. Throws what `meet` throws.
+using MeetRays = std::function<void(RayTree& tree, std::size_t level)>;
+[[nodiscard]] RayTree trace_rays(const Scene& scene, RayLevel eye, const TreeOptions& options, const MeetRays& meet);
+
+/// N of point i of a level, unit: as of its batch, or of the body that it is on.
+[[nodiscard]] dvec3 shading_normal(const Scene& scene, const RayLevel& level, std::size_t i);
+
 /// The points of the raster (a camera's frame), one ray at a time: as primary_points finds them, in packets.
 [[nodiscard]] PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const CameraFrame& raster);
 
@@ -96,7 +114,12 @@ struct Ray {
     dvec3 normal{0};                                ///< of that triangle, unit, any side
     double reach = static_cast<double>(kInfinity);  ///< what is farther away is not met
 };
+/// Ray i of a level after the first. One that starts on a body starts on no triangle.
 [[nodiscard]] Ray secondary_ray(const Scene& scene, const RayTree& tree, std::size_t level, std::size_t i);
+
+/// Writes point i < batch.size(): where a ray meets the plane of triangle t, with its normal on the side that the ray
+/// sees. Writes nothing for kNoTriangle.
+void set_met_point(PointBatch& batch, std::size_t i, const Scene& scene, TriangleId t, const Ray& ray);
 
 /// The triangle that a ray meets first, kNoTriangle where it leaves the scene: by the tree of boxes, and by a test of
 /// every triangle, in double. Both ignore what lies within the rounding of the start.

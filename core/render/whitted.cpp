@@ -7,7 +7,6 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/stopwatch.h"
-#include "umbra/core/render/shade.h"
 #include "umbra/core/render/sum.h"
 
 namespace umbra {
@@ -53,7 +52,7 @@ TreeLight light_of_rays(const Scene& scene, const RayTree& tree,
             for (std::size_t i = begin; i < end; ++i) {
                 if (points.triangle[i] == kNoTriangle) continue;
                 const dvec3 v = level == 0 ? sum.to_viewer(points, i) : -tree.levels[level].rays[i].direction;
-                local[i]      = sum.leaving(points, i, shading_normal(scene, points, i), v, planes);
+                local[i]      = sum.leaving(points, i, shading_normal(scene, tree.levels[level], i), v, planes);
                 if (!tree.levels[level].own.empty()) local[i] *= static_cast<double>(tree.levels[level].own[i]);
             }
         });

@@ -109,6 +109,19 @@ TEST_F(Cli, SweepAndRecommendAnswerWithTheirExitCodes) {
     EXPECT_NE(merged.output.find("holds no plan.json"), std::string::npos) << merged.output;
 }
 
+/// A scene without any is not served; one with some gets the picture.
+TEST_F(Cli, FormulaNeedsASphereOrABox) {
+    const std::string out = " --formula --no-shadows --pixel-samples 1 --size 32x18 -o " + file("out");
+    const Answer none     = umbra("whitted open_mesh" + out);
+    EXPECT_EQ(none.exit_code, 1) << none.output;
+    EXPECT_TRUE(contains(none.output, "no mesh of it is a sphere or a box")) << none.output;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    const Answer some = umbra("whitted sun_on_plane" + out);
+    EXPECT_EQ(some.exit_code, 0) << some.output;
+    EXPECT_TRUE(contains(some.output, "spheres: 1, boxes: 1")) << some.output;
+    EXPECT_TRUE(fs::exists(folder_ / "out/formula.png"));
+}
+
 TEST_F(Cli, MistypedNamesGetSuggestions) {
     EXPECT_TRUE(contains(umbra("compar x").output, "unknown command \"compar\"; did you mean compare?"));
     EXPECT_TRUE(contains(umbra("--threads 2 --quiet redner").output, "did you mean render?"));

@@ -18,6 +18,7 @@
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/io/scene_io.h"
+#include "umbra/core/render/formula_scene.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/render/whitted.h"
@@ -257,6 +258,73 @@ TEST(WhittedStudy, ScreenDoorIsComparedWithBlending) {
     EXPECT_EQ(whole, shown.pixels() / 2);
 }
 
+/// A second picture with the ball and a box by formula: what FormulaScene traces, with and without shadows.
+TEST(WhittedStudy, FormulaRecordAndPictureAreWhatWasTraced) {
+    Scene scene                 = mirror_scene();
+    const Mesh box              = make_box({0.4f, 0.3f, 0.5f});
+    std::vector<vec3> positions = box.positions;
+    for (vec3& p : positions) p += vec3(-0.5f, 0.5f, 1);
+    add_object(scene, "box", positions, {}, box.triangles, 2);
+    for (const bool shadows : {true, false}) {
+        const TemporaryFolder folder;
+        const PreparedScene prepared = prepare_scene(scene, "mirrors", {});
+        WhittedOptions options       = quick();
+        options.bodies               = find_bodies(prepared.scene);
+        if (!shadows) options.method.reset();
+        const Json record        = trace_whitted(prepared, options, folder.path());
+        const Json& found        = record["formula"];
+        const CameraFrame raster = frame(scene.camera, 64, 48);
+        const FormulaScene formula(prepared.scene, *options.bodies);
+        const RayTree tree = formula.trace(raster, {.depth = 5, .least_weight = 0.0003});
+        ASSERT_EQ(found["depths"].size(), tree.levels.size());
+        RayCounts all;
+        std::vector<std::vector<VisibilityPlane>> visibility;
+        for (std::size_t d = 0; d < tree.levels.size(); ++d) {
+            const RayCounts& counts = tree.levels[d].counts;
+            EXPECT_EQ(found["depths"][d]["depth"], d + 1);
+            EXPECT_EQ(found["depths"][d]["eye"], counts.eye);
+            EXPECT_EQ(found["depths"][d]["reflected"], counts.reflected);
+            EXPECT_EQ(found["depths"][d]["refracted"], counts.refracted);
+            EXPECT_EQ(found["depths"][d]["met"], counts.met);
+            EXPECT_EQ(found["depths"][d]["shadow"], counts.shadow);
+            EXPECT_EQ(found["depths"][d]["too_deep"], counts.too_deep);
+            all.eye += counts.eye, all.reflected += counts.reflected, all.refracted += counts.refracted;
+            all.met += counts.met, all.shadow += counts.shadow, all.total += counts.total;
+            visibility.push_back(shadows ? formula.visibility(tree, d)
+                                         : lit_everywhere(prepared.scene, tree.levels[d].points));
+        }
+        const Json totals = {{"eye", all.eye}, {"reflected", all.reflected}, {"refracted", all.refracted},
+                             {"met", all.met}, {"shadow", all.shadow},       {"total_reflections", all.total}};
+        EXPECT_EQ(found["totals"], totals);
+        EXPECT_EQ(found["rays"], all.traced());
+        EXPECT_GT(all.refracted, 100u);
+        double reflected = 0;
+        for (const Json& d : record["depths"]) reflected += d["reflected"].get<double>();
+        EXPECT_EQ(found["totals_of_triangles"]["reflected"], reflected);
+        EXPECT_EQ(found["bodies"], (Json{{"spheres", 1}, {"boxes", 1}}));
+        EXPECT_EQ(found["triangles_replaced"], 24u * 22 + 12);
+        EXPECT_EQ(found["triangles_left"], scene.triangles.size() - 24 * 22 - 12);
+        EXPECT_TRUE(found["light_samples"].is_null());
+        EXPECT_GT(found["ms"], 0.0);
+        const Image image = gather(scene, tree, light_of_rays(scene, tree, visibility), 5);
+        const Image shown = displayed(image, scene.tone, 1);
+        EXPECT_LT(largest_difference(file_of(folder, found["picture"]), shown), 0.6 / 255);
+        EXPECT_GT(found["rmse"], 0.0);
+        EXPECT_LT(found["rmse"].get<double>(), 0.1) << "the same scene";
+        EXPECT_GT(found["max_difference"], found["rmse"]);
+        EXPECT_GT(found["flip"], 0.0);
+        EXPECT_LT(found["flip"].get<double>(), 0.1);
+    }
+    scene.lights[0].kind = LightKind::sphere, scene.lights[0].radius = 0.1f;
+    const TemporaryFolder folder;
+    const PreparedScene prepared = prepare_scene(scene, "mirrors", {});
+    WhittedOptions options       = quick();
+    options.bodies               = find_bodies(prepared.scene);
+    EXPECT_EQ(trace_whitted(prepared, options, folder.path())["formula"]["light_samples"], kFormulaLightSamples);
+    options.bodies.reset();
+    EXPECT_TRUE(trace_whitted(prepared, options, folder.path())["formula"].is_null());
+}
+
 TEST(WhittedStudy, RefusesMethodsThatNeedARaster) {
     MethodInfo info;
     EXPECT_EQ(refusal_of(info), "");
@@ -304,7 +372,37 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
     record["search"]       = {{"triangles", 8},           {"rays", 9},         {"of", 10},
                               {"tree_us", 0.25},          {"search_us", 12.5}, {"ratio", 50},
                               {"all_by_search_ms", 1500}, {"different", 4}};
+    record["formula"]      = {{"bodies", {{"spheres", 31}, {"boxes", 32}}},
+                              {"triangles_replaced", 3301},
+                              {"triangles_left", 3402},
+                              {"light_samples", 16},
+                              {"totals",
+                               {{"eye", 3503},
+                                {"reflected", 3604},
+                                {"refracted", 3705},
+                                {"met", 3806},
+                                {"shadow", 3907},
+                                {"total_reflections", 4008}}},
+                              {"totals_of_triangles",
+                               {{"eye", 4109},
+                                {"reflected", 4210},
+                                {"refracted", 4311},
+                                {"met", 4412},
+                                {"shadow", 4513},
+                                {"total_reflections", 4614}}},
+                              {"rays", 4715},
+                              {"ms", 48.5},
+                              {"rmse", 0.03125},
+                              {"max_difference", 0.875},
+                              {"flip", 0.046875},
+                              {"picture", "formula.png"}};
     const std::string text = whitted_text(record);
+    EXPECT_NE(
+        text.find("by formula (spheres: 31, boxes: 32, instead of 3301 triangles): 48.5 ms; RMSE 0.03125, FLIP 0.0469, "
+                  "largest difference 0.875\n"),
+        std::string::npos)
+        << text;
+    EXPECT_NE(text.find("reflected                  4210         3604\n"), std::string::npos) << text;
     EXPECT_NE(text.find("    2        11       1201       1302      1403      1504      1605       1807      1908   "
                         "0.06250\n"),
               std::string::npos)
@@ -343,6 +441,14 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                                   "87 rays; RMSE 0.31250 from the picture, FLIP 0.4375",
                                   "23 pixels of diffuse",
                                   "19 of them (orange)",
+                                  "<img src=\"formula.png\"",
+                                  "31 spheres and 32 boxes",
+                                  "instead of " + count(3301) + " triangles; " + count(3402) + " triangles remain",
+                                  "the mean of 16 of them",
+                                  count(4715) + " rays, 48.5 ms; RMSE 0.03125",
+                                  "FLIP 0.0469, largest difference 0.875",
+                                  "reflected rays</th><td>" + count(4210) + "</td><td>" + count(3604),
+                                  "total reflections</th><td>" + count(4614) + "</td><td>" + count(4008),
                                   "is below 0.125",
                                   "at depth 4",
                                   "9 eye rays a pixel",
@@ -353,7 +459,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
         EXPECT_NE(page.find(part), std::string::npos) << part;
     EXPECT_NE(page.find("every mirror here is perfect"), std::string::npos);
     record["glossy"] = true;
-    record["search"] = record["blind"] = record["screen_door"] = nullptr, record["undefined"] = 0;
+    record["search"] = record["blind"] = record["screen_door"] = record["formula"] = nullptr, record["undefined"] = 0;
     StagedFiles again;
     write_whitted_page(record, folder.path(), again);
     again.commit();
@@ -362,6 +468,8 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
     EXPECT_EQ(plain.find("against each of"), std::string::npos);
     EXPECT_EQ(plain.find("Not seen:"), std::string::npos);
     EXPECT_EQ(plain.find("Screen door"), std::string::npos);
+    EXPECT_EQ(plain.find("by formula"), std::string::npos);
+    EXPECT_EQ(whitted_text(record).find("by formula"), std::string::npos);
     EXPECT_EQ(plain.find("every mirror here is perfect"), std::string::npos);
     EXPECT_EQ(plain.find("were undefined"), std::string::npos);
     EXPECT_NE(plain.find("This scene has no plane mirror."), std::string::npos);

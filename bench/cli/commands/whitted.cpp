@@ -16,7 +16,7 @@ namespace {
 struct WhittedLine {
     std::string scene, size, method = "ray_traced";
     std::filesystem::path out;
-    bool as_json = false, no_shadows = false;
+    bool as_json = false, no_shadows = false, formula = false;
     WhittedOptions options;
 };
 
@@ -39,6 +39,13 @@ int whitted(const WhittedLine& line, const Common& common) {
             print_error("{} does not serve this scene: {}\n", options.method->text(), why);
             return kNo;
         }
+    if (line.formula) {
+        options.bodies = find_bodies(prepared.scene);
+        if (options.bodies->list.empty()) {
+            print_error("--formula does not serve this scene: no mesh of it is a sphere or a box\n");
+            return kNo;
+        }
+    }
     StagedFolder staged(line.out);
     Json record;
     {
@@ -85,6 +92,8 @@ Action whitted_command(CLI::App& app, const Common& common) {
     app.add_flag("--glossy", options.glossy,
                  "Spread mirrored rays by each material's shininess: rough mirrors, with noise that more "
                  "--pixel-samples average out");
+    app.add_flag("--formula", line->formula,
+                 "Add a picture in which rays meet spheres and boxes by formula instead of by triangles");
     app.add_option("--runs", options.runs, "Runs of each way to trace; the fastest counts")
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()
