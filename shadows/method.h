@@ -133,6 +133,9 @@ struct MethodInfo {
                                   ///< takes too long at every point; empty: it never is
     std::unique_ptr<Method> (*create)() = nullptr;  ///< not configured yet
 
+    /// Whether reports show it, on all scenes or on some.
+    [[nodiscard]] bool is_shown() const { return by_default || !shown_on.empty(); }
+
     /// Created and configured. Throws UsageError where the settings contradict one another.
     [[nodiscard]] std::unique_ptr<Method> make(const Settings& settings) const;
     /// The same with all defaults.

@@ -33,10 +33,10 @@ std::optional<MethodChoice> textbook_form(const MethodInfo& info) {
 }
 
 /// All methods but the reference, with their defaults and, where that is something else, in their textbook form.
-std::vector<MethodChoice> default_methods() {
+std::vector<MethodChoice> default_methods(bool only_by_default) {
     std::vector<MethodChoice> chosen;
     for (const MethodInfo* info : methods()) {
-        if (!info->by_default || info->reference) continue;
+        if (!(only_by_default ? info->by_default : info->is_shown()) || info->reference) continue;
         chosen.emplace_back(*info);
         if (auto form = textbook_form(*info)) chosen.push_back(std::move(*form));
     }
@@ -91,7 +91,7 @@ Json climb_ladders(const LadderOptions& options) {
     if (chosen.empty()) chosen.assign(ladders().begin(), ladders().end());
     std::vector<MethodChoice> methods_chosen;
     for (const std::string& text : options.methods) methods_chosen.push_back(parse_method(text));
-    if (options.methods.empty()) methods_chosen = default_methods();
+    if (options.methods.empty()) methods_chosen = default_methods(options.only_by_default);
 
     Json record           = {{"schema", kResultsSchema},         {"version", version()},
                              {"command", options.command},       {"machine", machine_json(options.threads)},

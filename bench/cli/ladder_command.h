@@ -12,8 +12,9 @@ namespace umbra {
 
 struct LadderOptions {
     std::vector<std::string> names;    ///< empty: all
-    std::vector<std::string> methods;  ///< as typed; empty: all but `exact`, the reference, with their defaults and in
-                                       ///< their textbook form
+    std::vector<std::string> methods;  ///< as typed; empty: all that reports show (MethodInfo::is_shown) but `exact`,
+                                       ///< the reference, with their defaults and in their textbook form
+    bool only_by_default = false;      ///< of these, those that run on every scene alone: minutes less
     std::filesystem::path out;
     std::string command;  ///< for the record
     int threads = 0;

@@ -29,6 +29,22 @@ namespace {
 
 constexpr Repeats kOnce{1, 0};
 
+/// S_j of an area light at subpixels, aimed at: interpolated between pixel centres where that shows no difference,
+/// since a reference takes long at every point.
+VisibilityPlane smoothed_plane(const PreparedScene& prepared, const MethodRun& run, LightId light) {
+    std::vector<std::uint32_t> ask;
+    VisibilityPlane plane  = between_centres(prepared.scene, prepared.points, run.planes[light], prepared.subpixels,
+                                             prepared.pixel_side, light, ask);
+    const PointBatch asked = pick(prepared.subpixels, ask);
+    VisibilityPlane answers(asked.size(), run.is_coloured);
+    run.method->visibility(asked, light, answers.out());
+    for (std::size_t k = 0; k < ask.size(); ++k) {
+        plane.s[ask[k]] = answers.s[k], plane.answer[ask[k]] = answers.answer[k];
+        if (run.is_coloured) plane.colour[ask[k]] = answers.colour[k];
+    }
+    return plane;
+}
+
 /// What people look at: `rendered` with several points a pixel where those are prepared and the method has answered the
 /// picture whole.
 Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rendered& rendered) {
@@ -36,7 +52,11 @@ Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rend
     std::vector<VisibilityPlane> planes;
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
         run.method->aim(j);
-        planes.emplace_back(prepared.subpixels.size());
+        if (run.choice.info->reference && is_area(prepared.scene.lights[j].kind)) {
+            planes.push_back(smoothed_plane(prepared, run, j));
+            continue;
+        }
+        planes.emplace_back(prepared.subpixels.size(), run.is_coloured);
         run.method->visibility(prepared.subpixels, j, planes.back().out());
     }
     return displayed(antialiased(prepared.scene, prepared.subpixels, planes, prepared.pixel_side), prepared.scene.tone,

@@ -16,7 +16,7 @@ std::vector<MethodChoice> chosen_methods(const GrowthCommand& command, const Gro
     for (const std::string& text : command.methods) chosen.push_back(parse_method(text));
     if (!chosen.empty()) return chosen;
     for (const MethodInfo* info : methods())
-        if (info->by_default) chosen.emplace_back(*info);
+        if (info->is_shown()) chosen.emplace_back(*info);
     if (family.name == "pixels")
         for (const char* text : {"shadow_volumes:edges=silhouette", "shadow_volumes:edges=per_triangle"})
             chosen.push_back(parse_method(text));

@@ -40,6 +40,92 @@ Image box_filtered(const Image& fine, int side) {
     return image;
 }
 
+namespace {
+
+constexpr float kStraight = 1.0f / 32;  ///< how far S_j may bend and still be taken for straight
+
+/// Pixels of a raster whose S_j may be interpolated.
+class SmoothPixels {
+public:
+    SmoothPixels(const Scene& scene, const PointBatch& points, const VisibilityPlane& plane, LightId light)
+        : scene_(scene),
+          points_(points),
+          plane_(plane),
+          light_(light),
+          width_(points.raster->width),
+          height_(points.raster->height) {}
+
+    [[nodiscard]] std::size_t index(int x, int y) const {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+    }
+    [[nodiscard]] bool is_smooth(int x, int y) const {
+        if (x < 1 || y < 1 || x + 1 >= width_ || y + 1 >= height_) return false;
+        for (int v = -1; v <= 1; ++v)
+            for (int u = -1; u <= 1; ++u)
+                if (!is_like(index(x, y), index(x + u, y + v))) return false;
+        for (int v = -1; v <= 1; ++v)
+            if (bend(index(x - 1, y + v), index(x, y + v), index(x + 1, y + v)) > kStraight ||
+                bend(index(x + v, y - 1), index(x + v, y), index(x + v, y + 1)) > kStraight)
+                return false;
+        return true;
+    }
+
+private:
+    [[nodiscard]] bool is_like(std::size_t i, std::size_t k) const {
+        return points_.asks(light_, i) && points_.facing[light_][i] == points_.facing[light_][k] &&
+               plane_.answer[i] == Answer::given && plane_.answer[k] == Answer::given &&
+               scene_.triangle_object[points_.triangle[i]] == scene_.triangle_object[points_.triangle[k]];
+    }
+    [[nodiscard]] float bend(std::size_t a, std::size_t b, std::size_t c) const {
+        return std::abs(plane_.s[a] - 2 * plane_.s[b] + plane_.s[c]);
+    }
+
+    const Scene& scene_;
+    const PointBatch& points_;
+    const VisibilityPlane& plane_;
+    LightId light_;
+    int width_, height_;
+};
+
+}  // namespace
+
+VisibilityPlane between_centres(const Scene& scene, const PointBatch& centres, const VisibilityPlane& at_centres,
+                                const PointBatch& subpixels, int side, LightId light, std::vector<std::uint32_t>& ask) {
+    VisibilityPlane plane(subpixels.size(), !at_centres.colour.empty());
+    ask.clear();
+    const SmoothPixels smooth(scene, centres, at_centres, light);
+    const int width = centres.raster->width, height = centres.raster->height;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const bool is_smooth     = smooth.is_smooth(x, y);
+            const std::size_t centre = smooth.index(x, y);
+            for (int v = 0; v < side; ++v)
+                for (int u = 0; u < side; ++u) {
+                    const auto i = static_cast<std::uint32_t>((y * side + v) * width * side + x * side + u);
+                    if (!subpixels.asks(light, i)) continue;
+                    if (!is_smooth || subpixels.facing[light][i] != centres.facing[light][centre] ||
+                        scene.triangle_object[subpixels.triangle[i]] !=
+                            scene.triangle_object[centres.triangle[centre]]) {
+                        ask.push_back(i);
+                        continue;
+                    }
+                    // From the middle of the pixel, in pixels.
+                    const float right = (static_cast<float>(u) + 0.5f) / static_cast<float>(side) - 0.5f,
+                                down  = (static_cast<float>(v) + 0.5f) / static_cast<float>(side) - 0.5f;
+                    const int dx = right < 0 ? -1 : 1, dy = down < 0 ? -1 : 1;
+                    const float across = std::abs(right), along = std::abs(down);
+                    const auto mixed = [&](const auto& of) {
+                        return (1 - along) * ((1 - across) * of[centre] + across * of[smooth.index(x + dx, y)]) +
+                               along * ((1 - across) * of[smooth.index(x, y + dy)] +
+                                        across * of[smooth.index(x + dx, y + dy)]);
+                    };
+                    plane.s[i] = mixed(at_centres.s);
+                    if (!plane.colour.empty()) plane.colour[i] = mixed(at_centres.colour);
+                }
+        }
+    return plane;
+}
+
 Image antialiased(const Scene& scene, const PointBatch& subpixels, std::span<const VisibilityPlane> visibility,
                   int side) {
     return box_filtered(shade(scene, subpixels, visibility), side);

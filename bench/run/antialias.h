@@ -26,6 +26,14 @@ inline constexpr int kPictureSamples = 4;
 /// The mean of each `side` x `side` pixels: a picture of 1 / side of the size. Both sizes are multiples of `side`.
 [[nodiscard]] Image box_filtered(const Image& fine, int side);
 
+/// S_j at subpixels from S_j at pixel centres, for methods that take long: bilinear where the eight pixels around a
+/// subpixel's own show the same object as this, have answers, face the light as this does, and S_j bends by at most
+/// 1/32 from one to the next. `ask` is filled with the other subpixels of which S_j is asked: they need answers of
+/// their own. Both batches are rasters, faced to the light.
+[[nodiscard]] VisibilityPlane between_centres(const Scene& scene, const PointBatch& centres,
+                                              const VisibilityPlane& at_centres, const PointBatch& subpixels, int side,
+                                              LightId light, std::vector<std::uint32_t>& ask);
+
 /// The sum at subpixel points with S_j there, box filtered to one value a pixel: R G B, linear.
 /// `visibility` has one plane a light.
 [[nodiscard]] Image antialiased(const Scene& scene, const PointBatch& subpixels,

@@ -7,7 +7,7 @@
 namespace umbra {
 
 AskedMethod::AskedMethod(const Scene& scene, const SceneFacts& facts, const std::optional<MethodChoice>& choice)
-    : scene_(&scene) {
+    : scene_(&scene), is_coloured_(facts.has_coloured_filters) {
     if (!choice) return;
     method_ = choice->make();
     method_->build(scene, facts);
@@ -27,7 +27,7 @@ std::vector<std::vector<VisibilityPlane>> AskedMethod::of(std::span<const PointB
         for (std::size_t b = 0; b < batches.size(); ++b) {
             const PointBatch& points = *batches[b];
             for (std::size_t i = 0; i < points.size(); ++i) asked_ += points.asks(light, i) ? 1 : 0;
-            planes[b][light].clear();
+            planes[b][light] = VisibilityPlane(points.size(), is_coloured_);
             method_->visibility(points, light, planes[b][light].out());
         }
     }

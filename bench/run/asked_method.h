@@ -33,6 +33,7 @@ public:
 private:
     const Scene* scene_;
     std::unique_ptr<Method> method_;
+    bool is_coloured_;  ///< S_j has three channels
     std::size_t asked_ = 0;
 };
 

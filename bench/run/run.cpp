@@ -23,8 +23,9 @@ void check_contract(std::string_view name, const VisibilityPlane& plane, const P
         const bool asked = points.asks(light, i);
         const bool in_range =
             plane.s[i] >= 0 && plane.s[i] <= 1 && plane.half_width[i] >= 0 && plane.half_width[i] <= 1;
+        const bool is_mean   = plane.colour.empty() || !plane.defined(i) || plane.s[i] == mean_of(plane.colour[i]);
         const bool untouched = plane.s[i] == 0 && plane.half_width[i] == 0 && plane.answer[i] == Answer::given;
-        if (!in_range || plane.answer[i] > Answer::on_boundary || (!asked && !untouched))
+        if (!in_range || !is_mean || plane.answer[i] > Answer::on_boundary || (!asked && !untouched))
             throw std::logic_error(fmt::format(
                 "{} breaks its contract at point {}: visibility {}, half width {}, answer {}, {}", name, i, plane.s[i],
                 plane.half_width[i], static_cast<int>(plane.answer[i]), asked ? "asked for" : "not asked for"));
@@ -69,7 +70,7 @@ std::optional<double> MethodRun::coverage(const PointBatch& points) const {
 
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
     run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
-    VisibilityPlane plane(points.size());
+    VisibilityPlane plane(points.size(), run.is_coloured);
     run.visibility.push_back(time_runs(
         repeats, [&] { run.method->visibility(points, light, plane.out()); }, [&] { plane.clear(); }));
     check_contract(run.choice.info->name, plane, points, light);
@@ -83,7 +84,8 @@ MethodRun run_method(const MethodChoice& choice, const Scene& scene, const Scene
     run.service = verdict(*run.method, facts);
     if (!run.service) return run;
 
-    run.build = time_runs(repeats, [&] { run.method->build(scene, facts); });
+    run.is_coloured = facts.has_coloured_filters;
+    run.build       = time_runs(repeats, [&] { run.method->build(scene, facts); });
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         if (at != nullptr) *at = light;
         run_light(run, points, light, repeats);

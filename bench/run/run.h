@@ -38,6 +38,7 @@ struct MethodRun {
     std::vector<Timing> aim{}, visibility{};          ///< [light]
     std::size_t memory_bytes = 0;                     ///< after the last light was aimed at
     std::vector<VisibilityPlane> planes{};            ///< [light]
+    bool is_coloured = false;                         ///< planes have three channels
     std::vector<std::vector<std::uint8_t>> judged{};  ///< [light][point] of a reference: 0 where its value only finds
                                                       ///< edges and judges nothing; empty: every point judges
     std::shared_ptr<Method> method{};                 ///< built, and aimed at the last light: to be asked further

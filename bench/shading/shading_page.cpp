@@ -21,6 +21,13 @@ std::string about(const std::string& model) {
         {"gouraud", "The sum at vertices, interpolated. S_j is asked at vertices alone (Gouraud 1971)."},
         {"gouraud_screen", "The same, interpolated linearly in the picture, as rasterizers without division do."},
         {"every_second", "The sum at every second pixel of a row, the mean of its neighbours between."},
+        {"highlight_test",
+         "N.L interpolated between corners; highlights only on triangles that may have one (Bergman et al. 1986; "
+         "Harrison et al. 1988)."},
+        {"taylor", "Angles from a polynomial of second degree a triangle (Bishop and Weimer 1986)."},
+        {"differences",
+         "Directions of the triangle's middle, angles by additions along rows (Duff 1979): exact for suns seen from "
+         "infinity."},
         {"phong", "Normals interpolated, the sum at each pixel (Phong 1975): what the others are compared with."},
         {"quadratic", "Normals interpolated quadratically (van Overveld and Wyvill 1997)."}};
     const auto found = sentences.find(model);

@@ -57,7 +57,7 @@ private:
 // A member that is added to one of these structs has to be added below, too.
 #if defined(__GLIBCXX__) && defined(__x86_64__)
 static_assert(sizeof(Scene) == 464 && sizeof(Fog) == 40 && sizeof(Camera) == 48 && sizeof(Light) == 280 &&
-              sizeof(LightPose) == 60 && sizeof(Photometry) == 80 && sizeof(Material) == 168 &&
+              sizeof(LightPose) == 60 && sizeof(Photometry) == 80 && sizeof(Material) == 184 &&
               sizeof(LafortuneLobe) == 52 && sizeof(Object) == 48);
 #endif
 
@@ -74,7 +74,8 @@ Hasher& operator<<(Hasher& h, const Material& m) {
     for (const LafortuneLobe& lobe : m.lobes)
         h << lobe.rows[0] << lobe.rows[1] << lobe.rows[2] << lobe.k_s << lobe.shininess;
     return h << m.name << m.k_a << m.k_d << m.k_s << m.O_d << m.O_s << m.emission << m.shininess << m.lobe
-             << m.two_sided << m.opacity << m.reflect << m.transmit << m.index_of_refraction << m.tangent;
+             << m.two_sided << m.opacity << m.reflect << m.transmit << m.transmit_colour << m.index_of_refraction
+             << m.tangent;
 }
 
 Hasher& operator<<(Hasher& h, const Light& l) {

@@ -104,6 +104,11 @@ json screen_door_view(const Json& door) {
     return view;
 }
 
+std::string places_in_words(const std::string& places) {
+    if (places == "jittered") return ", each anywhere in its part of the pixel";
+    return places == "random" ? ", anywhere in it" : "";
+}
+
 std::string about_kind(const std::string& kind) {
     static const std::map<std::string, std::string> names{{"met", "rays that met a surface"},
                                                           {"total_reflections", "total reflections"}};
@@ -163,6 +168,7 @@ void write_whitted_page(const Json& record, const std::filesystem::path& folder,
                               {"depth", count(record["depth"].get<double>())},
                               {"least_weight", figure(record["least_weight"], "{:g}")},
                               {"pixel_samples", counted(record["pixel_samples"].get<double>(), "eye ray")},
+                              {"places", places_in_words(record["pixel_places"].get<std::string>())},
                               {"rays", rays_view(record["depths"])},
                               {"total_ms", figure(record["total_ms"], "{:.1f}")},
                               {"glossy", record["glossy"]},

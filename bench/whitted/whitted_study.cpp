@@ -71,9 +71,11 @@ struct Study {
 
 PointBatch eye_points(const Study& study, bool one_by_one) {
     const int width = study.width(), height = study.height();
-    if (!one_by_one) return subpixel_points(study.rays, study.scene(), width, height, study.side);
+    const EyePlaces places = study.options.places;
+    if (!one_by_one && places == EyePlaces::regular)
+        return subpixel_points(study.rays, study.scene(), width, height, study.side);
     return trace_eye_rays(study.rays, study.scene(),
-                          frame(study.scene().camera, width * study.side, height * study.side));
+                          frame(study.scene().camera, width * study.side, height * study.side), places, study.side);
 }
 
 Traced trace_once(const Study& study, Way way, AskedMethod& shadows, Transparency transparency = Transparency::blend) {
@@ -81,7 +83,9 @@ Traced trace_once(const Study& study, Way way, AskedMethod& shadows, Transparenc
                               .least_weight = way == Way::any_weight ? 0 : study.options.least_weight,
                               .everywhere   = way == Way::everywhere,
                               .transparency = transparency,
-                              .glossy       = study.options.glossy};
+                              .glossy       = study.options.glossy,
+                              .eye_places   = study.options.places,
+                              .side         = study.side};
     Traced traced;
     PointBatch eye;
     traced.eye_ms = timed_ms([&] { eye = eye_points(study, way == Way::eye_rays || way == Way::everywhere); });
@@ -287,8 +291,11 @@ Json screen_door_json(const Study& study, const Traced& blended, AskedMethod& sh
 
 /// The picture in which rays meet bodies by formula.
 Traced trace_formula(const Study& study, const FormulaScene& bodies) {
-    const TreeOptions options{
-        .depth = study.options.depth, .least_weight = study.options.least_weight, .glossy = study.options.glossy};
+    const TreeOptions options{.depth        = study.options.depth,
+                              .least_weight = study.options.least_weight,
+                              .glossy       = study.options.glossy,
+                              .eye_places   = study.options.places,
+                              .side         = study.side};
     const CameraFrame raster = frame(study.scene().camera, study.width() * study.side, study.height() * study.side);
     Traced traced;
     traced.tree = bodies.trace(raster, options);
@@ -392,6 +399,7 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
             {"depth", options.depth},
             {"least_weight", number(options.least_weight)},
             {"pixel_samples", options.pixel_samples},
+            {"pixel_places", to_string(options.places)},
             {"glossy", options.glossy},
             {"picture", "whitted.png"},
             {"rays_picture", "rays.png"},

@@ -12,6 +12,7 @@
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/core/render/ray_tree.h"
 #include "umbra/core/scene/bodies.h"
 #include "umbra/shadows/method.h"
 
@@ -23,10 +24,11 @@ struct WhittedOptions {
     /// Rays of less weight are not traced. By default those whose light, if it is 1 or less, changes an 8-bit sRGB
     /// value by less than one step, 1 / (255 * 12.92).
     double least_weight = 0.0003;
-    int pixel_samples   = 4;       ///< eye rays a pixel: 1, 4, 9, ... 64
-    bool glossy         = false;   ///< see TreeOptions
-    int runs            = 1;       ///< of each way to trace; the fastest counts
-    std::optional<Bodies> bodies;  ///< of the scene: a second picture meets them by formula
+    int pixel_samples   = 4;                   ///< eye rays a pixel: 1, 4, 9, ... 64
+    EyePlaces places    = EyePlaces::regular;  ///< of the eye rays in a pixel
+    bool glossy         = false;               ///< see TreeOptions
+    int runs            = 1;                   ///< of each way to trace; the fastest counts
+    std::optional<Bodies> bodies;              ///< of the scene: a second picture meets them by formula
     std::string command;
     std::function<void(const std::string&)> progress;
 };

@@ -77,6 +77,7 @@ void check_material(const Material& m, const path& file) {
     terms.number("opacity", m.opacity, kShare);
     terms.number("reflect", m.reflect, kShare);
     terms.number("transmit", m.transmit, kShare);
+    terms.vector("transmit_colour", m.transmit_colour, kShare);
     terms.number("shininess", m.shininess, kNotNegative);
     terms.number("index_of_refraction", m.index_of_refraction, kPositive);
     for (const LafortuneLobe& lobe : m.lobes) {

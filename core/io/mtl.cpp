@@ -8,6 +8,7 @@
 //   Ke             emission
 //   d, 1 - Tr      opacity
 //   Ni             index_of_refraction
+//   Tf             transmit_colour, where illum has glass; 0 0 0, which some exporters write, is taken as 1 1 1
 //   illum 0        Kd is the colour in any light: emission Kd, all else 0
 //   illum 3, 5, 8  mirrors: reflect is the largest of Ks
 //   illum 4, 6, 7, 9  glass: the same, and transmit is 1 - d
@@ -28,6 +29,7 @@ namespace {
 
 struct MtlMaterial {
     Material material;
+    vec3 filter{1};  ///< Tf
     bool has_ka = false;
     int illum   = 2;
 };
@@ -75,6 +77,7 @@ Material finished(MtlMaterial m) {
         case 9:
             out.reflect  = mirror;
             out.transmit = 1 - out.opacity;
+            if (m.filter != vec3(0)) out.transmit_colour = glm::min(m.filter, vec3(1));
             break;
         default: break;
     }
@@ -106,7 +109,7 @@ void read_mtl(const std::filesystem::path& file, std::map<std::string, Material,
             open                  = true;
             continue;
         }
-        static constexpr std::array kKnown = {"Ka", "Kd", "Ks", "Ke", "Ns", "Ni", "d", "Tr", "illum"};
+        static constexpr std::array kKnown = {"Ka", "Kd", "Ks", "Ke", "Ns", "Ni", "Tf", "d", "Tr", "illum"};
         if (std::find(kKnown.begin(), kKnown.end(), key) == kKnown.end()) {
             const bool texture = key.starts_with("map_") || key == "bump" || key == "disp" || key == "decal" ||
                                  key == "refl" || key == "norm";
@@ -134,6 +137,8 @@ void read_mtl(const std::filesystem::path& file, std::map<std::string, Material,
             m.index_of_refraction = tokens.as_real(token, "Ni");
             if (!kPositive.holds(m.index_of_refraction))
                 tokens.fail(token, fmt::format("Ni is {}, expected {}", in_quotes(token.text), kPositive.words));
+        } else if (key == "Tf") {
+            read = read_colour(tokens, "Tf", current.filter);
         } else if (key == "d") {
             m.opacity = read_share(tokens, "d");
         } else if (key == "Tr") {

@@ -9,8 +9,8 @@
 //   l x y z               a point light without attenuation. The format leaves intensity open: 1 / sqrt(lights) each
 //   (no ambient light)    I_a = 0.1
 //   s, c                  triangles with exact normals. Vertices lie on the surface. Their number around the axis is 8
-//   to
-//                         96, as many as keep the chord within an eighth of a pixel of the file's own view
+//                         to 96, as many as keep the chord within an eighth of a pixel of the file's own view; twice
+//                         that where the surface mirrors or is clear, since neighbours see it from nearby
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -40,12 +40,13 @@ struct View {
 
 // The sagitta of a chord, r (1 - cos(pi / n)), is about r/2 (pi / n)^2. A multiple of 4, so that a sphere has
 // an equator.
-int segments_around(const View& view, dvec3 centre, double reach, double radius) {
-    if (view.pixel == 0) return 32;
+int segments_around(const View& view, dvec3 centre, double reach, double radius, bool from_nearby) {
+    const double finer = from_nearby ? 2 : 1;
+    if (view.pixel == 0) return static_cast<int>(32 * finer);
     const double distance = std::max(glm::length(centre - view.eye) - reach, 1e-3 * reach);
     const double r_pixels = radius / (distance * view.pixel);
     const double n        = kPi * std::sqrt(r_pixels / (2 * 0.125));
-    return 4 * int(std::ceil(std::clamp(n, double(kFewest), double(kMost)) / 4));
+    return 4 * int(std::ceil(finer * std::clamp(n, double(kFewest), double(kMost)) / 4));
 }
 
 struct Reader {
@@ -183,12 +184,19 @@ struct Reader {
         append(part);
     }
 
+    /// By other surfaces: what mirrors is mostly among mirrors.
+    bool is_seen_from_nearby() {
+        if (material >= scene().materials.size()) return false;
+        const Material& m = scene().materials[material];
+        return m.reflect > 0 || m.transmit > 0;
+    }
+
     void read_sphere(Token entity) {
         const vec3 centre  = tokens.point("a coordinate of the centre");
         const float radius = tokens.real("the radius");
         if (radius == 0) tokens.fail(entity, "a sphere of radius 0");
         const float size = std::abs(radius);
-        const int around = segments_around(view, dvec3(centre), size, size);
+        const int around = segments_around(view, dvec3(centre), size, size, is_seen_from_nearby());
         Mesh part        = make_sphere(size, around, around / 2);
         for (vec3& p : part.positions) p += centre;
         if (radius < 0) turn_inside_out(part);
@@ -218,7 +226,7 @@ struct Reader {
         const dvec3 u     = glm::normalize(glm::cross(other, axis));
         const dvec3 v     = glm::cross(axis, u);
         const double a = std::abs(r_base), b = std::abs(r_apex), widest = std::max(a, b);
-        const int n = segments_around(view, (base + apex) / 2.0, widest + height / 2, widest);
+        const int n = segments_around(view, (base + apex) / 2.0, widest + height / 2, widest, is_seen_from_nearby());
 
         // The normal leans along the axis by the slope (a - b) / height. An end of radius 0 keeps one point a segment,
         // with the normal of the segment's middle, and no triangle there is degenerate.

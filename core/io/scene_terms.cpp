@@ -65,21 +65,10 @@ void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene) {
 }
 
 const std::vector<std::string_view>& material_keys() {
-    static const std::vector<std::string_view> keys{"k_a",
-                                                    "k_d",
-                                                    "k_s",
-                                                    "O_d",
-                                                    "O_s",
-                                                    "emission",
-                                                    "shininess",
-                                                    "lobe",
-                                                    "two_sided",
-                                                    "opacity",
-                                                    "reflect",
-                                                    "transmit",
-                                                    "index_of_refraction",
-                                                    "lobes",
-                                                    "tangent"};
+    static const std::vector<std::string_view> keys{
+        "k_a",   "k_d",       "k_s",     "O_d",     "O_s",      "emission",        "shininess",
+        "lobe",  "two_sided", "opacity", "reflect", "transmit", "transmit_colour", "index_of_refraction",
+        "lobes", "tangent"};
     return keys;
 }
 
@@ -121,11 +110,13 @@ void apply_material_terms(const JsonText& json, const JsonFields& fields, Materi
     m.O_s      = colour_or(json, fields, "O_s", m.O_s);
     m.emission = colour_or(json, fields, "emission", m.emission);
     if (const JsonValue* lobe = fields.find("lobe")) m.lobe = json.choice<Lobe>(*lobe, "lobe");
-    m.shininess           = number_or(fields, "shininess", kNotNegative, m.shininess);
-    m.two_sided           = fields.boolean("two_sided", m.two_sided);
-    m.opacity             = number_or(fields, "opacity", kShare, m.opacity);
-    m.reflect             = number_or(fields, "reflect", kShare, m.reflect);
-    m.transmit            = number_or(fields, "transmit", kShare, m.transmit);
+    m.shininess = number_or(fields, "shininess", kNotNegative, m.shininess);
+    m.two_sided = fields.boolean("two_sided", m.two_sided);
+    m.opacity   = number_or(fields, "opacity", kShare, m.opacity);
+    m.reflect   = number_or(fields, "reflect", kShare, m.reflect);
+    m.transmit  = number_or(fields, "transmit", kShare, m.transmit);
+    if (const JsonValue* colour = fields.find("transmit_colour"))
+        m.transmit_colour = vec3(json.vector(*colour, "transmit_colour", kShare));
     m.index_of_refraction = number_or(fields, "index_of_refraction", kPositive, m.index_of_refraction);
     if (const JsonValue* lobes = fields.find("lobes")) m.lobes = read_lobes(json, *lobes);
     if (const JsonValue* tangent = fields.find("tangent")) {

@@ -100,6 +100,7 @@ std::string material_text(const Material& material) {
     m.differing("opacity", material.opacity, fallback.opacity);
     m.differing("reflect", material.reflect, fallback.reflect);
     m.differing("transmit", material.transmit, fallback.transmit);
+    m.differing("transmit_colour", material.transmit_colour, fallback.transmit_colour);
     m.differing("index_of_refraction", material.index_of_refraction, fallback.index_of_refraction);
     if (!material.lobes.empty()) m.add("lobes", list(material.lobes, lobe_text));
     m.differing("tangent", material.tangent, fallback.tangent);

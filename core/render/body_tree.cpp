@@ -70,12 +70,12 @@ OnSurface onto_surface(const Body& body, dvec3 p) {
 
 struct BodyTree::Impl : EmbreeScene {
     std::vector<Body> bodies;
-    std::vector<float> passes;  ///< one a body
-    dvec3 centre{0};            ///< tree space: (p - centre) * scale
+    std::vector<vec3> passes;  ///< one a body
+    dvec3 centre{0};           ///< tree space: (p - centre) * scale
     double scale = 1;
     double least = 0;  ///< world units
 
-    Impl(std::vector<Body> bodies_, std::vector<float> passes_)
+    Impl(std::vector<Body> bodies_, std::vector<vec3> passes_)
         : bodies(std::move(bodies_)), passes(std::move(passes_)) {
         fit_space();
         build();
@@ -168,16 +168,16 @@ struct BodyTree::Impl : EmbreeScene {
         if (arguments->valid[0] == 0) return;
         Query& query          = static_cast<Query&>(query_of(arguments));
         const std::uint32_t b = arguments->primID;
-        const float passes    = query.tree.passes[b];
-        if (passes == 1) return;
+        const vec3 passes     = query.tree.passes[b];
+        if (passes == vec3(1)) return;
         const Crossings found = query.crossings_of(b);
         query.filters.insert(query.filters.end(), static_cast<std::size_t>(found.count), b);
-        query.blocked = query.blocked || (found.count > 0 && passes == 0);
+        query.blocked = query.blocked || (found.count > 0 && passes == vec3(0));
         if (query.blocked) RTCRayN_tfar(arguments->ray, 1, 0) = -kInfinity;
     }
 };
 
-BodyTree::BodyTree(std::vector<Body> bodies, std::vector<float> lets_through)
+BodyTree::BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through)
     : impl_(std::make_unique<Impl>(std::move(bodies), std::move(lets_through))) {}
 BodyTree::~BodyTree()                              = default;
 BodyTree::BodyTree(BodyTree&&) noexcept            = default;
@@ -192,14 +192,14 @@ BodyMeeting BodyTree::first(const BodyRay& ray) const {
     return query.nearest.body == kNoBody ? BodyMeeting() : query.nearest;
 }
 
-double BodyTree::lets_through(const BodyRay& ray) const {
-    if (impl_->bodies.empty()) return 1;
+dvec3 BodyTree::lets_through(const BodyRay& ray) const {
+    if (impl_->bodies.empty()) return dvec3(1);
     Impl::Query query(*impl_, ray);
     if (query.aim()) occluded_one(impl_->scene, query.traced.ray, query);
-    if (query.blocked) return 0;
+    if (query.blocked) return dvec3(0);
     std::ranges::sort(query.filters);  // the product is the same bits whatever Embree visits first
-    double product = 1;
-    for (const std::uint32_t b : query.filters) product *= static_cast<double>(impl_->passes[b]);
+    dvec3 product(1);
+    for (const std::uint32_t b : query.filters) product *= dvec3(impl_->passes[b]);
     return product;
 }
 

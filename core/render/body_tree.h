@@ -39,9 +39,9 @@ struct BodyMeeting {
 /// than the rounding of double, for bodies whose surfaces coincide.
 class BodyTree {
 public:
-    /// `lets_through`: one a body, the fraction of light that passes its surface once. Throws std::runtime_error where
-    /// Embree fails.
-    BodyTree(std::vector<Body> bodies, std::vector<float> lets_through);
+    /// `lets_through`: one a body, the fraction of light that passes its surface once, per channel. Throws
+    /// std::runtime_error where Embree fails.
+    BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through);
     ~BodyTree();
     BodyTree(BodyTree&&) noexcept;
     BodyTree& operator=(BodyTree&&) noexcept;
@@ -55,7 +55,7 @@ public:
     [[nodiscard]] BodyMeeting first(const BodyRay& ray) const;
 
     /// The fraction of light that all surfaces on the ray leave: their product; 1 without any.
-    [[nodiscard]] double lets_through(const BodyRay& ray) const;
+    [[nodiscard]] dvec3 lets_through(const BodyRay& ray) const;
 
 private:
     struct Impl;

@@ -15,6 +15,9 @@
 
 namespace umbra {
 
+/// R.V or N.H, as the material's `lobe` says, with unit N, L, V: [-1, 1]. 0 where V = -L, which has no H.
+[[nodiscard]] double lobe_cosine(const Material& material, dvec3 n, dvec3 l, dvec3 v);
+
 /// (R.V)^n or (N.H)^n, as the material's `lobe` says, with unit N, L, V: [0, 1]. 0 where V = -L, which has no H.
 [[nodiscard]] double specular_lobe(const Material& material, dvec3 n, dvec3 l, dvec3 v);
 

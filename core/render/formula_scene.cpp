@@ -52,8 +52,8 @@ std::vector<TriangleId> numbered(const Scene& scene, const std::vector<TriangleI
     return numbers;
 }
 
-std::vector<float> surfaces_let_through(const Scene& scene, const Bodies& bodies) {
-    std::vector<float> passes;
+std::vector<vec3> surfaces_let_through(const Scene& scene, const Bodies& bodies) {
+    std::vector<vec3> passes;
     for (const Body& body : bodies.list) passes.push_back(scene.lets_through(body.holder));
     return passes;
 }
@@ -180,10 +180,10 @@ void FormulaScene::meet(RayLevel& level, std::size_t count, const std::function<
 RayTree FormulaScene::trace(const CameraFrame& raster, const TreeOptions& options) const {
     const auto width  = static_cast<std::size_t>(raster.width);
     const auto eye_at = [&](std::size_t i) {
-        const std::size_t line = i / width;
-        const double x = static_cast<double>(i % width) + 0.5, y = static_cast<double>(line) + 0.5;
-        return Start{{raster.ray_origin(x, y), glm::normalize(raster.ray_direction(x, y)), kNoTriangle, dvec3(0)},
-                     kNoBody};
+        const dvec2 at = eye_place(raster, options.eye_places, options.side, i);
+        return Start{
+            {raster.ray_origin(at.x, at.y), glm::normalize(raster.ray_direction(at.x, at.y)), kNoTriangle, dvec3(0)},
+            kNoBody};
     };
     RayLevel eye;
     eye.points.raster = raster;
@@ -212,14 +212,14 @@ RayTree FormulaScene::trace(const CameraFrame& raster, const TreeOptions& option
     return tree;
 }
 
-/// What is left of light after all surfaces on a ray.
-double FormulaScene::passes(const Start& to_light) const {
-    double share =
+/// What is left of light after all surfaces on a ray, per channel.
+dvec3 FormulaScene::passes(const Start& to_light) const {
+    dvec3 share =
         bodies_.lets_through({to_light.ray.origin, to_light.ray.direction, to_light.body, to_light.ray.reach});
-    for (Ray ray = to_light.ray; share > 0;) {
+    for (Ray ray = to_light.ray; share != dvec3(0);) {
         const TriangleId t = first_triangle(shadow_rest_, ray);
         if (t == kNoTriangle) break;
-        share *= static_cast<double>(scene_->lets_through(t));
+        share *= dvec3(scene_->lets_through(t));
         const double distance = distance_to_plane(*scene_, ray, t);
         if (!std::isfinite(distance)) break;
         ray = {ray.origin + distance * ray.direction, ray.direction, t, glm::normalize(area_normal(*scene_, t)),
@@ -232,7 +232,8 @@ std::vector<VisibilityPlane> FormulaScene::visibility(const RayTree& tree, std::
     const RayLevel& here     = tree.levels[level];
     const PointBatch& points = here.points;
     const SampleSet samples(Sampler::sobol, kFormulaLightSamples, 0);
-    std::vector<VisibilityPlane> planes(scene_->lights.size(), VisibilityPlane(points.size()));
+    const bool is_coloured = has_coloured_filters(*scene_);
+    std::vector<VisibilityPlane> planes(scene_->lights.size(), VisibilityPlane(points.size(), is_coloured));
     const auto start_at = [&](std::size_t i) {
         const OnBody& on = here.on_body[i];
         if (on.body != kNoBody) return Start{{on.position, dvec3(0), kNoTriangle, dvec3(0)}, on.body};
@@ -243,31 +244,32 @@ std::vector<VisibilityPlane> FormulaScene::visibility(const RayTree& tree, std::
         const dvec3 d       = to - start.ray.origin;
         start.ray.reach     = kBeforeTheLight * glm::length(d);
         start.ray.direction = glm::normalize(d);
-        return start.ray.reach > 0 ? passes(start) : 1;
+        return start.ray.reach > 0 ? passes(start) : dvec3(1);
     };
     for (LightId j = 0; j < planes.size(); ++j) {
         const Light& light   = scene_->lights[j];
         const auto s_of_area = [&](std::size_t i, const Start& start) {
             const dvec3 normal = start.body == kNoBody ? start.ray.normal : here.on_body[i].normal;
-            double sum         = 0;
+            dvec3 sum(0);
             for (const dvec3& to : points_of_light(light, start.ray.origin, samples, (std::uint64_t{level} << 32) + i))
                 if (points.facing[j][i] == Facing::front || glm::dot(normal, to - start.ray.origin) > 0)
                     sum += passes_to(start, to);
-            return sum / kFormulaLightSamples;
+            return sum / static_cast<double>(kFormulaLightSamples);
         };
         parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
             const FlushDenormals flush;
             for (std::size_t i = begin; i < end; ++i) {
                 if (!points.asks(j, i)) continue;
                 Start start = start_at(i);
-                double s    = 0;
+                dvec3 s(0);
                 if (light.kind == LightKind::directional) {
                     start.ray.direction = -glm::normalize(dvec3(light.direction));
                     s                   = passes(start);
                 } else {
                     s = is_area(light.kind) ? s_of_area(i, start) : passes_to(start, dvec3(light.position));
                 }
-                planes[j].s[i] = static_cast<float>(s);
+                planes[j].s[i] = mean_of(vec3(s));
+                if (is_coloured) planes[j].colour[i] = vec3(s);
             }
         });
     }

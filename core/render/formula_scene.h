@@ -43,7 +43,7 @@ private:
     void meet(RayLevel& level, std::size_t count, const std::function<Start(std::size_t)>& start_of) const;
     void set_point_on_body(RayLevel& level, std::size_t i, BodyMeeting met, const Ray& ray) const;
     [[nodiscard]] TriangleId first_triangle(const RayScene& rays, Ray ray) const;
-    [[nodiscard]] double passes(const Start& to_light) const;
+    [[nodiscard]] dvec3 passes(const Start& to_light) const;
 
     const Scene* scene_;
     std::vector<TriangleId> in_scene_;  ///< of the triangles that no body replaces: their number in the scene

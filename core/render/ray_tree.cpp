@@ -257,6 +257,7 @@ std::uint64_t asked(const PointBatch& points) {
 RayTree trace_rays(const Scene& scene, RayLevel eye, const TreeOptions& options, const MeetRays& meet) {
     if (!eye.points.raster) throw std::logic_error("trace_rays: the batch has no raster");
     RayTree tree;
+    tree.eye_places = options.eye_places, tree.side = options.side;
     eye.counts     = {};
     eye.counts.eye = eye.points.size();
     tree.levels.push_back(std::move(eye));
@@ -294,7 +295,20 @@ void set_met_point(PointBatch& batch, std::size_t i, const Scene& scene, Triangl
     face_ray(batch, i, scene, ray.direction);
 }
 
-PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const CameraFrame& raster) {
+dvec2 eye_place(const CameraFrame& raster, EyePlaces places, int side, std::size_t i) {
+    const auto width = static_cast<std::size_t>(raster.width), step = static_cast<std::size_t>(side);
+    const std::size_t column = i % width, row = i / width;
+    const dvec2 corner(static_cast<double>(column), static_cast<double>(row));
+    if (places == EyePlaces::regular) return corner + 0.5;
+    const std::uint64_t bits = mixed_bits(i);
+    const dvec2 within = dvec2(static_cast<double>(bits >> 32), static_cast<double>(bits & 0xffffffffu)) * 0x1p-32;
+    if (places == EyePlaces::jittered) return corner + within;
+    return dvec2(static_cast<double>(column - column % step), static_cast<double>(row - row % step)) +
+           static_cast<double>(side) * within;
+}
+
+PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const CameraFrame& raster, EyePlaces places,
+                          int side) {
     PointBatch points;
     points.raster = raster;
     points.eye    = vec3(raster.eye);
@@ -304,12 +318,10 @@ PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const Camera
     const double scale = static_cast<double>(space.scale), unit = 1 / scale;
     // As EyeRays in gbuffer.cpp has them, operation by operation.
     const auto ray_of = [&](std::size_t i) {
-        const auto width       = static_cast<std::size_t>(raster.width);
-        const std::size_t line = i / width;
-        const auto x = static_cast<double>(i % width), y = static_cast<double>(line);
-        const double zoom  = window ? scale : 1;
-        const dvec3 column = raster.half_width * (2 * (x + 0.5) / raster.width - 1) * raster.right * zoom,
-                    row    = raster.half_height * (2 * (y + 0.5) / raster.height - 1) * raster.up * zoom;
+        const dvec2 at_pixel = eye_place(raster, places, side, i);
+        const double zoom    = window ? scale : 1;
+        const dvec3 column   = raster.half_width * (2 * at_pixel.x / raster.width - 1) * raster.right * zoom,
+                    row      = raster.half_height * (2 * at_pixel.y / raster.height - 1) * raster.up * zoom;
         if (!window) return Ray{raster.eye, raster.forward + (column - row), kNoTriangle, dvec3(0)};
         const dvec3 at = (raster.eye - dvec3(space.centre)) * scale + (column - row);
         return Ray{at * unit + dvec3(space.centre), raster.forward, kNoTriangle, dvec3(0)};
@@ -363,9 +375,8 @@ double distance_to_plane(const Scene& scene, const Ray& ray, TriangleId t) {
 dvec3 incoming(const RayTree& tree, std::size_t level, std::size_t i) {
     if (level > 0) return tree.levels[level].rays[i].direction;
     const CameraFrame& raster = *tree.levels[0].points.raster;
-    const auto width          = static_cast<std::size_t>(raster.width);
-    const std::size_t line    = i / width;
-    return glm::normalize(raster.ray_direction(static_cast<double>(i % width) + 0.5, static_cast<double>(line) + 0.5));
+    const dvec2 place         = eye_place(raster, tree.eye_places, tree.side, i);
+    return glm::normalize(raster.ray_direction(place.x, place.y));
 }
 
 std::vector<std::uint32_t> rays_by_eye_ray(const RayTree& tree) {

@@ -5,10 +5,13 @@
 // Turner Whitted. An Improved Illumination Model for Shaded Display. 1980
 // Roy Hall, Donald Greenberg. A Testbed for Realistic Image Synthesis. 1983
 // Robert Cook, Thomas Porter, Loren Carpenter. Distributed Ray Tracing. 1984 (rough mirrors)
+// Robert Cook. Stochastic Sampling in Computer Graphics. 1986 (eye rays at random places)
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "umbra/core/render/points.h"
@@ -25,6 +28,20 @@ enum class Transparency : std::uint8_t {
                  ///< it alone: the same rays for all surfaces, so that equal ones hide one another
 };
 
+/// Where eye rays pass through the pixels of a raster that has `side` x `side` of them for one pixel of the picture.
+enum class EyePlaces : std::uint8_t {
+    regular,   ///< the middle of each
+    jittered,  ///< anywhere in each, evenly
+    random     ///< anywhere in the pixel of the picture, evenly and independently
+};
+inline constexpr std::array kEyePlaces{EyePlaces::regular, EyePlaces::jittered, EyePlaces::random};
+[[nodiscard]] constexpr std::string_view to_string(EyePlaces places) {
+    constexpr std::array<std::string_view, 3> names{"regular", "jittered", "random"};
+    return names[static_cast<std::size_t>(places)];
+}
+/// Of eye ray i, in pixels of the raster from its top left. The same every time.
+[[nodiscard]] dvec2 eye_place(const CameraFrame& raster, EyePlaces places, int side, std::size_t i);
+
 struct TreeOptions {
     int depth           = 5;      ///< rays on a path, the eye ray included; >= 1
     double least_weight = 0;      ///< a ray is not traced where the product of k_r and k_t on its path is below that
@@ -34,6 +51,8 @@ struct TreeOptions {
     bool glossy               = false;  ///< a mirrored ray is one of many of the material's lobe: the cosine of its
                                         ///< angle from the mirrored direction, to the power of the shininess. What it
                                         ///< brings is noise, which several eye rays a pixel average out
+    EyePlaces eye_places = EyePlaces::regular;  ///< through which the eye rays were traced
+    int side             = 1;                   ///< see EyePlaces
 };
 
 enum class RayKind : std::uint8_t {
@@ -78,9 +97,11 @@ struct RayLevel {
 
 struct RayTree {
     std::vector<RayLevel> levels;  ///< [depth - 1]; the last has rays
-    double trace_ms = 0;           ///< finding what secondary rays meet, and where on it
-    double spawn_ms = 0;           ///< finding where they go
-    double face_ms  = 0;           ///< finding which lights are in front of these points
+    EyePlaces eye_places = EyePlaces::regular;
+    int side             = 1;
+    double trace_ms      = 0;  ///< finding what secondary rays meet, and where on it
+    double spawn_ms      = 0;  ///< finding where they go
+    double face_ms       = 0;  ///< finding which lights are in front of these points
 };
 
 /// The tree over the points of a raster (primary_points, or the same at subpixels), faced to all lights.
@@ -104,8 +125,10 @@ using MeetRays = std::function<void(RayTree& tree, std::size_t level)>;
 /// N of point i of a level, unit: as of its batch, or of the body that it is on.
 [[nodiscard]] dvec3 shading_normal(const Scene& scene, const RayLevel& level, std::size_t i);
 
-/// The points of the raster (a camera's frame), one ray at a time: as primary_points finds them, in packets.
-[[nodiscard]] PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const CameraFrame& raster);
+/// The points of the raster (a camera's frame), one ray at a time: with regular places as primary_points finds them, in
+/// packets.
+[[nodiscard]] PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const CameraFrame& raster,
+                                        EyePlaces places = EyePlaces::regular, int side = 1);
 
 /// One ray, in world space.
 struct Ray {

@@ -10,8 +10,6 @@
 namespace umbra {
 namespace {
 
-float to_float(double x) { return float(std::min(x, double(std::numeric_limits<float>::max()))); }
-
 /// Identity up to the knee, then a hyperbola that leaves it with slope 1 and nears 1. A function of the value alone
 /// and not of the image, so that equal light looks equal in two pictures.
 float compressed(float x) {
@@ -64,10 +62,16 @@ Image shade(const Scene& scene, const PointBatch& points, std::span<const Visibi
             dvec3 light = scene.background;
             if (points.triangle[i] != kNoTriangle)
                 light = sum.at(points, i, shading_normal(scene, points, i), visibility);
-            for (int c = 0; c < 3; ++c) image.at(i, std::size_t(c)) = to_float(light[c]);
+            write_light(image, i, light);
         }
     });
     return image;
+}
+
+void write_light(Image& image, std::size_t pixel, dvec3 light) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    for (int c = 0; c < 3; ++c)
+        image.at(pixel, static_cast<std::size_t>(c)) = static_cast<float>(std::min(light[c], kLargest));
 }
 
 Image displayed(const Image& linear, ToneMap tone, float exposure) {

@@ -23,6 +23,9 @@ namespace umbra {
 /// material is two-sided). A vertex whose normal is zero lends the geometric one. Point i has a surface.
 [[nodiscard]] dvec3 shading_normal(const Scene& scene, const PointBatch& points, std::size_t i);
 
+/// Writes a light into the first three channels of a pixel, as floats of at most the largest.
+void write_light(Image& image, std::size_t pixel, dvec3 light);
+
 /// Exposure, then the scene's tone map (the lectures), then sRGB encoding: R G B in [0, 1] to be written as PNG.
 [[nodiscard]] Image displayed(const Image& linear, ToneMap tone, float exposure);
 

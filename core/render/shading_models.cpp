@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
+#include "umbra/core/render/fast_phong.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/render/sum.h"
 
@@ -59,12 +59,6 @@ private:
     std::size_t used_ = 0;
 };
 
-void set_pixel(Image& image, std::size_t pixel, dvec3 light) {
-    for (int c = 0; c < 3; ++c)
-        image.at(pixel, static_cast<std::size_t>(c)) =
-            static_cast<float>(std::min(light[c], static_cast<double>(std::numeric_limits<float>::max())));
-}
-
 /// One side of one triangle.
 using SideKey = std::pair<TriangleId, std::uint8_t>;
 
@@ -81,7 +75,7 @@ ShadedPicture constant(const Scene& scene, const PointBatch& points) {
                                                  -glm::dot(dvec3(points.normal(i)), dvec3(points.raster->forward)));
             light = entry->second;
         }
-        set_pixel(shaded.linear, i, light);
+        write_light(shaded.linear, i, light);
     }
     shaded.evaluations = values.size();
     return shaded;
@@ -98,9 +92,9 @@ ShadedPicture flat(const Scene& scene, const PointBatch& points, const AskVisibi
     }
     const std::vector<dvec3> light = evaluations.sums(scene, *points.raster, ask);
     for (std::size_t i = 0; i < points.size(); ++i)
-        set_pixel(shaded.linear, i,
-                  points.triangle[i] == kNoTriangle ? dvec3(scene.background)
-                                                    : light[centres.at({points.triangle[i], points.flipped[i]})]);
+        write_light(shaded.linear, i,
+                    points.triangle[i] == kNoTriangle ? dvec3(scene.background)
+                                                      : light[centres.at({points.triangle[i], points.flipped[i]})]);
     shaded.evaluations = evaluations.size();
     return shaded;
 }
@@ -158,7 +152,7 @@ ShadedPicture gouraud(const Scene& scene, const PointBatch& points, bool screen,
             const auto& at = corners.at({points.triangle[i], points.flipped[i]});
             value          = weights[0] * light[at[0]] + weights[1] * light[at[1]] + weights[2] * light[at[2]];
         }
-        set_pixel(shaded.linear, i, value);
+        write_light(shaded.linear, i, value);
     }
     shaded.evaluations = evaluations.size();
     return shaded;
@@ -178,11 +172,31 @@ ShadedPicture by_pixel(const Scene& scene, const PointBatch& points, const AskVi
     }
     const std::vector<dvec3> light = evaluations.sums(scene, *points.raster, ask);
     for (std::size_t i = 0; i < points.size(); ++i)
-        set_pixel(shaded.linear, i,
-                  points.triangle[i] == kNoTriangle ? dvec3(scene.background)
-                  : evaluates(i)                    ? light[at[i]]
-                                                    : 0.5 * (light[at[i - 1]] + light[at[i + 1]]));
+        write_light(shaded.linear, i,
+                    points.triangle[i] == kNoTriangle ? dvec3(scene.background)
+                    : evaluates(i)                    ? light[at[i]]
+                                                      : 0.5 * (light[at[i - 1]] + light[at[i + 1]]));
     shaded.evaluations = evaluations.size();
+    return shaded;
+}
+
+/// Angles from elsewhere, S_j and the sum at each pixel. Lafortune's lobes need directions, and have the sum itself.
+ShadedPicture fast(const Scene& scene, const PointBatch& points, const PictureCosines& cosines,
+                   const AskVisibility& ask) {
+    ShadedPicture shaded{Image(points.raster->width, points.raster->height, {"R", "G", "B"}), cosines.evaluations};
+    const std::vector<VisibilityPlane> visibility = ask(points);
+    const PhongSum sum(scene, *points.raster);
+    std::vector<LightCosines> here(scene.lights.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        dvec3 light = scene.background;
+        if (points.triangle[i] != kNoTriangle && !scene.material(points.triangle[i]).lobes.empty()) {
+            light = sum.at(points, i, shading_normal(scene, points, i), visibility);
+        } else if (points.triangle[i] != kNoTriangle) {
+            for (LightId j = 0; j < here.size(); ++j) here[j] = cosines.at[j][i];
+            light = sum.with_cosines(points, i, here, visibility);
+        }
+        write_light(shaded.linear, i, light);
+    }
     return shaded;
 }
 
@@ -195,6 +209,9 @@ std::string_view to_string(ShadingModel model) {
         case ShadingModel::gouraud: return "gouraud";
         case ShadingModel::gouraud_screen: return "gouraud_screen";
         case ShadingModel::every_second: return "every_second";
+        case ShadingModel::highlight_test: return "highlight_test";
+        case ShadingModel::taylor: return "taylor";
+        case ShadingModel::differences: return "differences";
         case ShadingModel::phong: return "phong";
         case ShadingModel::quadratic: return "quadratic";
     }
@@ -225,6 +242,9 @@ ShadedPicture shade_by(ShadingModel model, const Scene& scene, const PointBatch&
         case ShadingModel::flat: return flat(scene, points, ask);
         case ShadingModel::gouraud: return gouraud(scene, points, false, ask);
         case ShadingModel::gouraud_screen: return gouraud(scene, points, true, ask);
+        case ShadingModel::highlight_test: return fast(scene, points, cosines_by_highlight_test(scene, points), ask);
+        case ShadingModel::taylor: return fast(scene, points, cosines_by_taylor(scene, points), ask);
+        case ShadingModel::differences: return fast(scene, points, cosines_by_differences(scene, points), ask);
         case ShadingModel::phong: return by_pixel(scene, points, ask, linearly, all);
         case ShadingModel::every_second:
             return by_pixel(scene, points, ask, linearly, [&](std::size_t i) {

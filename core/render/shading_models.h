@@ -24,17 +24,21 @@ enum class ShadingModel : std::uint8_t {
     gouraud_screen,  ///< the same, interpolated in the picture: linear in pixels, not in space
     every_second,    ///< the sum at every second pixel of a row, the mean of its neighbours between; where these show
                      ///< another object, the sum
+    highlight_test,  ///< phong with N.L interpolated, and highlights only on triangles that may have one: fast_phong.h
+    taylor,          ///< phong with angles from a polynomial a triangle: fast_phong.h
+    differences,     ///< phong with angles by additions along rows: fast_phong.h
     phong,           ///< the sum at each pixel, vertex normals interpolated
     quadratic        ///< the same, normals interpolated quadratically
 };
 inline constexpr std::array kShadingModels{
-    ShadingModel::constant,     ShadingModel::flat,  ShadingModel::gouraud,  ShadingModel::gouraud_screen,
-    ShadingModel::every_second, ShadingModel::phong, ShadingModel::quadratic};
+    ShadingModel::constant,     ShadingModel::flat,           ShadingModel::gouraud, ShadingModel::gouraud_screen,
+    ShadingModel::every_second, ShadingModel::highlight_test, ShadingModel::taylor,  ShadingModel::differences,
+    ShadingModel::phong,        ShadingModel::quadratic};
 [[nodiscard]] std::string_view to_string(ShadingModel model);
 
 struct ShadedPicture {
     Image linear;                 ///< R G B, scene-linear
-    std::size_t evaluations = 0;  ///< of the sum
+    std::size_t evaluations = 0;  ///< of the sum; of the three of fast_phong.h, of directions (PictureCosines)
 };
 
 /// A picture of a raster batch, faced to all lights. With `phong`, the picture is that of `shade`.

@@ -1,6 +1,7 @@
 #include "umbra/core/render/sum.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "umbra/core/render/brdf.h"
 
@@ -54,34 +55,43 @@ double arriving_share(const Scene& scene, const Light& light, vec3 p) {
     return f_att * fog_share(scene.fog, static_cast<double>(to_light(light, p).distance));
 }
 
-/// f_att I_j (k_d O_d (N.L) + k_s O_s lobe): what light j would give if nothing blocked it. Says count(term) of each
-/// term of SumCounts that it evaluates.
+/// f_att I_j (k_d O_d (N.L) + ...): what light j would give if nothing blocked it, with the angle's cosine.
+/// `add_specular` adds the rest in the brackets. Says count(term) of each term of SumCounts that it evaluates.
+template <class AddSpecular, class Count>
+dvec3 PhongSum::unblocked(const Light& light, const Terms& terms, vec3 p, double cosine,
+                          const AddSpecular& add_specular, const Count& count) const {
+    if (cosine <= 0) return dvec3(0);
+    const double f_att = arriving_share(*scene_, light, p);
+    if (f_att <= 0) return dvec3(0);
+    count(&SumCounts::diffuse);
+    dvec3 reflected = dvec3(light.diffuse) * terms.diffuse * cosine;
+    add_specular(reflected);
+    return f_att * reflected;
+}
+
+/// The same from directions.
 template <class Count>
 dvec3 PhongSum::unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p, dvec3 n, dvec3 v,
                           const Count& count) const {
     const dvec3 towards = to_light(light, p).direction;
     const double length = glm::length(towards);
     if (!(length > 0)) return dvec3(0);  // the light is at p
-    const dvec3 l       = towards / length;
-    const double cosine = glm::dot(n, l);
-    if (cosine <= 0) return dvec3(0);
-    const double f_att = arriving_share(*scene_, light, p);
-    if (f_att <= 0) return dvec3(0);
-    count(&SumCounts::diffuse);
-    dvec3 reflected = dvec3(light.diffuse) * terms.diffuse * cosine;
-    if (terms.is_specular && light.specular != vec3(0)) {
-        count(&SumCounts::specular);
-        reflected += dvec3(light.specular) * terms.specular * specular_lobe(material, n, l, v);
-    }
-    if (!material.lobes.empty()) {
-        count(&SumCounts::lobes);
-        reflected += dvec3(light.specular) * lafortune_lobes(material, n, l, v);
-    }
-    return f_att * reflected;
+    const dvec3 l           = towards / length;
+    const auto add_specular = [&](dvec3& reflected) {
+        if (terms.is_specular && light.specular != vec3(0)) {
+            count(&SumCounts::specular);
+            reflected += dvec3(light.specular) * terms.specular * specular_lobe(material, n, l, v);
+        }
+        if (!material.lobes.empty()) {
+            count(&SumCounts::lobes);
+            reflected += dvec3(light.specular) * lafortune_lobes(material, n, l, v);
+        }
+    };
+    return unblocked(light, terms, p, glm::dot(n, l), add_specular, count);
 }
 
-dvec3 PhongSum::to_viewer(const PointBatch& points, std::size_t i) const {
-    return glm::normalize(constant_v_ ? backward_ : dvec3(points.eye) - dvec3(points.position(i)));
+dvec3 PhongSum::to_viewer_from(const PointBatch& points, dvec3 p) const {
+    return glm::normalize(constant_v_ ? backward_ : dvec3(points.eye) - p);
 }
 
 dvec3 PhongSum::at(const PointBatch& points, std::size_t i, dvec3 n,
@@ -101,13 +111,41 @@ void PhongSum::count(const PointBatch& points, std::size_t i, dvec3 n, std::span
     add_up(points, i, n, to_viewer(points, i), visibility, [&](auto term) { ++(counts.*term); });
 }
 
+dvec3 PhongSum::with_cosines(const PointBatch& points, std::size_t i, std::span<const LightCosines> cosines,
+                             std::span<const VisibilityPlane> visibility) const {
+    const std::uint32_t object = scene_->triangle_object[points.triangle[i]];
+    const Material& material   = scene_->materials[scene_->objects[object].material];
+    const Terms& terms         = terms_[object];
+    const vec3 p               = points.position(i);
+    const auto count           = [](auto) {};
+    const auto unblocked_by    = [&](std::size_t j) {
+        const Light& light      = scene_->lights[j];
+        const auto add_specular = [&](dvec3& reflected) {
+            if (terms.is_specular && light.specular != vec3(0) && cosines[j].lobe > 0)
+                reflected += dvec3(light.specular) * terms.specular *
+                             std::pow(std::min(cosines[j].lobe, 1.0), static_cast<double>(material.shininess));
+        };
+        return unblocked(light, terms, p, cosines[j].diffuse, add_specular, count);
+    };
+    return at_the_eye(add_up(points, i, visibility, unblocked_by, count), p);
+}
+
 template <class Count>
 dvec3 PhongSum::add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
                        std::span<const VisibilityPlane> visibility, const Count& count) const {
     const std::uint32_t object = scene_->triangle_object[points.triangle[i]];
     const Material& material   = scene_->materials[scene_->objects[object].material];
+    const auto unblocked_by    = [&](std::size_t j) {
+        return unblocked(scene_->lights[j], material, terms_[object], points.position(i), n, v, count);
+    };
+    return add_up(points, i, visibility, unblocked_by, count);
+}
+
+template <class Unblocked, class Count>
+dvec3 PhongSum::add_up(const PointBatch& points, std::size_t i, std::span<const VisibilityPlane> visibility,
+                       const Unblocked& unblocked_by, const Count& count) const {
+    const std::uint32_t object = scene_->triangle_object[points.triangle[i]];
     const Terms& terms         = terms_[object];
-    const vec3 p               = points.position(i);
 
     dvec3 sum = terms.unshadowed;
     for (std::size_t j = 0; j < scene_->lights.size(); ++j) {
@@ -115,11 +153,15 @@ dvec3 PhongSum::add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v
         const Light& light = scene_->lights[j];
         if (attenuated_ambient_ && light.ambient != vec3(0)) {
             count(&SumCounts::ambient);
-            sum += arriving_share(*scene_, light, p) * dvec3(light.ambient) * terms.ambient;
+            sum += arriving_share(*scene_, light, points.position(i)) * dvec3(light.ambient) * terms.ambient;
         }
         if (points.facing[j][i] == Facing::away) continue;  // S_j = 0
         const double s_j = visibility[j].defined(i) ? visibility[j].s[i] : 1.0f;
-        if (s_j > 0) sum += s_j * unblocked(light, material, terms, p, n, v, count);
+        if (!(s_j > 0)) continue;
+        if (visibility[j].colour.empty() || !visibility[j].defined(i))
+            sum += s_j * unblocked_by(j);
+        else
+            sum += dvec3(visibility[j].colour[i]) * unblocked_by(j);
     }
     return sum;
 }

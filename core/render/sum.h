@@ -29,6 +29,12 @@ struct SumCounts {
 /// f_att,j of the sum at p: `falloff`, dimmed by the scene's fog where that dims lights.
 [[nodiscard]] double arriving_share(const Scene& scene, const Light& light, vec3 p);
 
+/// The angles of the sum for one light at one point, as something cheaper than directions may give them.
+struct LightCosines {
+    double diffuse = 0;  ///< N.L
+    double lobe    = 0;  ///< R.V or N.H, as the material has it; 0 where no highlight is
+};
+
 class PhongSum {
 public:
     /// Of a picture by this camera. The scene must outlive this object.
@@ -44,6 +50,11 @@ public:
     [[nodiscard]] dvec3 leaving(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v,
                                 std::span<const VisibilityPlane> visibility) const;
 
+    /// `at` with these angles, one pair a light, in place of those that normal and positions give. Lafortune's lobes,
+    /// which need directions, are left out.
+    [[nodiscard]] dvec3 with_cosines(const PointBatch& points, std::size_t i, std::span<const LightCosines> cosines,
+                                     std::span<const VisibilityPlane> visibility) const;
+
     /// What `at` evaluates at point i.
     void count(const PointBatch& points, std::size_t i, dvec3 n, std::span<const VisibilityPlane> visibility,
                SumCounts& counts) const;
@@ -52,7 +63,11 @@ public:
     [[nodiscard]] dvec3 at_the_eye(dvec3 light, vec3 p) const;
 
     /// V at point i of a batch, unit: to the eye, or against the view direction where that is constant.
-    [[nodiscard]] dvec3 to_viewer(const PointBatch& points, std::size_t i) const;
+    [[nodiscard]] dvec3 to_viewer(const PointBatch& points, std::size_t i) const {
+        return to_viewer_from(points, dvec3(points.position(i)));
+    }
+    /// The same at another position of the batch's picture.
+    [[nodiscard]] dvec3 to_viewer_from(const PointBatch& points, dvec3 p) const;
 
     /// Without directions and distances: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. What a surface gives where all
     /// lights are at the eye and nothing is far away.
@@ -68,9 +83,16 @@ private:
         dvec3 specular;    ///< k_s O_s
         bool is_specular;
     };
+    /// `unblocked_by(j)`: f_att,j I_j (...), what light j would give if nothing blocked it.
+    template <class Unblocked, class Count>
+    dvec3 add_up(const PointBatch& points, std::size_t i, std::span<const VisibilityPlane> visibility,
+                 const Unblocked& unblocked_by, const Count& count) const;
     template <class Count>
     dvec3 add_up(const PointBatch& points, std::size_t i, dvec3 n, dvec3 v, std::span<const VisibilityPlane> visibility,
                  const Count& count) const;
+    template <class AddSpecular, class Count>
+    dvec3 unblocked(const Light& light, const Terms& terms, vec3 p, double cosine, const AddSpecular& add_specular,
+                    const Count& count) const;
     template <class Count>
     dvec3 unblocked(const Light& light, const Material& material, const Terms& terms, vec3 p, dvec3 n, dvec3 v,
                     const Count& count) const;

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "umbra/core/base/math.h"
 #include "umbra/core/scene/lights.h"
 
 namespace umbra {
@@ -23,7 +24,13 @@ struct Visibility {
     std::span<float> s;           ///< S_j, [0, 1]: 1 lit, 0 umbra
     std::span<Answer> answer;     ///< `given` before the call
     std::span<float> half_width;  ///< 0 before the call: |s - truth| is at most this, where a method proves a bracket
+    std::span<vec3> colour;       ///< empty, or 0 before the call: S_j per channel, where occluders let a part of the
+                                  ///< light through that has another colour (SceneFacts::has_coloured_filters). `s` is
+                                  ///< the mean of its channels
 };
+
+/// S_j of three channels as one number: their mean, and their own value where they are equal.
+[[nodiscard]] inline float mean_of(vec3 s) { return s.r == s.g && s.g == s.b ? s.r : (s.r + s.g + s.b) / 3; }
 
 /// Which fraction of a light S_j measures. For lights without an area both are the same.
 enum class Measure : std::uint8_t {
@@ -38,19 +45,24 @@ struct VisibilityPlane {
     std::vector<float> s;
     std::vector<Answer> answer;
     std::vector<float> half_width;
+    std::vector<vec3> colour;  ///< empty where S_j is the same in all channels
 
     VisibilityPlane() = default;
     /// As a method wants it before the call: s and half_width 0, every answer `given`.
-    explicit VisibilityPlane(std::size_t points)
-        : s(points, 0.0f), answer(points, Answer::given), half_width(points, 0.0f) {}
+    explicit VisibilityPlane(std::size_t points, bool is_coloured = false)
+        : s(points, 0.0f),
+          answer(points, Answer::given),
+          half_width(points, 0.0f),
+          colour(is_coloured ? points : 0, vec3(0)) {}
 
     /// As after construction, in the memory that is there.
     void clear() {
         s.assign(s.size(), 0.0f);
         answer.assign(answer.size(), Answer::given);
         half_width.assign(half_width.size(), 0.0f);
+        colour.assign(colour.size(), vec3(0));
     }
-    [[nodiscard]] Visibility out() { return {s, answer, half_width}; }
+    [[nodiscard]] Visibility out() { return {s, answer, half_width, colour}; }
     [[nodiscard]] std::size_t size() const { return s.size(); }
     [[nodiscard]] bool defined(std::size_t i) const { return answer[i] != Answer::undefined; }
 };

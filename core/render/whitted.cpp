@@ -1,7 +1,6 @@
 #include "umbra/core/render/whitted.h"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -78,7 +77,10 @@ Image gather(const Scene& scene, const RayTree& tree, const TreeLight& light, in
         std::vector<dvec3> here  = light.local[level];
         for (std::size_t k = 0; k < arrives.size(); ++k) {
             const SecondaryRay& ray = tree.levels[level + 1].rays[k];
-            here[ray.parent] += ray.factor * arrives[k];
+            dvec3 passes(ray.factor);
+            if (ray.kind == RayKind::refracted)
+                passes *= dvec3(scene.material(points.triangle[ray.parent]).transmit_colour);
+            here[ray.parent] += passes * arrives[k];
         }
         if (level > 0)
             for (std::size_t i = 0; i < points.size(); ++i)
@@ -91,11 +93,9 @@ Image gather(const Scene& scene, const RayTree& tree, const TreeLight& light, in
     const PointBatch& eye = tree.levels[0].points;
     const PhongSum sum(scene, *eye.raster);
     Image image(eye.raster->width, eye.raster->height, {"R", "G", "B"});
-    constexpr double kLargest = std::numeric_limits<float>::max();
-    for (std::size_t i = 0; i < eye.size(); ++i) {
-        const dvec3 seen = eye.triangle[i] == kNoTriangle ? arrives[i] : sum.at_the_eye(arrives[i], eye.position(i));
-        for (int c = 0; c < 3; ++c) image.at(i, std::size_t(c)) = static_cast<float>(std::min(seen[c], kLargest));
-    }
+    for (std::size_t i = 0; i < eye.size(); ++i)
+        write_light(image, i,
+                    eye.triangle[i] == kNoTriangle ? arrives[i] : sum.at_the_eye(arrives[i], eye.position(i)));
     return image;
 }
 

@@ -29,8 +29,9 @@ struct TreeLight {
 /// The same, with `ask` called once a level, with all its points. Throws what it throws.
 [[nodiscard]] TreeLight light_of_rays(const Scene& scene, const RayTree& tree, const AskVisibility& ask);
 
-/// R G B, scene-linear, of the raster: every level's light times its factors is added to the level before, up to
-/// `depth` levels (>= 1). With depth 1, or without mirrors and glass, it is the picture of `shade` to the same bits.
+/// R G B, scene-linear, of the raster: every level's light times its factors, and times the colour of what it passes
+/// through, is added to the level before, up to `depth` levels (>= 1). With depth 1, or without mirrors and glass, it
+/// is the picture of `shade` to the same bits.
 /// Fog lies between eye and surface as in `shade`, and between two surfaces by their distance.
 [[nodiscard]] Image gather(const Scene& scene, const RayTree& tree, const TreeLight& light, int depth);
 

@@ -177,6 +177,7 @@ void find_terms(const Scene& scene, SceneFacts& facts) {
         facts.has_mirrors |= m.reflect > 0;
         facts.has_one_sided |= !m.two_sided;
     }
+    facts.has_coloured_filters = has_coloured_filters(scene);
     for (const Light& light : scene.lights) {
         const Attenuation& a = light.attenuation;
         const bool constant  = a.c1 == 1 && a.c2 == 0 && a.c3 == 0;

@@ -56,7 +56,8 @@ struct SceneFacts {
     bool has_specular = false, has_emission = false, has_transparency = false, has_mirrors = false, has_ambient = false,
          has_attenuation = false, has_one_sided = false, has_fog = false, has_goniometric = false,
          has_fixed_light = false, has_exceptions = false, has_lobes = false, has_attenuated_ambient = false;
-    bool has_filters = false;                ///< some triangle lets a part of the light through (Scene::lets_through)
+    bool has_coloured_filters = false;       ///< and of some channel more than of another
+    bool has_filters          = false;       ///< some triangle lets a part of the light through (Scene::lets_through)
     std::vector<UncomputedTerm> uncomputed;  ///< what materials ask for and pictures of the sum do not have
     bool hard_lights_only         = true;
     bool eye_inside_closed_object = false;

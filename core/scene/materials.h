@@ -31,15 +31,16 @@ struct Material {
     vec3 k_a{0.1f};
     vec3 k_d{0.8f};
     vec3 k_s{0};
-    vec3 O_d{1};                    ///< diffuse colour
-    vec3 O_s{1};                    ///< specular colour
-    vec3 emission{0};               ///< I_e
-    float shininess           = 1;  ///< n, >= 0
-    Lobe lobe                 = Lobe::phong;
-    bool two_sided            = true;  ///< the side that faces the eye is lit; otherwise the side of the winding only
-    float opacity             = 1;     ///< 1 opaque
-    float reflect             = 0;     ///< k_r, Whitted's mirrored share; in ray_tree.h alone
-    float transmit            = 0;     ///< k_t, Whitted's transmitted share; in ray_tree.h alone
+    vec3 O_d{1};          ///< diffuse colour
+    vec3 O_s{1};          ///< specular colour
+    vec3 emission{0};     ///< I_e
+    float shininess = 1;  ///< n, >= 0
+    Lobe lobe       = Lobe::phong;
+    bool two_sided  = true;   ///< the side that faces the eye is lit; otherwise the side of the winding only
+    float opacity   = 1;      ///< 1 opaque
+    float reflect   = 0;      ///< k_r, Whitted's mirrored share; in ray_tree.h alone
+    float transmit  = 0;      ///< k_t, Whitted's transmitted share
+    vec3 transmit_colour{1};  ///< [0, 1], of light that passes through: a factor of k_t and of 1 - opacity
     float index_of_refraction = 1;
     std::vector<LafortuneLobe> lobes{};  ///< added to the specular term
     vec3 tangent{1, 0, 0};               ///< of `lobes`, world space, any length > 0
@@ -47,5 +48,7 @@ struct Material {
 
 /// The fraction of light that a surface of this material lets through, [0, 1]: 1 - opacity or k_t, whichever is more.
 [[nodiscard]] inline float transmittance(const Material& m) { return std::max(1 - m.opacity, m.transmit); }
+/// The same per channel.
+[[nodiscard]] inline vec3 coloured_transmittance(const Material& m) { return transmittance(m) * m.transmit_colour; }
 
 }  // namespace umbra

@@ -1,10 +1,20 @@
 #include "umbra/core/scene/scene.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include <stdexcept>
 
 namespace umbra {
+
+bool has_coloured_filters(const Scene& scene) {
+    return scene.transparent == TransparentOccluders::multiply &&
+           std::ranges::any_of(scene.objects, [&](const Object& object) {
+               const vec3 passes = coloured_transmittance(scene.materials[object.material]);
+               return object.triangle_count > 0 && passes != vec3(passes.r);
+           });
+}
 
 void place_fixed_lights(Scene& scene) {
     const CameraFrame camera = frame(scene.camera, 1, 1);

@@ -42,7 +42,8 @@ enum class AmbientCoefficient : std::uint8_t { k_a, k_d };  ///< the ambient ter
 enum class TransparentOccluders : std::uint8_t {
     ignore,    ///< nothing: light is lost where an opaque triangle lies between, and nowhere else
     block,     ///< it blocks light as an opaque one does
-    multiply,  ///< it lets its material's transmittance through, and triangles one behind the other the product
+    multiply,  ///< it lets its material's coloured_transmittance through, and triangles one behind the other the
+               ///< product
 };
 
 /// Pixels along a side of a picture, in a scene file and on the command line.
@@ -87,14 +88,17 @@ struct Scene {
     }
     /// Whether triangle t takes all light that meets it.
     [[nodiscard]] bool blocks(TriangleId t) const {
-        return transparent == TransparentOccluders::block || transmittance(material(t)) == 0;
+        return transparent == TransparentOccluders::block || coloured_transmittance(material(t)) == vec3(0);
     }
-    /// What triangle t leaves of light that passes through it: 0 where it blocks.
-    [[nodiscard]] float lets_through(TriangleId t) const {
-        if (blocks(t)) return 0;
-        return transparent == TransparentOccluders::multiply ? transmittance(material(t)) : 1;
+    /// What triangle t leaves of light that passes through it, per channel: 0 where it blocks.
+    [[nodiscard]] vec3 lets_through(TriangleId t) const {
+        if (blocks(t)) return vec3(0);
+        return transparent == TransparentOccluders::multiply ? coloured_transmittance(material(t)) : vec3(1);
     }
 };
+
+/// Whether some triangle lets a part of the light through, of some channel more than of another (lets_through).
+[[nodiscard]] bool has_coloured_filters(const Scene& scene);
 
 /// Gives every light that is fixed to the camera its pose in world space. Whoever moves the camera calls it.
 void place_fixed_lights(Scene& scene);

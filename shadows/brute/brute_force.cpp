@@ -61,7 +61,7 @@ public:
         scene_ = &scene;
         occluders_.clear();
         for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-            if (scene.lets_through(t) < 1) occluders_.push_back(t);
+            if (scene.lets_through(t) != vec3(1)) occluders_.push_back(t);
     }
 
     void aim(LightId light) override { light_ = light; }
@@ -70,12 +70,14 @@ public:
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 if (!points.asks(light, i)) continue;
-                float sum = 0;
+                vec3 sum(0);
                 for (int k = 0; k < samples(); ++k) {
                     const Segment s = segment(points, i, k);
                     if (!s.behind) sum += passes(points.triangle[i], s);
                 }
-                out.s[i] = sum / static_cast<float>(samples());
+                sum /= static_cast<float>(samples());
+                out.s[i] = mean_of(sum);
+                if (!out.colour.empty()) out.colour[i] = sum;
             }
         });
     }
@@ -118,13 +120,13 @@ private:
                                    dvec3(scene_->vertex(t, 2)));
     }
 
-    /// What is left of the light when it arrives: 1 where no triangle lies between, 0 where one blocks.
-    [[nodiscard]] float passes(TriangleId own, const Segment& s) const {
-        float share = 1;
+    /// What is left of the light when it arrives, per channel: 1 where no triangle lies between, 0 where one blocks.
+    [[nodiscard]] vec3 passes(TriangleId own, const Segment& s) const {
+        vec3 share(1);
         for (const TriangleId t : occluders_) {
             if (!meets(own, s, t)) continue;
             share *= scene_->lets_through(t);
-            if (share == 0) break;
+            if (share == vec3(0)) break;
         }
         return share;
     }

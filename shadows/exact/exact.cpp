@@ -60,16 +60,19 @@ public:
 
     [[nodiscard]] Measure measures() const override { return options.measure; }
 
-    /// Light lost on the way to a point of an area light would have to be added up layer by layer.
     [[nodiscard]] bool multiplies() const override { return true; }
 
     Service serves(const SceneFacts& facts) const override {
-        if (facts.has_filters && !facts.hard_lights_only)
-            return {How::not_at_all,
-                    "Of area lights it finds the part that is seen, not what occluders let through of the rest."};
         bool round = false;
         for (const LightFacts& light : facts.lights)
             round = round || light.kind == LightKind::disk || light.kind == LightKind::sphere;
+        if (facts.has_filters && round)
+            return {How::not_at_all,
+                    "Of disks and spheres it finds the part that is seen, not what occluders let "
+                    "through of the rest; of rectangles it finds both."};
+        if (facts.has_filters && !facts.hard_lights_only && options.measure == Measure::irradiance)
+            return {How::not_at_all,
+                    "It finds the area of a light that is seen through occluders, not the irradiance."};
         if (facts.hard_lights_only)
             return {How::exactly, "All geometric predicates are exact; the answer does not depend on rounding."};
         if (!round)
@@ -128,10 +131,10 @@ private:
 
     /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
     static Takes taken_by(const Scene& scene, TriangleId t) {
-        const float passes = scene.lets_through(t);
-        if (passes == 1 || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
+        const vec3 passes = scene.lets_through(t);
+        if (passes == vec3(1) || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
             return Takes::nothing;
-        return passes == 0 ? Takes::all : Takes::part;
+        return passes == vec3(0) ? Takes::all : Takes::part;
     }
 
     void see_hard(const PointBatch& points, LightId light, Visibility out) const {
@@ -143,8 +146,10 @@ private:
                 const Segment segment(point, scene_->lights[light]);
                 Segment::Meeting met = first_meeting(segment, points.triangle[i], last);
                 out.s[i]             = met == Segment::Meeting::crosses ? 0.0f : 1.0f;
-                if (has_filters_ && met != Segment::Meeting::crosses)
-                    out.s[i] = passed(segment, points.triangle[i], met);
+                vec3 colour(out.s[i]);
+                if (has_filters_ && met != Segment::Meeting::crosses) colour = passed(segment, points.triangle[i], met);
+                out.s[i] = mean_of(colour);
+                if (!out.colour.empty()) out.colour[i] = colour;
                 out.answer[i] = met == Segment::Meeting::touches ? Answer::on_boundary : Answer::given;
             }
         });
@@ -162,6 +167,14 @@ private:
                                                             facing == Facing::partly, points.flipped[i] ? -1 : 1, work);
                 out.s[i]                       = irradiance ? answer.irradiance : answer.visibility;
                 out.answer[i]                  = answer.edge_on ? Answer::on_boundary : Answer::given;
+                if (has_filters_) {
+                    const auto passed =
+                        area_.seen_through(points.triangle[i], points.u[i], points.v[i], facing == Facing::partly,
+                                           points.flipped[i] ? -1 : 1, answer, work);
+                    if (!passed) out.answer[i] = Answer::undefined;
+                    out.s[i] = passed ? mean_of(*passed) : 0.0f;
+                    if (!out.colour.empty() && passed) out.colour[i] = *passed;
+                }
                 if (bracket) out.half_width[i] = irradiance ? answer.irradiance_half_width : answer.half_width;
             }
         });
@@ -186,18 +199,18 @@ private:
         return met;
     }
 
-    /// What all triangles that are crossed let through together, though none of them blocks. `met` becomes `touches`
-    /// where one is touched.
-    float passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
-        double share = 1;
+    /// What all triangles that are crossed let through together, per channel, though none of them blocks. `met` becomes
+    /// `touches` where one is touched.
+    vec3 passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
+        dvec3 share(1);
         tree_->visit(segment.piece(), [&](TriangleId t) {
             if (t == own || takes_[t] != Takes::part) return true;
             const auto m = segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
-            if (m == Segment::Meeting::crosses) share *= static_cast<double>(scene_->lets_through(t));
+            if (m == Segment::Meeting::crosses) share *= dvec3(scene_->lets_through(t));
             if (m == Segment::Meeting::touches) met = m;
             return true;
         });
-        return static_cast<float>(share);
+        return vec3(share);
     }
 
     /// What is crossed is decided exactly, and which of that is nearest in double.

@@ -1,5 +1,7 @@
 #include "umbra/shadows/exact/exact_area.h"
 
+#include "umbra/shadows/exact/filtered_light.h"
+
 namespace umbra::exact_detail {
 namespace {
 
@@ -88,6 +90,38 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
     const VisiblePart<RationalSpace> part(sight, exact_space, measure_, work.in_rationals);
     const Filtered<VisibleArea> area = part.find(work.silhouette, work.blocker);
     return area ? answer(*area, light_.round()) : kNothingKnown;
+}
+
+std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bool partly, int turn, const Answer& seen,
+                                            Workspace& work) const {
+    const vec3 without(seen.visibility);
+    if (seen.edge_on || seen.visibility == 0) return without;
+    const Scene& scene = *occluders_.scene;
+    const Viewpoint viewpoint(scene, own, u, v, work.coplanar);
+    const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
+    if (!plane) return without;
+    bool any_filter = false;
+    work.between.clear();
+    const auto take = [&](TriangleId t) {
+        if (t == own || occluders_.topology.degenerate[t] || scene.lets_through(t) == vec3(1)) return true;
+        work.between.push_back(t);
+        any_filter = any_filter || !scene.blocks(t);
+        return true;
+    };
+    const FloatSpace space(viewpoint.point(), *plane);
+    if (space.orientation())
+        occluders_.triangles->visit(
+            shaft(viewpoint.point(), space, 1 + 8 * plane->rounding), [](std::uint32_t, const Box&) { return true; },
+            take);
+    else
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t) take(t);
+    if (!any_filter) return without;
+    const RationalSpace exact_space(viewpoint.point(), *plane);
+    if (exact_space.orientation() == 0) return without;
+    const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn};
+    const std::optional<dvec3> passed = light_through_filters(sight, exact_space, work.between);
+    if (!passed) return std::nullopt;
+    return vec3(glm::clamp(*passed, 0.0, 1.0));
 }
 
 void ExactArea::build(const Scene& scene, const BoxTree& triangles) {

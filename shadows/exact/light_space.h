@@ -10,6 +10,7 @@
 
 #include "umbra/shadows/exact/light_plane.h"
 #include "umbra/shadows/exact/numerators.h"
+#include "umbra/shadows/shared/box_tree.h"
 
 namespace umbra::exact_detail {
 
@@ -82,6 +83,19 @@ private:
     double g_error_ = 0, g_size_ = 0, height_ = 0, height_error_ = 0;
     Filtered<int> orientation_;
 };
+
+/// The region between p and the light, and around it as far as the light scaled by `reach`: `p` is the point of
+/// `space`, whose orientation is known.
+[[nodiscard]] inline BoxTree::Region shaft(const ExactPoint& p, const FloatSpace& space, double reach) {
+    BoxTree::Region region;
+    const dvec3 gx = space.gx(), gy = space.gy(), gw = space.gw() * reach;
+    region.planes = {
+        {{gw + gx, 0}, {gw - gx, 0}, {gw + gy, 0}, {gw - gy, 0}, {-space.gw(), space.height() + space.height_error()}}};
+    region.from  = p.rounded();
+    region.slack = 2 * p.slack();
+    region.tilt  = 3 * space.g_error();
+    return region;
+}
 
 class RationalSpace {
 public:

@@ -106,13 +106,7 @@ void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space
         for (std::uint32_t e = 0; e < edges_.size(); ++e) take(e);
         return;
     }
-    BoxTree::Region region;
-    const dvec3 gx = space.gx(), gy = space.gy(), gw = space.gw() * reach;
-    region.planes = {
-        {{gw + gx, 0}, {gw - gx, 0}, {gw + gy, 0}, {gw - gy, 0}, {-space.gw(), space.height() + space.height_error()}}};
-    region.from      = viewpoint.point().rounded();
-    region.slack     = 2 * viewpoint.point().slack();
-    region.tilt      = 3 * space.g_error();
+    const BoxTree::Region region = shaft(viewpoint.point(), space, reach);
     const auto enter = [&](std::uint32_t node, const Box& box) { return !cones_[node].one_sided(box, region.from); };
     tree_->visit(region, enter, take);
 }

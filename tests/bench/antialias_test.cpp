@@ -5,8 +5,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
@@ -75,6 +77,39 @@ TEST(Antialias, SmoothsEdgesAndLeavesWhatIsMeasured) {
     }
     EXPECT_GT(changed, 40u) << "edges of the board and of its shadow";
     EXPECT_LT(changed, pictures[0].pixels() / 4) << "and nothing else";
+}
+
+/// A board over a floor under a square light: penumbrae of some pixels, which bend at their ends.
+TEST(Antialias, SmoothPenumbraeAreInterpolatedAndEdgesAsked) {
+    const TemporaryFolder folder;
+    const PreparedScene prepared = prepare_scene(folder.write("soft.json", R"({
+        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]},
+        "lights": [{"type": "rectangle", "position": [1, 5, 0], "direction": [0, -1, 0], "size": [1, 1]}],
+        "objects": [{"name": "floor", "type": "plane", "size": [8, 8]},
+                    {"name": "board", "type": "box", "size": [2, 0.1, 1], "transform": [{"translate": [0, 1, 0]}]}]})"),
+                                                 {160, 120}, 9);
+    const MethodRun run =
+        run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points, {1, 0});
+    VisibilityPlane right(prepared.subpixels.size());
+    run.method->visibility(prepared.subpixels, 0, right.out());
+    std::vector<std::uint32_t> ask;
+    const VisibilityPlane got =
+        between_centres(prepared.scene, prepared.points, run.planes[0], prepared.subpixels, 3, 0, ask);
+    const std::set<std::uint32_t> asked(ask.begin(), ask.end());
+    std::size_t interpolated = 0, in_penumbra = 0;
+    for (std::uint32_t i = 0; i < right.size(); ++i) {
+        if (!prepared.subpixels.asks(0, i)) {
+            EXPECT_EQ(got.s[i], 0);
+            EXPECT_FALSE(asked.contains(i));
+        } else if (!asked.contains(i)) {
+            EXPECT_NEAR(got.s[i], right.s[i], 1.0 / 64) << i;
+            ++interpolated;
+            in_penumbra += right.s[i] > 0.05f && right.s[i] < 0.95f ? 1 : 0;
+        }
+    }
+    EXPECT_GT(interpolated, 2 * asked.size());
+    EXPECT_GT(in_penumbra, 1000u);
+    EXPECT_GT(asked.size(), 5000u) << "the board's outline, and the ends of penumbrae";
 }
 
 }  // namespace

@@ -480,6 +480,14 @@ TEST_F(Cli, InspectSaysWhoServesAndWhy) {
     EXPECT_EQ(umbra("inspect " + kScene + " --silhouettes 50 --seed 3 --json").output, answer.output);
 }
 
+TEST_F(Cli, InspectSaysHowClosedMeshesAreOriented) {
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    std::ofstream(file("outwards.obj")) << corners << "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    std::ofstream(file("inwards.obj")) << corners << "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+    EXPECT_TRUE(contains(umbra("inspect " + file("outwards.obj")).output, "closed, oriented outwards"));
+    EXPECT_TRUE(contains(umbra("inspect " + file("inwards.obj")).output, "closed, oriented inwards"));
+}
+
 TEST_F(Cli, RenderIsTheSameForAnyNumberOfThreads) {
     for (const umbra::MethodInfo* info : umbra::methods()) {
         const std::string method(info->name);

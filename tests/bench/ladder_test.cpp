@@ -375,12 +375,31 @@ Ladder shortened(const Ladder& whole) {
     return ladder;
 }
 
-/// All that climb by default, or the one that UMBRA_METHOD names (./umbra test --method NAME).
+/// Lines of tests/data/ladders.txt by "LADDER METHOD"; whether the method has any line at all.
+struct Recorded {
+    std::map<std::string, std::string> lines;
+    [[nodiscard]] bool knows(std::string_view method) const {
+        return std::ranges::any_of(lines,
+                                   [&](const auto& line) { return line.first.ends_with(fmt::format(" {}", method)); });
+    }
+};
+
+Recorded read_recorded() {
+    Recorded recorded;
+    std::ifstream in(UMBRA_TEST_DATA "/ladders.txt");
+    for (std::string line; std::getline(in, line);) recorded.lines[line.substr(0, line.find(':'))] = line;
+    return recorded;
+}
+
+/// Those that run on every scene and those that have a record, or the one that UMBRA_METHOD names
+/// (./umbra test --method NAME).
 std::vector<MethodChoice> judged_methods() {
-    const char* only = std::getenv("UMBRA_METHOD");
+    const char* only        = std::getenv("UMBRA_METHOD");
+    const Recorded recorded = read_recorded();
     std::vector<MethodChoice> choices;
     for (const MethodInfo* info : methods())
-        if (only != nullptr ? info->name == only : info->by_default && !info->reference) choices.emplace_back(*info);
+        if (only != nullptr ? info->name == only : !info->reference && (info->by_default || recorded.knows(info->name)))
+            choices.emplace_back(*info);
     return choices;
 }
 
@@ -419,22 +438,6 @@ void expect_planted_breaks(LadderRun& run) {
     EXPECT_TRUE(run.rungs[0].unjudged.empty()) << run.rungs[0].unjudged;
     // Where a scene comes apart in its coordinates there is nothing to judge; the ladder ends soon after.
     EXPECT_GE(judged + 2, run.rungs.size());
-}
-
-/// Lines of tests/data/ladders.txt by "LADDER METHOD"; whether the method has any line at all.
-struct Recorded {
-    std::map<std::string, std::string> lines;
-    [[nodiscard]] bool knows(std::string_view method) const {
-        return std::ranges::any_of(lines,
-                                   [&](const auto& line) { return line.first.ends_with(fmt::format(" {}", method)); });
-    }
-};
-
-Recorded read_recorded() {
-    Recorded recorded;
-    std::ifstream in(UMBRA_TEST_DATA "/ladders.txt");
-    for (std::string line; std::getline(in, line);) recorded.lines[line.substr(0, line.find(':'))] = line;
-    return recorded;
 }
 
 /// tests/data/ladders.txt holds where every method breaks: a change for the better is to be seen as well as one for the

@@ -103,13 +103,10 @@ TEST_F(Report, LecturesSayWhatIsNotDone) {
     put(out / "light_inside_view", sample("light_inside_view"));
     write_report({out}, out);
     const std::string html = read(out / "lectures.html");
-    std::size_t unfinished = 0;
     for (const LectureRow& row : lecture_rows()) {
         const bool done = row.state == "works";
-        unfinished += !done;
         EXPECT_EQ(contains(topic_of(html, row.id), "<b>"), !done) << row.id;
     }
-    EXPECT_GT(unfinished, 0u);
 }
 
 TEST_F(Report, LecturesAreWrittenInTheLanguageThatIsAskedFor) {

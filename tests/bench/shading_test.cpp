@@ -49,7 +49,7 @@ TEST(ShadingStudy, KinksAreBendsAndNotSlopes) {
     scene.materials.resize(1);
     add_object(scene, "triangle", {{-9, 0, 9}, {9, 0, 9}, {0, 0, -12}}, {}, {{0, 1, 2}}, 0);
     Light lamp;
-    lamp.name = "lamp", lamp.position = {0.5f, 1, 0.2f};
+    lamp.name = "lamp", lamp.position = {-6, 4, 4};  // near a corner, which is the brightest by far
     scene.lights.push_back(lamp);
     scene.camera.eye = {0, 5, 0}, scene.camera.up = {0, 0, -1};
     scene.camera.projection = Projection::orthographic, scene.camera.height = 4;
@@ -60,6 +60,25 @@ TEST(ShadingStudy, KinksAreBendsAndNotSlopes) {
     EXPECT_LT(model(record, "gouraud")["kink"].get<double>(), 0.01);
     EXPECT_EQ(model(record, "phong")["kink"].get<double>(), 1);
     EXPECT_EQ(model(record, "flat")["kink"].get<double>(), 0);
+}
+
+/// A floor of one colour in each picture: the eye sees the difference of the two, 0.8 (1 - cos 60).
+TEST(ShadingStudy, PerceivedDifferenceOfTwoColoursIsTheirs) {
+    const TemporaryFolder folder;
+    Scene scene;
+    scene.materials.resize(1);
+    add_object(scene, "floor", {{-9, 0, -9}, {9, 0, -9}, {9, 0, 9}, {-9, 0, 9}}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+    Light sun;
+    sun.kind = LightKind::directional, sun.direction = {std::sqrt(3.0f), -1, 0};
+    scene.lights.push_back(sun);
+    scene.camera.eye = {0, 5, 0}, scene.camera.up = {0, 0, -1};
+    scene.camera.projection = Projection::orthographic, scene.camera.height = 4;
+    scene.width = scene.height = 32;
+    ShadingOptions options;
+    options.runs      = 1;
+    const Json record = compare_shading(prepare_scene(std::move(scene), "floor", {}), options, folder.path());
+    EXPECT_NEAR(model(record, "constant")["perceived"].get<double>(), 0.8 * 0.5, 1e-5);
+    EXPECT_NEAR(model(record, "flat")["perceived"].get<double>(), 0, 1e-6);
 }
 
 /// Finer faces come closer to Phong shading for the eye, too.
@@ -96,7 +115,7 @@ TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
     options.runs      = 1;
     const Json record = compare_shading(prepared, options, folder.path());
     const auto at     = [&](const char* name, const char* figure) { return model(record, name)[figure].get<double>(); };
-    ASSERT_EQ(record["models"].size(), 7u);
+    ASSERT_EQ(record["models"].size(), 10u);
     const auto surfaces = static_cast<double>(
         prepared.points.size() - static_cast<std::size_t>(std::ranges::count(prepared.points.triangle, kNoTriangle)));
     EXPECT_EQ(at("phong", "evaluations"), surfaces);
@@ -117,6 +136,14 @@ TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
     EXPECT_GT(at("flat", "rmse"), at("gouraud", "rmse"));
     EXPECT_GT(at("gouraud", "rmse"), at("every_second", "rmse"));
     EXPECT_GT(at("every_second", "rmse"), 0);
+    // Angles from elsewhere: shadows as fine as Phong's, fewer directions, and an error between none and flat
+    // shading's.
+    for (const char* fast : {"differences", "taylor", "highlight_test"}) {
+        EXPECT_EQ(at(fast, "asked"), at("phong", "asked")) << fast;
+        EXPECT_LT(at(fast, "evaluations"), surfaces) << fast;
+        EXPECT_GT(at(fast, "rmse"), 0) << fast;
+        EXPECT_LT(at(fast, "rmse"), at("flat", "rmse")) << fast;
+    }
 
     for (const Json& m : record["models"]) {
         const Image picture    = read_image(folder.path() / m["picture"].get<std::string>()).image,

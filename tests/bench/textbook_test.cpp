@@ -5,11 +5,13 @@
 
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include "umbra/bench/cli/ladder_command.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_times.h"
 #include "umbra/core/base/error.h"
+#include "umbra/shadows/method.h"
 #include "umbra/tests/support/html_table.h"
 #include "umbra/tests/support/temporary_folder.h"
 
@@ -122,9 +124,10 @@ TEST_F(TextbookForms, NothingIsShownWhereOneFormWasClimbed) {
 
 TEST_F(TextbookForms, AreClimbedAndTimedByDefault) {
     LadderOptions options;
-    options.names        = {"duplicate_faces"};
-    options.out          = folder.path() / "out";
-    const Json record    = climb_ladders(options);
+    options.names           = {"duplicate_faces"};
+    options.out             = folder.path() / "out";
+    options.only_by_default = true;
+    const Json record       = climb_ladders(options);
     std::size_t textbook = 0, by_default = 0;
     for (const Json& m : record["ladders"][0]["methods"]) {
         (m["preset"] == "textbook" ? textbook : by_default)++;
@@ -134,6 +137,20 @@ TEST_F(TextbookForms, AreClimbedAndTimedByDefault) {
     }
     EXPECT_EQ(by_default, 4u);
     EXPECT_EQ(textbook, 4u);
+}
+
+/// Without the report's choice, also the methods that reports show on some scenes alone.
+TEST_F(TextbookForms, AllThatReportsShowClimb) {
+    LadderOptions options;
+    options.names     = {"gap"};
+    options.out       = folder.path() / "out";
+    const Json record = climb_ladders(options);
+    std::set<std::string> climbed, shown;
+    for (const Json& m : record["ladders"][0]["methods"]) climbed.insert(m["name"].get<std::string>());
+    for (const MethodInfo* info : methods())
+        if (info->is_shown() && !info->reference) shown.emplace(info->name);
+    EXPECT_EQ(climbed, shown);
+    EXPECT_TRUE(climbed.contains("scan_line"));
 }
 
 TEST_F(TextbookForms, OneSceneShowsWhereAFormBreaks) {

@@ -32,7 +32,7 @@ Action ladder_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<LadderLine>();
     app.add_option("LADDER", line->options.names, "Ladders (default: all; umbra list names them)")->type_name("");
     app.add_option("--methods", line->options.methods,
-                   "Methods, with settings (default: all but exact, each also @textbook)")
+                   "Methods, with settings (default: all that reports show but exact, each also @textbook)")
         ->type_name("METHOD");
     app.add_option("-o,--output", line->options.out, "Folder to write to")->type_name("DIR")->required();
     app.add_flag("--json", line->as_json, "Print results.json instead of the table");

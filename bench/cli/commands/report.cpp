@@ -51,6 +51,7 @@ SweepOptions canonical_sweep(const fs::path& out) {
 int run_everything(const fs::path& out, Language language, const Common& common) {
     LadderOptions ladders;
     ladders.out              = out / "ladders";
+    ladders.only_by_default  = true;
     const bool climbed       = climb_on_terminal(ladders, common)["failed"].empty();
     const SweepOptions sweep = canonical_sweep(out / "trade");
     std::vector<fs::path> also{ladders.out};

@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
@@ -14,7 +15,7 @@ namespace umbra {
 namespace {
 
 struct WhittedLine {
-    std::string scene, size, method = "ray_traced";
+    std::string scene, size, method = "ray_traced", places = "regular";
     std::filesystem::path out;
     bool as_json = false, no_shadows = false, formula = false;
     WhittedOptions options;
@@ -26,9 +27,14 @@ std::string refusal(const MethodChoice& choice, const SceneFacts& facts) {
     return service ? refusal_of(*choice.info) : service.why;
 }
 
+EyePlaces places_named(const std::string& name) {
+    return *std::ranges::find(kEyePlaces, name, [](EyePlaces places) { return to_string(places); });
+}
+
 int whitted(const WhittedLine& line, const Common& common) {
     WhittedOptions options = line.options;
     options.command        = common.command;
+    options.places         = places_named(line.places);
     if (!line.no_shadows) options.method = parse_method(line.method);
     static_cast<void>(samples_along_side(options.pixel_samples));
     PreparedScene prepared =
@@ -89,6 +95,15 @@ Action whitted_command(CLI::App& app, const Common& common) {
     app.add_option("--pixel-samples", options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...")
         ->capture_default_str()
         ->type_name("N");
+    std::vector<std::string> places;
+    for (const EyePlaces p : kEyePlaces) places.emplace_back(to_string(p));
+    app.add_option(
+           "--pixel-places", line->places,
+           "Where eye rays pass: at regular places, anywhere in their part of the pixel (jittered), or anywhere "
+           "in the pixel (random)")
+        ->check(CLI::IsMember(places))
+        ->capture_default_str()
+        ->type_name("PLACES");
     app.add_flag("--glossy", options.glossy,
                  "Spread mirrored rays by each material's shininess: rough mirrors, with noise that more "
                  "--pixel-samples average out");

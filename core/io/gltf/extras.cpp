@@ -17,6 +17,7 @@
 //                     lobe                     "phong" or "blinn_phong"
 //                     two_sided                true or false
 //                     opacity reflect transmit 0 to 1
+//                     transmit_colour          three numbers from 0 to 1
 //                     index_of_refraction      a positive number
 //                     lobes, tangent           Lafortune lobes; a vector
 //   lights (of KHR_lights_punctual) and a node's "light"

@@ -16,7 +16,7 @@
 //   emissiveFactor                  emission, times KHR_materials_emissive_strength
 //   KHR_materials_unlit             emission = c, nothing else
 //   baseColorFactor's alpha         opacity; alphaMode OPAQUE: 1, MASK: 1 from alphaCutoff on, else 0
-//   KHR_materials_transmission, _ior  transmit, index_of_refraction
+//   KHR_materials_transmission, _ior  transmit, transmit_colour (the base colour), index_of_refraction
 //   doubleSided                     two_sided
 //   KHR_lights_punctual             I_j = colour x intensity, as is (lux or candela); f_att = 1 / d^2 without limit;
 //                                   range as a sharp limit; spots with falloff `smooth`

@@ -84,6 +84,7 @@ Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_
     }
     m.transmit = static_cast<float>(
         number_or(json, extension(json, v, "KHR_materials_transmission"), "transmissionFactor", kShare, 0));
+    if (m.transmit > 0) m.transmit_colour = vec3(glm::min(c, dvec3(1)));
     // Where the file is silent, glTF has 1.5, which only matters to what transmits.
     const JsonValue* given = extension(json, v, "KHR_materials_ior");
     const double ior       = number_or(json, given, "ior", kNotNegative, 1.5);

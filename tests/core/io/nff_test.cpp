@@ -125,11 +125,12 @@ TEST(Nff, ConesAndCylindersHaveTheirAreaAndFaceOutwards) {
 
 TEST(Nff, FineWhereTheViewIsNearCoarseWhereItIsFar) {
     const TemporaryFolder folder;
-    std::size_t previous = 1u << 30;
+    const std::string matt = "f 1 0.5 0.25 0.6 0 20 0 1\n";
+    std::size_t previous   = 1u << 30;
     for (const int distance : {3, 30, 300, 3000}) {
         const Scene scene = load_scene(folder.write(
             "a.nff", fmt::format("v from 0 0 {} at 0 0 0 up 0 1 0 angle 45 hither 0 resolution 512 512\n{}s 0 0 0 1\n",
-                                 distance, kFill)));
+                                 distance, matt)));
         EXPECT_LE(scene.triangles.size(), previous) << distance;
         previous = scene.triangles.size();
         // The silhouette's chord: r (1 - cos(pi / n)) in pixels, n the number around the equator.
@@ -142,6 +143,21 @@ TEST(Nff, FineWhereTheViewIsNearCoarseWhereItIsFar) {
         EXPECT_GE(n, 8);
     }
     EXPECT_EQ(previous, 48u);
+}
+
+/// What mirrors or is clear has twice as many segments around, and along: 16 x 8, two rows of which are triangles.
+TEST(Nff, TwiceAsFineWhereNeighboursAreMirrored) {
+    const TemporaryFolder folder;
+    const auto triangles = [&](const std::string& fill) {
+        return load_scene(
+                   folder.write("a.nff", "v from 0 0 3000 at 0 0 0 up 0 1 0 angle 45 hither 0 resolution 512 512\n" +
+                                             fill + "s 0 0 0 1\n"))
+            .triangles.size();
+    };
+    EXPECT_EQ(triangles("f 1 1 1 1 0 1 0 1\n"), 48u);
+    EXPECT_EQ(triangles("f 1 1 1 1 0.5 1 0 1\n"), 224u);
+    EXPECT_EQ(triangles("f 1 1 1 1 0 1 0.5 1\n"), 224u);
+    EXPECT_EQ(triangles(""), 48u) << "before any fill";
 }
 
 struct Bad {

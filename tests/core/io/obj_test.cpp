@@ -132,8 +132,8 @@ TEST(Obj, MaterialsOfTheMtlFile) {
         "illum 2\nmap_Kd -s 1 1 1 wood.png\n"
         "newmtl matte\nKd 0.25 0.25 0.25\nKs 1 1 1\nillum 1\n"
         "newmtl shadeless\nKd 0.5 0 0\nillum 0\n"
-        "newmtl glass\nKd 0 0 0\nKs .5 .9 .5\nTr 0.8\nillum 7\n"
-        "newmtl curve\nKd spectral file.rfl 1\nTf 1 1 1\n");
+        "newmtl glass\nKd 0 0 0\nKs .5 .9 .5\nTr 0.8\nTf 1 0.5 2\nillum 7\n"
+        "newmtl curve\nKd spectral file.rfl 1\nsharpness 60\n");
     std::string text = "mtllib two words.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n";
     for (const char* name : {"full", "matte", "shadeless", "glass", "curve", "unknown"})
         text += fmt::format("usemtl {}\nf 1 2 3\n", name);
@@ -154,10 +154,12 @@ TEST(Obj, MaterialsOfTheMtlFile) {
     EXPECT_EQ(scene.materials[2].k_d, vec3(0));
     EXPECT_FLOAT_EQ(scene.materials[3].transmit, 0.8f);
     EXPECT_EQ(scene.materials[3].reflect, 0.9f);
+    EXPECT_EQ(scene.materials[3].transmit_colour, vec3(1, 0.5f, 1)) << "no more than all passes";
+    EXPECT_EQ(scene.materials[0].transmit_colour, vec3(1));
     EXPECT_EQ(scene.ambient, vec3(0.1f));
     EXPECT_TRUE(warns(scene, "textures are ignored"));
     EXPECT_TRUE(warns(scene, "a spectral or CIE Kd is ignored"));
-    EXPECT_TRUE(warns(scene, "\"Tf\""));
+    EXPECT_TRUE(warns(scene, "\"sharpness\""));
     EXPECT_TRUE(warns(scene, "describes \"unknown\""));
     EXPECT_TRUE(warns(scene, "I_a = 0.1"));
 }

@@ -483,7 +483,7 @@ TEST(BodyTree, FindsWhatASearchFinds) {
         }
         bodies.push_back(body);
     }
-    const BodyTree tree(bodies, std::vector<float>(bodies.size(), 0.5f));
+    const BodyTree tree(bodies, std::vector<vec3>(bodies.size(), vec3(0.5f)));
     std::size_t met = 0;
     for (int k = 0; k < 3000; ++k) {
         const bool afar    = k % 3 == 0;
@@ -507,12 +507,12 @@ TEST(BodyTree, FindsWhatASearchFinds) {
         if (nearest.body != kNoBody) {
             EXPECT_EQ(found.t, nearest.t) << k;
         }
-        EXPECT_EQ(tree.lets_through({origin, d, kNoBody, reach}), std::pow(0.5, crossed)) << k;
+        EXPECT_EQ(tree.lets_through({origin, d, kNoBody, reach}), dvec3(std::pow(0.5, crossed))) << k;
         met += nearest.body != kNoBody ? 1 : 0;
     }
     EXPECT_GT(met, 1000u);
     EXPECT_EQ(BodyTree({}, {}).first({}).body, kNoBody);
-    EXPECT_EQ(BodyTree({}, {}).lets_through({}), 1);
+    EXPECT_EQ(BodyTree({}, {}).lets_through({}), dvec3(1));
 }
 
 /// From a point of a body, found to rounding: outwards nothing, inwards the far side, however near it is.
@@ -520,7 +520,7 @@ TEST(BodyTree, ABodyIsLeftFromItsSurface) {
     Body ball, box;
     ball.centre = {3, 1, 2}, ball.radius = 0.7;
     box.kind = BodyKind::box, box.centre = {-3, 1, 2}, box.half_size = {0.5, 1, 2};
-    const BodyTree tree({ball, box}, {0, 0});
+    const BodyTree tree({ball, box}, {vec3(0), vec3(0)});
     std::mt19937 random(5);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int k = 0; k < 2000; ++k) {
@@ -540,7 +540,7 @@ TEST(BodyTree, ABodyIsLeftFromItsSurface) {
         const dvec3 far = on.position + met.t * d;
         EXPECT_NEAR(glm::length(onto_surface(body, far).position - far), 0, 1e-12);
         EXPECT_GT(glm::dot(onto_surface(body, far).normal, d), -1e-12);
-        EXPECT_EQ(tree.lets_through({on.position, d, b, double(kInfinity)}), 0);
+        EXPECT_EQ(tree.lets_through({on.position, d, b, double(kInfinity)}), dvec3(0));
     }
 }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/mirrored_light.h"
@@ -90,6 +92,9 @@ TEST(Whitted, PanesAreBlendedFromTheNearest) {
     const RayTree two          = tree_of(scene);
     EXPECT_EQ(two.levels.size(), 2u);
     expect(two, 0.25 * dvec3(red) + 0.75 * dvec3(blue));
+    // Stained glass: what is behind it is multiplied by its colour, what it gives by itself is not.
+    scene.materials[1].transmit_colour = vec3(1, 0.5f, 0.25f);
+    expect(two, 0.25 * dvec3(red) + 0.75 * 0.25 * dvec3(blue));
 }
 
 /// Of 16 neighbouring pixels, 16 times opacity see the pane alone. Two panes of one opacity look like one.
@@ -244,6 +249,78 @@ TEST(Whitted, PictureIsTheSameWhicheverRaysAreTraced) {
     EXPECT_NE(picture_of(scene, few).data, picture_of(scene, raster).data);
     scene.camera.projection = Projection::orthographic, scene.camera.height = 3;
     EXPECT_EQ(trace_eye_rays(rays, scene, frame(scene.camera, 64, 48)).u, points_of(scene).u);
+}
+
+/// Points, and the directions that mirrors turn, are those of the places through which the rays pass.
+TEST(EyePlaces, PointsAndDirectionsAreThoseOfThePlaces) {
+    Scene scene               = plain();
+    const CameraFrame picture = frame(scene.camera, 16, 12), raster = frame(scene.camera, 64, 48);
+    const RayScene rays(scene);
+    for (const EyePlaces places : kEyePlaces) {
+        PointBatch eye     = trace_eye_rays(rays, scene, raster, places, 4);
+        const RayTree tree = trace_rays(rays, scene, std::move(eye), {.eye_places = places, .side = 4});
+        std::size_t met = 0, beside = 0;
+        for (std::size_t i = 0; i < tree.levels[0].points.size(); ++i) {
+            const std::size_t row = i / 64, column = i % 64;
+            const dvec2 place = eye_place(raster, places, 4, i);
+            const double part = places == EyePlaces::random ? 4 : 1;
+            EXPECT_EQ(std::floor(place.x / part), std::floor(static_cast<double>(column) / part));
+            EXPECT_EQ(std::floor(place.y / part), std::floor(static_cast<double>(row) / part));
+            if (tree.levels[0].points.triangle[i] == kNoTriangle) continue;
+            const dvec2 seen = dvec2(raster.project(exact_position(scene, tree.levels[0].points, i)));
+            EXPECT_NEAR(seen.x, place.x, 1e-3);
+            EXPECT_NEAR(seen.y, place.y, 1e-3);
+            const dvec3 to = glm::normalize(exact_position(scene, tree.levels[0].points, i) - picture.eye);
+            EXPECT_NEAR(glm::distance(incoming(tree, 0, i), to), 0, 1e-5);
+            beside += std::abs(place.x - static_cast<double>(column) - 0.5) > 0.1 ? 1 : 0;
+            ++met;
+        }
+        ASSERT_GT(met, 500u);
+        if (places == EyePlaces::regular)
+            EXPECT_EQ(beside, 0u);
+        else
+            EXPECT_GT(beside, met / 2);
+    }
+}
+
+/// An edge that rises by one pixel over the picture. Regular places see it in steps, those in a grid with less noise
+/// than independent ones. Errors of 4 x 4 rays: (1 / 4) / sqrt(12); the mean of 2 sqrt(p (1 - p)) / 16 over the row
+/// that is cut; the mean of sqrt(p (1 - p)) / 4.
+TEST(EyePlaces, RandomOnesTradeStepsForNoise) {
+    Scene scene;
+    const std::uint32_t glow = add_glow(scene, vec3(1));
+    add_quad(scene, {-9, -9, 0}, {9, -9, 0}, {9, 0.0625f, 0}, {-9, -0.0625f, 0}, glow);
+    scene.camera.eye = {0, 0, 5}, scene.camera.target = {0, 0, 0};
+    scene.camera.projection = Projection::orthographic;
+    constexpr int kWidth = 240, kHeight = 40;  // 0.05 units a pixel along a height of 2
+    scene.camera.height = 2;
+    const RayScene rays(scene);
+    const CameraFrame raster = frame(scene.camera, 4 * kWidth, 4 * kHeight);
+    std::map<EyePlaces, double> error;
+    for (const EyePlaces places : kEyePlaces) {
+        const PointBatch eye = trace_eye_rays(rays, scene, raster, places, 4);
+        double squares = 0, sum = 0;
+        std::set<int> counts;
+        for (int x = 0; x < kWidth; ++x) {
+            int lit = 0;
+            for (int y = 4 * kHeight / 2 - 40; y < 4 * kHeight / 2 + 40; ++y)
+                for (int k = 0; k < 4; ++k)
+                    lit += eye.triangle[static_cast<std::size_t>(y * 4 * kWidth + 4 * x + k)] != kNoTriangle ? 1 : 0;
+            // Of 20 rows of pixels, the lower half and what the edge adds or takes.
+            const double height = (static_cast<double>(x) + 0.5 - kWidth / 2.0) * 0.05 * 0.125 / 18 / 0.05;
+            const double wrong  = lit / 16.0 - (10 + height);
+            squares += wrong * wrong, sum += wrong;
+            counts.insert(lit);
+        }
+        error[places] = std::sqrt(squares / kWidth);
+        EXPECT_LT(std::abs(sum / kWidth), 0.02) << to_string(places) << ": as much too light as too dark";
+        if (places == EyePlaces::regular)
+            EXPECT_LE(counts.size(), 8u);
+        else
+            EXPECT_GT(counts.size(), 12u);
+    }
+    EXPECT_LT(error[EyePlaces::jittered], 0.9 * error[EyePlaces::regular]);
+    EXPECT_GT(error[EyePlaces::random], 1.5 * error[EyePlaces::jittered]);
 }
 
 /// A wall of two halves that glow, over a floor that mirrors and gives off nothing.

@@ -1,0 +1,33 @@
+#include "umbra/shadows/alias_free/shadow_planes.h"
+
+namespace umbra::alias_free_detail {
+
+// Compiled so that the loop over lanes becomes vector code: shadows/CMakeLists.txt.
+ShadowPlanes::Lanes ShadowPlanes::test(const Block& block) const {
+    float least[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const float a  = x[0] * block.x[i] + y[0] * block.y[i] + z[0] * block.z[i] + offset[0],
+                    b  = x[1] * block.x[i] + y[1] * block.y[i] + z[1] * block.z[i] + offset[1],
+                    c  = x[2] * block.x[i] + y[2] * block.y[i] + z[2] * block.z[i] + offset[2],
+                    d  = x[3] * block.x[i] + y[3] * block.y[i] + z[3] * block.z[i] + offset[3];
+        const float ab = a < b ? a : b, cd = c < d ? c : d;
+        least[i] = ab < cd ? ab : cd;
+    }
+    unsigned inside = 0, outside = 0;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        inside |= static_cast<unsigned>(least[i] > 1) << i;
+        outside |= static_cast<unsigned>(least[i] < -1) << i;
+    }
+    return {static_cast<std::uint8_t>(inside), static_cast<std::uint8_t>(~(inside | outside))};
+}
+
+bool ShadowPlanes::any_in(const Extent& extent, const Block& block) {
+    int any = 0;
+    for (std::size_t i = 0; i < kLanes; ++i)
+        any |= static_cast<int>(block.u[i] >= extent.low_u) & static_cast<int>(block.u[i] <= extent.high_u) &
+               static_cast<int>(block.v[i] >= extent.low_v) & static_cast<int>(block.v[i] <= extent.high_v) &
+               static_cast<int>(block.depth[i] >= extent.depth);
+    return any != 0;
+}
+
+}  // namespace umbra::alias_free_detail

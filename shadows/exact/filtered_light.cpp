@@ -1,0 +1,156 @@
+#include "umbra/shadows/exact/filtered_light.h"
+
+#include <array>
+#include <utility>
+
+namespace umbra::exact_detail {
+namespace {
+
+/// A half plane of the light's plane, g . (x, y, 1) > 0, in the coordinates in which the light is |x|, |y| <= 1.
+using HalfPlane = Rational3;
+/// A point of it, (x, y, 1) times a positive number.
+using Corner = Rational3;
+
+Rational3 scaled(const Rational3& a, const Rational& by) { return {a[0] * by, a[1] * by, a[2] * by}; }
+
+/// Where the borders of two half planes meet.
+Corner meeting(const HalfPlane& a, const HalfPlane& b) {
+    Corner c = cross(a, b);
+    if (CGAL::sign(c[2]) < 0) c = scaled(c, Rational(-1));
+    return c;
+}
+
+/// A convex polygon, anticlockwise: edge k lies on the border of a half plane and ends at its corner. Corners are
+/// meetings of two borders that were given, so that their digits do not grow from cut to cut.
+struct Cell {
+    struct Edge {
+        HalfPlane border;
+        Corner end;
+    };
+    std::vector<Edge> edges;
+    dvec3 share{1};  ///< of the light that passes what lies before it, per channel
+};
+
+/// The part of a cell in a half plane; no edges where there is none with an area.
+Cell clipped(const Cell& cell, const HalfPlane& g) {
+    const std::size_t n = cell.edges.size();
+    std::vector<int> side(n);
+    bool any_inside = false, any_outside = false;
+    for (std::size_t k = 0; k < n; ++k) {
+        side[k]     = static_cast<int>(CGAL::sign(dot(g, cell.edges[k].end)));
+        any_inside  = any_inside || side[k] > 0;
+        any_outside = any_outside || side[k] < 0;
+    }
+    if (!any_inside) return {{}, cell.share};
+    if (!any_outside) return cell;
+    Cell part{{}, cell.share};
+    for (std::size_t k = 0; k < n; ++k) {
+        const Cell::Edge& edge = cell.edges[k];
+        const int from = side[(k + n - 1) % n], to = side[k];
+        if (from < 0 && to > 0) part.edges.push_back({g, meeting(g, edge.border)});
+        if (from == 0 && to > 0) part.edges.push_back({g, cell.edges[(k + n - 1) % n].end});
+        if (from > 0 && to < 0) part.edges.push_back({edge.border, meeting(g, edge.border)});
+        if ((from > 0 && to >= 0) || (from <= 0 && to > 0)) part.edges.push_back(edge);
+    }
+    return part;
+}
+
+/// In a light of area 1. Corners are rounded to double once.
+double area_of(const Cell& cell) {
+    const auto place = [](const Corner& c) {
+        return dvec2(CGAL::to_double(Rational(c[0] / c[2])), CGAL::to_double(Rational(c[1] / c[2])));
+    };
+    const dvec2 origin = place(cell.edges[0].end);
+    double twice       = 0;
+    for (std::size_t k = 1; k + 1 < cell.edges.size(); ++k) {
+        const dvec2 a = place(cell.edges[k].end) - origin, b = place(cell.edges[k + 1].end) - origin;
+        twice += a.x * b.y - a.y * b.x;
+    }
+    return twice / 2 / 4;  // the light is 2 x 2
+}
+
+/// Of the light's points that a triangle (a, b, c) hides from the viewpoint. The segment to (x, y) passes through it
+/// where det(a, b, (x, y, 1)) and the other two have the sign of det(a, b, c), and meets it there at W = det(a, b, c)
+/// over their sum, which is before the light where it is less than the light's height.
+std::optional<std::array<HalfPlane, 4>> hidden_by(const Scene& scene, const RationalSpace& space, TriangleId t) {
+    std::array<Rational3, 3> corner;
+    for (std::size_t k = 0; k < 3; ++k) {
+        const Numerators<Rational> q = space.project(scene.vertex(t, static_cast<int>(k)));
+        corner[k]                    = {q.x, q.y, q.w};
+    }
+    const Rational volume = dot(corner[0], cross(corner[1], corner[2]));
+    const int sign        = static_cast<int>(CGAL::sign(volume));
+    if (sign == 0) return std::nullopt;  // seen edge-on
+    std::array<HalfPlane, 4> hidden;
+    for (std::size_t k = 0; k < 3; ++k) hidden[k] = scaled(cross(corner[k], corner[(k + 1) % 3]), Rational(sign));
+    hidden[3]    = scaled(hidden[0] + hidden[1] + hidden[2], space.height());
+    hidden[3][2] = hidden[3][2] - Rational(sign) * volume;
+    return hidden;
+}
+
+/// Of the light's points on the side of the plane of the viewpoint's own triangle that it sees.
+HalfPlane in_front(const Sight& sight) {
+    const Scene& scene        = sight.viewpoint.scene();
+    const TriangleId own      = sight.viewpoint.own();
+    const Rational3 a         = rational(scene.vertex(own, 0));
+    const Rational3 n         = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
+    const LightPlane& p       = sight.plane;
+    const Rational3 u         = p.exact_axes != nullptr ? p.exact_axes->u : rational(p.u),
+                    v         = p.exact_axes != nullptr ? p.exact_axes->v : rational(p.v);
+    const Rational3 c         = p.exact_centre
+                                    ? *p.exact_centre
+                                    : rational(sight.viewpoint.point().corner()) + rational(p.centre_from_corner.value);
+    const Rational3 to_centre = c - sight.viewpoint.point().exact();
+    return scaled({dot(n, u), dot(n, v), dot(n, to_centre)}, Rational(sight.turn));
+}
+
+Cell whole_light() {
+    const HalfPlane left{1, 0, 1}, right{-1, 0, 1}, low{0, 1, 1}, high{0, -1, 1};
+    Cell cell;
+    for (const auto& [border, next] : {std::pair{low, right}, {right, high}, {high, left}, {left, low}})
+        cell.edges.push_back({border, meeting(border, next)});
+    return cell;
+}
+
+/// Replaces a cell by its parts: what the triangle hides, dimmed, and the rest.
+void divide(Cell cell, const std::array<HalfPlane, 4>& hidden, dvec3 passes, std::vector<Cell>& into) {
+    const std::size_t before = into.size();
+    Cell rest                = cell;
+    for (const HalfPlane& g : hidden) {
+        Cell beside = clipped(rest, scaled(g, Rational(-1)));
+        if (!beside.edges.empty()) into.push_back(std::move(beside));
+        rest = clipped(rest, g);
+        if (rest.edges.empty()) {  // none of it is hidden, and nothing is to be cut
+            into.resize(before);
+            into.push_back(std::move(cell));
+            return;
+        }
+    }
+    rest.share *= passes;
+    if (rest.share != dvec3(0)) into.push_back(std::move(rest));
+}
+
+}  // namespace
+
+std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpace& space,
+                                           std::span<const TriangleId> between) {
+    const Scene& scene = sight.viewpoint.scene();
+    std::vector<Cell> cells{whole_light()}, next;
+    if (sight.partly) {
+        cells[0] = clipped(cells[0], in_front(sight));
+        if (cells[0].edges.empty()) return dvec3(0);
+    }
+    for (const TriangleId t : between) {
+        const auto hidden = hidden_by(scene, space, t);
+        if (!hidden) continue;
+        next.clear();
+        for (Cell& cell : cells) divide(std::move(cell), *hidden, dvec3(scene.lets_through(t)), next);
+        if (next.size() > kMostCells) return std::nullopt;
+        std::swap(cells, next);
+    }
+    dvec3 passed(0);
+    for (const Cell& cell : cells) passed += area_of(cell) * cell.share;
+    return passed;
+}
+
+}  // namespace umbra::exact_detail

@@ -1,0 +1,24 @@
+// How much of a rectangle light reaches a point where occluders let a part of the light through: the light is cut into
+// convex cells, each behind the same triangles, in rationals.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "umbra/shadows/exact/light_space.h"
+#include "umbra/shadows/exact/sight.h"
+
+namespace umbra::exact_detail {
+
+/// Into more cells than that no light is cut: it would take seconds a point.
+inline constexpr std::size_t kMostCells = 4096;
+
+/// The mean over the light of the product, per channel, of what the triangles `between` leave of it (lets_through), and
+/// 0 where the plane of the point's triangle hides it if `sight.partly`. Off by less than 1e-9. Nothing where more than
+/// kMostCells cells are needed. The orientation of `space` is not 0; degenerate triangles and the point's own are not
+/// in `between`.
+[[nodiscard]] std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpace& space,
+                                                         std::span<const TriangleId> between);
+
+}  // namespace umbra::exact_detail
