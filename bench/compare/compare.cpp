@@ -45,10 +45,14 @@ VisibilityPlane smoothed_plane(const PreparedScene& prepared, const MethodRun& r
     return plane;
 }
 
-/// What people look at: `rendered` with several points a pixel where those are prepared and the method has answered the
-/// picture whole.
-Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rendered& rendered) {
-    if (prepared.pixel_side == 1 || !run.judged.empty()) return rendered.shown;
+/// S_j and the sum at the subpixels of a picture.
+struct FinePicture {
+    std::string of;  ///< the method and its settings; empty: there is none
+    std::vector<VisibilityPlane> planes;
+    Image linear;
+};
+
+std::vector<VisibilityPlane> fine_planes(const PreparedScene& prepared, const MethodRun& run) {
     std::vector<VisibilityPlane> planes;
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
         run.method->aim(j);
@@ -59,8 +63,33 @@ Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rend
         planes.emplace_back(prepared.subpixels.size(), run.is_coloured);
         run.method->visibility(prepared.subpixels, j, planes.back().out());
     }
-    return displayed(antialiased(prepared.scene, prepared.subpixels, planes, prepared.pixel_side), prepared.scene.tone,
-                     prepared.scene.exposure);
+    return planes;
+}
+
+/// Whether a picture may have several points a pixel: they are prepared, and the method has answered the picture whole.
+bool is_fine(const PreparedScene& prepared, const MethodRun& run) {
+    return prepared.pixel_side > 1 && run.judged.empty();
+}
+
+FinePicture fine_picture(const PreparedScene& prepared, const MethodRun& run) {
+    if (!is_fine(prepared, run)) return {};
+    FinePicture fine{run.choice.text(), fine_planes(prepared, run), {}};
+    fine.linear = shade(prepared.scene, prepared.subpixels, fine.planes);
+    return fine;
+}
+
+/// What people look at: `rendered` with several points a pixel where there may be. The sum is evaluated only where S_j
+/// is not that of `known`.
+Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rendered& rendered,
+                 const FinePicture& known) {
+    if (!is_fine(prepared, run)) return rendered.shown;
+    const auto seen = [&](const Image& fine) {
+        return displayed(box_filtered(fine, prepared.pixel_side), prepared.scene.tone, prepared.scene.exposure);
+    };
+    if (known.of == run.choice.text()) return seen(known.linear);
+    const std::vector<VisibilityPlane> planes = fine_planes(prepared, run);
+    return seen(known.of.empty() ? shade(prepared.scene, prepared.subpixels, planes)
+                                 : shade(prepared.scene, prepared.subpixels, planes, known.planes, known.linear));
 }
 
 std::map<std::string, std::string> metadata(const Scene& scene, const MethodChoice& choice,
@@ -75,8 +104,8 @@ std::map<std::string, std::string> metadata(const Scene& scene, const MethodChoi
 /// Writes one method's files into `folder` and returns their names. `explained` is one a light, or empty where there is
 /// nothing to differ from.
 Json write_files(const fs::path& folder, const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                 const Rendered& rendered, const MethodRun& reference, std::span<const Explained> explained,
-                 const std::string& command) {
+                 const Rendered& rendered, const MethodRun& reference, const FinePicture& known,
+                 std::span<const Explained> explained, const std::string& command) {
     const Scene& scene       = prepared.scene;
     const PointBatch& points = prepared.points;
     Json files               = {{"exr", id + ".exr"}, {"png", id + ".png"}, {"lights", Json::object()}};
@@ -86,7 +115,7 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
                                         {.geometry = is_reference, .reference = is_reference, .explained = explained});
     full.metadata.merge(metadata(scene, run.choice, command));
     write_image(folder / (id + ".exr"), full);
-    write_image(folder / (id + ".png"), picture_of(prepared, run, rendered));
+    write_image(folder / (id + ".png"), picture_of(prepared, run, rendered, known));
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const std::string& light = scene.lights[j].name;
         Json entry               = {{"visibility", fmt::format("{}.S.{}.png", id, light)}};
@@ -127,8 +156,8 @@ std::string unique_id(std::string_view name, std::set<std::string>& used) {
 
 /// What a method answered, differences, times and files. `at` is the light that is being worked on.
 Json method_entry(const fs::path& folder, const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                  const MethodRun& reference, const Rendered& reference_rendered, const std::string& command,
-                  double& shade_ms, std::optional<LightId>& at) {
+                  const MethodRun& reference, const Rendered& reference_rendered, const FinePicture& known,
+                  const std::string& command, double& shade_ms, std::optional<LightId>& at) {
     const Scene& scene = prepared.scene;
     std::vector<Explained> explained;
     at.reset();
@@ -141,7 +170,7 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     Json entry = served_json(id, prepared, run, explained, reference.choice.text());
     Rendered rendered;
     shade_ms       = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
-    Json files     = write_files(folder, id, prepared, run, rendered, reference, explained, command);
+    Json files     = write_files(folder, id, prepared, run, rendered, reference, known, explained, command);
     entry["image"] = image_json(folder, id, run, std::move(rendered), reference_rendered, files);
     entry["files"] = std::move(files);
     return entry;
@@ -229,8 +258,9 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                     {"turns", nullptr},
                                     {"reference", reference_json(reference, reference_ran, scene, truth_ran.failed)},
                                     {"methods", Json::array()}};
+    const FinePicture fine       = fine_picture(prepared, reference_run);
     record["reference"]["files"] = write_files(staging, "reference", prepared, reference_run, reference_rendered,
-                                               reference_run, {}, options.command);
+                                               reference_run, fine, {}, options.command);
 
     // Methods that measure what the reference does not measure are compared with a truth of their own.
     struct Truth {
@@ -271,9 +301,9 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                                  ? reference_run
                                                  : run_method(choice, scene, prepared.facts, prepared.points, kOnce, &at);
             if (run.service)
-                answered.push_back(
-                    {method_entry(staging, id, prepared, run, truth, truth_rendered, options.command, shade_ms, at),
-                     times_of(run)});
+                answered.push_back({method_entry(staging, id, prepared, run, truth, truth_rendered, fine,
+                                                 options.command, shade_ms, at),
+                                    times_of(run)});
             else
                 answered.push_back({unserved_json(id, choice, run.service)});
         } catch (const InputError&) {  // a file that cannot be written is no fault of the method
@@ -349,7 +379,7 @@ Service render_scene(const fs::path& file, const RenderOptions& options) {
     if (!run.service) return run.service;
     const Rendered rendered = render_planes(prepared.scene, prepared.points, run.planes);
     Image image =
-        png ? picture_of(prepared, run, rendered)
+        png ? picture_of(prepared, run, rendered, {})
             : exr_image(rendered.linear, prepared.scene, prepared.points, run, {.geometry = options.with_geometry});
     image.metadata.merge(metadata(prepared.scene, choice, options.command));
     write_image(options.out, image);

@@ -19,7 +19,8 @@ unsigned number_of(const ErrorColour& entry) {
 
 unsigned colour_at(const Image& image, std::size_t pixel) {
     unsigned rgb = 0;
-    for (std::size_t c = 0; c < 3; ++c) rgb = rgb << 8 | static_cast<unsigned>(std::lround(image.at(pixel, c) * 255));
+    for (std::size_t c = 0; c < 3; ++c)
+        rgb = rgb << 8 | static_cast<unsigned>(std::floor(double(image.at(pixel, c)) * 255 + 0.5));
     return rgb;
 }
 
@@ -58,8 +59,12 @@ ErrorRings error_rings(const Image& image) {
         return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
                      static_cast<std::size_t>(column)];
     };
+    unsigned last    = 0;  // neighbours are mostly alike
+    bool is_interior = colours.contains(last);
     for (std::size_t i = 0; i < image.pixels(); ++i) {
-        if (!colours.contains(colour_at(image, i))) continue;
+        if (const unsigned colour = colour_at(image, i); colour != last)
+            last = colour, is_interior = colours.contains(colour);
+        if (!is_interior) continue;
         const auto width = static_cast<std::size_t>(image.width);
         const int x = static_cast<int>(i % width), y = static_cast<int>(i / width);
         cell_at(x / cell, y / cell).add(x, y);
@@ -102,7 +107,8 @@ ErrorRings error_rings(const Image& image) {
 std::vector<const ErrorColour*> classes_on(const Image& image) {
     std::set<unsigned> colours;
     if (image.channels.size() >= 3)
-        for (std::size_t i = 0; i < image.pixels(); ++i) colours.insert(colour_at(image, i));
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+            if (i == 0 || colour_at(image, i) != colour_at(image, i - 1)) colours.insert(colour_at(image, i));
     std::vector<const ErrorColour*> found;
     for (const ErrorColour& entry : kErrorPalette)
         if (colours.contains(number_of(entry))) found.push_back(&entry);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "umbra/core/base/error.h"
-#include "umbra/core/render/shade.h"
 
 namespace umbra {
 
@@ -124,11 +123,6 @@ VisibilityPlane between_centres(const Scene& scene, const PointBatch& centres, c
                 }
         }
     return plane;
-}
-
-Image antialiased(const Scene& scene, const PointBatch& subpixels, std::span<const VisibilityPlane> visibility,
-                  int side) {
-    return box_filtered(shade(scene, subpixels, visibility), side);
 }
 
 }  // namespace umbra

@@ -34,9 +34,4 @@ inline constexpr int kPictureSamples = 4;
                                               const VisibilityPlane& at_centres, const PointBatch& subpixels, int side,
                                               LightId light, std::vector<std::uint32_t>& ask);
 
-/// The sum at subpixel points with S_j there, box filtered to one value a pixel: R G B, linear.
-/// `visibility` has one plane a light.
-[[nodiscard]] Image antialiased(const Scene& scene, const PointBatch& subpixels,
-                                std::span<const VisibilityPlane> visibility, int side);
-
 }  // namespace umbra

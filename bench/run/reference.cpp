@@ -41,7 +41,8 @@ void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sa
         whole.s[sample[k]]          = answers.s[k];
         whole.answer[sample[k]]     = answers.answer[k];
         whole.half_width[sample[k]] = answers.half_width[k];
-        judged[sample[k]]           = 1;
+        if (!whole.colour.empty()) whole.colour[sample[k]] = answers.colour[k];
+        judged[sample[k]] = 1;
     }
     run.planes[light] = std::move(whole);
     run.judged[light] = std::move(judged);
@@ -122,6 +123,11 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
 
     const MethodRun stand_in =
         run_method(of_measure(stand_in_for_reference(), run.method->measures()), scene, facts, points, kOnce);
+    if (!stand_in.service) {  // then every point is the reference's, however long that takes
+        run = run_method(reference.choice, scene, facts, points, kOnce, at);
+        return done;
+    }
+    run.is_coloured                         = stand_in.is_coloured;
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
     run.build                               = time_runs(kOnce, [&] { run.method->build(scene, facts); });

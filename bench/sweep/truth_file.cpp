@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 
 #include "umbra/core/base/error.h"
@@ -11,6 +12,8 @@
 
 namespace umbra {
 namespace {
+
+constexpr std::array kColour{"red", "green", "blue"};  ///< of planes that have one
 
 std::string channel(const char* what, std::size_t light) { return fmt::format("{}.{}", what, light); }
 
@@ -22,17 +25,23 @@ std::size_t column(const Image& image, const std::string& name) {
 
 void write_truth(const std::filesystem::path& file, const ReferenceRun& ran, int width, int height) {
     std::vector<std::string> channels;
-    for (std::size_t j = 0; j < ran.run.planes.size(); ++j)
+    for (std::size_t j = 0; j < ran.run.planes.size(); ++j) {
         for (const char* what : {"s", "half_width"}) channels.push_back(channel(what, j));
+        if (ran.run.planes[j].colour.empty()) continue;
+        for (const char* what : kColour) channels.push_back(channel(what, j));
+    }
     Image image(width, height, channels);
     for (std::size_t j = 0; j < ran.run.planes.size(); ++j) {
         const VisibilityPlane& plane = ran.run.planes[j];
         std::vector<std::uint32_t> answer(plane.size()), judged(plane.size(), 1);
         const auto judged_here = ran.run.judged_points(static_cast<LightId>(j));
+        const std::size_t s    = column(image, channel("s", j));
         for (std::size_t i = 0; i < plane.size(); ++i) {
-            image.at(i, 2 * j)     = plane.s[i];
-            image.at(i, 2 * j + 1) = plane.half_width[i];
-            answer[i]              = static_cast<std::uint32_t>(plane.answer[i]);
+            image.at(i, s)     = plane.s[i];
+            image.at(i, s + 1) = plane.half_width[i];
+            for (std::size_t c = 0; c < 3 && !plane.colour.empty(); ++c)
+                image.at(i, s + 2 + c) = plane.colour[i][static_cast<int>(c)];
+            answer[i] = static_cast<std::uint32_t>(plane.answer[i]);
             if (!judged_here.empty()) judged[i] = judged_here[i];
         }
         image.integers[channel("answer", j)] = std::move(answer);
@@ -67,11 +76,15 @@ bool read_truth(const std::filesystem::path& file, std::size_t lights, std::size
         const auto answer = image.integers.find(channel("answer", j)),
                    judged = image.integers.find(channel("judged", j));
         if (s == image.channels.size() || half == image.channels.size() || answer == image.integers.end()) return false;
-        VisibilityPlane plane(points);
+        std::array<std::size_t, 3> colour{};  // a file may have them in any order
+        for (std::size_t c = 0; c < 3; ++c) colour[c] = column(image, channel(kColour[c], j));
+        const bool coloured = std::ranges::max(colour) < image.channels.size();
+        VisibilityPlane plane(points, coloured);
         for (std::size_t i = 0; i < points; ++i) {
             plane.s[i]          = image.at(i, s);
             plane.half_width[i] = image.at(i, half);
             plane.answer[i]     = static_cast<Answer>(answer->second[i]);
+            if (coloured) plane.colour[i] = {image.at(i, colour[0]), image.at(i, colour[1]), image.at(i, colour[2])};
         }
         ran.run.planes.push_back(std::move(plane));
         if (judged != image.integers.end()) {

@@ -183,8 +183,13 @@ const std::array<Sensitivity, 3>& sensitivities() {
 }
 constexpr double kWidest = 0.04;  // the largest b above: all channels are filtered with its radius
 
+/// Pixels that the filters of contrast sensitivity reach.
+int colour_radius(double pixels_per_degree) {
+    return int(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
+}
+
 Plane as_seen(const Plane& channel, const Sensitivity& sensitivity, double pixels_per_degree) {
-    const int radius = int(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
+    const int radius = colour_radius(pixels_per_degree);
     double total     = 0;  // of the two-dimensional filter
     for (const auto& [a, b] : sensitivity.terms) {
         const double sum = sum_of(gaussian(radius, kPi * kPi / (b * pixels_per_degree * pixels_per_degree)));
@@ -218,9 +223,14 @@ std::vector<vec3> perceived(const Planes& ycxcz, double pixels_per_degree) {
 struct Features {
     std::vector<float> edges, points;
 };
+double feature_sigma(double pixels_per_degree) { return 0.5 * kFeatureWidth * pixels_per_degree; }
+
+/// Pixels that the filters of edges and points reach.
+int feature_radius(double pixels_per_degree) { return int(std::ceil(3 * feature_sigma(pixels_per_degree))); }
+
 Features find_features(const Plane& y, double pixels_per_degree) {
-    const double sigma = 0.5 * kFeatureWidth * pixels_per_degree;
-    const int radius   = int(std::ceil(3 * sigma));
+    const double sigma = feature_sigma(pixels_per_degree);
+    const int radius   = feature_radius(pixels_per_degree);
     Kernel smooth      = gaussian(radius, 1 / (2 * sigma * sigma));
     Kernel first = smooth, second = smooth;
     for (int i = -radius; i <= radius; ++i) {
@@ -257,9 +267,9 @@ float colour_error(float distance) {
                     : float(kKneeError) + (d - knee) / (largest - knee) * float(1 - kKneeError);
 }
 
-/// FLIP of each pixel, for linear RGB in [0, 1].
-std::vector<float> error_map(int width, int height, const std::vector<vec3>& reference, const std::vector<vec3>& test,
-                             double pixels_per_degree) {
+/// FLIP of each pixel of a whole picture, for linear RGB in [0, 1].
+std::vector<float> whole_error_map(int width, int height, const std::vector<vec3>& reference,
+                                   const std::vector<vec3>& test, double pixels_per_degree) {
     const Planes a                = ycxcz_planes(width, height, reference);
     const Planes b                = ycxcz_planes(width, height, test);
     const std::vector<vec3> lab_a = perceived(a, pixels_per_degree);
@@ -275,6 +285,51 @@ std::vector<float> error_map(int width, int height, const std::vector<vec3>& ref
                                            std::abs(features_a.points[i] - features_b.points[i]));
             const float weight  = std::pow(feature / std::sqrt(2.0f), float(kFeatureExponent));
             map[i]              = std::clamp(std::pow(colour, 1 - weight), 0.0f, 1.0f);
+        }
+    });
+    return map;
+}
+
+// -- Tiles: a pixel whose surroundings are the same in both pictures has no error
+
+struct Rectangle {
+    int left, top, right, bottom;  ///< the last two lie outside
+
+    [[nodiscard]] int width() const { return right - left; }
+    [[nodiscard]] int height() const { return bottom - top; }
+};
+
+std::vector<vec3> cut(const std::vector<vec3>& picture, int width, const Rectangle& at) {
+    std::vector<vec3> part;
+    part.reserve(std::size_t(at.width()) * std::size_t(at.height()));
+    for (int y = at.top; y < at.bottom; ++y) {
+        const auto row = picture.begin() + std::ptrdiff_t(y) * width;
+        part.insert(part.end(), row + at.left, row + at.right);
+    }
+    return part;
+}
+
+/// FLIP of each pixel, for linear RGB in [0, 1]. Tiles are cut out with all that their pixels' filters reach, so that
+/// the values are those of whole_error_map to the last bit; those without a difference are 0 and not computed.
+std::vector<float> error_map(int width, int height, const std::vector<vec3>& reference, const std::vector<vec3>& test,
+                             double pixels_per_degree) {
+    constexpr int kTile = 96;
+    const int reach     = std::max(colour_radius(pixels_per_degree), feature_radius(pixels_per_degree));
+    const int across = (width + kTile - 1) / kTile, down = (height + kTile - 1) / kTile;
+    std::vector<float> map(reference.size());
+    parallel_ranges(std::size_t(across) * std::size_t(down), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t tile = begin; tile < end; ++tile) {
+            const int left = int(tile) % across * kTile, top = int(tile) / across * kTile;
+            const Rectangle inside{left, top, std::min(left + kTile, width), std::min(top + kTile, height)};
+            const Rectangle seen{std::max(left - reach, 0), std::max(top - reach, 0),
+                                 std::min(inside.right + reach, width), std::min(inside.bottom + reach, height)};
+            const std::vector<vec3> a = cut(reference, width, seen), b = cut(test, width, seen);
+            if (a == b) continue;
+            const std::vector<float> part = whole_error_map(seen.width(), seen.height(), a, b, pixels_per_degree);
+            for (int y = inside.top; y < inside.bottom; ++y)
+                for (int x = inside.left; x < inside.right; ++x)
+                    map[std::size_t(y) * std::size_t(width) + std::size_t(x)] =
+                        part[std::size_t(y - seen.top) * std::size_t(seen.width()) + std::size_t(x - seen.left)];
         }
     });
     return map;

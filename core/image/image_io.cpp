@@ -135,7 +135,7 @@ void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Ima
 
 /// The library multiplies by a rounded 1 / levels; this divides, so that 8 and 16 bits of one value are one float.
 void round_once(Image& image, double levels) {
-    for (float& x : image.data) x = float(std::round(double(x) * levels) / levels);
+    for (float& x : image.data) x = float(std::floor(double(x) * levels + 0.5) / levels);  // none is negative
 }
 
 /// A file beside `file` with the same ending, which tells the format; removed unless it was moved away. Its name is
@@ -179,7 +179,8 @@ std::vector<unsigned char> to_8_bit(const Image& image, std::size_t channels) {
     for (std::size_t i = 0; i < image.pixels(); ++i) {
         for (std::size_t c = 0; c < channels; ++c) {
             const float x = image.at(i, c);
-            bytes.push_back(x > 0 ? static_cast<unsigned char>(std::lround(255 * std::min(x, 1.0f))) : 0);  // NaN: 0
+            bytes.push_back(x > 0 ? static_cast<unsigned char>(std::floor(double(255 * std::min(x, 1.0f)) + 0.5))
+                                  : 0);  // NaN: 0
         }
     }
     return bytes;

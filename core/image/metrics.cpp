@@ -143,10 +143,22 @@ double ssim(const Image& a, const Image& b) {
     const std::size_t windows_across = width - across.size() + 1;
     const std::size_t windows_down   = std::size_t(a.height) - down.size() + 1;
 
+    // A window with the same values in both has the similarity 1 to the last bit: it is not computed.
     std::vector<double> sums(windows_down);
     parallel_ranges(windows_down, 8, [&](std::size_t begin, std::size_t end) {
         std::vector<Moments> columns(width);
+        std::vector<std::size_t> differing(width + 1);  // columns of the windows' rows, before each, that differ
         for (std::size_t y = begin; y < end; ++y) {
+            for (std::size_t x = 0; x < width; ++x) {
+                bool differs = false;
+                for (std::size_t k = 0; k < down.size(); ++k)
+                    differs |= ya[(y + k) * width + x] != yb[(y + k) * width + x];
+                differing[x + 1] = differing[x] + (differs ? 1 : 0);
+            }
+            if (differing[width] == 0) {
+                sums[y] = double(windows_across);
+                continue;
+            }
             std::fill(columns.begin(), columns.end(), Moments{});
             for (std::size_t k = 0; k < down.size(); ++k) {
                 for (std::size_t x = 0; x < width; ++x) {
@@ -157,6 +169,10 @@ double ssim(const Image& a, const Image& b) {
                 }
             }
             for (std::size_t x = 0; x < windows_across; ++x) {
+                if (differing[x + across.size()] == differing[x]) {
+                    sums[y] += 1;
+                    continue;
+                }
                 Moments m{};
                 for (std::size_t k = 0; k < across.size(); ++k)
                     for (std::size_t q = 0; q < m.size(); ++q) m[q] += across[k] * columns[x + k][q];

@@ -47,23 +47,58 @@ dvec3 shading_normal(const Scene& scene, const PointBatch& points, std::size_t i
     return length > 0 ? sum / length : face;
 }
 
-Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility) {
+namespace {
+
+void check_planes(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility) {
     if (!points.raster) throw std::logic_error("shade: the batch has no raster");
     if (visibility.size() != scene.lights.size() || points.facing.size() != scene.lights.size())
         throw std::logic_error("shade: one plane of S_j and one of facings are needed for each light");
     for (const VisibilityPlane& plane : visibility)
         if (plane.s.size() != points.size() || plane.answer.size() != points.size())
             throw std::logic_error("shade: a plane of S_j has another size than the batch");
+}
 
+bool same_at(const VisibilityPlane& a, const VisibilityPlane& b, std::size_t i) {
+    return a.answer[i] == b.answer[i] && a.s[i] == b.s[i] && a.colour.empty() == b.colour.empty() &&
+           (a.colour.empty() || a.colour[i] == b.colour[i]);
+}
+
+/// Of each point for which `wanted` holds.
+template <class Wanted>
+void shade_some(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility, Image& image,
+                const Wanted& wanted) {
     const PhongSum sum(scene, *points.raster);
-    Image image(points.raster->width, points.raster->height, {"R", "G", "B"});
     parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            if (!wanted(i)) continue;
             dvec3 light = scene.background;
             if (points.triangle[i] != kNoTriangle)
                 light = sum.at(points, i, shading_normal(scene, points, i), visibility);
             write_light(image, i, light);
         }
+    });
+}
+
+}  // namespace
+
+Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility) {
+    check_planes(scene, points, visibility);
+    Image image(points.raster->width, points.raster->height, {"R", "G", "B"});
+    shade_some(scene, points, visibility, image, [](std::size_t) { return true; });
+    return image;
+}
+
+Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility,
+            std::span<const VisibilityPlane> known_visibility, const Image& known) {
+    check_planes(scene, points, visibility);
+    check_planes(scene, points, known_visibility);
+    if (known.pixels() != points.size() || known.channels.size() != 3)
+        throw std::logic_error("shade: the known picture has another size than the batch");
+    Image image = known;
+    shade_some(scene, points, visibility, image, [&](std::size_t i) {
+        for (std::size_t j = 0; j < visibility.size(); ++j)
+            if (!same_at(visibility[j], known_visibility[j], i)) return true;
+        return false;
     });
     return image;
 }

@@ -15,6 +15,11 @@ namespace umbra {
 /// Terms that no material or light asks for are not computed. Parallel; the same bits for any number of threads.
 [[nodiscard]] Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility);
 
+/// The same picture for less, where most points have the S_j of another one: `known` is that of `known_visibility`, and
+/// the sum is evaluated only where the two differ.
+[[nodiscard]] Image shade(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility,
+                          std::span<const VisibilityPlane> known_visibility, const Image& known);
+
 /// The normals at the corners of triangle t on the side of `face`, its geometric normal on the side that is seen. A
 /// vertex whose normal is zero has that one.
 [[nodiscard]] std::array<dvec3, 3> corner_normals(const Scene& scene, TriangleId t, dvec3 face);

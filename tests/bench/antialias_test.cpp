@@ -13,6 +13,7 @@
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/shade.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -48,7 +49,7 @@ TEST(Antialias, IsTheMeanOfAllPointsOfAPixel) {
     const PointBatch fine = subpixel_points(RayScene(scene), scene, 6, 5, 4);
     VisibilityPlane plane(fine.size());
     for (std::size_t i = 0; i < fine.size(); ++i) plane.s[i] = i / 24 % 4 == 1 && i % 24 % 4 >= 2 ? 1.0f : 0.0f;
-    const Image image = antialiased(scene, fine, std::span(&plane, 1), 4);
+    const Image image = box_filtered(shade(scene, fine, std::span(&plane, 1)), 4);
     ASSERT_EQ(image.pixels(), 30u);
     for (std::size_t i = 0; i < image.pixels(); ++i) EXPECT_NEAR(image.at(i, 1), 0.1, 1e-6);
 }

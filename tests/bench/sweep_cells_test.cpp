@@ -196,6 +196,33 @@ TEST(CellView, HasRandomNumbersOfItsOwn) {
     EXPECT_EQ(found, rmse("ray_traced:samples=1,seed=15838"));
 }
 
+/// Coloured shadows, which three channels of S_j make.
+TEST(TruthFile, KeepsColours) {
+    const TemporaryFolder folder;
+    const PreparedScene p     = prepare_scene(folder.write("stained.json", R"({
+        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]}, "transparent_occluders": "multiply",
+        "materials": {"glass": {"opacity": 0.5, "transmit_colour": [1, 0.5, 0.25]}},
+        "lights": [{"type": "rectangle", "position": [1, 5, 0], "direction": [0, -1, 0], "size": [1, 1]},
+                   {"type": "directional", "direction": [0.2, -1, 0]}],
+        "objects": [{"type": "plane", "size": [8, 8]},
+                    {"type": "plane", "size": [2, 1], "material": "glass", "transform": [{"translate": [0, 1, 0]}]}]})"),
+                                              {48, 27});
+    const Reference reference = default_reference(p.facts);
+    EXPECT_EQ(reference.choice.info->name, "exact");
+    // Ten points are asked for, but no other method serves such a scene: all of them are the reference's.
+    const ReferenceRun ran = run_reference(reference, p.scene, p.facts, p.points, std::uint64_t{10});
+    EXPECT_EQ(ran.judged, ran.of);
+    ASSERT_EQ(ran.run.planes.size(), 2u);
+    write_truth(folder.path() / "truth.exr", ran, 48, 27);
+    ReferenceRun read{MethodRun{reference.choice}, 0, 0, {}};
+    ASSERT_TRUE(read_truth(folder.path() / "truth.exr", 2, p.points.size(), read));
+    for (std::size_t j = 0; j < 2; ++j) {
+        EXPECT_EQ(read.run.planes[j].s, ran.run.planes[j].s);
+        EXPECT_EQ(read.run.planes[j].colour, ran.run.planes[j].colour);
+        EXPECT_TRUE(std::ranges::any_of(read.run.planes[j].colour, [](vec3 s) { return s.r > s.b && s.b > 0; }));
+    }
+}
+
 TEST(TruthFile, KeepsEveryBit) {
     const TemporaryFolder folder;
     PreparedScene p           = prepare_scene(scene_file("light_sizes"), {48, 27});

@@ -57,6 +57,39 @@ TEST(Flip, OfBlackAgainstWhiteByHand) {
     EXPECT_NEAR(flip_ldr(constant(8, 8, vec3(0)), constant(8, 8, vec3(1))).mean, expected, 1e-5);
 }
 
+/// Tiles that are computed apart, and those that are not since nothing differs there, leave no seams: a part of a
+/// picture has the errors that it has as a part, away from its border.
+TEST(Flip, OfAPartIsPartOfTheWhole) {
+    constexpr int kWidth = 330, kHeight = 215, kLeft = 41, kTop = 37, kReach = 10;
+    const auto part = [](const Image& whole) {
+        Image image(kWidth - kLeft, kHeight - kTop, {"R", "G", "B"});
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (std::size_t c = 0; c < 3; ++c)
+                    image.at(std::size_t(y * image.width + x), c) =
+                        whole.at(std::size_t((y + kTop) * kWidth + x + kLeft), c);
+        return image;
+    };
+    for (const std::size_t step : {1u, 5003u}) {  // differences in every pixel, in a few
+        const Image a = scene(kWidth, kHeight, 0.7f);
+        Image b       = a;
+        for (std::size_t i = 0; i < b.pixels(); i += step) b.at(i, i % 3) = float(i * 7919 % 1000) / 1000;
+        const Flip whole = flip_ldr(a, b), cut = flip_ldr(part(a), part(b));
+        std::size_t errors = 0, right = 0;
+        for (int y = kReach; y < kHeight - kTop; ++y)
+            for (int x = kReach; x < kWidth - kLeft; ++x) {
+                const float there = whole.map[std::size_t((y + kTop) * kWidth + x + kLeft)];
+                ASSERT_EQ(there, cut.map[std::size_t(y * (kWidth - kLeft) + x)]) << x << ", " << y;
+                ++(there > 0 ? errors : right);
+            }
+        EXPECT_GT(errors, 1000u);
+        if (step > 1) {
+            EXPECT_GT(right, 1000u);
+        }
+        EXPECT_GT(flip_hdr(a, b).mean, 0);
+    }
+}
+
 TEST(Flip, IsSymmetricForLdr) {
     const Image a = scene(50, 40, 1);
     const Image b = scene(50, 40, 0.8f);

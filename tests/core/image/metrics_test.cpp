@@ -157,6 +157,11 @@ TEST(Ssim, EqualsItsDefinition) {
     EXPECT_GT(ssim(a, b), 0.8);
     EXPECT_DOUBLE_EQ(ssim(a, a), 1);
     EXPECT_DOUBLE_EQ(ssim(a, b), ssim(b, a));
+    // Two pixels that differ, in a corner and in the middle: most windows are the same in both.
+    Image few    = a;
+    few.at(0, 1) = 1 - few.at(0, 1), few.at(14 * 29 + 15, 0) = 1 - few.at(14 * 29 + 15, 0);
+    EXPECT_NEAR(ssim(a, few), ssim_directly(a, few), 1e-12);
+    EXPECT_LT(ssim(a, few), 1 - 1e-6);
 }
 
 TEST(Metrics, RefuseImagesOfDifferentSize) {

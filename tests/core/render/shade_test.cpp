@@ -46,6 +46,36 @@ struct Table {
     }
 };
 
+/// Of random S_j, some of them the same in both.
+TEST(Shade, FromAKnownPictureIsTheSamePicture) {
+    Light first, second;
+    first.kind = second.kind = LightKind::point;
+    first.position = {1, 3, 2}, second.position = {-2, 2, 1};
+    Material material;
+    material.k_s = vec3(0.4f);
+    Table known(material, {first, second});
+    for (int i = 0; i < 200; ++i) known.add(0.2f + 0.002f * float(i), 0.3f, 0.25f * float(i % 5));
+    Table other         = known;
+    const Image picture = known.shaded();
+    std::uint32_t seed  = 7;
+    const auto random   = [&] { return (seed = seed * 1664525u + 1013904223u) >> 24; };
+    for (std::size_t i = 0; i < 200; ++i)
+        for (VisibilityPlane& plane : other.planes) {
+            if (random() < 64) plane.s[i] = float(random()) / 255;
+            if (random() < 32) plane.answer[i] = Answer::undefined;
+        }
+    const Image whole = other.shaded();
+    EXPECT_NE(whole.data, picture.data);
+    EXPECT_EQ(shade(other.scene, other.points, other.planes, known.planes, picture).data, whole.data);
+    // Where S_j is the same, the known picture counts: it is not evaluated again.
+    Image grey = picture;
+    std::fill(grey.data.begin(), grey.data.end(), 0.5f);
+    EXPECT_EQ(shade(other.scene, other.points, known.planes, known.planes, grey).data, grey.data);
+    Table coloured = other;
+    for (VisibilityPlane& plane : coloured.planes) plane.colour.assign(plane.s.size(), vec3(0.5f, 0.25f, 0.125f));
+    EXPECT_EQ(shade(other.scene, other.points, coloured.planes, other.planes, whole).data, coloured.shaded().data);
+}
+
 vec3 rgb(const Image& image, std::size_t i) { return {image.at(i, 0), image.at(i, 1), image.at(i, 2)}; }
 
 Light point_light(vec3 position) {
