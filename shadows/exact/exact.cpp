@@ -1,5 +1,6 @@
-// Exact visibility: of hard lights by the segment from the exact surface point to the light (exact_segment.h), of area
-// lights by the part of the light that no triangle covers as seen from there (exact_area.h).
+// Exact visibility: of hard lights by the segment from the exact surface point to the light (exact_segment.h), or by
+// all triangles against binned points (binned_shadows.h) with the same answers; of area lights by the part of the light
+// that no triangle covers as seen from there (exact_area.h).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/exact/exact_area.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/shared/binned_shadows.h"
 #include "umbra/shadows/shared/exact_segment.h"
 #include "umbra/shadows/shared/light_points.h"
 #include "umbra/shadows/shared/triangle_tree.h"
@@ -19,12 +21,22 @@ namespace {
 
 using namespace exact_detail;
 
+enum class HardLights : std::uint8_t { automatic, segments, bins };
+
 struct Options {
+    HardLights hard_lights           = HardLights::automatic;
     ExactArea::Arithmetic arithmetic = ExactArea::Arithmetic::filtered;
     Measure measure                  = Measure::area;
 };
 
 const std::vector<Parameter> kParameters{
+    parameter<&Options::hard_lights>(
+        {.name  = "hard_lights",
+         .doc   = "Lights without an area, with the same answers. segments: from each point to the light, in a tree of "
+                  "boxes; bins: points in the light's image, every triangle against those behind it; auto: bins where "
+                  "there are at least half as many points as triangles.",
+         .phase = Phase::visibility,
+         .choices = "auto|segments|bins"}),
     parameter<&Options::arithmetic>(
         {.name = "arithmetic",
          .doc = "Area lights. filtered: floating point with a proven bound, and rationals where the bound is too wide; "
@@ -90,6 +102,7 @@ public:
         });
         has_filters_ = facts.has_filters;
         tree_.emplace(scene);
+        bins_            = BinnedShadows(scene);
         has_area_lights_ = !facts.hard_lights_only;
         if (has_area_lights_) area_.build(scene, *tree_);
     }
@@ -100,7 +113,7 @@ public:
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         if (!is_area(scene_->lights[light].kind))
-            see_hard(points, light, out);
+            bins_serve(points) ? bins_.visibility(points, light, out) : see_hard(points, light, out);
         else
             see_area(points, light, out);
     }
@@ -122,7 +135,8 @@ public:
     }
 
     std::size_t memory_bytes() const override {
-        return (tree_ ? tree_->memory_bytes() : 0) + takes_.size() + (has_area_lights_ ? area_.memory_bytes() : 0);
+        return (tree_ ? tree_->memory_bytes() : 0) + takes_.size() + bins_.memory_bytes() +
+               (has_area_lights_ ? area_.memory_bytes() : 0);
     }
 
 private:
@@ -135,6 +149,12 @@ private:
         if (passes == vec3(1) || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
             return Takes::nothing;
         return passes == vec3(0) ? Takes::all : Takes::part;
+    }
+
+    /// Bins know what blocks, not what lets a part through.
+    [[nodiscard]] bool bins_serve(const PointBatch& points) const {
+        if (has_filters_ || options.hard_lights == HardLights::segments) return false;
+        return options.hard_lights == HardLights::bins || 2 * points.size() >= scene_->triangles.size();
     }
 
     void see_hard(const PointBatch& points, LightId light, Visibility out) const {
@@ -232,6 +252,7 @@ private:
 
     const Scene* scene_ = nullptr;
     std::optional<TriangleTree> tree_;
+    BinnedShadows bins_;
     std::vector<Takes> takes_;  ///< one a triangle
     bool has_area_lights_ = false, has_filters_ = false;
     ExactArea area_{ExactArea::Arithmetic::filtered, Measure::area};

@@ -8,9 +8,10 @@
 #include <vector>
 
 #include "umbra/core/scene/primitives.h"
-#include "umbra/shadows/alias_free/light_image.h"
-#include "umbra/shadows/alias_free/point_bins.h"
-#include "umbra/shadows/alias_free/shadow_planes.h"
+#include "umbra/shadows/shared/light_image.h"
+#include "umbra/shadows/shared/point_bins.h"
+#include "umbra/shadows/shared/shadow_planes.h"
+#include "umbra/tests/support/adversarial_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
@@ -24,17 +25,19 @@ struct Compared {
 Compared against_exact(const Scene& scene) {
     const PointBatch points = primary(scene);
     Compared compared;
-    MethodCase binned("alias_free", scene), exact("exact", scene);
+    MethodCase binned("alias_free", scene), exact("exact:hard_lights=segments", scene), either("exact", scene);
     EXPECT_EQ(verdict(*binned.method, binned.facts).how, How::exactly);
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         binned.prepare(light);
-        exact.prepare(light);
-        const VisibilityPlane found = binned.visibility(points, light), truth = exact.visibility(points, light);
+        exact.prepare(light), either.prepare(light);
+        const VisibilityPlane found = binned.visibility(points, light), truth = exact.visibility(points, light),
+                              chosen = either.visibility(points, light);
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (!is_open(points, light, i)) continue;
             ++(truth.s[i] > 0 ? compared.lit : compared.umbra);
             compared.on_boundary += truth.answer[i] == Answer::on_boundary ? 1 : 0;
-            compared.different += found.s[i] != truth.s[i] || found.answer[i] != truth.answer[i];
+            compared.different += found.s[i] != truth.s[i] || found.answer[i] != truth.answer[i] ||
+                                  chosen.s[i] != truth.s[i] || chosen.answer[i] != truth.answer[i];
         }
     }
     return compared;
@@ -131,7 +134,7 @@ TEST(AliasFree, AgreesFarFromTheOriginAndAtGrazingLight) {
 
 /// A block is inside or outside of a shadow where a point is by more than rounding, and unsure on its border.
 TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
-    using namespace alias_free_detail;
+    using namespace binned_shadows_detail;
     const std::array<dvec3, 3> corners{dvec3(0, 1, 0), dvec3(1, 1, 0), dvec3(0, 1, 1)};  // seen from below: clockwise
     const dvec3 down(0, -1, 0);
     // The winding's normal is (b - a) x (c - a) = (0, -1, 0): away from a light above.
@@ -148,7 +151,7 @@ TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
 
 /// Whatever an extent covers is visited, however points are spread.
 TEST(PointBins, FindEveryPointOfAnExtent) {
-    using namespace alias_free_detail;
+    using namespace binned_shadows_detail;
     std::mt19937 random(3);
     std::exponential_distribution<double> crowded(8);  // most in a corner
     std::vector<PointBins::Entry> entries, places;
@@ -184,6 +187,46 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
             EXPECT_LT(visited, 3 * wanted + 2000) << trial;
         }
     }
+}
+
+/// Slivers, contacts, lights on edges, in corners and next to surfaces, far origins: what is said of a point,
+/// boundaries included, is what its segment says. Counts what was compared.
+Compared against_segments(std::uint64_t first_seed, std::uint64_t last_seed) {
+    Compared compared;
+    for (std::uint64_t seed = first_seed; seed <= last_seed; ++seed) {
+        const AdversarialScene made = adversarial_scene(seed, LightsWanted::hard, 3, 60);
+        MethodCase binned("alias_free", made.scene), exact("exact:hard_lights=segments", made.scene);
+        for (LightId light = 0; light < made.scene.lights.size(); ++light) {
+            binned.prepare(light), exact.prepare(light);
+            const VisibilityPlane found = binned.visibility(made.points, light),
+                                  truth = exact.visibility(made.points, light);
+            for (std::size_t i = 0; i < made.points.size(); ++i) {
+                if (made.points.triangle[i] == kNoTriangle || !made.points.asks(light, i)) continue;
+                ++(truth.s[i] > 0 ? compared.lit : compared.umbra);
+                compared.on_boundary += truth.answer[i] == Answer::on_boundary;
+                if (found.s[i] == truth.s[i] && found.answer[i] == truth.answer[i]) continue;
+                ++compared.different;
+                ADD_FAILURE() << made.scene.name << " (" << made.pattern << "), light " << light << ", point " << i;
+            }
+        }
+    }
+    return compared;
+}
+
+TEST(AliasFree, AgreesWithSegmentsOnAdversarialScenes) {
+    const Compared compared = against_segments(1, 60);
+    EXPECT_EQ(compared.different, 0u);
+    EXPECT_GT(compared.lit + compared.umbra, 3000u);
+    EXPECT_GT(compared.umbra, 300u);
+    EXPECT_GT(compared.on_boundary, 60u);
+}
+
+TEST(AliasFree, AgreesWithSegmentsOnThousandsOfScenes) {
+    const Compared compared = against_segments(61, 3000);
+    EXPECT_EQ(compared.different, 0u);
+    EXPECT_GT(compared.lit + compared.umbra, 150000u);
+    EXPECT_GT(compared.umbra, 15000u);
+    EXPECT_GT(compared.on_boundary, 3000u);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <random>
+#include <string_view>
 
 #include "umbra/core/render/points.h"
 #include "umbra/core/scene/facts.h"
@@ -72,7 +73,7 @@ struct Counts {
 
 /// Random points on a small lattice scene against exact; every light is placed where it meets vertices, edges and
 /// planes.
-Counts compare_with_brute_force(unsigned seed) {
+Counts compare_with_brute_force(unsigned seed, std::string_view choice) {
     std::mt19937 random(seed);
     std::uniform_int_distribution<int> lattice(-3, 3), eighth(0, 8), pick(0, 99);
     const auto lattice_point = [&] {
@@ -113,7 +114,7 @@ Counts compare_with_brute_force(unsigned seed) {
     }
     face_lights(batch, scene);
 
-    const std::unique_ptr<Method> method = parse_method("exact").make();
+    const std::unique_ptr<Method> method = parse_method(choice).make();
     const SceneFacts facts               = find_facts(scene);
     EXPECT_EQ(method->serves(facts).how, How::exactly);
     method->build(scene, facts);
@@ -155,18 +156,20 @@ Counts compare_with_brute_force(unsigned seed) {
 }
 
 TEST(Exact, AgreesWithBruteForceInWholeNumbers) {
-    Counts all;
-    for (unsigned seed = 1; seed <= 60; ++seed) {
-        const Counts counts = compare_with_brute_force(seed);
-        all.points += counts.points;
-        all.blocked += counts.blocked;
-        all.touched += counts.touched;
+    for (const char* choice : {"exact:hard_lights=segments", "exact:hard_lights=bins"}) {
+        Counts all;
+        for (unsigned seed = 1; seed <= 60; ++seed) {
+            const Counts counts = compare_with_brute_force(seed, choice);
+            all.points += counts.points;
+            all.blocked += counts.blocked;
+            all.touched += counts.touched;
+        }
+        // The scenes must be as nasty as they are meant to be, or the agreement says little.
+        EXPECT_GT(all.points, 40000) << choice;
+        EXPECT_GT(all.blocked, 8000) << choice;
+        EXPECT_GT(all.points - all.blocked - all.touched, 4000) << choice;
+        EXPECT_GT(all.touched, 2000) << choice;
     }
-    // The scenes must be as nasty as they are meant to be, or the agreement says little.
-    EXPECT_GT(all.points, 40000);
-    EXPECT_GT(all.blocked, 8000);
-    EXPECT_GT(all.points - all.blocked - all.touched, 4000);
-    EXPECT_GT(all.touched, 2000);
 }
 
 TEST(Exact, MovesWithTheSceneByPowersOfTwo) {

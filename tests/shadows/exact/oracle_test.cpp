@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -81,20 +82,22 @@ bool judge_facing(const AdversarialScene& made, const Oracle& truth, LightId lig
 
 void judge_hard(const AdversarialScene& made, Tally& tally) {
     const Oracle truth(made.scene);
-    MethodCase exact("exact", made.scene);
+    MethodCase segments("exact:hard_lights=segments", made.scene), bins("exact:hard_lights=bins", made.scene);
     for (LightId light = 0; light < made.scene.lights.size(); ++light) {
-        exact.prepare(light);
-        const VisibilityPlane plane = exact.visibility(made.points, light);
+        segments.prepare(light), bins.prepare(light);
+        const std::array planes{segments.visibility(made.points, light), bins.visibility(made.points, light)};
         for (std::size_t i = 0; i < made.points.size(); ++i) {
             if (made.points.triangle[i] == kNoTriangle || !judge_facing(made, truth, light, i, tally)) continue;
             const Verdict right = truth.verdict(name_of(made.points, i), made.scene.lights[light]);
-            const Verdict found = plane.answer[i] == Answer::on_boundary ? Verdict::on_boundary
-                                  : plane.s[i] == 0                      ? Verdict::umbra
-                                                                         : Verdict::lit;
             ++tally.decisions;
             ++(right == Verdict::lit ? tally.lit : right == Verdict::umbra ? tally.umbra : tally.on_boundary);
-            if (found != right)
-                tally.mismatch(made, light, i, fmt::format("verdict {}, expected {}", int(found), int(right)));
+            for (const VisibilityPlane& plane : planes) {  // both ways that `exact` has
+                const Verdict found = plane.answer[i] == Answer::on_boundary ? Verdict::on_boundary
+                                      : plane.s[i] == 0                      ? Verdict::umbra
+                                                                             : Verdict::lit;
+                if (found != right)
+                    tally.mismatch(made, light, i, fmt::format("verdict {}, expected {}", int(found), int(right)));
+            }
         }
     }
 }

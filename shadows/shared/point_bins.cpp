@@ -1,11 +1,11 @@
-#include "umbra/shadows/alias_free/point_bins.h"
+#include "umbra/shadows/shared/point_bins.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "umbra/core/base/parallel.h"
 
-namespace umbra::alias_free_detail {
+namespace umbra::binned_shadows_detail {
 namespace {
 
 constexpr std::size_t kInCell = 16;   ///< points of a cell, on average
@@ -95,4 +95,4 @@ PointBins::PointBins(std::vector<Entry>& entries, std::span<const vec3> position
     marks_ = std::vector<Marks>(blocks_.size());
 }
 
-}  // namespace umbra::alias_free_detail
+}  // namespace umbra::binned_shadows_detail

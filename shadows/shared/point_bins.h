@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "umbra/core/render/points.h"
-#include "umbra/shadows/alias_free/light_image.h"
+#include "umbra/shadows/shared/light_image.h"
 
-namespace umbra::alias_free_detail {
+namespace umbra::binned_shadows_detail {
 
 inline constexpr std::size_t kLanes = 8;
 
@@ -96,4 +96,4 @@ private:
     mutable std::vector<Marks> marks_;
 };
 
-}  // namespace umbra::alias_free_detail
+}  // namespace umbra::binned_shadows_detail

@@ -1,6 +1,6 @@
-#include "umbra/shadows/alias_free/shadow_planes.h"
+#include "umbra/shadows/shared/shadow_planes.h"
 
-namespace umbra::alias_free_detail {
+namespace umbra::binned_shadows_detail {
 
 // Compiled so that the loop over lanes becomes vector code: shadows/CMakeLists.txt.
 ShadowPlanes::Lanes ShadowPlanes::test(const Block& block) const {
@@ -30,4 +30,4 @@ bool ShadowPlanes::any_in(const Extent& extent, const Block& block) {
     return any != 0;
 }
 
-}  // namespace umbra::alias_free_detail
+}  // namespace umbra::binned_shadows_detail

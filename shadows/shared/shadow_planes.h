@@ -7,9 +7,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "umbra/shadows/alias_free/point_bins.h"
+#include "umbra/shadows/shared/point_bins.h"
 
-namespace umbra::alias_free_detail {
+namespace umbra::binned_shadows_detail {
 
 /// The half spaces whose intersection is the shadow, each scaled so that rounding moves a value by less than 1: a value
 /// above 1 is inside, below -1 outside.
@@ -27,6 +27,16 @@ struct ShadowPlanes {
         set(3, -turn * glm::cross(travel[2], ac), corners[2], size(travel[2]) * size(ac), reach);
     }
 
+    /// Of a triangle whose plane holds the light, which hides nothing and may be touched: a lane outside is away from
+    /// that plane, and none is inside.
+    [[nodiscard]] static ShadowPlanes of_edge_on(const std::array<dvec3, 3>& corners, dvec3 reach) {
+        ShadowPlanes planes;
+        const dvec3 ab = corners[1] - corners[0], ac = corners[2] - corners[0], normal = glm::cross(ab, ac);
+        for (std::size_t k = 0; k < 4; ++k)
+            planes.set(k, k % 2 == 0 ? normal : -normal, corners[0], size(ab) * size(ac), reach);
+        return planes;
+    }
+
     /// Which lanes of a block are in the shadow, and of which that is not known.
     struct Lanes {
         std::uint8_t inside, unsure;
@@ -37,6 +47,8 @@ struct ShadowPlanes {
     [[nodiscard]] static bool any_in(const Extent& extent, const Block& block);
 
 private:
+    ShadowPlanes() = default;
+
     static double size(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
     /// normal . (p - through) > 0. In floats each product has a rounded factor from either side and is rounded, as are
@@ -57,4 +69,4 @@ private:
     }
 };
 
-}  // namespace umbra::alias_free_detail
+}  // namespace umbra::binned_shadows_detail

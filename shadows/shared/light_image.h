@@ -7,7 +7,7 @@
 
 #include "umbra/core/scene/scene.h"
 
-namespace umbra::alias_free_detail {
+namespace umbra::binned_shadows_detail {
 
 /// A rectangle of one face, and the least depth of what lies in it.
 struct Extent {
@@ -24,8 +24,9 @@ struct Extent {
 
 class LightImage {
 public:
-    /// `centre`: near the scene, so that a directional light's image is centred.
-    LightImage(const Light& light, dvec3 centre);
+    /// `centre`: near the scene, so that a directional light's image is centred. `reach`: the largest magnitude of the
+    /// coordinates of all points and corners.
+    LightImage(const Light& light, dvec3 centre, double reach);
 
     [[nodiscard]] int faces() const { return infinite_ ? 1 : 6; }
 
@@ -34,8 +35,8 @@ public:
         dvec2 at;
         double depth;  ///< along the light's direction, or along the axis of the face: larger is farther
     };
-    /// Off by roundings in double of what `p` is from the light, or from the scene's centre. Nothing in the light
-    /// itself.
+    /// Off by far less than what extents are larger than their triangles. Nothing where `p`, which is rounded, lies so
+    /// near to the light that its place could be anywhere.
     [[nodiscard]] std::optional<Place> place(dvec3 p) const;
 
     /// Covers all that the triangle covers of the face, and a little more. Nothing where it surely covers nothing.
@@ -50,8 +51,9 @@ private:
     [[nodiscard]] dvec3 in_face(int face, dvec3 p) const;
 
     bool infinite_;
+    double reach_;
     dvec3 origin_;                 ///< the light's position, or `centre`
     std::array<dvec3, 3> axes_{};  ///< of a directional light: right, up, the direction of travel
 };
 
-}  // namespace umbra::alias_free_detail
+}  // namespace umbra::binned_shadows_detail
