@@ -113,7 +113,7 @@ Json climb_ladders(const LadderOptions& options) {
         steps.next();
         const auto fail = [&](const std::string& method) { add_failed(*ladder, method); };
         try {
-            LadderRun run = climb_ladder(*ladder, methods_chosen, progress);
+            LadderRun run = climb_ladder(*ladder, methods_chosen, progress, options.patience_s);
             if (run.methods.size() > 1) {
                 progress(fmt::format("{}: times", ladder->name));
                 run.first_rung_ms = time_first_rung(*ladder, run.methods);

@@ -15,6 +15,7 @@ struct LadderOptions {
     std::vector<std::string> methods;  ///< as typed; empty: all that reports show (MethodInfo::is_shown) but `exact`,
                                        ///< the reference, with their defaults and in their textbook form
     bool only_by_default = false;      ///< of these, those that run on every scene alone: minutes less
+    double patience_s    = 20;         ///< as climb_ladder takes it
     std::filesystem::path out;
     std::string command;  ///< for the record
     int threads = 0;

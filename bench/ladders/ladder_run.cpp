@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
@@ -136,8 +137,9 @@ RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vec
 }
 
 LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
-                       const std::function<void(const std::string&)>& progress) {
+                       const std::function<void(const std::string&)>& progress, double patience_s) {
     LadderRun run{&ladder, ladder.wrong_sum ? std::vector<MethodChoice>{} : methods, {}};
+    std::vector<std::string> too_slow(run.methods.size());  // why; empty where it is not
     for (const double value : ladder.rungs) {
         if (progress) progress(fmt::format("{}: {:g}", ladder.name, value));
         Rung& rung = run.rungs.emplace_back();
@@ -168,7 +170,21 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
             o.points  = rung.surface_points;
             rung.outcomes.push_back(std::move(o));
         }
-        for (const MethodChoice& method : run.methods) rung.outcomes.push_back(outcome(stage, method));
+        for (std::size_t m = 0; m < run.methods.size(); ++m) {
+            RungOutcome& o = rung.outcomes.emplace_back();
+            if (!too_slow[m].empty()) {
+                o.service = {How::not_at_all, too_slow[m]};
+                continue;
+            }
+            // Of the processor, which other processes do not lengthen: what is asked must not hang on them.
+            const std::clock_t start = std::clock();
+            o                        = outcome(stage, run.methods[m]);
+            const double seconds     = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+            if (seconds > patience_s)
+                too_slow[m] =
+                    fmt::format("It took {:.3g} s of processor time on rung {:g}, and {:g} s are allowed (--patience).",
+                                seconds, value, patience_s);
+        }
     }
     return run;
 }

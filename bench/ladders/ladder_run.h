@@ -85,8 +85,11 @@ struct RungStage {
 [[nodiscard]] RungOutcome outcome(const RungStage& stage, const MethodChoice& method,
                                   std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr);
 
-/// Climbs one ladder with each of the methods. `progress` is called with each step's description; may be empty.
+/// Climbs one ladder with each of the methods. `progress` is called with each step's description; may be empty. A
+/// method that took longer than `patience_s`, seconds of processor time, on a rung is asked on no later one: it does
+/// not serve these, and says why.
 [[nodiscard]] LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
-                                     const std::function<void(const std::string&)>& progress = {});
+                                     const std::function<void(const std::string&)>& progress = {},
+                                     double patience_s                                       = double(kInfinity));
 
 }  // namespace umbra

@@ -23,6 +23,14 @@ namespace {
 
 CellOptions cell_options(const SweepPlan& plan) { return {plan.size, plan.reference, plan.points}; }
 
+/// Without --methods: what runs on every scene, and what runs by itself on each of the plan's scenes.
+bool is_default(const MethodInfo& info, const SweepPlan& plan) {
+    return info.by_default ||
+           (info.is_shown() && std::ranges::all_of(plan.scenes, [&](const fs::path& scene) {
+                return std::ranges::find(info.shown_on, scene.stem().string()) != info.shown_on.end();
+            }));
+}
+
 /// What is typed is wrong before anything is computed.
 std::vector<MethodChoice> typed_settings(const SweepPlan& plan) {
     std::vector<MethodChoice> all;
@@ -30,7 +38,7 @@ std::vector<MethodChoice> typed_settings(const SweepPlan& plan) {
         for (MethodChoice& choice : expand_settings(text)) all.push_back(std::move(choice));
     if (plan.settings.empty())
         for (const MethodInfo* info : methods())
-            if (info->by_default)
+            if (is_default(*info, plan))
                 for (MethodChoice& choice : default_sweep(*info)) all.push_back(std::move(choice));
     return all;
 }

@@ -163,6 +163,18 @@ TEST(BreakRule, AnExceptionIsABreakWithItsMessage) {
     EXPECT_EQ(c.why, "out of range");
 }
 
+TEST(BreakRule, AMethodThatTakesTooLongIsNotAskedAgain) {
+    Ladder two          = find_ladder("gap");
+    two.rungs           = two.rungs.first(3);
+    const LadderRun run = climb_ladder(two, {parse_method("ray_traced")}, {}, 0);
+    ASSERT_EQ(run.rungs.size(), 3u);
+    EXPECT_TRUE(run.rungs[0].outcomes[0].ran());
+    const Climb c = climb(run, 0);
+    EXPECT_EQ(c.not_served_from, 1u);
+    EXPECT_NE(c.why.find("s of processor time on rung 0.1, and 0 s are allowed"), std::string::npos) << c.why;
+    EXPECT_FALSE(climb(climb_ladder(two, {parse_method("ray_traced")}), 0).not_served_from.has_value());
+}
+
 TEST(BreakRule, WrongPointsAreCountedByHoldingPlanesAgainstTheTruth) {
     // On the harmless rung ray_traced is right; a truth that is turned over in the interior breaks it.
     const std::unique_ptr<RungStage> stage = set_stage(find_ladder("far_from_origin").scene(1));

@@ -34,6 +34,11 @@ Action ladder_command(CLI::App& app, const Common& common) {
     app.add_option("--methods", line->options.methods,
                    "Methods, with settings (default: all that reports show but exact, each also @textbook)")
         ->type_name("METHOD");
+    app.add_option("--patience", line->options.patience_s,
+                   "Seconds of processor time: a method that takes longer on a rung is asked on no later one")
+        ->check(number_in(0.001, 1e6, "a number from 0.001 to 1000000"))
+        ->capture_default_str()
+        ->type_name("S");
     app.add_option("-o,--output", line->options.out, "Folder to write to")->type_name("DIR")->required();
     app.add_flag("--json", line->as_json, "Print results.json instead of the table");
     return [line, &common] { return ladder(*line, common); };
