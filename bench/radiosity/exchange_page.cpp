@@ -8,6 +8,7 @@
 #include "report_assets.h"
 #include "umbra/bench/pages/chart_parts.h"
 #include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/record_folder.h"
 #include "umbra/bench/pages/report_text.h"
 
 namespace umbra {
@@ -56,6 +57,13 @@ void write_exchange_page(const Json& record, const std::filesystem::path& folder
     const PageHead head = {fmt::format("Radiosity: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::radiosity_html, head, view));
     write_page_assets(folder, head.scripts, staged);
+}
+
+Json write_exchange_study(const PreparedScene& prepared, const ExchangeOptions& options,
+                          const std::filesystem::path& out) {
+    return write_record_folder(
+        out, [&](const std::filesystem::path& folder) { return exchange_light(prepared, options, folder); },
+        write_exchange_page);
 }
 
 }  // namespace umbra

@@ -79,7 +79,7 @@ Json exchange_light(const PreparedScene& prepared, const ExchangeOptions& option
                                 {"command", options.command},
                                 {"scene", scene_json(prepared.scene)}};
     Exchange exchange(prepared.scene, {options.size, options.light_samples});
-    record["size"] = options.size, record["patches"] = exchange.patches();
+    record["patch_size"] = options.size, record["patches"] = exchange.patches();
     record["unshot"]       = {number(exchange.unshot())};
     Exchange::SideId first = 0;
     int steps              = 0;

@@ -17,14 +17,14 @@ struct ExchangeOptions {
     double until      = 0.02;    ///< ends where this share of the first power, or less, is unshot
     int light_samples = 16;
     std::string command;
-    std::function<void(const std::string&)> progress;
+    std::function<void(const std::string&)> progress{};
 };
 
 /// Solves and writes into `folder`: index.html and its style; direct.png, the diffuse light from the lights;
 /// indirect.png, what surfaces add; both.png; patches.png, in which every patch has a colour of its own, and
 /// elements_K.png, the elements of `radiosity`'s S_j of the K-th light; form_factors.png, from each patch to the first
-/// that sent, on a logarithmic scale. Returns {schema, version, command, scene, size, patches, steps, unshot: [share
-/// after each step], arrived, ...}. Throws InputError.
+/// that sent, on a logarithmic scale. Returns {schema, version, command, scene, patch_size, patches, steps, unshot:
+/// [share after each step], arrived, ...}. Throws InputError.
 [[nodiscard]] Json exchange_light(const PreparedScene& prepared, const ExchangeOptions& options,
                                   const std::filesystem::path& folder);
 

@@ -6,6 +6,7 @@
 
 #include "report_assets.h"
 #include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/record_folder.h"
 #include "umbra/bench/pages/report_text.h"
 
 namespace umbra {
@@ -67,6 +68,13 @@ void write_shading_page(const Json& record, const std::filesystem::path& folder,
     const PageHead head = {fmt::format("Shading: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::shading_html, head, view));
     write_page_assets(folder, head.scripts, staged);
+}
+
+Json write_shading_study(const PreparedScene& prepared, const ShadingOptions& options,
+                         const std::filesystem::path& out) {
+    return write_record_folder(
+        out, [&](const std::filesystem::path& folder) { return compare_shading(prepared, options, folder); },
+        write_shading_page);
 }
 
 }  // namespace umbra

@@ -6,6 +6,7 @@
 
 #include "report_assets.h"
 #include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/record_folder.h"
 #include "umbra/bench/pages/report_text.h"
 
 namespace umbra {
@@ -104,6 +105,15 @@ json screen_door_view(const Json& door) {
     return view;
 }
 
+json single_view(const Json& single) {
+    json view = json::array();
+    if (single.is_null()) return view;
+    view.push_back({{"rmse", figure(single["rmse"], "{:.5f}")},
+                    {"flip", figure(single["flip"], "{:.4f}")},
+                    {"picture", single["picture"]}});
+    return view;
+}
+
 std::string places_in_words(const std::string& places) {
     if (places == "jittered") return ", each anywhere in its part of the pixel";
     return places == "random" ? ", anywhere in it" : "";
@@ -180,10 +190,18 @@ void write_whitted_page(const Json& record, const std::filesystem::path& folder,
                               {"search", search_view(record["search"])},
                               {"blind", blind_view(record["blind"])},
                               {"screen_door", screen_door_view(record["screen_door"])},
+                              {"single", single_view(record["single"])},
                               {"formula", formula_view(record["formula"])}};
     const PageHead head    = {fmt::format("Ray tracing: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::whitted_html, head, view));
     write_page_assets(folder, head.scripts, staged);
+}
+
+Json write_whitted_study(const PreparedScene& prepared, const WhittedOptions& options,
+                         const std::filesystem::path& out) {
+    return write_record_folder(
+        out, [&](const std::filesystem::path& folder) { return trace_whitted(prepared, options, folder); },
+        write_whitted_page);
 }
 
 }  // namespace umbra

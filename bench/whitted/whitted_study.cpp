@@ -289,6 +289,23 @@ Json screen_door_json(const Study& study, const Traced& blended, AskedMethod& sh
             {"picture", "screen_door.png"}};
 }
 
+/// The picture of one eye ray a pixel, of those that the whole has. Null where it has no more.
+Json single_json(const Study& study, const Traced& traced, const Image& shown, const fs::path& folder) {
+    if (study.side == 1) return {};
+    const Image fine = gather(study.scene(), traced.tree, traced.light, study.options.depth);
+    Image linear(study.width(), study.height(), fine.channels);
+    const auto side = static_cast<std::size_t>(study.side), width = static_cast<std::size_t>(study.width());
+    for (std::size_t i = 0; i < traced.linear.data.size() / 3; ++i) {
+        const std::size_t x = i % width * side + side / 2, y = i / width * side + side / 2;
+        for (std::size_t c = 0; c < 3; ++c) linear.at(i, c) = fine.at(y * width * side + x, c);
+    }
+    const Image picture = study.shown(linear);
+    write_image(folder / "single.png", picture);
+    return {{"rmse", number(image_error(traced.linear, linear).rmse)},
+            {"flip", number(flip_ldr(shown, picture).mean)},
+            {"picture", "single.png"}};
+}
+
 /// The picture in which rays meet bodies by formula.
 Traced trace_formula(const Study& study, const FormulaScene& bodies) {
     const TreeOptions options{.depth        = study.options.depth,
@@ -389,6 +406,7 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
     Json search = search_json(study, raster.tree);
     Json blind  = blind_json(study, *shadows, shown, folder);
     Json door   = screen_door_json(study, raster, *shadows, shown, folder);
+    Json single = single_json(study, raster, shown, folder);
     if (options.bodies) study.say("tracing: formula");
     Json formula = formula_json(study, raster, shown, folder);
     return {{"schema", kResultsSchema},
@@ -413,6 +431,7 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
             {"search", std::move(search)},
             {"blind", std::move(blind)},
             {"screen_door", std::move(door)},
+            {"single", std::move(single)},
             {"formula", std::move(formula)}};
 }
 

@@ -28,9 +28,9 @@ struct WhittedOptions {
     EyePlaces places    = EyePlaces::regular;  ///< of the eye rays in a pixel
     bool glossy         = false;               ///< see TreeOptions
     int runs            = 1;                   ///< of each way to trace; the fastest counts
-    std::optional<Bodies> bodies;              ///< of the scene: a second picture meets them by formula
+    std::optional<Bodies> bodies{};            ///< of the scene: a second picture meets them by formula
     std::string command;
-    std::function<void(const std::string&)> progress;
+    std::function<void(const std::string&)> progress{};
 };
 
 /// Takes the warnings away that are not true of this command: that mirrors and glass are not computed.
@@ -42,7 +42,8 @@ void correct_warnings(Scene& scene);
 /// The method must serve the scene, and points off a raster. Writes into `folder`: whitted.png, the picture;
 /// depth_D.png, the picture if rays stopped at depth D; rays.png, brighter where a pixel has more rays; blind.png,
 /// where light arrives by way of a plane mirror; screen_door.png, the picture with Transparency::screen_door, where a
-/// surface is seen through; formula.png, where bodies are given, the picture in which rays meet these by formula.
+/// surface is seen through; formula.png, where bodies are given, the picture in which rays meet these by formula;
+/// single.png, one of the eye rays of each pixel alone, where there are more.
 /// Returns the record, whose members bench/whitted/whitted_page.cpp shows:
 ///
 /// depths: by depth, RayCounts, `left` (met nothing), errors of depth_D.png from the picture. phases: milliseconds of
@@ -51,7 +52,7 @@ void correct_warnings(Scene& scene);
 /// `raster`, but no ray is too light): rays, milliseconds, pixels that differ from `raster`, by how much at most.
 /// search: a sample of secondary rays by the tree and against every triangle; null without secondary rays. blind:
 /// diffuse points that a light reaches over a plane mirror, those of them where its S_j is 0; null without plane
-/// mirrors. screen_door: that picture's errors from the whole; null where no surface is seen through. formula: bodies
+/// mirrors. screen_door, single: that picture's errors from the whole; null where there is none. formula: bodies
 /// by kind, how many triangles they replace, RayCounts by depth, milliseconds, rays to a light with an area (null: none
 /// is asked), and the picture's errors from the whole; null without bodies.
 ///

@@ -258,6 +258,24 @@ TEST(WhittedStudy, ScreenDoorIsComparedWithBlending) {
     EXPECT_EQ(whole, shown.pixels() / 2);
 }
 
+TEST(WhittedStudy, SinglePictureHasOneOfThePixelsRays) {
+    const TemporaryFolder folder, coarse;
+    const PreparedScene prepared = prepare_scene(mirror_scene(), "mirrors", {48, 28});
+    const Json record = trace_whitted(prepared, {.method = {}, .pixel_samples = 9, .command = ""}, folder.path());
+    ASSERT_FALSE(record["single"].is_null());
+    // The middle one of nine regular places is the pixel's centre, through which the only ray of a pixel passes.
+    const Json centres = trace_whitted(prepared, {.method = {}, .pixel_samples = 1, .command = ""}, coarse.path());
+    EXPECT_TRUE(centres["single"].is_null());
+    const Image single = read_image(folder.path() / record["single"]["picture"].get<std::string>()).image,
+                centre = read_image(coarse.path() / "whitted.png").image,
+                whole  = read_image(folder.path() / "whitted.png").image;
+    ASSERT_EQ(single.data.size(), centre.data.size());
+    EXPECT_LT(image_error(centre, single).differing, single.pixels() / 100);
+    EXPECT_GT(image_error(whole, single).differing, single.pixels() / 100);
+    EXPECT_GT(record["single"]["rmse"].get<double>(), 0);
+    EXPECT_GT(record["single"]["flip"].get<double>(), 0);
+}
+
 /// A second picture with the ball and a box by formula: what FormulaScene traces, with and without shadows.
 TEST(WhittedStudy, FormulaRecordAndPictureAreWhatWasTraced) {
     Scene scene                 = mirror_scene();
@@ -352,7 +370,8 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
         {"undefined", 77},
         {"total_ms", 40.25},
         {"blind", {{"planes", 1}, {"points", 23}, {"points_in_shadow", 19}, {"picture", "blind.png"}}},
-        {"screen_door", {{"rmse", 0.3125}, {"flip", 0.4375}, {"rays", 87}, {"ms", 2.5}, {"picture", "door.png"}}}};
+        {"screen_door", {{"rmse", 0.3125}, {"flip", 0.4375}, {"rays", 87}, {"ms", 2.5}, {"picture", "door.png"}}},
+        {"single", {{"rmse", 0.34375}, {"flip", 0.46875}, {"picture", "single.png"}}}};
     record["depths"] = Json::array();
     record["depths"].push_back({{"depth", 2},
                                 {"eye", 11},
@@ -440,6 +459,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                                   "<img src=\"depth_2.png\"",
                                   "<img src=\"door.png\"",
                                   "87 rays; RMSE 0.31250 from the picture, FLIP 0.4375",
+                                  "One eye ray a pixel: RMSE 0.34375 from the picture, FLIP 0.4688.",
                                   "23 pixels of diffuse",
                                   "19 of them (orange)",
                                   "<img src=\"formula.png\"",
@@ -460,7 +480,8 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
         EXPECT_NE(page.find(part), std::string::npos) << part;
     EXPECT_NE(page.find("every mirror here is perfect"), std::string::npos);
     record["glossy"] = true;
-    record["search"] = record["blind"] = record["screen_door"] = record["formula"] = nullptr, record["undefined"] = 0;
+    record["search"] = record["blind"] = record["screen_door"] = record["single"] = record["formula"] = nullptr,
+    record["undefined"]                                                                               = 0;
     StagedFiles again;
     write_whitted_page(record, folder.path(), again);
     again.commit();

@@ -4,10 +4,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/radiosity/exchange_page.h"
-#include "umbra/bench/radiosity/light_exchange.h"
 
 namespace umbra {
 namespace {
@@ -24,18 +21,12 @@ int radiosity(const RadiosityLine& line, const Common& common) {
     options.command         = common.command;
     const PreparedScene prepared =
         prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size));
-    StagedFolder staged(line.out);
     Json record;
     {
         const Terminal terminal(common.quiet);
         options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record           = exchange_light(prepared, options, staged.folder());
+        record           = write_exchange_study(prepared, options, line.out);
     }
-    write_text(staged.folder() / "results.json", json_text(record));
-    StagedFiles page;
-    write_exchange_page(record, staged.folder(), page);
-    page.commit();
-    staged.commit();
     if (line.as_json)
         print_out("{}", json_text(record));
     else if (!common.quiet)

@@ -3,10 +3,7 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/shading/shading_page.h"
-#include "umbra/bench/shading/shading_study.h"
 
 namespace umbra {
 namespace {
@@ -29,13 +26,7 @@ int shading(const ShadingLine& line, const Common& common) {
             print_error("{} does not serve this scene: {}\n", options.method->text(), service.why);
             return kNo;
         }
-    StagedFolder staged(line.out);
-    const Json record = compare_shading(prepared, options, staged.folder());
-    write_text(staged.folder() / "results.json", json_text(record));
-    StagedFiles page;
-    write_shading_page(record, staged.folder(), page);
-    page.commit();
-    staged.commit();
+    const Json record = write_shading_study(prepared, options, line.out);
     if (line.as_json)
         print_out("{}", json_text(record));
     else if (!common.quiet)

@@ -5,11 +5,8 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/out/files.h"
-#include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/whitted/whitted_page.h"
-#include "umbra/bench/whitted/whitted_study.h"
 
 namespace umbra {
 namespace {
@@ -52,19 +49,13 @@ int whitted(const WhittedLine& line, const Common& common) {
             return kNo;
         }
     }
-    StagedFolder staged(line.out);
     Json record;
     {
         const Terminal terminal(common.quiet);
         for (const std::string& warning : prepared.scene.warnings) terminal.warn(prepared.scene.name + ": " + warning);
         options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record           = trace_whitted(prepared, options, staged.folder());
+        record           = write_whitted_study(prepared, options, line.out);
     }
-    write_text(staged.folder() / "results.json", json_text(record));
-    StagedFiles page;
-    write_whitted_page(record, staged.folder(), page);
-    page.commit();
-    staged.commit();
     if (line.as_json)
         print_out("{}", json_text(record));
     else if (!common.quiet)
