@@ -10,6 +10,7 @@
 #include "report_assets.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
+#include "umbra/bench/report/lecture_shows.h"
 
 namespace umbra {
 namespace {
@@ -64,23 +65,63 @@ std::string topic(const LectureRow& row, const LectureText* words, Language lang
     return std::string(language == Language::german ? words->german : words->greek);
 }
 
-json row_view(const LectureRow& row, const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files,
-              const fs::path& out, Language language) {
+/// Null where the report has no such page.
+const SceneFiles* page_of(const LectureSources& sources, std::string_view study, const std::string& scene) {
+    const auto found = std::ranges::find_if(
+        sources.pages, [&](const auto& page) { return page.first == study && page.second->scene().name == scene; });
+    return found == sources.pages.end() ? nullptr : found->second;
+}
+
+json pictures_of(const LectureShow* show, const SceneFiles& files, const fs::path& out, Language language) {
+    json pictures  = json::array();
+    const auto add = [&](const Field& file, const std::string& caption) {
+        json picture = files.figure(file, "", "", caption.empty() ? files.scene().title : caption, out);
+        if (!picture.is_object()) return;
+        picture["caption"] = caption.empty() ? json(false) : json(caption);
+        pictures.push_back(std::move(picture));
+    };
+    if (show != nullptr)
+        for (const LectureValue& value : show->pictures)
+            add(value_at(files.scene().root, value.path), text(value.name, language));
+    else
+        add(files.scene().root["reference"]["files"]["png"], "");
+    return pictures;
+}
+
+json row_view(const LectureRow& row, const LectureSources& sources, const fs::path& out, Language language) {
     const LectureText* words = text_of(row.id);
+    const LectureShow* show  = lecture_show(row.id);
     json view                = {{"id", row.id},
                                 {"topic", topic(row, words, language)},
                                 {"source", row.source},
                                 {"state", state_in_words(row.state, language)},
                                 {"unfinished", !row.state.starts_with("works")},
                                 {"shown", false}};
-    const auto scene         = std::ranges::find(scenes, row.scene, &ScenePage::name);
-    if (row.scene.empty() || scene == scenes.end()) return view;
-    const SceneFiles& shown = files[std::size_t(scene - scenes.begin())];
-    view["shown"]           = {{"href", url((scene->page / "index.html").lexically_relative(out))},
-                               {"scene", scene->title},
-                               {"proves", words == nullptr ? "" : text(words->proves, language)},
-                               {"finding", finding(scene->root)},
-                               {"picture", shown.figure(scene->root["reference"]["files"]["png"], "", "", "", out)}};
+    const SceneFiles* files  = page_of(sources, show == nullptr ? "" : show->study, row.scene);
+    if (row.scene.empty() || files == nullptr) return view;
+    json pictures = pictures_of(show, *files, out, language);
+    json measured = json::array();
+    if (show != nullptr)
+        for (const LectureFigure& figure : show->figures)
+            if (const std::string figures = figure_in_words(figure, files->scene().root, language); !figures.empty())
+                measured.push_back({{"text", figures}, {"lang", std::string(code_of(language))}});
+    if (show == nullptr || show->study.empty())
+        if (const std::string found = finding(files->scene().root); !found.empty())
+            measured.push_back({{"text", found}, {"lang", "en"}});
+    view["shown"] = {{"href", url((files->scene().page / "index.html").lexically_relative(out))},
+                     {"scene", files->scene().title},
+                     {"proves", words == nullptr ? "" : text(words->proves, language)},
+                     {"several", pictures.size() > 1},
+                     {"pictures", std::move(pictures)},
+                     {"is_measured", !measured.empty()},
+                     {"measured", std::move(measured)}};
+    return view;
+}
+
+json exercises_view(const LectureChapter& chapter, Language language) {
+    json view = json::array();
+    for (const Exercise& exercise : chapter.exercises)
+        view.push_back({{"exercise", text(exercise.question, language)}, {"answer", text(exercise.answer, language)}});
     return view;
 }
 
@@ -91,8 +132,7 @@ const std::vector<LectureRow>& lecture_rows() {
     return rows;
 }
 
-json lectures_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
-                   Language language) {
+json lectures_view(const LectureSources& sources, const fs::path& out, Language language) {
     const LecturePhrases& words = lecture_phrases();
     json chapters               = json::array();
     bool any                    = false;
@@ -100,13 +140,12 @@ json lectures_view(const std::vector<ScenePage>& scenes, const std::vector<Scene
         json rows = json::array();
         for (const LectureRow& row : lecture_rows()) {
             if (row.id[0] != chapter.letter) continue;
-            rows.push_back(row_view(row, scenes, files, out, language));
+            rows.push_back(row_view(row, sources, out, language));
             any |= rows.back()["shown"].is_object();
         }
         chapters.push_back({{"letter", std::string(1, chapter.letter)},
                             {"title", text(chapter.title, language)},
-                            {"exercise", text(chapter.exercise, language)},
-                            {"answer", text(chapter.answer, language)},
+                            {"exercises", exercises_view(chapter, language)},
                             {"rows", std::move(rows)}});
     }
     if (!any) return false;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "umbra/bench/pages/report_page.h"
@@ -18,10 +20,16 @@ struct LectureRow {
 /// The rows of the page that was compiled in, in its order.
 [[nodiscard]] const std::vector<LectureRow>& lecture_rows();
 
-/// What the template lectures.html shows: each topic in the lectures' order, with the picture of its scene where the
-/// report has that scene, what the picture proves, and the sentence on what the comparison found. Addresses are seen
-/// from `out`, the report's folder. False where the report has none of the lectures' scenes.
-[[nodiscard]] nlohmann::json lectures_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files,
-                                           const std::filesystem::path& out, Language language);
+/// What a report has to show the topics with.
+struct LectureSources {
+    std::vector<std::pair<std::string, const SceneFiles*>> pages;  ///< "", of comparisons, or a study's command
+};
+
+/// What the template lectures.html shows: each topic in the lectures' order, with the pictures of its scene where the
+/// report has that comparison or that study, what the pictures prove, and what was measured: the figures of the study,
+/// or the sentence on what the comparison found. Addresses are seen from `out`, the report's folder. False where the
+/// report has no picture of any topic.
+[[nodiscard]] nlohmann::json lectures_view(const LectureSources& sources, const std::filesystem::path& out,
+                                           Language language);
 
 }  // namespace umbra

@@ -16,15 +16,6 @@ constexpr Translated kSixLights{
     "anderen aufhellen.",
     "Έξι φωτεινές πηγές φωτίζουν μία σκηνή και οι όροι τους αθροίζονται: καθεμία ρίχνει τη δική της σκιά, την οποία "
     "φωτίζουν οι άλλες."};
-constexpr Translated kShading{
-    "The same solids under each shading model: umbra shading draws them side by side and measures what the cheaper "
-    "models "
-    "miss.",
-    "Dieselben Körper unter jedem Schattierungsverfahren: umbra shading zeichnet sie nebeneinander und misst, was den "
-    "billigeren fehlt.",
-    "Τα ίδια στερεά με κάθε μοντέλο φωτοσκίασης: η εντολή umbra shading τα σχεδιάζει δίπλα δίπλα και μετρά τι χάνουν "
-    "τα "
-    "φθηνότερα."};
 constexpr Translated kPenumbra{
     "Behind an occluder lies an umbra, where S_j is 0, and around it a penumbra, where the point sees a part of the "
     "light.",
@@ -196,8 +187,16 @@ constexpr std::array kTexts{
                  "Ο όρος περιβάλλοντος, ο διάχυτος και ο κατοπτρικός αθροίζονται εικονοστοιχείο προς εικονοστοιχείο: η "
                  "τέταρτη στήλη είναι το άθροισμα των τριών πρώτων, με φως στις 60, 25 και 0 μοίρες."}},
 
-    LectureText{"C1", "konstante, flache, Gouraud- und Phong-Schattierung",
-                "σταθερή, επίπεδη, Gouraud και Phong φωτοσκίαση", kShading},
+    LectureText{
+        "C1",
+        "konstante, flache, Gouraud- und Phong-Schattierung",
+        "σταθερή, επίπεδη, Gouraud και Phong φωτοσκίαση",
+        {"One value a triangle without lights; the sum once a face, at vertices, and at every pixel: shadows are "
+         "as coarse as the shading, since S_j is asked where the sum is.",
+         "Ein Wert je Dreieck ohne Lichtquellen; die Summe je Fläche, an den Ecken, an jedem Bildpunkt: Schatten "
+         "sind so grob wie die Schattierung, denn S_j wird dort bestimmt, wo die Summe ausgewertet wird.",
+         "Μία τιμή ανά τρίγωνο χωρίς πηγές· το άθροισμα ανά έδρα, στις κορυφές, σε κάθε εικονοστοιχείο: οι σκιές είναι "
+         "τόσο χονδροειδείς όσο η φωτοσκίαση, αφού το S_j ζητείται όπου υπολογίζεται το άθροισμα."}},
     LectureText{"C2",
                 "gemittelte Eckennormalen",
                 "κανονικά κορυφών από μέσους όρους",
@@ -205,19 +204,46 @@ constexpr std::array kTexts{
                  "Die Kugeln bestehen aus flachen Dreiecken; gemittelte Normalen an den Ecken lassen sie rund wirken.",
                  "Οι σφαίρες αποτελούνται από επίπεδα τρίγωνα· οι μέσες κανονικές στις κορυφές τις κάνουν να φαίνονται "
                  "στρογγυλές."}},
-    LectureText{"C3", "quadratische Interpolation der Normalen", "τετραγωνική παρεμβολή κανονικών", kShading},
-    LectureText{"C4", "jeder zweite Bildpunkt", "κάθε δεύτερο εικονοστοιχείο", kShading},
-    LectureText{"C5", "Fehler der Gouraud-Schattierung, gemessen", "σφάλματα της φωτοσκίασης Gouraud, μετρημένα",
-                kShading},
-    LectureText{"C6",
-                "Transparenz",
-                "διαφάνεια",
-                {"Behind one sheet 60 or 30 percent of the light arrive, behind both their product, 18 percent: the "
-                 "transmittances multiply.",
-                 "Hinter einer Folie kommen 60 oder 30 Prozent des Lichts an, hinter beiden das Produkt, 18 Prozent: "
-                 "Die Durchlässigkeiten multiplizieren sich.",
-                 "Πίσω από ένα φύλλο φτάνει το 60 ή το 30 τοις εκατό του φωτός, πίσω και από τα δύο το γινόμενό τους, "
-                 "18 τοις εκατό: οι διαπερατότητες πολλαπλασιάζονται."}},
+    LectureText{
+        "C3",
+        "quadratische Interpolation der Normalen",
+        "τετραγωνική παρεμβολή κανονικών",
+        {"Normals interpolated quadratically along edges follow waves that linear ones miss; on balls both are "
+         "almost the same.",
+         "Quadratisch interpolierte Normalen folgen Wellen, die linear interpolierte übersehen; auf Kugeln sind "
+         "beide fast gleich.",
+         "Οι τετραγωνικά παρεμβαλλόμενες κανονικές ακολουθούν κυματισμούς που χάνουν οι γραμμικές· σε σφαίρες "
+         "είναι σχεδόν ίδιες."}},
+    LectureText{
+        "C4",
+        "jeder zweite Bildpunkt",
+        "κάθε δεύτερο εικονοστοιχείο",
+        {"Half of the sums are replaced by the mean of their neighbours: only edges and shadow borders show it.",
+         "Die Hälfte der Summen wird durch das Mittel der Nachbarn ersetzt: Nur Kanten und Schattenränder zeigen "
+         "es.",
+         "Τα μισά αθροίσματα αντικαθίστανται από τον μέσο όρο των γειτόνων: μόνο ακμές και όρια σκιών το "
+         "δείχνουν."}},
+    LectureText{
+        "C5",
+        "Fehler der Gouraud-Schattierung, gemessen",
+        "σφάλματα της φωτοσκίασης Gouraud, μετρημένα",
+        {"Where no vertex lies in a highlight, Gouraud shading misses it, and along edges its slope jumps: Mach "
+         "bands.",
+         "Wo keine Ecke im Glanzlicht liegt, verfehlt es die Gouraud-Schattierung, und an Kanten springt ihre "
+         "Steigung: Machbänder.",
+         "Όπου καμία κορυφή δεν βρίσκεται στη στιλπνή κηλίδα, η φωτοσκίαση Gouraud τη χάνει, και στις ακμές η "
+         "κλίση της αλλάζει απότομα: ζώνες Mach."}},
+    LectureText{
+        "C6",
+        "Transparenz",
+        "διαφάνεια",
+        {"Behind one sheet 60 or 30 per cent of the light arrive, behind both their product, 18 per cent: the "
+         "transmittances multiply. A screen door leaves out eye rays instead of blending.",
+         "Hinter einer Folie kommen 60 oder 30 Prozent des Lichts an, hinter beiden das Produkt, 18 Prozent: "
+         "Die Durchlässigkeiten multiplizieren sich. Ein Fliegengitter lässt Augstrahlen aus, statt zu mischen.",
+         "Πίσω από ένα φύλλο φτάνει το 60 ή το 30 τοις εκατό του φωτός, πίσω και από τα δύο το γινόμενό τους, "
+         "18 τοις εκατό: οι διαπερατότητες πολλαπλασιάζονται. Το πλέγμα σήτας παραλείπει ακτίνες αντί να "
+         "αναμειγνύει."}},
     LectureText{"C7",
                 "Nebel",
                 "ομίχλη",
@@ -249,7 +275,16 @@ constexpr std::array kTexts{
                  "Glanzlicht nur, wenn eine Ecke darin liegt.",
                  "Το ίδιο τετράγωνο σε 1, 2, 3, 5, 10 και 40 σειρές εδρών: η φωτοσκίαση Gouraud βρίσκει τη στιλπνή "
                  "κηλίδα μόνο αν μια κορυφή βρίσκεται μέσα της."}},
-    LectureText{"C11", "Schnelligkeit gegen Genauigkeit beim Schattieren", "ταχύτητα και ακρίβεια στη φωτοσκίαση", {}},
+    LectureText{
+        "C11",
+        "Schnelligkeit gegen Genauigkeit beim Schattieren",
+        "ταχύτητα και ακρίβεια στη φωτοσκίαση",
+        {"Three ways to Phong's picture with fewer sums: where a highlight may lie, by a polynomial, by forward "
+         "differences.",
+         "Drei Wege zu Phongs Bild mit weniger Summen: nur wo ein Glanzlicht liegen kann, mit einem Polynom, mit "
+         "Vorwärtsdifferenzen.",
+         "Τρεις δρόμοι προς την εικόνα του Phong με λιγότερα αθροίσματα: μόνο όπου μπορεί να υπάρχει κηλίδα, με "
+         "πολυώνυμο, με πρόσθιες διαφορές."}},
     LectureText{"C12",
                 "eine Szene durch alle Stufen",
                 "μία σκηνή σε όλα τα στάδια",
@@ -387,7 +422,16 @@ constexpr std::array kTexts{
                  "verfolgt.",
                  "Καθρέφτης μέσα σε καθρέφτη: ακτίνες ακολουθούν ακτίνες έως βάθος 5· όσες προσφέρουν πολύ λίγο δεν "
                  "ανιχνεύονται."}},
-    LectureText{"E2", "Kugel und Quader als Formel", "σφαίρα και κουτί με τύπο", {}},
+    LectureText{
+        "E2",
+        "Kugel und Quader als Formel",
+        "σφαίρα και κουτί με τύπο",
+        {"The same scene with balls and boxes as triangles and by formula: only their outlines differ, and what "
+         "glass bends.",
+         "Dieselbe Szene mit Kugeln und Quadern aus Dreiecken und per Formel: Nur Umrisse sind verschieden und "
+         "was Glas bricht.",
+         "Η ίδια σκηνή με σφαίρες και κουτιά από τρίγωνα και με τύπο: διαφέρουν μόνο τα περιγράμματα και ό,τι "
+         "διαθλά το γυαλί."}},
     LectureText{
         "E3",
         "Überabtastung",
@@ -467,60 +511,144 @@ constexpr std::array kChapters{
     LectureChapter{
         'A',
         {"Light sources", "Lichtquellen", "Φωτεινές πηγές"},
-        {"A ball has radius 1, a sun at infinity lights it. Which share of its surface is lit? And by a point light "
-         "at distance 2 from its centre?",
-         "Eine Kugel vom Radius 1 wird von einer Sonne im Unendlichen beleuchtet. Welcher Teil ihrer Oberfläche ist "
-         "beleuchtet? Und von einer Punktlichtquelle im Abstand 2 vom Mittelpunkt?",
-         "Μια σφαίρα ακτίνας 1 φωτίζεται από έναν ήλιο στο άπειρο. Ποιο μέρος της επιφάνειάς της φωτίζεται; Και από "
-         "σημειακή πηγή σε απόσταση 2 από το κέντρο;"},
-        {"One half; (1 − 1/2) / 2 = one quarter.", "Die Hälfte; (1 − 1/2) / 2 = ein Viertel.",
-         "Το μισό· (1 − 1/2) / 2 = ένα τέταρτο."}},
+        {Exercise{
+             {"A ball has radius 1, a sun at infinity lights it. Which share of its surface is lit? And by a point "
+              "light at distance 2 from its centre?",
+              "Eine Kugel vom Radius 1 wird von einer Sonne im Unendlichen beleuchtet. Welcher Teil ihrer Oberfläche "
+              "ist beleuchtet? Und von einer Punktlichtquelle im Abstand 2 vom Mittelpunkt?",
+              "Μια σφαίρα ακτίνας 1 φωτίζεται από έναν ήλιο στο άπειρο. Ποιο μέρος της επιφάνειάς της φωτίζεται; Και "
+              "από σημειακή πηγή σε απόσταση 2 από το κέντρο;"},
+             {"One half; (1 − 1/2) / 2 = one quarter.", "Die Hälfte; (1 − 1/2) / 2 = ein Viertel.",
+              "Το μισό· (1 − 1/2) / 2 = ένα τέταρτο."}},
+         Exercise{
+             {"A lamp of intensity I = 100 cd hangs 2 m above a floor. How large is the irradiance below it, and 2 m "
+              "to the side?",
+              "Eine Lampe der Stärke I = 100 cd hängt 2 m über dem Boden. Wie groß ist die Beleuchtungsstärke "
+              "unter ihr und 2 m daneben?",
+              "Μια λάμπα έντασης I = 100 cd κρέμεται 2 m πάνω από το δάπεδο. Πόσος είναι ο φωτισμός ακριβώς από κάτω "
+              "και 2 m πιο δίπλα;"},
+             {"100 / 4 = 25 lx; the distance there is √8 m and the angle 45°: 100 · cos 45° / 8 = 8.8 lx.",
+              "100 / 4 = 25 lx; dort ist der Abstand √8 m und der Winkel 45°: 100 · cos 45° / 8 = 8,8 lx.",
+              "100 / 4 = 25 lx· εκεί η απόσταση είναι √8 m και η γωνία 45°: 100 · cos 45° / 8 = 8,8 lx."}}}},
     LectureChapter{
         'B',
         {"Illumination", "Beleuchtung", "Φωτισμός"},
-        {"A plane has k_d = 0.8, and the sun is 60° from its normal. How bright is the diffuse term for I = 1?",
-         "Eine Ebene hat k_d = 0,8, die Sonne steht 60° von der Normalen entfernt. Wie groß ist der diffuse Term für "
-         "I = 1?",
-         "Ένα επίπεδο έχει k_d = 0,8 και ο ήλιος απέχει 60° από την κανονική. Πόσος είναι ο διάχυτος όρος για I = 1;"},
-        {"0.8 cos 60° = 0.4.", "0,8 cos 60° = 0,4.", "0,8 cos 60° = 0,4."}},
+        {Exercise{
+             {"A plane has k_d = 0.8, and the sun is 60° from its normal. How bright is the diffuse term for I = 1?",
+              "Eine Ebene hat k_d = 0,8, die Sonne steht 60° von der Normalen entfernt. Wie groß ist der diffuse Term "
+              "für I = 1?",
+              "Ένα επίπεδο έχει k_d = 0,8 και ο ήλιος απέχει 60° από την κανονική. Πόσος είναι ο διάχυτος όρος για "
+              "I = 1;"},
+             {"0.8 cos 60° = 0.4.", "0,8 cos 60° = 0,4.", "0,8 cos 60° = 0,4."}},
+         Exercise{
+             {"The light is 30° to one side of the normal and the eye 50° to the other side, in one plane. Which "
+              "angles "
+              "do Phong and Blinn take the cosine of?",
+              "Das Licht steht 30° auf der einen Seite der Normalen, das Auge 50° auf der anderen, in einer Ebene. Von "
+              "welchen Winkeln nehmen Phong und Blinn den Kosinus?",
+              "Το φως απέχει 30° από τη μία πλευρά της κανονικής και το μάτι 50° από την άλλη, σε ένα επίπεδο. Ποιων "
+              "γωνιών το συνημίτονο παίρνουν ο Phong και ο Blinn;"},
+             {"Phong 20° between R and V, Blinn 10° between N and H: half as much, so that Blinn's exponent is about "
+              "four times Phong's.",
+              "Phong 20° zwischen R und V, Blinn 10° zwischen N und H: halb so viel, darum ist Blinns Exponent etwa "
+              "viermal so groß wie der von Phong.",
+              "Ο Phong 20° μεταξύ R και V, ο Blinn 10° μεταξύ N και H: το μισό, γι' αυτό ο εκθέτης του Blinn είναι "
+              "περίπου τετραπλάσιος."}}}},
     LectureChapter{
         'C',
         {"Shading, transparency, fog", "Schattierung, Transparenz, Nebel", "Φωτοσκίαση, διαφάνεια, ομίχλη"},
-        {"A highlight falls into the middle of a large triangle. What does Gouraud shading make of it?",
-         "Ein Glanzlicht fällt mitten in ein großes Dreieck. Was macht die Gouraud-Schattierung daraus?",
-         "Μια στιλπνή κηλίδα πέφτει στη μέση ενός μεγάλου τριγώνου. Τι κάνει με αυτήν η φωτοσκίαση Gouraud;"},
-        {"Nothing is left of it: the sum is evaluated at the vertices alone.",
-         "Es verschwindet: Die Summe wird nur an den Ecken ausgewertet.",
-         "Χάνεται: το άθροισμα υπολογίζεται μόνο στις κορυφές."}},
+        {Exercise{{"A highlight falls into the middle of a large triangle. What does Gouraud shading make of it?",
+                   "Ein Glanzlicht fällt mitten in ein großes Dreieck. Was macht die Gouraud-Schattierung daraus?",
+                   "Μια στιλπνή κηλίδα πέφτει στη μέση ενός μεγάλου τριγώνου. Τι κάνει με αυτήν η φωτοσκίαση Gouraud;"},
+                  {"Nothing is left of it: the sum is evaluated at the vertices alone.",
+                   "Es verschwindet: Die Summe wird nur an den Ecken ausgewertet.",
+                   "Χάνεται: το άθροισμα υπολογίζεται μόνο στις κορυφές."}},
+         Exercise{
+             {"Two sheets let 60 and 30 per cent of the light through. How much arrives behind both, and does their "
+              "order matter?",
+              "Zwei Folien lassen 60 und 30 Prozent des Lichts durch. Wie viel kommt hinter beiden an, und kommt es "
+              "auf die Reihenfolge an?",
+              "Δύο φύλλα αφήνουν το 60 και το 30 τοις εκατό του φωτός να περάσει. Πόσο φτάνει πίσω και από τα δύο, και "
+              "έχει σημασία η σειρά τους;"},
+             {"0.6 · 0.3 = 18 per cent in either order; but which colours the eye sees does depend on the order.",
+              "0,6 · 0,3 = 18 Prozent in jeder Reihenfolge; welche Farben das Auge sieht, hängt aber von ihr ab.",
+              "0,6 · 0,3 = 18 τοις εκατό με όποια σειρά· όμως τα χρώματα που βλέπει το μάτι εξαρτώνται από αυτήν."}}}},
     LectureChapter{
         'D',
         {"Shadows", "Schatten", "Σκιές"},
-        {"A disk light of radius 1 is 4 above the floor; a ball of radius 0.5 hangs half-way. How wide is the umbra "
-         "about?",
-         "Eine Scheibe vom Radius 1 leuchtet 4 über dem Boden; eine Kugel vom Radius 0,5 hängt auf halber Höhe. Wie "
-         "breit ist der Kernschatten etwa?",
-         "Ένας φωτεινός δίσκος ακτίνας 1 βρίσκεται 4 πάνω από το δάπεδο· μια σφαίρα ακτίνας 0,5 κρέμεται στη μέση. "
-         "Πόσο πλατιά είναι περίπου η κύρια σκιά;"},
-        {"It just vanishes: the lines from the light's rim past the ball meet on the floor (2 · 0.5 − 1 = 0).",
-         "Er verschwindet gerade: Die Linien vom Rand der Lichtquelle an der Kugel vorbei treffen sich am Boden "
-         "(2 · 0,5 − 1 = 0).",
-         "Μόλις εξαφανίζεται: οι ευθείες από το χείλος της πηγής δίπλα στη σφαίρα συναντιούνται στο δάπεδο "
-         "(2 · 0,5 − 1 = 0)."}},
+        {Exercise{
+             {"A disk light of radius 1 is 4 above the floor; a ball of radius 0.5 hangs half-way. How wide is the "
+              "umbra "
+              "about?",
+              "Eine Scheibe vom Radius 1 leuchtet 4 über dem Boden; eine Kugel vom Radius 0,5 hängt auf halber Höhe. "
+              "Wie "
+              "breit ist der Kernschatten etwa?",
+              "Ένας φωτεινός δίσκος ακτίνας 1 βρίσκεται 4 πάνω από το δάπεδο· μια σφαίρα ακτίνας 0,5 κρέμεται στη "
+              "μέση. "
+              "Πόσο πλατιά είναι περίπου η κύρια σκιά;"},
+             {"It just vanishes: the lines from the light's rim past the ball meet on the floor (2 · 0.5 − 1 = 0).",
+              "Er verschwindet gerade: Die Linien vom Rand der Lichtquelle an der Kugel vorbei treffen sich am Boden "
+              "(2 · 0,5 − 1 = 0).",
+              "Μόλις εξαφανίζεται: οι ευθείες από το χείλος της πηγής δίπλα στη σφαίρα συναντιούνται στο δάπεδο "
+              "(2 · 0,5 − 1 = 0)."}},
+         Exercise{
+             {"The texels of a depth map are 2 cm wide. How long is one on the floor under a sun 5° above the horizon?",
+              "Die Texel einer Tiefenkarte sind 2 cm breit. Wie lang ist eines auf dem Boden unter einer Sonne 5° über "
+              "dem Horizont?",
+              "Τα στοιχεία ενός χάρτη βάθους έχουν πλάτος 2 cm. Πόσο μήκος έχει ένα στο δάπεδο κάτω από ήλιο 5° πάνω "
+              "από "
+              "τον ορίζοντα;"},
+             {"2 cm / sin 5° = 23 cm: the bias that it needs grows by the same factor.",
+              "2 cm / sin 5° = 23 cm: Um denselben Faktor wächst der Bias, den es braucht.",
+              "2 cm / sin 5° = 23 cm: με τον ίδιο παράγοντα μεγαλώνει το bias που χρειάζεται."}}}},
     LectureChapter{
         'E',
         {"Ray tracing", "Strahlverfolgung", "Ανίχνευση ακτίνων"},
-        {"A lamp shines on a mirror, the mirror on a wall. Why does no method here brighten the wall?",
-         "Eine Lampe beleuchtet einen Spiegel, der Spiegel eine Wand. Warum wird die Wand hier nicht heller?",
-         "Μια λάμπα φωτίζει έναν καθρέφτη και ο καθρέφτης έναν τοίχο. Γιατί εδώ ο τοίχος δεν γίνεται φωτεινότερος;"},
-        {"S_j asks for the straight line to the light alone.", "S_j fragt nur nach der geraden Linie zur Lichtquelle.",
-         "Το S_j ρωτά μόνο για την ευθεία προς την πηγή."}},
-    LectureChapter{'F',
-                   {"The testbed", "Das Testbett", "Το πεδίο δοκιμών"},
-                   {"A method errs at 0 of 300 points. How large may its error rate be?",
-                    "Ein Verfahren irrt an 0 von 300 Punkten. Wie groß kann seine Fehlerrate sein?",
-                    "Μια μέθοδος σφάλλει σε 0 από 300 σημεία. Πόσο μεγάλο μπορεί να είναι το ποσοστό σφαλμάτων της;"},
-                   {"With 95 % confidence up to 3/300 = 1 %.", "Mit 95 % Sicherheit bis zu 3/300 = 1 %.",
-                    "Με βεβαιότητα 95 % έως 3/300 = 1 %."}},
+        {Exercise{{"A lamp shines on a mirror, the mirror on a wall. Why does no method here brighten the wall?",
+                   "Eine Lampe beleuchtet einen Spiegel, der Spiegel eine Wand. Warum wird die Wand hier nicht heller?",
+                   "Μια λάμπα φωτίζει έναν καθρέφτη και ο καθρέφτης έναν τοίχο. Γιατί εδώ ο τοίχος δεν γίνεται "
+                   "φωτεινότερος;"},
+                  {"S_j asks for the straight line to the light alone.",
+                   "S_j fragt nur nach der geraden Linie zur Lichtquelle.",
+                   "Το S_j ρωτά μόνο για την ευθεία προς την πηγή."}},
+         Exercise{
+             {"Two mirrors with k_r = 0.5 face each other. From which depth on does a ray change an 8-bit value by "
+              "less "
+              "than one step, if the light at its end is 1?",
+              "Zwei Spiegel mit k_r = 0,5 stehen sich gegenüber. Ab welcher Tiefe ändert ein Strahl einen 8-Bit-Wert "
+              "um "
+              "weniger als eine Stufe, wenn an seinem Ende das Licht 1 ist (ohne sRGB-Kurve)?",
+              "Δύο καθρέφτες με k_r = 0,5 βρίσκονται απέναντι. Από ποιο βάθος και μετά μια ακτίνα αλλάζει μια τιμή των "
+              "8 "
+              "bit λιγότερο από ένα βήμα, αν το φως στο τέλος της είναι 1 (χωρίς την καμπύλη sRGB);"},
+             {"The eye ray has depth 1 and weight 1, so that depth n has 0.5 to the power of n − 1; it is below 1/255 "
+              "from depth 9 on (1/256).",
+              "Der Augstrahl hat Tiefe 1 und Gewicht 1, Tiefe n also 0,5 hoch n − 1; das ist ab Tiefe 9 (1/256) "
+              "kleiner "
+              "als 1/255.",
+              "Η ακτίνα από το μάτι έχει βάθος 1 και βάρος 1, άρα το βάθος n έχει 0,5 στη δύναμη n − 1· αυτό είναι "
+              "μικρότερο από 1/255 από το βάθος 9 (1/256)."}}}},
+    LectureChapter{
+        'F',
+        {"The testbed", "Das Testbett", "Το πεδίο δοκιμών"},
+        {Exercise{{"A method errs at 0 of 300 points. How large may its error rate be?",
+                   "Ein Verfahren irrt an 0 von 300 Punkten. Wie groß kann seine Fehlerrate sein?",
+                   "Μια μέθοδος σφάλλει σε 0 από 300 σημεία. Πόσο μεγάλο μπορεί να είναι το ποσοστό σφαλμάτων της;"},
+                  {"With 95 % confidence up to 3/300 = 1 %.", "Mit 95 % Sicherheit bis zu 3/300 = 1 %.",
+                   "Με βεβαιότητα 95 % έως 3/300 = 1 %."}},
+         Exercise{
+             {"With 16 random rays to an area light a penumbra point with S_j = 0.5 is estimated. How large is the "
+              "standard error, and how many rays halve it?",
+              "Mit 16 zufälligen Strahlen zu einer Flächenlichtquelle wird ein Halbschattenpunkt mit S_j = 0,5 "
+              "geschätzt. Wie groß ist der Standardfehler, und wie viele Strahlen halbieren ihn?",
+              "Με 16 τυχαίες ακτίνες προς μια εκτεταμένη πηγή εκτιμάται ένα σημείο παρασκιάς με S_j = 0,5. Πόσο είναι "
+              "το τυπικό σφάλμα και πόσες ακτίνες το μειώνουν στο μισό;"},
+             {"√(0.5 · 0.5 / 16) = 0.125; four times as many, 64. Stratified rays do better: that is measured on the "
+              "page of the trade.",
+              "√(0,5 · 0,5 / 16) = 0,125; viermal so viele, 64. Geschichtete Strahlen sind besser: Das ist auf der "
+              "Seite der Abwägung gemessen.",
+              "√(0,5 · 0,5 / 16) = 0,125· τετραπλάσιες, 64. Οι στρωματοποιημένες ακτίνες τα πάνε καλύτερα: αυτό "
+              "μετριέται στη σελίδα της ανταλλαγής."}}}},
 };
 
 constexpr LecturePhrases kPhrases{

@@ -1,6 +1,7 @@
 // The words of the page of the lectures in English, German and Greek, with the lectures' own terms.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -26,10 +27,15 @@ struct LectureText {
     Translated proves;
 };
 
-/// A chapter: the rows whose ids begin with its letter, and an exercise with its answer.
+struct Exercise {
+    Translated question, answer;
+};
+
+/// A chapter: the rows whose ids begin with its letter, and exercises.
 struct LectureChapter {
     char letter;
-    Translated title, exercise, answer;
+    Translated title;
+    std::array<Exercise, 2> exercises;
 };
 
 /// In the lectures' order.

@@ -26,6 +26,7 @@
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/report_index.h"
 #include "umbra/bench/report/report_scene.h"
+#include "umbra/bench/report/study_page.h"
 #include "umbra/bench/trade/trade_page.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
@@ -58,9 +59,8 @@ std::vector<fs::path> results_files(const fs::path& dir) {
 }
 
 /// A results.json of a compared scene, and its place; nothing where it is of another command.
-std::optional<ScenePage> read_scene(const fs::path& file) {
-    ScenePage scene{
-        .root = read_results(file), .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
+std::optional<ScenePage> read_scene(const Field& root, const fs::path& file) {
+    ScenePage scene{.root = root, .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
     for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth"})
         if (scene.root[other].present()) return std::nullopt;
     scene.name      = scene.root["scene"]["name"].required_text();
@@ -71,9 +71,11 @@ std::optional<ScenePage> read_scene(const fs::path& file) {
     return scene;
 }
 
-/// The contents of the folders: compared scenes, at most one run of ladders, and the results.json of swept scenes.
+/// The contents of the folders: compared scenes, studies of shading and of other light, at most one run of ladders, and
+/// the results.json of swept scenes.
 struct Found {
     std::vector<ScenePage> scenes;
+    std::vector<StudyPage> studies;
     std::optional<fs::path> ladders;
     std::vector<fs::path> sweeps;
 };
@@ -92,6 +94,7 @@ std::vector<fs::path> swept(const Field& root, const fs::path& file) {
 
 Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     std::vector<ScenePage> all;
+    std::vector<StudyPage> studies;
     std::optional<fs::path> ladders;
     std::vector<fs::path> sweeps;
     for (const fs::path& dir : dirs) {
@@ -101,7 +104,13 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
             if (root["ladders"].present()) ladders = fs::canonical(file.parent_path());
             for (fs::path& sweep : swept(root, file))
                 if (std::find(sweeps.begin(), sweeps.end(), sweep) == sweeps.end()) sweeps.push_back(std::move(sweep));
-            std::optional<ScenePage> read = read_scene(file);
+            if (std::optional<StudyPage> study = read_study(root, file)) {
+                if (std::ranges::none_of(studies,
+                                         [&](const StudyPage& s) { return s.scene.data == study->scene.data; }))
+                    studies.push_back(std::move(*study));
+                continue;
+            }
+            std::optional<ScenePage> read = read_scene(root, file);
             if (!read) continue;
             ScenePage& scene = *read;
             const bool seen =
@@ -127,7 +136,7 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
             if (taken.insert(folder).second) scene.page = folder;
         }
     }
-    return {std::move(all), std::move(ladders), std::move(sweeps)};
+    return {std::move(all), std::move(studies), std::move(ladders), std::move(sweeps)};
 }
 
 /// The table of ladders for the first page, and the page of ladders with its files where it can be handed out with the
@@ -164,10 +173,27 @@ json trade_section(const std::vector<fs::path>& sweeps, const fs::path& out, Sta
     return {{"page", page}, {"lines", std::move(lines)}};
 }
 
+/// Links to the pages of studies; false where there are none.
+json studies_section(const std::vector<StudyPage>& studies, const fs::path& out) {
+    if (studies.empty()) return false;
+    json lines = json::array();
+    for (const StudyPage& study : studies)
+        lines.push_back({{"command", study.command},
+                         {"scene", study.scene.title},
+                         {"href", url((study.scene.page / "index.html").lexically_relative(out))}});
+    return {{"lines", std::move(lines)}};
+}
+
 /// The page of the lectures; false where no scene of theirs is there.
-json lectures_section(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
+json lectures_section(const std::vector<SceneFiles>& files, const std::vector<StudyPage>& studies, const fs::path& out,
                       const ReportOptions& options, StagedFiles& staged) {
-    json view = lectures_view(scenes, files, out, options.language);
+    LectureSources sources;
+    std::vector<SceneFiles> of_studies;
+    of_studies.reserve(studies.size());
+    for (const SceneFiles& scene : files) sources.pages.emplace_back("", &scene);
+    for (const StudyPage& study : studies)
+        sources.pages.emplace_back(study.command, &of_studies.emplace_back(study.scene, staged));
+    json view = lectures_view(sources, out, options.language);
     if (!view.is_object()) return false;
     const std::string title = view["title"];
     staged.write(
@@ -203,7 +229,7 @@ std::string scene_page(const SceneFiles& files, const std::vector<std::string>& 
 }  // namespace
 
 void write_scene_page(const fs::path& folder) {
-    std::optional<ScenePage> scene = read_scene(folder / "results.json");
+    std::optional<ScenePage> scene = read_scene(read_results(folder / "results.json"), folder / "results.json");
     if (!scene) return;
     scene->page = scene->data;
     StagedFiles staged;
@@ -231,9 +257,10 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     Found found                          = find_results(dirs, root);
     const std::vector<ScenePage>& scenes = found.scenes;
     for (ScenePage& scene : found.scenes) scene.with_exr = options.with_exr;
+    StagedFiles staged;
+    for (StudyPage& study : found.studies) take_study(study, root, staged);
     const std::vector<std::string> order = method_ids(scenes);
 
-    StagedFiles staged;
     std::vector<SceneFiles> files;
     files.reserve(scenes.size());
     for (const ScenePage& scene : scenes) files.emplace_back(scene, staged);
@@ -253,7 +280,8 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     json index         = index_view(scenes, files, root, options.title);
     index["stability"] = ladder_section(found.ladders, root, staged);
     index["trade"]     = trade_section(found.sweeps, root, staged);
-    index["lectures"]  = lectures_section(scenes, files, root, options, staged);
+    index["studies"]   = studies_section(found.studies, root);
+    index["lectures"]  = lectures_section(files, found.studies, root, options, staged);
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));

@@ -18,7 +18,8 @@ struct ReportOptions {
 
 /// Folders that `umbra ladder` wrote may be among them: the first page then says where each method breaks. Of folders
 /// that `umbra sweep` wrote, out/trade/index.html shows error against frame cost, and the first page what was found.
-/// Where scenes of docs/lectures.md are among them, out/lectures.html shows its topics with their pictures.
+/// Where scenes of docs/lectures.md are among them, out/lectures.html shows its topics with their pictures, also with
+/// those of folders that `umbra shading`, `umbra whitted` and `umbra radiosity` wrote.
 /// Writes out/index.html, a page per scene, their style and their scripts. Reads DIR/<scene>/results.json of each
 /// folder, or DIR/results.json where there is none of those. A scene whose folder lies in `out` gets its page beside
 /// its pictures; of others the pictures are copied to out/<scene>, so that `out` can be handed out whole. The pages

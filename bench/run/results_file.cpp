@@ -36,6 +36,8 @@ Field Field::operator[](std::string_view key) const {
     return {document_, member, pointer_ + (json::json_pointer() / std::string(key)).to_string()};
 }
 
+bool Field::is_array() const { return value_ != nullptr && value_->is_array(); }
+
 std::string Field::text() const {
     if (!value_) return {};
     if (!value_->is_string()) refuse("a string");

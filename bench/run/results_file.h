@@ -16,8 +16,10 @@ namespace umbra {
 /// InputError with the file and the position as a JSON pointer. Copies share the file's contents.
 class Field {
 public:
+    Field() = default;                                           ///< absent
     [[nodiscard]] Field operator[](std::string_view key) const;  ///< absent where this is absent
     [[nodiscard]] bool present() const { return value_ != nullptr; }
+    [[nodiscard]] bool is_array() const;
 
     [[nodiscard]] std::string text() const;           ///< empty where absent
     [[nodiscard]] std::string required_text() const;  ///< neither absent nor empty

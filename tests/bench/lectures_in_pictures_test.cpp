@@ -7,8 +7,12 @@
 #include <sstream>
 
 #include "report_fixture.h"
+#include "umbra/bench/radiosity/exchange_page.h"
 #include "umbra/bench/report/lecture_page.h"
+#include "umbra/bench/report/lecture_shows.h"
 #include "umbra/bench/report/lecture_texts.h"
+#include "umbra/bench/shading/shading_page.h"
+#include "umbra/bench/whitted/whitted_page.h"
 
 namespace umbra {
 namespace {
@@ -97,6 +101,118 @@ TEST_F(Report, LecturesAreShownWithTheirPicturesInOrder) {
     EXPECT_FALSE(contains(html, "court"));
     EXPECT_TRUE(contains(read(out / "index.html"), "href=\"lectures.html\""));
     EXPECT_TRUE(contains(html, "<html lang=\"en\">"));
+}
+
+/// As `umbra shading` writes it, of self_shadow; every model has figures of its own.
+json shading_record() {
+    json models = json::array();
+    double at   = 0;
+    for (const char* name : {"constant", "flat", "gouraud", "every_second", "highlight_test", "taylor", "differences",
+                             "phong", "quadratic"}) {
+        ++at;
+        models.push_back({{"name", name},
+                          {"evaluations", 1000 * at},
+                          {"rmse", at / 16},
+                          {"kink", at / 8},
+                          {"highlight", at / 4},
+                          {"picture", std::string(name) + ".png"},
+                          {"difference", std::string(name) + "_difference.png"}});
+    }
+    return {{"schema", kResultsSchema},
+            {"scene", {{"name", "self_shadow"}, {"title", "Two balls"}}},
+            {"models", std::move(models)},
+            {"stages", json::array()}};
+}
+
+TEST_F(Report, TopicsThatAreNoShadowsAreShownByTheirStudies) {
+    put(out / "shading-self_shadow", shading_record());
+    write(out / "shading-self_shadow/index.html", "the study's page");
+    write_report({out}, out);
+    const std::string html = read(out / "lectures.html"), models = topic_of(html, "C1");
+    std::size_t at = 0;
+    for (const std::string expected :
+         {"shading-self_shadow/constant.png", "<figcaption>constant<", "shading-self_shadow/flat.png",
+          "<figcaption>flat<", "shading-self_shadow/gouraud.png", "<figcaption>Gouraud<",
+          "shading-self_shadow/phong.png", "<figcaption>Phong<", "One value a triangle without lights"}) {
+        at = models.find(expected, at);
+        ASSERT_NE(at, std::string::npos) << expected << " in its place in\n" << models;
+    }
+    EXPECT_TRUE(contains(models, "Difference from Phong shading (RMSE): constant 0.0625, flat 0.125, Gouraud 0.188."))
+        << models;
+    EXPECT_TRUE(contains(models, "href=\"shading-self_shadow/index.html\">Two balls<")) << models;
+    EXPECT_TRUE(contains(topic_of(html, "C4"), "Evaluations of the sum: every second pixel 4 000, Phong 8 000."))
+        << topic_of(html, "C4");
+    EXPECT_TRUE(contains(topic_of(html, "C2"), "over that of Phong shading: flat 0.250.")) << topic_of(html, "C2");
+    EXPECT_FALSE(contains(topic_of(html, "C5"), "<img")) << "its scene is another one";
+    EXPECT_TRUE(contains(read(out / "index.html"), "shading-self_shadow/index.html"));
+    write_report({out}, out, {.language = Language::german});
+    const std::string german = topic_of(read(out / "lectures.html"), "C1");
+    EXPECT_TRUE(contains(german, "Abstand von der Phong-Schattierung (RMSE): konstant 0.0625, flach 0.125")) << german;
+}
+
+TEST_F(Report, StudiesFromElsewhereAreCopiedWithTheirPictures) {
+    put(folder / "elsewhere", shading_record());
+    write(folder / "elsewhere/index.html", "the study's page");
+    write_report({folder / "elsewhere"}, out);
+    EXPECT_EQ(read(out / "shading-self_shadow/index.html"), "the study's page");
+    EXPECT_TRUE(fs::exists(out / "shading-self_shadow/flat_difference.png"));
+    EXPECT_TRUE(links_hold(out / "lectures.html"));
+    EXPECT_TRUE(links_hold(out / "index.html"));
+}
+
+TEST_F(Report, MethodsOfTheLecturesAreShownBesideWhatIsExact) {
+    json results = sample("low_sun_fence");
+    put(out / "low_sun_fence", results);
+    write_report({out}, out);
+    const std::string shown = topic_of(read(out / "lectures.html"), "D5");
+    const auto method       = shown.find("low_sun_fence/shadow_zbuffer.png");
+    ASSERT_NE(method, std::string::npos) << shown;
+    EXPECT_LT(method, shown.find("low_sun_fence/reference.png")) << shown;
+    EXPECT_TRUE(contains(shown, "<figcaption>shadow z-buffer<")) << shown;
+    EXPECT_TRUE(contains(shown, "24 wrong interior points")) << shown;
+}
+
+fs::path scene_named(const std::string& name) { return fs::path(UMBRA_SCENES) / (name + ".json"); }
+
+/// What is shown of a topic is in the records that the commands write, and methods are called what they are called.
+TEST(LectureShows, NameWhatTheCommandsWrite) {
+    const fs::path folder = fs::temp_directory_path() / ("umbra_lecture_shows_" + std::to_string(::getpid()));
+    const Size small{48, 27};
+    const MethodChoice rays = parse_method("ray_traced");
+    std::set<std::pair<std::string, std::string>> made;
+    for (const LectureRow& row : lecture_rows()) {
+        const LectureShow* show = lecture_show(row.id);
+        if (show == nullptr) continue;
+        ASSERT_FALSE(row.scene.empty()) << row.id;
+        const std::string study(show->study);
+        const fs::path place = folder / (study + "-" + row.scene);
+        if (study.empty()) {
+            const std::string path(show->pictures[0].path), name = path.substr(8, path.find('.', 8) - 8);
+            EXPECT_NO_THROW(static_cast<void>(find_method(name))) << row.id << ": " << path;
+            continue;
+        }
+        if (made.emplace(study, row.scene).second) {
+            PreparedScene prepared = prepare_scene(scene_named(row.scene), small, 1, Work::picture);
+            if (study == "shading")
+                write_shading_study(prepared, {.method = rays, .runs = 1, .command = ""}, place);
+            else if (study == "whitted")
+                write_whitted_study(
+                    prepared,
+                    {.method = rays, .pixel_samples = 4, .bodies = find_bodies(prepared.scene), .command = ""}, place);
+            else
+                write_exchange_study(prepared, {.size = 0.5, .steps = 4, .command = ""}, place);
+        }
+        const Field record = read_results(place / "results.json");
+        for (const LectureValue& picture : show->pictures) {
+            const Field file = value_at(record, picture.path);
+            EXPECT_TRUE(file.present() && fs::exists(place / file.text())) << row.id << ": " << picture.path;
+        }
+        for (const LectureFigure& figure : show->figures)
+            for (const LectureValue& value : figure.values)
+                EXPECT_TRUE(value_at(record, value.path).number().has_value()) << row.id << ": " << value.path;
+    }
+    EXPECT_EQ(made.size(), 7u);
+    fs::remove_all(folder);
 }
 
 TEST_F(Report, LecturesSayWhatIsNotDone) {

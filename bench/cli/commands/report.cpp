@@ -11,11 +11,17 @@
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/radiosity/exchange_page.h"
+#include "umbra/bench/report/lecture_page.h"
+#include "umbra/bench/report/lecture_shows.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/canonical.h"
+#include "umbra/bench/shading/shading_page.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/whitted/whitted_page.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -47,7 +53,72 @@ SweepOptions canonical_sweep(const fs::path& out) {
     return sweep;
 }
 
-/// All canonical scenes, all ladders, and the trade on some scenes.
+fs::path scene_named(std::string_view name) { return scenes_folder() / fmt::format("{}.json", name); }
+
+/// The canonical scenes, and those that the page of the lectures compares besides.
+std::vector<fs::path> compared_scenes() {
+    std::vector<fs::path> scenes = canonical_scenes(scenes_folder());
+    for (const LectureRow& row : lecture_rows()) {
+        const LectureShow* show = lecture_show(row.id);
+        const fs::path scene    = scene_named(row.scene);
+        if (row.scene.empty() || (show != nullptr && !show->study.empty()) || !fs::exists(scene)) continue;
+        if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+    }
+    return scenes;
+}
+
+/// What a study does, in a form that takes seconds: `umbra COMMAND SCENE OPTIONS` does the same.
+void write_study(const LectureShow& show, const fs::path& file, const fs::path& folder) {
+    const std::string start = fmt::format("umbra {} {}", show.study, file.stem().string());
+    const MethodChoice rays = parse_method("ray_traced");
+    if (show.study == "shading") {
+        const auto method = show.shadows ? std::optional(rays) : std::nullopt;
+        write_shading_study(
+            prepare_scene(file, {}),
+            {.method = method, .runs = 1, .command = start + (method ? " --runs 1" : " --runs 1 --no-shadows")},
+            folder);
+    } else if (show.study == "whitted") {
+        PreparedScene prepared = prepare_scene(file, {400, 225}, 1, Work::picture);
+        correct_warnings(prepared.scene);
+        WhittedOptions options{.method        = rays,
+                               .pixel_samples = kPictureSamples,
+                               .bodies        = find_bodies(prepared.scene),
+                               .command       = start + " --size 400x225"};
+        if (options.bodies->list.empty())
+            options.bodies.reset();
+        else
+            options.command += " --formula";
+        write_whitted_study(prepared, options, folder);
+    } else {
+        write_exchange_study(prepare_scene(file, {}),
+                             {.size = 0.09, .steps = 2500, .command = start + " --patch 0.09 --steps 2500"}, folder);
+    }
+}
+
+/// The studies that show topics of the lectures. Returns their folders; a study that fails is printed to standard error
+/// and counted. Where the folder of scenes has not a study's scene, it is left out.
+std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& common, int& failed) {
+    std::vector<fs::path> folders;
+    for (const LectureRow& row : lecture_rows()) {
+        const LectureShow* show = lecture_show(row.id);
+        if (show == nullptr || show->study.empty() || !fs::exists(scene_named(row.scene))) continue;
+        const std::string name = fmt::format("{} {}", show->study, row.scene);
+        const fs::path folder  = out / fmt::format("{}-{}", show->study, row.scene);
+        if (std::ranges::find(folders, folder) != folders.end()) continue;
+        try {
+            const Terminal terminal(common.quiet);
+            terminal.progress(name);
+            write_study(*show, scene_named(row.scene), folder);
+            folders.push_back(folder);
+        } catch (const std::exception& error) {
+            print_error("{}: {}\n", name, error.what());
+            ++failed;
+        }
+    }
+    return folders;
+}
+
+/// All canonical scenes, all ladders, the trade on some scenes, and studies of the lectures' other topics.
 int run_everything(const fs::path& out, Language language, const Common& common) {
     LadderOptions ladders;
     ladders.out              = out / "ladders";
@@ -60,13 +131,15 @@ int run_everything(const fs::path& out, Language language, const Common& common)
         swept = sweep_on_terminal(sweep, common).failed.empty();
         also.push_back(sweep.out);
     }
+    int studies_failed = 0;
+    for (fs::path& folder : study_on_terminal(out, common, studies_failed)) also.push_back(std::move(folder));
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
-    const ScenesDone done = compare_on_terminal(canonical_scenes(scenes_folder()), options, common, also, language);
+    const ScenesDone done = compare_on_terminal(compared_scenes(), options, common, also, language);
     const int code        = exit_code(done);
-    if (!climbed || !swept) return kInternal;
+    if (!climbed || !swept || studies_failed > 0) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
@@ -90,7 +163,8 @@ int report(const ReportLine& line, const Common& common) {
 
 Action report_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<ReportLine>();
-    app.add_option("DIR", line->folders, "Folders that compare or ladder wrote: only rebuild their pages")
+    app.add_option("DIR", line->folders,
+                   "Folders that compare, ladder, sweep, shading, whitted or radiosity wrote: only rebuild their pages")
         ->type_name("");
     app.add_option("-o,--output", line->out, "Folder to write to (default: results; given one DIR, that folder)")
         ->type_name("DIR");

@@ -1,0 +1,46 @@
+// Which pictures and figures show a topic of the lectures, where the reference's picture of its scene does not.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbra/bench/report/lecture_texts.h"
+#include "umbra/bench/run/results_file.h"
+
+namespace umbra {
+
+/// Something in a results.json. `path` names members, and entries of arrays by their `name` or their number, with dots
+/// between: "models.gouraud.picture", "depths.0.picture".
+struct LectureValue {
+    Translated name;
+    std::string_view path;
+};
+
+enum class FigureKind { score, count, percent };
+
+/// A measured property, of one thing or of several that the page names.
+struct LectureFigure {
+    Translated what;
+    FigureKind kind;
+    std::vector<LectureValue> values;
+};
+
+struct LectureShow {
+    std::string_view id;
+    std::string_view study;  ///< the command that wrote the results.json of the topic's scene; empty: `umbra compare`
+    std::vector<LectureValue> pictures;
+    std::vector<LectureFigure> figures;
+    bool shadows = true;  ///< false: shading is compared without them
+};
+
+/// Null where the reference's picture shows the topic.
+[[nodiscard]] const LectureShow* lecture_show(std::string_view id);
+
+/// Absent where the record has no such thing.
+[[nodiscard]] Field value_at(const Field& root, std::string_view path);
+
+/// "What: first 0.12, second 0.34."; without those that are absent, and empty where all are.
+[[nodiscard]] std::string figure_in_words(const LectureFigure& figure, const Field& root, Language language);
+
+}  // namespace umbra
