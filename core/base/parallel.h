@@ -1,4 +1,6 @@
-// Threads: TBB behind two functions. Results never depend on how work was split.
+// Threads: TBB behind three functions. Results never depend on how work was split, nor on what ran before: tasks
+// compute in the floating-point mode of their caller. TBB's own default is the mode in which a thread first used it,
+// and within Embree's build that is one without denormals.
 #pragma once
 
 #include <cstddef>
@@ -7,6 +9,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 namespace umbra {
 
@@ -27,8 +30,17 @@ private:
 /// Calls body(begin, end) on disjoint ranges that cover [0, n), of about `grain` each, from many threads.
 template <class Body>
 void parallel_ranges(std::size_t n, std::size_t grain, const Body& body) {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain),
-                      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+    tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, n, grain),
+        [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); }, context);
+}
+
+/// Calls both, perhaps at one time.
+template <class First, class Second>
+void parallel_pair(const First& first, const Second& second) {
+    tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
+    tbb::parallel_invoke(first, second, context);
 }
 
 }  // namespace umbra

@@ -1,7 +1,6 @@
 #include "umbra/core/scene/facts.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +8,7 @@
 
 #include "umbra/core/base/disjoint_sets.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/parallel_sort.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/core/scene/view_facts.h"
 #include "umbra/core/scene/winding.h"
@@ -58,7 +58,7 @@ std::uint32_t count_duplicates(const Topology& topology) {
         corners[t]    = {v.x, v.y, v.z};
         std::sort(corners[t].begin(), corners[t].end());
     }
-    tbb::parallel_sort(corners.begin(), corners.end());
+    parallel_sort(corners.begin(), corners.end());
     const auto distinct = std::unique(corners.begin(), corners.end()) - corners.begin();
     return static_cast<std::uint32_t>(topology.triangles.size() - static_cast<std::size_t>(distinct));
 }

@@ -8,8 +8,6 @@
 // however small the angle between neighbours.
 #include "umbra/core/scene/planes.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,6 +16,7 @@
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/parallel_sort.h"
 
 namespace umbra {
 namespace {
@@ -195,7 +194,7 @@ std::vector<Entry> grid_of_planes(const Scene& scene) {
         }
     });
     std::erase_if(entries, [](const Entry& e) { return e.area == 0; });
-    tbb::parallel_sort(entries.begin(), entries.end(), [](const Entry& l, const Entry& r) {
+    parallel_sort(entries.begin(), entries.end(), [](const Entry& l, const Entry& r) {
         if (l.key != r.key) return l.key < r.key;
         if (l.area != r.area) return l.area > r.area;
         return l.triangle < r.triangle;

@@ -7,7 +7,7 @@ namespace umbra::exact_detail {
 int Viewpoint::side_of(TriangleId t) const {
     if (t == own_) return 0;
     const vec3 a = scene_.vertex(t, 0), b = scene_.vertex(t, 1), c = scene_.vertex(t, 2);
-    if (const Filtered<int> s = sign_of_determinant(point_.to(a), point_.to(b), point_.to(c))) return *s;
+    if (const Filtered<int> s = point_.quick_side(a, b, c)) return *s;
     // Most often t lies in the plane of the point's own triangle, and does so for all its points.
     if (coplanar_.own != own_) {
         coplanar_.own = own_;

@@ -1,7 +1,5 @@
 #include "umbra/shadows/planar/darkening_tree.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -9,6 +7,7 @@
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/parallel_sort.h"
 
 namespace umbra::planar {
 
@@ -40,7 +39,7 @@ void DarkeningTree::sort(std::span<const dvec2> at) {
                              static_cast<std::uint32_t>(i)};
         }
     });
-    tbb::parallel_sort(order.begin(), order.end(), [](const Keyed& l, const Keyed& r) {
+    parallel_sort(order.begin(), order.end(), [](const Keyed& l, const Keyed& r) {
         return l.key != r.key ? l.key < r.key : l.place < r.place;
     });
     const std::vector<std::uint32_t> unsorted = points_;

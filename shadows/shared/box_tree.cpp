@@ -1,9 +1,9 @@
 #include "umbra/shadows/shared/box_tree.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <array>
 #include <atomic>
+
+#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -53,7 +53,7 @@ struct BoxTree::Builder {
         const auto left              = [&] { build(children, begin, middle, depth + 1); };
         const auto right             = [&] { build(children + 1, middle, end, depth + 1); };
         if (end - begin > 10000) {
-            tbb::parallel_invoke(left, right);
+            parallel_pair(left, right);
         } else {
             left();
             right();

@@ -69,11 +69,12 @@ public:
         return {d, from_a.error + from_corner_error_ + kUnit * largest(d)};
     }
 
-    /// Sign of the volume that the point and (x, y, z) span, which is the sign of det(x - p, y - p, z - p).
-    [[nodiscard]] int side(vec3 x, vec3 y, vec3 z) const {
-        const Filtered<int> s = sign_of_determinant(to(x), to(y), to(z));
-        return s ? *s : exact_side(x, y, z);
+    /// Sign of the volume that the point and (x, y, z) span, which is the sign of det(x - p, y - p, z - p); kUnsure
+    /// where doubles cannot tell.
+    [[nodiscard]] Filtered<int> quick_side(vec3 x, vec3 y, vec3 z) const {
+        return sign_of_determinant(to(x), to(y), to(z));
     }
+    /// The same in rationals.
     [[nodiscard]] int exact_side(vec3 x, vec3 y, vec3 z) const;
 
     /// On which side of the plane of the point's own triangle x is, and to which the direction d leads: +1 where its

@@ -94,7 +94,12 @@ Segment::Meeting Segment::meeting(vec3 x, vec3 y, vec3 z) const {
     const bool surely_left = q0 == 1 || q1 == 1 || q2 == 1, surely_right = q0 == -1 || q1 == -1 || q2 == -1;
     if (surely_left && surely_right) return Meeting::none;
 
-    const int end = end_side(x, y, z), start = start_.side(x, y, z);
+    // What is in or behind the plane of the point's own triangle is not counted. A copy of that triangle, or a
+    // neighbour in its plane, would cost rationals at every point: doubles cannot place the point, but the corners are
+    // floats.
+    const Filtered<int> quick = start_.quick_side(x, y, z);
+    if (!quick && !rises(x, y, z)) return Meeting::none;
+    const int end = end_side(x, y, z), start = quick ? *quick : start_.exact_side(x, y, z);
     if (start == 0) return meeting_from_plane(x, y, z, end == 0);
     // A segment that ends on the triangle's plane does not pass through it: nothing lies on both of its sides.
     if (end == 0 || start == end) return Meeting::none;

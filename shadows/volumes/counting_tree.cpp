@@ -1,13 +1,12 @@
 #include "umbra/shadows/volumes/counting_tree.h"
 
-#include <tbb/parallel_sort.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 
 #include "umbra/core/base/morton.h"
+#include "umbra/core/base/parallel_sort.h"
 
 namespace umbra {
 namespace {
@@ -104,7 +103,7 @@ void sort_by_projection(std::vector<std::uint32_t>& index, const PointBatch& poi
                                 index[k]};
         }
     });
-    tbb::parallel_sort(keys.begin(), keys.end());
+    parallel_sort(keys.begin(), keys.end());
     for (std::size_t k = 0; k < index.size(); ++k) index[k] = keys[k].second;
 }
 

@@ -1,0 +1,58 @@
+#include "umbra/core/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+#include <vector>
+
+#include "umbra/core/base/parallel_sort.h"
+#include "umbra/core/render/ray.h"
+
+namespace umbra {
+namespace {
+
+/// 0 while denormals are flushed.
+double half_of_the_least_normal() {
+    volatile float least = std::numeric_limits<float>::min();
+    volatile float half  = least * 0.5f;
+    return static_cast<double>(half);
+}
+
+/// In each of 64 ranges.
+std::vector<double> halves() {
+    std::vector<double> found(64);
+    parallel_ranges(found.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) found[i] = half_of_the_least_normal();
+    });
+    return found;
+}
+
+/// TBB takes the mode of a thread's first parallel loop for all later ones: this is a thread of its own.
+template <class Body>
+void on_new_thread(const Body& body) {
+    std::thread(body).join();
+}
+
+TEST(ParallelRanges, ComputeInTheModeOfTheirCaller) {
+    const std::vector<double> kept(64, 0x1p-127), flushed(64, 0.0);
+    on_new_thread([&] {
+        {
+            const FlushDenormals flush;
+            EXPECT_EQ(halves(), flushed);
+        }
+        EXPECT_EQ(halves(), kept);
+        parallel_pair([] { EXPECT_GT(half_of_the_least_normal(), 0); }, [] { EXPECT_EQ(halves()[0], 0x1p-127); });
+        std::vector<double> places{3 * 0x1p-1074, 2 * 0x1p-1074, 0x1p-1074};
+        parallel_sort(places.begin(), places.end());
+        EXPECT_EQ(places, (std::vector<double>{0x1p-1074, 2 * 0x1p-1074, 3 * 0x1p-1074}));
+    });
+    on_new_thread([&] {
+        EXPECT_EQ(halves(), kept);
+        const FlushDenormals flush;
+        EXPECT_EQ(halves(), flushed);
+    });
+}
+
+}  // namespace
+}  // namespace umbra
