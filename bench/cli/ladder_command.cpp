@@ -1,9 +1,14 @@
 #include "umbra/bench/cli/ladder_command.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <exception>
+#include <mutex>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "umbra/bench/ladders/ladder_break.h"
 #include "umbra/bench/ladders/ladder_page.h"
@@ -16,6 +21,7 @@
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -78,6 +84,40 @@ void find_textbook_break(const LadderRun& run, std::size_t m, std::size_t entry,
     }
 }
 
+/// A ladder's run, or what stopped it.
+struct Climbed {
+    std::optional<LadderRun> run;
+    std::exception_ptr stopped;
+};
+
+/// Several at a time: answers do not depend on that, and on one rung most work is no loop over many points. A thread
+/// that waits for others within a ladder takes up no other ladder meanwhile.
+std::vector<Climbed> climb_all(std::span<const Ladder* const> chosen, const std::vector<MethodChoice>& methods,
+                               const LadderOptions& options) {
+    std::vector<Climbed> all(chosen.size());
+    Steps steps(chosen.size(), options.progress);
+    std::mutex mutex;
+    parallel_ranges(chosen.size(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            tbb::this_task_arena::isolate([&] {
+                {
+                    const std::lock_guard lock(mutex);
+                    steps.next();
+                }
+                const auto progress = [&](const std::string& what) {
+                    const std::lock_guard lock(mutex);
+                    steps.show(what);
+                };
+                try {
+                    all[i].run = climb_ladder(*chosen[i], methods, progress, options.patience_s);
+                } catch (...) {
+                    all[i].stopped = std::current_exception();
+                }
+            });
+    });
+    return all;
+}
+
 }  // namespace
 
 Json climb_ladders(const LadderOptions& options) {
@@ -107,13 +147,16 @@ Json climb_ladders(const LadderOptions& options) {
     std::vector<TextbookBreak> textbook(methods_chosen.size());  // by method
     StagedFolder staged(options.out);
     std::filesystem::create_directory(staged.folder() / "breaks");
+    std::vector<Climbed> climbed = climb_all(chosen, methods_chosen, options);
     Steps steps(chosen.size(), options.progress);
     const auto progress = [&](const std::string& what) { steps.show(what); };
-    for (const Ladder* ladder : chosen) {
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        const Ladder* ladder = chosen[i];
         steps.next();
         const auto fail = [&](const std::string& method) { add_failed(*ladder, method); };
         try {
-            LadderRun run = climb_ladder(*ladder, methods_chosen, progress, options.patience_s);
+            if (climbed[i].stopped) std::rethrow_exception(climbed[i].stopped);
+            LadderRun& run = *climbed[i].run;
             if (run.methods.size() > 1) {
                 progress(fmt::format("{}: times", ladder->name));
                 run.first_rung_ms = time_first_rung(*ladder, run.methods);

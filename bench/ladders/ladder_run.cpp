@@ -27,6 +27,13 @@ std::string kind_of(const VisibilityError& e) {
     return most->first > 0 ? most->second : "";
 }
 
+/// What the processor has spent on this thread, which neither other processes nor other ladders lengthen.
+double thread_seconds() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 /// The sum with the true S_j, where the ladder is over that.
 std::string wrong_sum(const Ladder& ladder, double value, const RungStage& stage) {
     return ladder.wrong_sum(value, stage.scene, shade(stage.scene, stage.points, stage.truth.planes));
@@ -176,14 +183,13 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
                 o.service = {How::not_at_all, too_slow[m]};
                 continue;
             }
-            // Of the processor, which other processes do not lengthen: what is asked must not hang on them.
-            const std::clock_t start = std::clock();
-            o                        = outcome(stage, run.methods[m]);
-            const double seconds     = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+            const double start   = thread_seconds();
+            o                    = outcome(stage, run.methods[m]);
+            const double seconds = thread_seconds() - start;
             if (seconds > patience_s)
-                too_slow[m] =
-                    fmt::format("It took {:.3g} s of processor time on rung {:g}, and {:g} s are allowed (--patience).",
-                                seconds, value, patience_s);
+                too_slow[m] = fmt::format(
+                    "It took {:.3g} s of a thread's processor time on rung {:g}, and {:g} s are allowed (--patience).",
+                    seconds, value, patience_s);
         }
     }
     return run;

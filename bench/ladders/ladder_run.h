@@ -86,8 +86,8 @@ struct RungStage {
                                   std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr);
 
 /// Climbs one ladder with each of the methods. `progress` is called with each step's description; may be empty. A
-/// method that took longer than `patience_s`, seconds of processor time, on a rung is asked on no later one: it does
-/// not serve these, and says why.
+/// method that took longer than `patience_s`, seconds of the calling thread's processor time, on a rung is asked on no
+/// later one: it does not serve these, and says why.
 [[nodiscard]] LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
                                      const std::function<void(const std::string&)>& progress = {},
                                      double patience_s                                       = double(kInfinity));

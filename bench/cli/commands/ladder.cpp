@@ -35,7 +35,7 @@ Action ladder_command(CLI::App& app, const Common& common) {
                    "Methods, with settings (default: all that reports show but exact, each also @textbook)")
         ->type_name("METHOD");
     app.add_option("--patience", line->options.patience_s,
-                   "Seconds of processor time: a method that takes longer on a rung is asked on no later one")
+                   "Seconds of a thread: a method that takes longer on a rung is asked on no later one")
         ->check(number_in(0.001, 1e6, "a number from 0.001 to 1000000"))
         ->capture_default_str()
         ->type_name("S");
