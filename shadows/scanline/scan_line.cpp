@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <tuple>
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
@@ -213,11 +214,13 @@ private:
         const double turn = facing > 0 ? -1 : 1;
         Shadow shadow;
         shadow.sides[0] = {turn * normal, corner[0]};  // first, since it rules out most
-        for (int k = 0; k < 3; ++k) {
-            const dvec3 p = corner[k], q = corner[(k + 1) % 3];
-            shadow.sides[static_cast<std::size_t>(k) + 1] =
-                infinite ? Shadow::Side{turn * glm::cross(q - p, light), p}
-                         : Shadow::Side{turn * glm::cross(p - light, q - light), light};
+        for (std::size_t k = 0; k < 3; ++k) {
+            // From a corner, since a far light is known less well than the corners' distance; from the same one for the
+            // triangle on the edge's other side, so that no point is between the two.
+            dvec3 p = corner[k], q = corner[(k + 1) % 3];
+            double sign = turn;
+            if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q), sign = -turn;
+            shadow.sides[k + 1] = {sign * glm::cross(q - p, infinite ? light : light - p), p};
         }
         return shadow;
     }
