@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <functional>
 #include <set>
+#include <utility>
 
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/image_figures.h"
@@ -19,6 +21,7 @@
 #include "umbra/bench/run/noise_runs.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/shade.h"
@@ -114,21 +117,33 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
     Image full              = exr_image(rendered.linear, scene, points, run,
                                         {.geometry = is_reference, .reference = is_reference, .explained = explained});
     full.metadata.merge(metadata(scene, run.choice, command));
-    write_image(folder / (id + ".exr"), full);
-    write_image(folder / (id + ".png"), picture_of(prepared, run, rendered, known));
+    const Image shown = picture_of(prepared, run, rendered, known);
+    // Packing them takes longer than making them: several at a time.
+    std::vector<std::pair<std::string, std::function<Image()>>> pictures;
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const std::string& light = scene.lights[j].name;
         Json entry               = {{"visibility", fmt::format("{}.S.{}.png", id, light)}};
-        write_image(folder / entry["visibility"], visibility_picture(points, run.planes[j]));
+        pictures.emplace_back(entry["visibility"], [&, j] { return visibility_picture(points, run.planes[j]); });
         if (!explained.empty()) {
             entry["difference"] = fmt::format("{}.diff.{}.png", id, light);
-            write_image(folder / entry["difference"],
-                        difference_picture(points, j, run.planes[j], reference.planes[j]));
+            pictures.emplace_back(entry["difference"],
+                                  [&, j] { return difference_picture(points, j, run.planes[j], reference.planes[j]); });
             entry["classes"] = fmt::format("{}.classes.{}.png", id, light);
-            write_image(folder / entry["classes"], class_picture(points, explained[j].classes, reference.planes[j]));
+            pictures.emplace_back(entry["classes"],
+                                  [&, j] { return class_picture(points, explained[j].classes, reference.planes[j]); });
         }
         files["lights"][light] = std::move(entry);
     }
+    parallel_ranges(pictures.size() + 2, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            if (k == 0)
+                write_image(folder / (id + ".exr"), full);
+            else if (k == 1)
+                write_image(folder / (id + ".png"), shown);
+            else
+                write_image(folder / pictures[k - 2].first, pictures[k - 2].second());
+        }
+    });
     return files;
 }
 

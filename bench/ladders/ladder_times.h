@@ -10,8 +10,8 @@
 namespace umbra {
 
 struct LadderTurns {
-    int rounds       = 6;     ///< at most
-    double budget_ms = 1000;  ///< for all methods together, without their first runs
+    int rounds       = 6;    ///< at most
+    double budget_ms = 600;  ///< for all methods together, without their first runs
 };
 
 /// [method][round]: milliseconds of build, aim and visibility over all lights, as time_in_turns measures them: samples
