@@ -39,9 +39,8 @@ void DarkeningTree::sort(std::span<const dvec2> at) {
                              static_cast<std::uint32_t>(i)};
         }
     });
-    parallel_sort(order.begin(), order.end(), [](const Keyed& l, const Keyed& r) {
-        return l.key != r.key ? l.key < r.key : l.place < r.place;
-    });
+    parallel_sort(order.begin(), order.end(),
+                  [](const Keyed& l, const Keyed& r) { return l.key != r.key ? l.key < r.key : l.place < r.place; });
     const std::vector<std::uint32_t> unsorted = points_;
     x_.resize(leaf_count() * kLeaf, 0);  // filled up, so that leaves are tested whole
     y_.resize(leaf_count() * kLeaf, 0);

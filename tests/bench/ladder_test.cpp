@@ -171,7 +171,8 @@ TEST(BreakRule, AMethodThatTakesTooLongIsNotAskedAgain) {
     EXPECT_TRUE(run.rungs[0].outcomes[0].ran());
     const Climb c = climb(run, 0);
     EXPECT_EQ(c.not_served_from, 1u);
-    EXPECT_NE(c.why.find("s of a thread's processor time on rung 0.1, and 0 s are allowed"), std::string::npos) << c.why;
+    EXPECT_NE(c.why.find("s of a thread's processor time on rung 0.1, and 0 s are allowed"), std::string::npos)
+        << c.why;
     EXPECT_FALSE(climb(climb_ladder(two, {parse_method("ray_traced")}), 0).not_served_from.has_value());
 }
 
