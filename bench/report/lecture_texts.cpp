@@ -12,17 +12,9 @@ constexpr std::array<std::pair<std::string_view, Language>, 3> kLanguages{
 constexpr Translated kSixLights{
     "Six lights shine on one scene, and their terms add up: each has a shadow of its own, which the others fill.",
     "Sechs Lichtquellen beleuchten eine Szene, und ihre Terme addieren sich: Jede wirft ihren eigenen Schatten, den "
-    "die "
-    "anderen aufhellen.",
+    "die anderen aufhellen.",
     "Έξι φωτεινές πηγές φωτίζουν μία σκηνή και οι όροι τους αθροίζονται: καθεμία ρίχνει τη δική της σκιά, την οποία "
     "φωτίζουν οι άλλες."};
-constexpr Translated kPenumbra{
-    "Behind an occluder lies an umbra, where S_j is 0, and around it a penumbra, where the point sees a part of the "
-    "light.",
-    "Hinter einem Hindernis liegt der Kernschatten mit S_j = 0, um ihn der Halbschatten, aus dem man einen Teil der "
-    "Lichtquelle sieht.",
-    "Πίσω από ένα εμπόδιο βρίσκεται η κύρια σκιά, όπου S_j = 0, και γύρω της η παρασκιά, από όπου φαίνεται μέρος της "
-    "πηγής."};
 
 constexpr std::array kTexts{
     LectureText{"A1",
@@ -295,12 +287,17 @@ constexpr std::array kTexts{
                  "Από το συρματόπλεγμα ως τις αναδρομικές ακτίνες, η εντολή umbra shading σχεδιάζει την ίδια σκηνή σε "
                  "εννέα στάδια: κάθε εικόνα προσθέτει έναν όρο."}},
 
-    LectureText{"D1",
-                "Projektion auf Ebenen",
-                "προβολή σε επίπεδα",
-                {"Each step is a plane, and on a plane the shadow is the projection of its occluder.",
-                 "Jede Stufe ist eine Ebene, und auf einer Ebene ist der Schatten die Projektion des Hindernisses.",
-                 "Κάθε σκαλοπάτι είναι επίπεδο, και σε ένα επίπεδο η σκιά είναι η προβολή του εμποδίου."}},
+    LectureText{
+        "D1",
+        "Projektion auf Ebenen",
+        "προβολή σε επίπεδα",
+        {"On a plane the shadow is the projection of its occluder. The risers are too small to be receivers: the "
+         "method "
+         "has no answer there, and the picture shows them lit.",
+         "Auf einer Ebene ist der Schatten die Projektion des Hindernisses. Die Setzstufen sind als Empfänger zu "
+         "klein: dort hat das Verfahren keine Antwort, und das Bild zeigt sie beleuchtet.",
+         "Σε ένα επίπεδο η σκιά είναι η προβολή του εμποδίου. Τα ρίχτια είναι πολύ μικρά για δέκτες: εκεί η "
+         "μέθοδος δεν έχει απάντηση, και η εικόνα τα δείχνει φωτισμένα."}},
     LectureText{
         "D2",
         "Schatten im Scanline-Verfahren",
@@ -347,7 +344,18 @@ constexpr std::array kTexts{
          "Flächenstücke tauschen Licht aus; Halbschatten entstehen von selbst, so fein wie die Stücke.",
          "Τα τμήματα των επιφανειών ανταλλάσσουν φως· οι παρασκιές προκύπτουν μόνες τους, όσο λεπτά είναι τα "
          "τμήματα."}},
-    LectureText{"D8", "Kern- und Halbschatten, unterschieden", "κύρια σκιά και παρασκιά, σε διάκριση", kPenumbra},
+    LectureText{"D8",
+                "Kern- und Halbschatten, unterschieden",
+                "κύρια σκιά και παρασκιά, σε διάκριση",
+                {"Behind an occluder lies an umbra, where S_j is 0, and around it a penumbra, where the point sees a "
+                 "part of the "
+                 "light.",
+                 "Hinter einem Hindernis liegt der Kernschatten mit S_j = 0, um ihn der Halbschatten, aus dem man "
+                 "einen Teil der "
+                 "Lichtquelle sieht.",
+                 "Πίσω από ένα εμπόδιο βρίσκεται η κύρια σκιά, όπου S_j = 0, και γύρω της η παρασκιά, από όπου "
+                 "φαίνεται μέρος της "
+                 "πηγής."}},
     LectureText{
         "D9",
         "der Ort der Lichtquelle",
@@ -470,11 +478,29 @@ constexpr std::array kTexts{
          "ίδια."}},
     LectureText{"E8", "Beleuchtung im falschen Raum", "φωτισμός σε λάθος χώρο", {}},
 
-    LectureText{"F1", "alle Verfahren auf einer Szene, ein Bericht", "όλες οι μέθοδοι σε μία σκηνή, μία αναφορά",
-                kPenumbra},
-    LectureText{"F2", "Schnelligkeit gegen Genauigkeit: Reihe, Front, Empfehlung",
-                "ταχύτητα και ακρίβεια: σειρά, μέτωπο, σύσταση", kPenumbra},
-    LectureText{"F3", "Leitern: wo Verfahren versagen", "κλίμακες: πού αποτυγχάνουν οι μέθοδοι", {}},
+    LectureText{"F1",
+                "alle Verfahren auf einer Szene, ein Bericht",
+                "όλες οι μέθοδοι σε μία σκηνή, μία αναφορά",
+                {"Every method answers one question at the same points: pictures differ in their shadows alone.",
+                 "Jedes Verfahren beantwortet eine Frage an denselben Punkten: Bilder unterscheiden sich nur in den "
+                 "Schatten.",
+                 "Κάθε μέθοδος απαντά σε μία ερώτηση στα ίδια σημεία: οι εικόνες διαφέρουν μόνο στις σκιές."}},
+    LectureText{
+        "F2",
+        "Schnelligkeit gegen Genauigkeit: Reihe, Front, Empfehlung",
+        "ταχύτητα και ακρίβεια: σειρά, μέτωπο, σύσταση",
+        {"Each setting of a method has a time and an error; the front holds those that no other beats in both.",
+         "Jede Einstellung eines Verfahrens hat eine Zeit und einen Fehler; auf der Front liegen die, die keine "
+         "andere in beidem übertrifft.",
+         "Κάθε ρύθμιση μιας μεθόδου έχει χρόνο και σφάλμα· στο μέτωπο είναι όσες δεν ξεπερνά καμία άλλη και στα "
+         "δύο."}},
+    LectureText{"F3",
+                "Leitern: wo Verfahren versagen",
+                "κλίμακες: πού αποτυγχάνουν οι μέθοδοι",
+                {"A ladder makes one thing extreme, rung by rung, and finds the rung at which a method breaks.",
+                 "Eine Leiter treibt eine Größe Sprosse für Sprosse ins Extrem und findet die Sprosse, an der ein "
+                 "Verfahren versagt.",
+                 "Μια κλίμακα οδηγεί ένα μέγεθος στα άκρα, σκαλί με σκαλί, και βρίσκει πού αποτυγχάνει μια μέθοδος."}},
     LectureText{
         "F4",
         "nur, was eine Szene verlangt",
@@ -504,7 +530,9 @@ constexpr std::array kTexts{
     LectureText{"F8",
                 "ein neues Verfahren ist eine Datei und eine Zeile",
                 "μία νέα μέθοδος είναι ένα αρχείο και μία γραμμή",
-                {}},
+                {"Tests, pictures, sweeps and this report take a new method from one line of a list.",
+                 "Tests, Bilder, Messreihen und dieser Bericht nehmen ein neues Verfahren aus einer Zeile einer Liste.",
+                 "Έλεγχοι, εικόνες, σειρές και αυτή η αναφορά παίρνουν μια νέα μέθοδο από μία γραμμή μιας λίστας."}},
 };
 
 constexpr std::array kChapters{
