@@ -59,11 +59,14 @@ void write_shading_page(const Json& record, const std::filesystem::path& folder,
     json stages = json::array();
     for (const Json& s : record["stages"])
         stages.push_back({{"name", s["name"]}, {"about", s["about"]}, {"picture", s["picture"]}});
+    json findings = json::array();
+    for (std::string& finding : shading_findings(record)) findings.push_back({{"text", std::move(finding)}});
     const json view     = {{"title", record["scene"]["title"]},
                            {"command", without_folders(record["command"].get<std::string>())},
                            {"version", record["version"]},
                            {"method", record["method"].is_null() ? "none" : record["method"].get<std::string>()},
                            {"models", std::move(models)},
+                           {"findings", std::move(findings)},
                            {"stages", std::move(stages)}};
     const PageHead head = {fmt::format("Shading: {}", record["scene"]["title"].get<std::string>()), "", {}};
     staged.write(folder / "index.html", render_page(assets::shading_html, head, view));

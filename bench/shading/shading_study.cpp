@@ -3,11 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "umbra/bench/run/asked_method.h"
 #include "umbra/bench/shading/stages.h"
+#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/sweep/views.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/render/ask_visibility.h"
@@ -95,56 +99,108 @@ Image difference_of(const Image& a, const Image& b) {
 struct Measured {
     ShadedPicture shaded;
     Image shown;
-    double ms         = 0;
+    std::vector<double> times_ms{};
     std::size_t asked = 0;
 };
 
-Measured measure(ShadingModel model, const PreparedScene& prepared, const ShadingOptions& options,
-                 AskedMethod& shadows) {
-    Measured measured;
-    for (int run = 0; run < options.runs; ++run) {
-        const double ms = timed_ms([&] {
-            measured.shaded = shade_by(model, prepared.scene, prepared.points,
-                                       [&](const PointBatch& points) { return shadows(points); });
-        });
-        measured.ms     = run == 0 ? ms : std::min(measured.ms, ms);
-    }
+/// One run of a model.
+void run(ShadingModel model, const PreparedScene& prepared, AskedMethod& shadows, Measured& measured) {
+    measured.times_ms.push_back(timed_ms([&] {
+        measured.shaded =
+            shade_by(model, prepared.scene, prepared.points, [&](const PointBatch& points) { return shadows(points); });
+    }));
     measured.asked = model == ShadingModel::constant ? 0 : shadows.asked();
-    measured.shown = displayed(measured.shaded.linear, prepared.scene.tone, prepared.scene.exposure);
+}
+
+/// All models, and `phong` once more, in rounds that begin with another one each time.
+std::vector<Measured> measure(const PreparedScene& prepared, const ShadingOptions& options, AskedMethod& shadows) {
+    std::vector<ShadingModel> models(kShadingModels.begin(), kShadingModels.end());
+    models.push_back(ShadingModel::phong);
+    std::vector<Measured> measured(models.size());
+    for (int round = 0; round < options.runs; ++round)
+        for (std::size_t k = 0; k < models.size(); ++k) {
+            const std::size_t turn = (k + static_cast<std::size_t>(round)) % models.size();
+            run(models[turn], prepared, shadows, measured[turn]);
+        }
+    for (Measured& m : measured) m.shown = displayed(m.shaded.linear, prepared.scene.tone, prepared.scene.exposure);
     return measured;
+}
+
+/// In the order of kShadingErrors.
+std::array<double, kShadingErrors.size()> errors(const PreparedScene& prepared, const Measured& phong,
+                                                 const Measured& here) {
+    return {image_error(phong.shaded.linear, here.shaded.linear).rmse, flip_ldr(phong.shown, here.shown).mean,
+            perceived_difference(prepared, phong.shaded.linear, here.shaded.linear)};
+}
+
+std::size_t index_of(ShadingModel model) {
+    return static_cast<std::size_t>(std::ranges::find(kShadingModels, model) - kShadingModels.begin());
+}
+
+/// The largest errors of each model over the views, of which the first is measured already.
+std::vector<std::array<double, kShadingErrors.size()>> worst_errors(const PreparedScene& prepared,
+                                                                    const std::vector<Measured>& measured,
+                                                                    const ShadingOptions& options) {
+    std::vector<std::array<double, kShadingErrors.size()>> worst(kShadingModels.size());
+    const auto take = [&](const PreparedScene& view, const std::vector<Measured>& seen) {
+        for (std::size_t k = 0; k < worst.size(); ++k) {
+            const auto found = errors(view, seen[index_of(ShadingModel::phong)], seen[k]);
+            for (std::size_t e = 0; e < found.size(); ++e) worst[k][e] = std::max(worst[k][e], found[e]);
+        }
+    };
+    take(prepared, measured);
+    for (int v = 1; v < options.views; ++v) {
+        const PreparedScene view = prepare_scene(view_of(prepared.scene, v), prepared.scene.name, {});
+        AskedMethod shadows(view.scene, view.facts, options.method);
+        ShadingOptions once = options;
+        once.runs           = 1;
+        take(view, measure(view, once, shadows));
+    }
+    return worst;
 }
 
 }  // namespace
 
 Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options, const fs::path& folder) {
     AskedMethod shadows(prepared.scene, prepared.facts, options.method);
-    const Measured phong   = measure(ShadingModel::phong, prepared, options, shadows);
+    const std::vector<Measured> measured = measure(prepared, options, shadows);
+    const Measured &phong = measured[index_of(ShadingModel::phong)], &again = measured.back();
     const double brightest = highlight(phong.shaded.linear, prepared.points),
                  smooth    = kink(ShadingModel::phong, prepared);
+    const auto worst       = worst_errors(prepared, measured, options);
     Json record            = {{"schema", kResultsSchema},
                               {"version", version()},
                               {"command", options.command},
                               {"scene", scene_json(prepared.scene)},
                               {"method", options.method ? Json(options.method->text()) : Json()},
+                              {"views", options.views},
+                              {"noise_bar", number(noise_bar(paired_ratio(again.times_ms, phong.times_ms)))},
                               {"models", Json::array()}};
-    for (const ShadingModel model : kShadingModels) {
-        const Measured here = model == ShadingModel::phong ? phong : measure(model, prepared, options, shadows);
+    for (std::size_t k = 0; k < kShadingModels.size(); ++k) {
+        const ShadingModel model = kShadingModels[k];
+        const Measured& here     = measured[k];
         const std::string name(to_string(model)), picture = name + ".png", difference = name + "_difference.png";
         write_image(folder / picture, here.shown);
         write_image(folder / difference, difference_of(here.shown, phong.shown));
         const Image& linear = here.shaded.linear;
-        record["models"].push_back({{"name", name},
-                                    {"evaluations", here.shaded.evaluations},
-                                    {"asked", here.asked},
-                                    {"ms", number(here.ms)},
-                                    {"rmse", number(image_error(phong.shaded.linear, linear).rmse)},
-                                    {"flip", number(flip_ldr(phong.shown, here.shown).mean)},
-                                    {"perceived", number(perceived_difference(prepared, phong.shaded.linear, linear))},
-                                    {"highlight", number(ratio(highlight(linear, prepared.points), brightest))},
-                                    {"kink", number(ratio(kink(model, prepared), smooth))},
-                                    {"picture", picture},
-                                    {"difference", difference}});
+        const auto found    = errors(prepared, phong, here);
+        Json entry          = {{"name", name},
+                               {"evaluations", here.shaded.evaluations},
+                               {"asked", here.asked},
+                               {"ms", number(median(here.times_ms))},
+                               {"times_ms", here.times_ms}};
+        for (std::size_t e = 0; e < kShadingErrors.size(); ++e) {
+            entry[std::string(kShadingErrors[e])]          = number(found[e]);
+            entry["worst"][std::string(kShadingErrors[e])] = number(worst[k][e]);
+        }
+        entry["highlight"]  = number(ratio(highlight(linear, prepared.points), brightest));
+        entry["kink"]       = number(ratio(kink(model, prepared), smooth));
+        entry["picture"]    = picture;
+        entry["difference"] = difference;
+        record["models"].push_back(std::move(entry));
     }
+    record["front"] = shading_front(record);
+    if (!options.limits.empty()) record["choice"] = choose_shading(record, options.limits);
     record["stages"] = Json::array();
     for (const Stage& stage : draw_stages(prepared, [&](const PointBatch& points) { return shadows(points); })) {
         const std::string picture = fmt::format("stage_{}_{}.png", record["stages"].size() + 1, stage.name);
@@ -163,6 +219,7 @@ std::string shading_text(const Json& record) {
                             m["asked"].get<std::uint64_t>(), m["ms"].get<double>(), m["rmse"].get<double>(),
                             m["flip"].get<double>(), m["perceived"].get<double>(), figure(m["highlight"], 3),
                             figure(m["kink"], 2));
+    for (const std::string& finding : shading_findings(record)) text += finding + "\n";
     return text;
 }
 

@@ -4,27 +4,32 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/bench/shading/shading_choice.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
 
 struct ShadingOptions {
     std::optional<MethodChoice> method;  ///< of the shadows; none: S_j = 1 where a light is in front
-    int runs = 3;                        ///< of each model, for its time
+    int runs  = 3;                       ///< rounds, in each of which every model runs once
+    int views = 1;                       ///< that errors are taken from: the scene's own, and others (view_of)
+    std::vector<ShadingLimit> limits{};  ///< none: nothing is chosen
     std::string command;
 };
 
 /// The method must serve the scene. Writes into `folder`, of each model, MODEL.png and MODEL_difference.png, the
 /// difference from `phong`. Returns {schema, version, command, scene, method, models: [{name, evaluations, asked, ms,
-/// rmse, flip, perceived, highlight, kink, picture, difference}]}: of the sum; of S_j; least of the runs, aim and
-/// visibility included; two image errors against `phong`; the root mean square difference from `phong`, inside of
-/// objects, of the luminance plus the size of its change along the row; the largest value in the picture over that of
-/// `phong`; the root mean square of second differences along rows, inside of objects, of the diffuse light without
-/// shadows, over that of `phong`: Mach bands. `stages`: [{name, about, picture}], as draw_stages has them. Throws
-/// InputError.
+/// times_ms, rmse, flip, perceived, worst, highlight, kink, picture, difference}]}: of the sum; of S_j; the median of
+/// the rounds, aim and visibility included, and all of them; two image errors against `phong`; the root mean square
+/// difference from `phong`, inside of objects, of the luminance plus the size of its change along the row; the largest
+/// of these three over all views; the largest value in the picture over that of `phong`; the root mean square of second
+/// differences along rows, inside of objects, of the diffuse light without shadows, over that of `phong`: Mach bands.
+/// `noise_bar`: how far from 1 the ratio of `phong`'s time to that of the same again may lie. `front` and, with limits,
+/// `choice`: shading_choice.h. `stages`: [{name, about, picture}], as draw_stages has them. Throws InputError.
 [[nodiscard]] Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options,
                                    const std::filesystem::path& folder);
 

@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/shading/shading_choice.h"
 #include "umbra/bench/shading/shading_page.h"
 #include "umbra/bench/shading/shading_study.h"
+#include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/tests/support/temporary_folder.h"
@@ -161,8 +163,8 @@ TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
 TEST(ShadingStudy, TableAndPageShowTheRecord) {
     const TemporaryFolder folder;
     Json record = {
-        {"schema", 1},       {"version", "1"},         {"command", "umbra shading"}, {"scene", {{"title", "T"}}},
-        {"method", "exact"}, {"models", Json::array()}};
+        {"schema", 1},       {"version", "1"},          {"command", "umbra shading"}, {"scene", {{"title", "T"}}},
+        {"method", "exact"}, {"models", Json::array()}, {"front", {"flat", "phong"}}};
     record["stages"].push_back({{"name", "ambient"}, {"about", "One value"}, {"picture", "stage_3_ambient.png"}});
     record["models"].push_back({{"name", "flat"},
                                 {"evaluations", 1234},
@@ -194,6 +196,85 @@ TEST(ShadingStudy, TableAndPageShowTheRecord) {
         "<td>" + count(1234) +
         "</td><td>567</td><td>8.2</td><td>0.06250</td><td>0.1875</td><td>0.12500</td><td>0.75</td><td>2.50</td>";
     EXPECT_NE(page.find(cells), std::string::npos) << page.substr(page.find("<tbody>"), 400);
+    EXPECT_NE(page.find("<p>No other model is both faster and closer to phong (RMSE) than: flat, phong.</p>"),
+              std::string::npos);
+}
+
+/// Times of six rounds, and errors: constant is fast and wrong, flat and gouraud take the same time within noise,
+/// differences is slower than phong.
+Json known_times() {
+    Json record    = {{"views", 3}, {"noise_bar", 0.05}, {"models", Json::array()}};
+    const auto add = [&](const char* name, double ms, double rmse, double flip) {
+        Json times = Json::array();
+        for (int round = 0; round < 6; ++round) times.push_back(ms * (1 + 0.1 * round));
+        record["models"].push_back({{"name", name},
+                                    {"times_ms", times},
+                                    {"worst", {{"rmse", rmse}, {"flip", flip}, {"perceived", 2 * rmse}}}});
+    };
+    add("constant", 1, 0.5, 0.5), add("flat", 2, 0.1, 0.02), add("gouraud", 2.04, 0.05, 0.04);
+    add("phong", 8, 0, 0), add("differences", 10, 0.01, 0.01);
+    record["front"] = shading_front(record);
+    return record;
+}
+
+TEST(ShadingChoice, IsTheCheapestWithinLimits) {
+    Json record      = known_times();
+    const auto under = [&](std::vector<std::string> limits) {
+        std::vector<ShadingLimit> parsed;
+        for (const std::string& limit : limits) parsed.push_back(parse_shading_limit(limit));
+        return choose_shading(record, parsed);
+    };
+    EXPECT_EQ(record["front"], (Json{"constant", "flat", "gouraud", "phong"}));
+    const Json choice = under({"rmse=0.1"});
+    EXPECT_EQ(choice["model"], "flat");
+    EXPECT_NEAR(choice["ms"].get<double>(), 2.5, 1e-12);
+    EXPECT_EQ(choice["tied"], Json{"gouraud"});
+    EXPECT_EQ(choice["runner_up"]["model"], "phong");
+    EXPECT_NEAR(choice["runner_up"]["ratio"].get<double>(), 4, 1e-12);
+    EXPECT_NEAR(choice["of_phong"]["ratio"].get<double>(), 0.25, 1e-12);
+    EXPECT_EQ(under({"rmse=0.09"})["model"], "gouraud");
+    EXPECT_EQ(under({"rmse=1", "flip=0.03"})["model"], "flat");
+    EXPECT_EQ(under({"rmse=0.09", "flip=0.03"})["model"], "phong");
+    EXPECT_EQ(under({"perceived=0.1"})["model"], "gouraud");
+    EXPECT_EQ(under({"perceived=0.099"})["model"], "phong");
+    EXPECT_EQ(under({"flip=0"})["model"], "phong");
+
+    record["choice"] = choice;
+    EXPECT_EQ(shading_findings(record).back(),
+              "With rmse at most 0.1 in each of 3 views, the cheapest is flat: 2.50 ms, 0.25 (0.25 to 0.25) of phong's "
+              "time. As cheap, as far as the noise of times lets one see: gouraud. Next: phong, 4.00 (4.00 to 4.00) "
+              "times as long.");
+
+    record["models"].erase(3);
+    const Json none = under({"rmse=0.005"});
+    EXPECT_TRUE(none["model"].is_null());
+    EXPECT_EQ(none["nearest"]["model"], "differences");
+    EXPECT_NEAR(none["nearest"]["factor"].get<double>(), 2, 1e-12);
+    record["choice"] = none;
+    EXPECT_EQ(shading_findings(record).back(),
+              "With rmse at most 0.005 in each of 3 views: none. Nearest: differences, 2 times a limit.");
+    for (const char* wrong : {"rmse", "kink=1", "rmse=-1", "rmse=1x", "=1", "rmse="})
+        EXPECT_THROW((void)parse_shading_limit(wrong), UsageError) << wrong;
+}
+
+TEST(ShadingChoice, LimitsHoldInEveryView) {
+    const TemporaryFolder folder;
+    ShadingOptions options;
+    options.runs = 2, options.views = 3;
+    options.limits    = {parse_shading_limit("rmse=0")};
+    const Json record = compare_shading(shiny_ball(), options, folder.path());
+    EXPECT_EQ(record["choice"]["model"], "phong");
+    EXPECT_EQ(record["choice"]["limits"], (Json{{{"metric", "rmse"}, {"most", 0.0}}}));
+    bool larger = false;
+    for (const Json& m : record["models"]) {
+        EXPECT_EQ(m["times_ms"].size(), 2u);
+        for (const char* error : {"rmse", "flip", "perceived"}) {
+            EXPECT_GE(m["worst"][error], m[error]) << m["name"] << ' ' << error;
+            larger = larger || m["worst"][error] > m[error];
+        }
+    }
+    EXPECT_TRUE(larger) << "the other views count, too";
+    EXPECT_EQ(record["front"].back(), "phong");
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ void write_study(const LectureShow& show, const fs::path& file, const fs::path& 
         const auto method = show.shadows ? std::optional(rays) : std::nullopt;
         write_shading_study(
             prepare_scene(file, {}),
-            {.method = method, .runs = 1, .command = start + (method ? " --runs 1" : " --runs 1 --no-shadows")},
+            {.method = method, .runs = 1, .command = start + " --runs 1 --views 1" + (method ? "" : " --no-shadows")},
             folder);
     } else if (show.study == "whitted") {
         PreparedScene prepared = prepare_scene(file, {400, 225}, 1, Work::picture);

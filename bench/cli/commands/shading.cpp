@@ -1,4 +1,6 @@
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
@@ -10,6 +12,7 @@ namespace {
 
 struct ShadingLine {
     std::string scene, size, method = "ray_traced";
+    std::vector<std::string> limits;
     std::filesystem::path out;
     bool as_json = false, no_shadows = false;
     ShadingOptions options;
@@ -18,6 +21,7 @@ struct ShadingLine {
 int shading(const ShadingLine& line, const Common& common) {
     ShadingOptions options = line.options;
     options.command        = common.command;
+    for (const std::string& limit : line.limits) options.limits.push_back(parse_shading_limit(limit));
     if (!line.no_shadows) options.method = parse_method(line.method);
     const PreparedScene prepared =
         prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size));
@@ -31,7 +35,7 @@ int shading(const ShadingLine& line, const Common& common) {
         print_out("{}", json_text(record));
     else if (!common.quiet)
         print_out("{}{}\n", shading_text(record), (line.out / "index.html").string());
-    return kDone;
+    return record.contains("choice") && record["choice"]["model"].is_null() ? kNo : kDone;
 }
 
 }  // namespace
@@ -43,7 +47,15 @@ Action shading_command(CLI::App& app, const Common& common) {
         ->capture_default_str()
         ->type_name("METHOD");
     app.add_flag("--no-shadows", line->no_shadows, "Every light reaches every point that faces it");
-    app.add_option("--runs", line->options.runs, "Runs of each model; the least counts as its time")
+    app.add_option("--max", line->limits,
+                   "Name the cheapest model within METRIC=E: rmse, flip or perceived, from phong; repeatable")
+        ->type_name("METRIC=E")
+        ->take_all();
+    app.add_option("--views", line->options.views, "Views that errors are taken from: the scene's own and others")
+        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
+        ->default_val(3)
+        ->type_name("N");
+    app.add_option("--runs", line->options.runs, "Rounds, in each of which every model runs once")
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()
         ->type_name("N");
