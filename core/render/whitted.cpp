@@ -6,6 +6,7 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/stopwatch.h"
+#include "umbra/core/render/shade.h"
 #include "umbra/core/render/sum.h"
 
 namespace umbra {
