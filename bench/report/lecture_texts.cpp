@@ -494,13 +494,7 @@ constexpr std::array kTexts{
          "andere in beidem übertrifft.",
          "Κάθε ρύθμιση μιας μεθόδου έχει χρόνο και σφάλμα· στο μέτωπο είναι όσες δεν ξεπερνά καμία άλλη και στα "
          "δύο."}},
-    LectureText{"F3",
-                "Leitern: wo Verfahren versagen",
-                "κλίμακες: πού αποτυγχάνουν οι μέθοδοι",
-                {"A ladder makes one thing extreme, rung by rung, and finds the rung at which a method breaks.",
-                 "Eine Leiter treibt eine Größe Sprosse für Sprosse ins Extrem und findet die Sprosse, an der ein "
-                 "Verfahren versagt.",
-                 "Μια κλίμακα οδηγεί ένα μέγεθος στα άκρα, σκαλί με σκαλί, και βρίσκει πού αποτυγχάνει μια μέθοδος."}},
+    LectureText{"F3", "Leitern: wo Verfahren versagen", "κλίμακες: πού αποτυγχάνουν οι μέθοδοι", {}},
     LectureText{
         "F4",
         "nur, was eine Szene verlangt",
@@ -530,9 +524,7 @@ constexpr std::array kTexts{
     LectureText{"F8",
                 "ein neues Verfahren ist eine Datei und eine Zeile",
                 "μία νέα μέθοδος είναι ένα αρχείο και μία γραμμή",
-                {"Tests, pictures, sweeps and this report take a new method from one line of a list.",
-                 "Tests, Bilder, Messreihen und dieser Bericht nehmen ein neues Verfahren aus einer Zeile einer Liste.",
-                 "Έλεγχοι, εικόνες, σειρές και αυτή η αναφορά παίρνουν μια νέα μέθοδο από μία γραμμή μιας λίστας."}},
+                {}},
 };
 
 constexpr std::array kChapters{
