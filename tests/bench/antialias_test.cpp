@@ -80,6 +80,33 @@ TEST(Antialias, SmoothsEdgesAndLeavesWhatIsMeasured) {
     EXPECT_LT(changed, pictures[0].pixels() / 4) << "and nothing else";
 }
 
+/// Pictures with several points a pixel begin with the reference's; a method that errs shows its own shadows.
+TEST(Antialias, SmoothPicturesShowEachMethodsShadows) {
+    const TemporaryFolder folder;
+    const auto scene = folder.write("board.json", kBoard);
+    CompareOptions options;
+    options.methods = {"shadow_zbuffer:resolution=16", "exact"};
+    options.size    = {192, 144};
+    options.repeats = {1, 0};
+    Image pictures[2][2];  // [points a pixel][method, reference]
+    for (int k = 0; k < 2; ++k) {
+        options.out           = folder.path() / (k == 0 ? "plain" : "smooth");
+        options.pixel_samples = k == 0 ? 1 : 4;
+        static_cast<void>(compare_scene(scene, options));
+        pictures[k][0] = read_image(options.out / "board" / "shadow_zbuffer.png").image;
+        pictures[k][1] = read_image(options.out / "board" / "exact.png").image;
+    }
+    const auto differing = [](const Image& a, const Image& b) {
+        std::size_t count = 0;
+        for (std::size_t i = 0; i < a.pixels(); ++i) count += std::abs(a.at(i, 0) - b.at(i, 0)) > 0.1f ? 1 : 0;
+        return static_cast<double>(count);
+    };
+    const double plain = differing(pictures[0][0], pictures[0][1]), smooth = differing(pictures[1][0], pictures[1][1]);
+    EXPECT_GT(plain, 20);
+    EXPECT_GT(smooth, 0.5 * plain);
+    EXPECT_LT(smooth, 3 * plain);
+}
+
 /// A board over a floor under a square light: penumbrae of some pixels, which bend at their ends.
 TEST(Antialias, SmoothPenumbraeAreInterpolatedAndEdgesAsked) {
     const TemporaryFolder folder;

@@ -265,9 +265,13 @@ TEST(ShadingChoice, LimitsHoldInEveryView) {
     const Json record = compare_shading(shiny_ball(), options, folder.path());
     EXPECT_EQ(record["choice"]["model"], "phong");
     EXPECT_EQ(record["choice"]["limits"], (Json{{{"metric", "rmse"}, {"most", 0.0}}}));
-    bool larger = false;
+    options.runs = options.views = 1;
+    const Json once              = compare_shading(shiny_ball(), options, folder.path());
+    bool larger                  = false;
     for (const Json& m : record["models"]) {
         EXPECT_EQ(m["times_ms"].size(), 2u);
+        for (const char* figure : {"evaluations", "asked", "rmse", "kink"})
+            EXPECT_EQ(m[figure], model(once, m["name"])[figure]) << m["name"] << ": rounds change times alone";
         for (const char* error : {"rmse", "flip", "perceived"}) {
             EXPECT_GE(m["worst"][error], m[error]) << m["name"] << ' ' << error;
             larger = larger || m["worst"][error] > m[error];

@@ -74,6 +74,11 @@ TEST(Shade, FromAKnownPictureIsTheSamePicture) {
     Table coloured = other;
     for (VisibilityPlane& plane : coloured.planes) plane.colour.assign(plane.s.size(), vec3(0.5f, 0.25f, 0.125f));
     EXPECT_EQ(shade(other.scene, other.points, coloured.planes, other.planes, whole).data, coloured.shaded().data);
+    Table tinted = coloured;  // S_j is the same, its colour is not
+    for (VisibilityPlane& plane : tinted.planes) plane.colour[7] = vec3(0.125f, 0.25f, 0.5f);
+    EXPECT_NE(tinted.shaded().data, coloured.shaded().data);
+    EXPECT_EQ(shade(other.scene, other.points, tinted.planes, coloured.planes, coloured.shaded()).data,
+              tinted.shaded().data);
 }
 
 vec3 rgb(const Image& image, std::size_t i) { return {image.at(i, 0), image.at(i, 1), image.at(i, 2)}; }

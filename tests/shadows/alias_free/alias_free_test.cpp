@@ -149,6 +149,27 @@ TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
     EXPECT_EQ(unsure, 0b01110000);
 }
 
+/// Directions to all sides have places, opposite ones on opposite faces; a point has none where rounding of positions
+/// could move it to any side of the light.
+TEST(LightImage, PlacesWhatRoundingCannotMoveAroundTheLight) {
+    using namespace binned_shadows_detail;
+    Light lamp;
+    lamp.position = {1000, 0, 0};
+    const LightImage image(lamp, dvec3(0), 1000);
+    for (int k = 0; k < 3; ++k) {
+        dvec3 along(0.1, 0.2, -0.3);
+        along[k]         = 2;
+        const auto there = image.place(dvec3(lamp.position) + along), back = image.place(dvec3(lamp.position) - along);
+        ASSERT_TRUE(there && back);
+        EXPECT_EQ(there->face, 2 * k);
+        EXPECT_EQ(back->face, 2 * k + 1);
+        EXPECT_DOUBLE_EQ(there->depth, 2);
+        EXPECT_DOUBLE_EQ(back->depth, 2);
+        EXPECT_FALSE(image.place(dvec3(lamp.position) + 5e-4 * along)) << "0.001 beside coordinates of 1000";
+        EXPECT_TRUE(image.place(dvec3(lamp.position) + 5e-3 * along));
+    }
+}
+
 /// Whatever an extent covers is visited, however points are spread.
 TEST(PointBins, FindEveryPointOfAnExtent) {
     using namespace binned_shadows_detail;
