@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/limit_text.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
 
@@ -117,15 +116,8 @@ std::vector<Step> staircase_of(const std::vector<Candidate>& candidates) {
 }  // namespace
 
 Limit parse_limit(const std::string& text) {
-    const std::size_t eq = text.find('=');
-    if (eq == std::string::npos) throw UsageError(fmt::format("--max {}: expected METRIC=LIMIT, as rmse=0.01", text));
-    Limit limit{&find_metric(std::string_view(text).substr(0, eq)), 0};
-    const char* end        = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data() + eq + 1, end, limit.most);
-    if (error != std::errc() || at != end || !std::isfinite(limit.most) || limit.most < 0)
-        throw UsageError(fmt::format("--max {}: found the limit \"{}\", expected a finite number of at least 0", text,
-                                     text.substr(eq + 1)));
-    return limit;
+    const LimitText limit = parse_limit_text(text, "METRIC=LIMIT, as rmse=0.01");
+    return {&find_metric(limit.metric), limit.most};
 }
 
 std::vector<Family> families(std::span<const MethodChoice> choices) {

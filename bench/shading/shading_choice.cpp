@@ -4,13 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <limits>
 #include <optional>
 
 #include "umbra/bench/statistics/pareto.h"
 #include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/sweep/limit_text.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -52,18 +51,12 @@ std::string in_words(const Json& ratio) {
 }  // namespace
 
 ShadingLimit parse_shading_limit(const std::string& text) {
-    const std::size_t eq = text.find('=');
-    const auto metric    = std::ranges::find(kShadingErrors, std::string_view(text).substr(0, eq));
-    if (eq == std::string::npos || metric == kShadingErrors.end())
-        throw UsageError(fmt::format("--max {}: expected METRIC=LIMIT with one of {}, as rmse=0.01", text,
-                                     fmt::join(kShadingErrors, ", ")));
-    ShadingLimit limit{*metric, 0};
-    const char* end        = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data() + eq + 1, end, limit.most);
-    if (error != std::errc() || at != end || !std::isfinite(limit.most) || limit.most < 0)
-        throw UsageError(fmt::format("--max {}: found the limit \"{}\", expected a finite number of at least 0", text,
-                                     text.substr(eq + 1)));
-    return limit;
+    const std::string expected =
+        fmt::format("METRIC=LIMIT with one of {}, as rmse=0.01", fmt::join(kShadingErrors, ", "));
+    const LimitText limit = parse_limit_text(text, expected);
+    const auto metric     = std::ranges::find(kShadingErrors, limit.metric);
+    if (metric == kShadingErrors.end()) throw UsageError(fmt::format("--max {}: expected {}", text, expected));
+    return {*metric, limit.most};
 }
 
 Json shading_front(const Json& record) {
