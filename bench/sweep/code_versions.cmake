@@ -12,7 +12,7 @@ function(hash_of result)
 endfunction()
 
 file(GLOB_RECURSE shared ${SOURCE}/core/*.h ${SOURCE}/core/*.cpp ${SOURCE}/shadows/shared/*.h ${SOURCE}/shadows/shared/*.cpp
-     ${SOURCE}/bench/run/*.h ${SOURCE}/bench/run/*.cpp)
+     ${SOURCE}/shadows/maps/*.h ${SOURCE}/shadows/maps/*.cpp ${SOURCE}/bench/run/*.h ${SOURCE}/bench/run/*.cpp)
 file(GLOB contract ${SOURCE}/shadows/*.h ${SOURCE}/shadows/*.cpp ${SOURCE}/bench/compare/record.*
      ${SOURCE}/bench/compare/image_figures.* ${SOURCE}/bench/sweep/cell.h ${SOURCE}/bench/sweep/cell.cpp ${SOURCE}/bench/sweep/views.*)
 list(SORT shared)

@@ -1,6 +1,6 @@
 // Shadow z-buffer: draw depth from the light, then compare every surface point with it.
 //
-// build finds what can block a light (casters.h).
+// build finds what can block a light (shadows/maps/casters.h).
 // aim fits frames to that as the light sees it, one map or six (light_views.h, light_frame.h), and rasterises its depth
 // into each (depth_map.h).
 // visibility takes each point to the view that covers it, projects it there, moves it towards the light by the bias,
@@ -21,13 +21,11 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
+#include "umbra/shadows/maps/facets.h"
 
 namespace umbra {
 namespace {
-
-constexpr std::size_t kGrain = 4096;
 
 using Options = ZBufferOptions;
 
@@ -128,6 +126,7 @@ void ShadowZBuffer::configure(const Settings& settings) {
     finds_blockers_ = o.filter == FilterKind::pcss;
     soft_           = {.samples = o.samples, .texels = o.search * o.resolution};
     map_options_    = {
+           .method         = "shadow_zbuffer",
            .resolution     = o.resolution,
            .format         = o.depth,
            .faces          = o.faces,
@@ -176,27 +175,8 @@ void ShadowZBuffer::aim(LightId light) {
     views_->rasterise();
 }
 
-template <class Body>
-void ShadowZBuffer::for_each_facet(const PointBatch& points, LightId light, const Body& body) const {
-    parallel_ranges(points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-        Facet facet{};
-        TriangleId facet_of = kNoTriangle;
-        bool facet_flipped  = false;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!points.asks(light, i)) continue;
-            if (points.triangle[i] != facet_of || (points.flipped[i] != 0) != facet_flipped) {
-                facet_of      = points.triangle[i];
-                facet_flipped = points.flipped[i] != 0;
-                facet         = make_facet(facet_of, facet_flipped);
-            }
-            body(i, facet,
-                 facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac);
-        }
-    });
-}
-
 void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
         if (centre_is_behind(views_->scene(), points, light, i)) {
             out.s[i] = 0;
             return;
@@ -222,7 +202,7 @@ void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<Tri
     std::vector<Sample> samples(points.size());
     // What the search of pcss may find lies farther off; few points are asked.
     const Filter asked = is_soft_ ? Filter{static_cast<int>(std::ceil(soft_.texels)), false} : filter_;
-    for_each_facet(points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
         for (std::size_t v = 0; v < views.size(); ++v)
             if (const std::optional<Receiver> receiver = receive(views[v], facet, p, bias_, filter_)) {
                 if (const auto at = blocked_sample(views[v].map, *receiver, bias_.mode, asked)) samples[i] = {v, *at};
@@ -241,14 +221,6 @@ void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<Tri
 }
 
 std::size_t ShadowZBuffer::memory_bytes() const { return views_ ? views_->memory_bytes() : 0; }
-
-Facet ShadowZBuffer::make_facet(TriangleId t, bool flipped) const {
-    const Scene& scene = views_->scene();
-    const dvec3 a(scene.vertex(t, 0));
-    Facet facet{a, dvec3(scene.vertex(t, 1)) - a, dvec3(scene.vertex(t, 2)) - a, {}};
-    facet.normal = glm::normalize(glm::cross(facet.ab, facet.ac)) * (flipped ? -1.0 : 1.0);
-    return facet;
-}
 
 extern const MethodInfo shadow_zbuffer;
 const MethodInfo shadow_zbuffer{

@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "umbra/shadows/maps/depth_lookup.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/zbuffer/depth_lookup.h"
 
 namespace umbra {
 
@@ -41,12 +41,6 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const override;
 
 private:
-    [[nodiscard]] Facet make_facet(TriangleId t, bool flipped) const;
-    /// Calls body(i, facet, p) for the points that ask for S_j, in parallel: the point's index, its triangle, and the
-    /// point in double.
-    template <class Body>
-    void for_each_facet(const PointBatch& points, LightId light, const Body& body) const;
-
     Bias bias_;
     Filter filter_;
     SoftFilter soft_;              ///< of the light that it is aimed at

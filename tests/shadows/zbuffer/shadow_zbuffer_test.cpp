@@ -8,8 +8,8 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/maps/light_views.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/zbuffer/light_views.h"
 
 namespace umbra {
 namespace {

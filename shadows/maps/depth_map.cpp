@@ -4,7 +4,7 @@
 // Juan Pineda. A Parallel Algorithm for Polygon Rasterization. 1988 (edge functions)
 // Ivan Sutherland, Gary Hodgman. Reentrant Polygon Clipping. 1974
 // Michael Abrash. Rasterization on Larrabee. 2009 (snapping, fill rule and binning as graphics hardware has them)
-#include "umbra/shadows/zbuffer/depth_map.h"
+#include "umbra/shadows/maps/depth_map.h"
 
 #include <algorithm>
 #include <array>

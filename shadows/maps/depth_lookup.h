@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "umbra/shadows/zbuffer/light_views.h"
+#include "umbra/shadows/maps/light_views.h"
 
 namespace umbra {
 

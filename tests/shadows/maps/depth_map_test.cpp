@@ -1,4 +1,4 @@
-#include "umbra/shadows/zbuffer/depth_map.h"
+#include "umbra/shadows/maps/depth_map.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "umbra/shadows/zbuffer/light_frame.h"
+#include "umbra/shadows/maps/light_frame.h"
 
 #include <algorithm>
 #include <array>

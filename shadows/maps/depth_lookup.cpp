@@ -1,4 +1,4 @@
-#include "umbra/shadows/zbuffer/depth_lookup.h"
+#include "umbra/shadows/maps/depth_lookup.h"
 
 #include <algorithm>
 #include <cmath>

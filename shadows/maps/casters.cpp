@@ -1,4 +1,4 @@
-#include "umbra/shadows/zbuffer/casters.h"
+#include "umbra/shadows/maps/casters.h"
 
 #include <bit>
 #include <cmath>

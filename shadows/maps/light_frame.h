@@ -1,7 +1,7 @@
 // Where a map looks from: a window onto the scene in light space, and how deep it reaches.
 #pragma once
 
-#include "umbra/shadows/zbuffer/casters.h"
+#include "umbra/shadows/maps/casters.h"
 
 namespace umbra {
 

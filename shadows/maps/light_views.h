@@ -9,8 +9,8 @@
 // Maps reach over their view's border by as much as the filter does, so that no filter ever crosses a cube's seam.
 #pragma once
 
-#include "umbra/shadows/zbuffer/depth_map.h"
-#include "umbra/shadows/zbuffer/light_frame.h"
+#include "umbra/shadows/maps/depth_map.h"
+#include "umbra/shadows/maps/light_frame.h"
 
 namespace umbra {
 
@@ -26,6 +26,7 @@ public:
     [[nodiscard]] static double half_of_memory();
 
     struct Options {
+        std::string_view method{};  ///< in errors
         int resolution      = 2048;
         DepthFormat format  = DepthFormat::float32;
         Faces faces         = Faces::all;

@@ -1,4 +1,4 @@
-#include "umbra/shadows/zbuffer/light_views.h"
+#include "umbra/shadows/maps/light_views.h"
 
 #include <fmt/format.h>
 
@@ -58,9 +58,9 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     const double bytes = 4.0 * resolution * resolution;
     if (static_cast<double>(memory_bytes()) + bytes > options_.memory_limit)
         throw UsageError(
-            fmt::format("shadow_zbuffer: resolution={} takes more than half of the machine's memory "
+            fmt::format("{}: resolution={} takes more than half of the machine's memory "
                         "({:.0f} MiB a map, {} of them so far), expected a smaller one",
-                        options_.resolution, bytes / (1 << 20), views_.size()));
+                        options_.method, options_.resolution, bytes / (1 << 20), views_.size()));
     views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
 }
 
