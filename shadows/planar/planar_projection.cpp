@@ -242,7 +242,7 @@ const MethodInfo planar_projection{
     .parameters = kParameters,
     .presets    = {{"textbook", "light_samples=1", "Blinn 1988: one shadow a plane, from the light's centre."},
                    {"fast", "light_samples=4", "Four points of an area light."},
-                   {"best", "light_samples=1024", "1024 points of an area light."}},
+                   {"best", "light_samples=256", "256 points of an area light."}},
     .create     = create<PlanarProjection>,
 };
 
