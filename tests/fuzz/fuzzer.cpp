@@ -1,4 +1,5 @@
-// What libFuzzer calls. UMBRA_FUZZ_TARGET names the target; `./umbra fuzz` sets it.
+// What libFuzzer calls, for the targets of one program: UMBRA_FUZZ_TARGETS, which CMake defines. UMBRA_FUZZ_TARGET
+// names one of them; `./umbra fuzz` sets it.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -15,9 +16,11 @@ namespace {
 const umbra::FuzzTarget& target() {
     static const umbra::FuzzTarget& chosen = [&]() -> const umbra::FuzzTarget& {
         const char* name = std::getenv("UMBRA_FUZZ_TARGET");
-        if (const umbra::FuzzTarget* found = umbra::find_fuzz_target(name != nullptr ? name : "")) return *found;
         std::string known;
-        for (const umbra::FuzzTarget& t : umbra::fuzz_targets()) known += " " + std::string(t.name);
+        for (const umbra::FuzzTarget& t : umbra::UMBRA_FUZZ_TARGETS()) {
+            if (name != nullptr && t.name == name) return t;
+            known += " " + std::string(t.name);
+        }
         std::fprintf(stderr, "UMBRA_FUZZ_TARGET: expected one of%s\n", known.c_str());
         std::exit(64);
     }();

@@ -75,8 +75,10 @@ TEST_P(Fuzz, SurvivesItsSeedsAndChangesOfThem) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Fuzz, ::testing::ValuesIn(fuzz_targets().begin(), fuzz_targets().end()),
-                         [](const auto& of) { return std::string(of.param.name); });
+std::string name_of(const ::testing::TestParamInfo<FuzzTarget>& of) { return std::string(of.param.name); }
+INSTANTIATE_TEST_SUITE_P(Readers, Fuzz, ::testing::ValuesIn(reader_targets().begin(), reader_targets().end()), name_of);
+INSTANTIATE_TEST_SUITE_P(Programs, Fuzz, ::testing::ValuesIn(program_targets().begin(), program_targets().end()),
+                         name_of);
 
 // Otherwise most would be refused by the reader, and no method be tried.
 TEST(JsonMutator, MakesScenesOfWhichHalfAreRead) {

@@ -15,13 +15,13 @@ struct FuzzTarget {
     /// Returns where the bytes were read, or refused with an InputError or a UsageError. Anything else that it throws,
     /// as std::logic_error of a method that breaks its contract, is a fault.
     void (*run)(Bytes bytes);
-    bool json = false;  ///< its files are JSON, which mutated() changes as such
+    bool json = false;  ///< its files are JSON, which mutated_json() changes as such
 };
 
-/// The readers of scene files, of images and of results.json, and the whole pipeline behind a scene.
-[[nodiscard]] std::span<const FuzzTarget> fuzz_targets();
+/// The readers of scene files. They need umbra_core alone, so that their fuzzer is small and fast.
+[[nodiscard]] std::span<const FuzzTarget> reader_targets();
 
-/// Null where there is none of that name.
-[[nodiscard]] const FuzzTarget* find_fuzz_target(std::string_view name);
+/// The readers of images and of results.json, and the whole pipeline behind a scene.
+[[nodiscard]] std::span<const FuzzTarget> program_targets();
 
 }  // namespace umbra

@@ -1,0 +1,66 @@
+#include <array>
+#include <string>
+
+#include "umbra/bench/diff/diff.h"
+#include "umbra/bench/report/report.h"
+#include "umbra/core/image/image_io.h"
+#include "umbra/tests/fuzz/fuzz_folder.h"
+#include "umbra/tests/fuzz/pipeline.h"
+#include "umbra/tests/fuzz/targets.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The ending under which the bytes are most likely to be read far.
+std::string image_ending(Bytes bytes) {
+    constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kinds{{{"\x76\x2f\x31\x01", ".exr"},
+                                                                                  {"\x89PNG", ".png"},
+                                                                                  {"P", ".ppm"},
+                                                                                  {"#?", ".hdr"},
+                                                                                  {"II*", ".tif"},
+                                                                                  {"MM", ".tif"},
+                                                                                  {"\xff\xd8", ".jpg"}}};
+    const std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    for (const auto& [magic, ending] : kinds)
+        if (text.starts_with(magic)) return std::string(ending);
+    return ".png";
+}
+
+/// As `umbra diff` reads it: with itself, and with a picture of 4 x 4.
+void image(Bytes bytes) {
+    static const fs::path other = [] {
+        Image grey(4, 4, {"R", "G", "B"});
+        write_image(fuzz_folder().path() / "other.exr", grey);
+        return fuzz_folder().path() / "other.exr";
+    }();
+    const fs::path file = rewrite("image" + image_ending(bytes), bytes);
+    (void)diff(file, file, {});
+    (void)diff(file, other, {});
+}
+
+void report(Bytes bytes) {
+    static const fs::path out = [] {
+        for (const char* file : {"a.png", "a.exr", "b.png"}) (void)fuzz_folder().write(std::string("run/") + file, "x");
+        return fuzz_folder().path() / "report";
+    }();
+    const fs::path run = rewrite("run/results.json", bytes).parent_path();
+    read_or_refuse([&] { write_report({run}, out); });
+    std::error_code ignored;
+    fs::remove_all(out, ignored);
+}
+
+void pipeline(Bytes bytes) {
+    const fs::path file = rewrite("scene.json", bytes);
+    read_or_refuse([&] { run_pipeline(file); });
+}
+
+constexpr std::array kTargets{FuzzTarget{"image", image}, FuzzTarget{"report", report, true},
+                              FuzzTarget{"pipeline", pipeline, true}};
+
+}  // namespace
+
+std::span<const FuzzTarget> program_targets() { return kTargets; }
+
+}  // namespace umbra

@@ -1,0 +1,50 @@
+#include <array>
+#include <string>
+
+#include "umbra/core/io/scene_io.h"
+#include "umbra/tests/fuzz/fuzz_folder.h"
+#include "umbra/tests/fuzz/targets.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+void load_or_refuse(const fs::path& file) {
+    read_or_refuse([&] { (void)load_scene(file); });
+}
+
+void json(Bytes bytes) { load_or_refuse(rewrite("scene.json", bytes)); }
+void gltf(Bytes bytes) { load_or_refuse(rewrite("scene.gltf", bytes)); }
+void glb(Bytes bytes) { load_or_refuse(rewrite("scene.glb", bytes)); }
+void obj(Bytes bytes) { load_or_refuse(rewrite("scene.obj", bytes)); }
+void ply(Bytes bytes) { load_or_refuse(rewrite("scene.ply", bytes)); }
+void stl(Bytes bytes) { load_or_refuse(rewrite("scene.stl", bytes)); }
+void off(Bytes bytes) { load_or_refuse(rewrite("scene.off", bytes)); }
+void nff(Bytes bytes) { load_or_refuse(rewrite("scene.nff", bytes)); }
+
+void mtl(Bytes bytes) {
+    static const fs::path mesh = fuzz_folder().write(
+        "material.obj", "mtllib library.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl b\nf 3 2 1\n");
+    (void)rewrite("library.mtl", bytes);
+    load_or_refuse(mesh);
+}
+
+void ies(Bytes bytes) {
+    static const fs::path scene = fuzz_folder().write(
+        "goniometric.json", R"({"lights": [{"type": "point", "position": [0, 2, 0], "ies": "light.ies"}],
+            "objects": [{"type": "box"}]})");
+    (void)rewrite("light.ies", bytes);
+    load_or_refuse(scene);
+}
+
+constexpr std::array kTargets{FuzzTarget{"json", json, true}, FuzzTarget{"gltf", gltf, true}, FuzzTarget{"glb", glb},
+                              FuzzTarget{"obj", obj},         FuzzTarget{"mtl", mtl},         FuzzTarget{"ply", ply},
+                              FuzzTarget{"stl", stl},         FuzzTarget{"off", off},         FuzzTarget{"nff", nff},
+                              FuzzTarget{"ies", ies}};
+
+}  // namespace
+
+std::span<const FuzzTarget> reader_targets() { return kTargets; }
+
+}  // namespace umbra
