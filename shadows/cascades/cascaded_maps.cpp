@@ -1,7 +1,7 @@
 // Cascaded shadow maps: the view of the camera is split by depth, and each part has a shadow map of its own, so that
 // texels are small where pixels are.
 //
-//   aim         what casts, as the light sees it, in all orientations of a window; other lights than directional ones:
+//   aim         what casts, as the light sees it, and the window that holds it; other lights than directional ones:
 //               one map or a cube, drawn (LightViews)
 //   visibility  splits the depths that the camera sees, fits a window to each part, draws the maps that some point
 //               needs, and compares each point with the map of its part
@@ -191,7 +191,9 @@ void CascadedMaps::aim(LightId light) {
     }
     window_.reset();
     casters_->select(aimed);
-    if (!casters_->box().empty()) window_.emplace(*casters_, dvec3(aimed.direction));
+    if (casters_->box().empty()) return;
+    window_ = looking_along(dvec3(casters_->box().centre()), dvec3(aimed.direction), false);
+    fit_to_scene(*window_, *casters_, kInfinity);
 }
 
 std::optional<Cascades> CascadedMaps::fit(const PointBatch& points, LightId light) const {
@@ -201,7 +203,7 @@ std::optional<Cascades> CascadedMaps::fit(const PointBatch& points, LightId ligh
     const View view(camera);
     std::vector<dvec4> planes;
     if (options_.window == CascadeWindow::receivers) {
-        const auto sides = window_->sides(view);
+        const auto sides = window_sides(*window_, view);
         planes.assign(sides.begin(), sides.end());
     }
     if (options_.depth_range == DepthRange::visible) {

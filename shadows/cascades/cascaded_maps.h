@@ -59,10 +59,11 @@ private:
     Bias bias_;
     Filter filter_;
     const Scene* scene_ = nullptr;
-    bool is_sun_        = false;          ///< the light that it is aimed at is directional
-    std::optional<Casters> casters_;      ///< for directional lights, where there is one
-    std::optional<CasterWindow> window_;  ///< of the light that it is aimed at, where something casts
-    std::optional<LightViews> views_;     ///< for other lights, where there is one
+    bool is_sun_        = false;      ///< the light that it is aimed at is directional
+    std::optional<Casters> casters_;  ///< for directional lights, where there is one
+    std::optional<LightFrame>
+        window_;  ///< of all that casts, seen by the light that it is aimed at, where something does
+    std::optional<LightViews> views_;  ///< for other lights, where there is one
 };
 
 }  // namespace umbra

@@ -8,16 +8,14 @@ namespace {
 
 constexpr double kLeastNear    = 1e-4;  // of the farthest depth, for splits
 constexpr double kLeastWindow  = 1e-7;  // of the window of all that casts: corners are snapped in double
-constexpr double kRoundingRoom = 1e-9;  // of the same: cuts and points are rounded otherwise
+constexpr double kNarrowest    = 1e-6;  // width of a window by its height, or the other way round
+constexpr double kRoundingRoom = 1e-9;  // of all that casts: cuts and points are rounded otherwise
 constexpr double kHalfTexel    = 0.5;   // a window may be asked that far beyond its bounds
 constexpr double kOctaveSteps  = 4;     // ranges of stable cascades are rounded to these
 
-Extent common(const Extent& a, const Extent& b) { return {std::max(a.min, b.min), std::min(a.max, b.max)}; }
-
-/// Of a window that holds `extents` in its roll: no less than `least` wide.
-void set_window(LightFrame& frame, const Extent& x, const Extent& y, double least) {
-    frame.centre = {x.centre(), y.centre()};
-    frame.half   = glm::max(with_area({x.half(), y.half()}), dvec2(least));
+LightExtents extents_of(const LightFrame& f) {
+    return {Extent{f.centre.x - f.half.x, f.centre.x + f.half.x}, Extent{f.centre.y - f.half.y, f.centre.y + f.half.y},
+            Extent{f.near, f.far}};
 }
 
 /// Reaches over the window's border and in front of the first depth, as the maps of other lights do (LightViews).
@@ -29,69 +27,58 @@ void add_room(LightFrame& frame, const CascadeOptions& options, double border) {
     frame.reach = kInfinity;
 }
 
-/// The roll in which the common part of both extents has the least area.
-int best_roll(const LightExtents& a, const LightExtents& b) {
-    const auto area = [&](int i) {
-        const double x = common(a[2 * i], b[2 * i]).half(), y = common(a[2 * i + 1], b[2 * i + 1]).half();
-        return std::max(x, 0.0) * std::max(y, 0.0);
-    };
-    int best = 0;
-    for (int i = 1; i < kRolls; ++i)
-        if (area(i) < area(best)) best = i;
-    return best;
-}
-
 /// The window over what both has receivers in it and casts onto them.
-Cascade window_of(const CascadeOptions& options, const CasterWindow& casters, LightExtents receivers) {
-    const LightExtents& all = casters.extents();
-    const double size       = std::max({all[0].half(), all[1].half(), all.back().half()});
-    for (Extent& extent : receivers) extent.min -= kRoundingRoom * size, extent.max += kRoundingRoom * size;
-
+Cascade window_of(const CascadeOptions& options, const LightFrame& casters, LightExtents receivers) {
     Cascade cascade;
+    cascade.frame = casters;
     if (receivers[0].min > receivers[0].max) {  // a part of the view without a surface
         cascade.casts = false;
         cascade.low   = dvec3(kInfinity);
         return cascade;
     }
-    const int roll  = best_roll(receivers, all);
-    cascade.frame   = casters.space().frame(roll);
-    const Extent* r = &receivers[2 * roll];
-    const Extent* c = &all[2 * roll];
-    const Extent x = common(r[0], c[0]), y = common(r[1], c[1]);
-    cascade.casts = x.min <= x.max && y.min <= y.max;
-    // Depths that no receiver has need no values of their own: what casts before them all has nearness 1.
-    const Extent& rz   = receivers.back();
-    const Extent& cz   = all.back();
-    cascade.frame.near = std::max(rz.min, cz.min);
-    cascade.frame.far  = std::min(rz.max, cz.max);
-    set_window(cascade.frame, cascade.casts ? x : r[0], cascade.casts ? y : r[1], kLeastWindow * size);
+    const LightExtents all = extents_of(casters);
+    const double size      = std::max({all[0].half(), all[1].half(), all[2].half()});
+    for (int axis = 0; axis < 3; ++axis) {
+        Extent& r = receivers[axis];
+        r.min -= kRoundingRoom * size;
+        r.max += kRoundingRoom * size;
+        // Beyond the last that casts nothing is shaded: there a window needs no bound.
+        const Extent& c   = all[axis];
+        const Extent both = {std::max(r.min, c.min), std::min(r.max, c.max)};
+        if (r.min > c.min) cascade.low[axis] = r.min;
+        if (r.max < c.max) cascade.high[axis] = r.max;
+        if (axis == 2) {
+            // Depths that no receiver has need no values of their own: what casts before them all has nearness 1.
+            cascade.frame.near = both.min;
+            cascade.frame.far  = both.max;
+        } else if (both.min > both.max) {
+            cascade.casts = false;
+        } else if (r.min > c.min || r.max < c.max) {
+            cascade.frame.centre[axis] = both.centre();
+            cascade.frame.half[axis]   = both.half();
+        }
+    }
+    dvec2& half = cascade.frame.half;
+    half        = glm::max(half, dvec2(std::max(kLeastWindow * size, kNarrowest * std::max(half.x, half.y))));
     add_room(cascade.frame, options, options.border);
-    // Beyond the last that casts nothing is shaded: there a window needs no bound.
     const dvec2 over = kHalfTexel * cascade.texel(options.resolution);
-    const auto bound = [&](int axis, const Extent& receiver, const Extent& caster, double beyond) {
-        if (receiver.min > caster.min) cascade.low[axis] = receiver.min - beyond;
-        if (receiver.max < caster.max) cascade.high[axis] = receiver.max + beyond;
-    };
-    bound(0, r[0], c[0], over.x);
-    bound(1, r[1], c[1], over.y);
-    bound(2, rz, cz, std::max(over.x, over.y));
+    cascade.low -= dvec3(over, std::max(over.x, over.y));
+    cascade.high += dvec3(over, std::max(over.x, over.y));
     return cascade;
 }
 
-/// The window over a sphere, of a size that does not depend on the camera, whose corner is a multiple of a texel. Roll
-/// and depths are those of all that casts.
-Cascade stable_window(const CascadeOptions& options, const CasterWindow& casters, const View::Sphere& sphere) {
+/// The window over a sphere, of a size that does not depend on the camera, whose corner is a multiple of a texel.
+/// Depths are those of all that casts.
+Cascade stable_window(const CascadeOptions& options, const LightFrame& casters, const View::Sphere& sphere) {
     Cascade cascade;
-    cascade.frame      = casters.space().frame(casters.roll());
-    const dvec3 centre = cascade.frame.light_space(sphere.centre);
-    cascade.frame.near = casters.extents().back().min;
-    cascade.frame.far  = casters.extents().back().max;
+    cascade.frame      = casters;
+    const dvec2 centre = dvec2(casters.light_space(sphere.centre));
     cascade.frame.half = dvec2(sphere.radius);
     add_room(cascade.frame, options, options.border + 1);  // and what snapping moves it
     const dvec2 texel    = cascade.texel(options.resolution);
-    cascade.frame.centre = glm::floor((dvec2(centre) - cascade.frame.half) / texel) * texel + cascade.frame.half;
-    cascade.low          = dvec3(dvec2(centre) - sphere.radius - kHalfTexel * texel, -kInfinity);
-    cascade.high         = dvec3(dvec2(centre) + sphere.radius + kHalfTexel * texel, kInfinity);
+    cascade.frame.centre = glm::floor((centre - cascade.frame.half) / texel) * texel + cascade.frame.half;
+    cascade.low          = dvec3(centre - sphere.radius - kHalfTexel * texel, -kInfinity);
+    cascade.high         = dvec3(centre + sphere.radius + kHalfTexel * texel, kInfinity);
     return cascade;
 }
 
@@ -102,17 +89,11 @@ bool Cascade::answers(dvec3 p) const {
     return glm::all(glm::greaterThanEqual(v, low)) && glm::all(glm::lessThanEqual(v, high));
 }
 
-CasterWindow::CasterWindow(const Casters& casters, dvec3 direction)
-    : space_(looking_along(dvec3(casters.box().centre()), direction, false)),
-      extents_(casters.ranges<2 * kRolls + 1>([&](dvec3 p) { return space_.values(p); })),
-      roll_(best_roll(extents_, extents_)) {}
-
-std::array<dvec4, 4> CasterWindow::sides(const View& view) const {
-    const LightFrame frame = space_.frame(roll_);
-    const dvec3 eye        = frame.light_space(view.eye());
-    const Extent &x = extents_[2 * roll_], &y = extents_[2 * roll_ + 1];
-    return {dvec4(frame.x, eye.x - x.min), dvec4(-frame.x, x.max - eye.x), dvec4(frame.y, eye.y - y.min),
-            dvec4(-frame.y, y.max - eye.y)};
+std::array<dvec4, 4> window_sides(const LightFrame& casters, const View& view) {
+    const dvec3 eye        = casters.light_space(view.eye());
+    const LightExtents all = extents_of(casters);
+    return {dvec4(casters.x, eye.x - all[0].min), dvec4(-casters.x, all[0].max - eye.x),
+            dvec4(casters.y, eye.y - all[1].min), dvec4(-casters.y, all[1].max - eye.y)};
 }
 
 Cascades::Choice Cascades::choose(dvec3 p) const {
@@ -132,15 +113,10 @@ Cascades::Choice Cascades::choose(dvec3 p) const {
     return choice;
 }
 
-Cascades fit_cascades(const CascadeOptions& options, const CasterWindow& casters, const View& view,
+Cascades fit_cascades(const CascadeOptions& options, const LightFrame& casters, const View& view,
                       const Receivers& receivers) {
     Cascades all{.parts = {}, .whole = {}, .splits = {}, .view = view, .blend = options.blend};
-    const LightExtents& extents = casters.extents();
-    const int roll              = casters.roll();
-    all.whole.frame             = casters.space().frame(roll);
-    all.whole.frame.near        = extents.back().min;
-    all.whole.frame.far         = extents.back().max;
-    set_window(all.whole.frame, extents[2 * roll], extents[2 * roll + 1], 0);
+    all.whole.frame = casters;
     add_room(all.whole.frame, options, options.border);
 
     Extent range = receivers.depths();
@@ -166,11 +142,14 @@ Cascades fit_cascades(const CascadeOptions& options, const CasterWindow& casters
     }
     std::vector<LightExtents> seen;
     if (options.window == CascadeWindow::receivers) {
-        seen = receivers.extents(slices, casters.space());
+        seen = receivers.extents(slices, casters);
     } else {
         seen.resize(slices.size());
         for (std::size_t k = 0; k < slices.size(); ++k)
-            for (const dvec3& corner : view.corners(slices[k].from, slices[k].to)) casters.space().add(seen[k], corner);
+            for (const dvec3& corner : view.corners(slices[k].from, slices[k].to)) {
+                const dvec3 v = casters.light_space(corner);
+                for (int axis = 0; axis < 3; ++axis) seen[k][axis].add(v[axis]);
+            }
     }
     for (const LightExtents& in_slice : seen) all.parts.push_back(window_of(options, casters, in_slice));
     return all;

@@ -44,23 +44,9 @@ struct Cascade {
     [[nodiscard]] bool answers(dvec3 p) const;
 };
 
-/// What all cascades of one directional light share, whatever the camera: how it looks at what casts.
-class CasterWindow {
-public:
-    /// `casters` are selected for the light, and something is fitted to.
-    CasterWindow(const Casters& casters, dvec3 direction);
-
-    [[nodiscard]] const LightSpace& space() const { return space_; }
-    [[nodiscard]] const LightExtents& extents() const { return extents_; }  ///< of what casts
-    [[nodiscard]] int roll() const { return roll_; }                        ///< the one of least area
-    /// In which points may be shaded, as planes of `receivers_in_view`.
-    [[nodiscard]] std::array<dvec4, 4> sides(const View& view) const;
-
-private:
-    LightSpace space_;
-    LightExtents extents_;
-    int roll_ = 0;
-};
+/// What bounds the points that can be shaded, as `planes` of receivers_in_view: the window of all that casts, in its
+/// own roll.
+[[nodiscard]] std::array<dvec4, 4> window_sides(const LightFrame& casters, const View& view);
 
 /// The windows of one light for one camera.
 struct Cascades {
@@ -80,10 +66,14 @@ struct Cascades {
     [[nodiscard]] Choice choose(dvec3 p) const;
 };
 
-/// Fits cascades to what `receivers` says the camera sees. The splits go from its least to its greatest depth; of a
-/// nearest depth below 1/10000 of the farthest, only the splits take notice as if it were that. `stable` rounds both
-/// to quarters of octaves, outwards, so that they stay while the camera moves a little.
-[[nodiscard]] Cascades fit_cascades(const CascadeOptions& options, const CasterWindow& casters, const View& view,
+/// Fits cascades to what `receivers` says the camera sees. `casters` is the light's view of all that casts, as
+/// fit_to_scene makes it; all windows have its roll, in which the floors and walls of most scenes lie along the texels:
+/// then also light that grazes them finds contacts where they are.
+///
+/// The splits go from the least to the greatest depth; of a nearest depth below 1/10000 of the farthest, only the
+/// splits take notice as if it were that. `stable` rounds both to quarters of octaves, outwards, so that they stay
+/// while the camera moves a little.
+[[nodiscard]] Cascades fit_cascades(const CascadeOptions& options, const LightFrame& casters, const View& view,
                                     const Receivers& receivers);
 
 }  // namespace umbra

@@ -28,6 +28,11 @@ void merge_extents(std::vector<LightExtents>& all, const std::vector<LightExtent
         for (std::size_t k = 0; k < all[s].size(); ++k) all[s][k].add(more[s][k]);
 }
 
+void add_point(LightExtents& to, const LightFrame& light, dvec3 p) {
+    const dvec3 v = light.light_space(p);
+    for (int k = 0; k < 3; ++k) to[k].add(v[k]);
+}
+
 double distance(const dvec4& plane, dvec3 v) { return glm::dot(dvec3(plane), v) + plane.w; }
 
 /// A triangle, or what is left of one: convex, corners relative to the eye.
@@ -89,7 +94,7 @@ public:
     }
 
     [[nodiscard]] std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
-                                                    const LightSpace& light) const override {
+                                                    const LightFrame& light) const override {
         const std::vector<LightExtents> nothing(slices.size());
         std::vector<LightExtents> all = reduced(
             corners_.size(), nothing,
@@ -97,7 +102,7 @@ public:
                 if (corners_[i].outside != 0) return;
                 for (std::size_t s = 0; s < slices.size(); ++s)
                     if (corners_[i].depth >= slices[s].from && corners_[i].depth <= slices[s].to)
-                        light.add(extents[s], dvec3(scene_->positions[i]));
+                        add_point(extents[s], light, dvec3(scene_->positions[i]));
             },
             merge_extents);
         merge_extents(all, reduced(
@@ -114,7 +119,7 @@ public:
                                        part.cut({forward_, -from});
                                        part.cut({-forward_, to});
                                        for (int i = 0; i < part.count; ++i)
-                                           light.add(extents[s], view_.eye() + part.corners[i]);
+                                           add_point(extents[s], light, view_.eye() + part.corners[i]);
                                    }
                                },
                                merge_extents));
@@ -181,13 +186,13 @@ public:
     }
 
     [[nodiscard]] std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
-                                                    const LightSpace& light) const override {
+                                                    const LightFrame& light) const override {
         return reduced(
             points_.size(), std::vector<LightExtents>(slices.size()),
             [&](std::size_t i, std::vector<LightExtents>& extents) {
                 const double depth = view_.depth(points_[i]);
                 for (std::size_t s = 0; s < slices.size(); ++s)
-                    if (depth >= slices[s].from && depth <= slices[s].to) light.add(extents[s], points_[i]);
+                    if (depth >= slices[s].from && depth <= slices[s].to) add_point(extents[s], light, points_[i]);
             },
             merge_extents);
     }

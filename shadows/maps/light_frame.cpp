@@ -6,6 +6,8 @@
 
 namespace umbra {
 
+constexpr int kRolls = 16;  // orientations of the map tried about the light's direction
+
 LightFrame looking_along(dvec3 origin, dvec3 z, bool perspective) {
     LightFrame frame;
     frame.perspective = perspective;
@@ -18,30 +20,14 @@ LightFrame looking_along(dvec3 origin, dvec3 z, bool perspective) {
     return frame;
 }
 
-Rolls rolls_of(const LightFrame& frame) {
+bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest) {
     // The scene's own axes make good edges of the window (floors, walls); the other rolls are spread evenly.
     std::array<double, kRolls> angles;
     for (int i = 0; i < 3; ++i) angles[i] = std::atan2(frame.y[i], frame.x[i]);
     for (int i = 3; i < kRolls; ++i) angles[i] = (i - 3) * (kPi / 2) / (kRolls - 3);
-    Rolls rolls;
+    std::array<dvec2, kRolls> rolls;
     for (int i = 0; i < kRolls; ++i) rolls[i] = {std::cos(angles[i]), std::sin(angles[i])};
-    return rolls;
-}
 
-LightFrame rolled(LightFrame frame, dvec2 roll) {
-    const dvec3 x = frame.x;
-    frame.x       = roll.x * x + roll.y * frame.y;
-    frame.y       = roll.x * frame.y - roll.y * x;
-    return frame;
-}
-
-dvec2 with_area(dvec2 half) {
-    if (half == dvec2(0)) half = dvec2(1);
-    return glm::max(half, dvec2(1e-6 * std::max(half.x, half.y)));
-}
-
-bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest) {
-    const Rolls rolls  = rolls_of(frame);
     const auto ranges  = casters.ranges<2 * kRolls + 1>([&](dvec3 p) {
         std::array<double, 2 * kRolls + 1> values;
         dvec3 v            = frame.light_space(p);
@@ -64,12 +50,17 @@ bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest) {
             if (std::max(-r.min, r.max) > widest) return false;
     }
 
-    frame        = rolled(frame, rolls[best]);
-    frame.centre = {ranges[2 * best].centre(), ranges[2 * best + 1].centre()};
-    frame.half   = with_area({ranges[2 * best].half(), ranges[2 * best + 1].half()});
-    frame.near   = depth.min;
-    frame.far    = depth.max;
-    frame.reach  = kInfinity;
+    const dvec3 x = frame.x;
+    frame.x       = rolls[best].x * x + rolls[best].y * frame.y;
+    frame.y       = rolls[best].x * frame.y - rolls[best].y * x;
+    frame.centre  = {ranges[2 * best].centre(), ranges[2 * best + 1].centre()};
+    frame.half    = {ranges[2 * best].half(), ranges[2 * best + 1].half()};
+    frame.near    = depth.min;
+    frame.far     = depth.max;
+    frame.reach   = kInfinity;
+    // Scenes that the light sees edge-on have no area, those that it sees flat no depth, and a point casts nothing.
+    if (frame.half == dvec2(0)) frame.half = dvec2(1);
+    frame.half = glm::max(frame.half, dvec2(1e-6 * std::max(frame.half.x, frame.half.y)));
     return true;
 }
 

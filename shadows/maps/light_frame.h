@@ -1,8 +1,6 @@
 // Where a map looks from: a window onto the scene in light space, and how deep it reaches.
 #pragma once
 
-#include <array>
-
 #include "umbra/shadows/maps/casters.h"
 
 namespace umbra {
@@ -53,18 +51,6 @@ struct LightFrame {
 
 /// Any right-handed frame that looks along `z`.
 [[nodiscard]] LightFrame looking_along(dvec3 origin, dvec3 z, bool perspective);
-
-/// Orientations of a window about the light's direction that are tried: (cosine, sine) of each.
-inline constexpr int kRolls = 16;
-using Rolls                 = std::array<dvec2, kRolls>;
-[[nodiscard]] Rolls rolls_of(const LightFrame& frame);
-
-/// The frame turned about its z: x and y alone change.
-[[nodiscard]] LightFrame rolled(LightFrame frame, dvec2 roll);
-
-/// A window's half width and height, widened where there is none: scenes that the light sees edge-on have no area, and
-/// a point casts nothing.
-[[nodiscard]] dvec2 with_area(dvec2 half);
 
 /// Rolls the frame about its z and sets window, near and far so that it just holds the scene. False, with the frame as
 /// it was, where a perspective window would reach further than `widest` from the middle or behind the light.
