@@ -1,6 +1,7 @@
 #include "umbra/shadows/cascades/receivers.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "umbra/core/base/parallel.h"
 
@@ -170,36 +171,46 @@ class SeenPoints final : public Receivers {
 public:
     SeenPoints(const Scene& scene, const PointBatch& points, LightId light, const View& view,
                std::span<const dvec4> planes)
-        : view_(view) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (!points.asks(light, i)) continue;
-            const dvec3 p = exact_position(scene, points, i);
-            if (std::ranges::all_of(planes, [&](const dvec4& s) { return distance(s, p - view.eye()) >= 0; }))
-                points_.push_back(p);
-        }
-    }
+        : scene_(&scene), points_(&points), light_(light), view_(view), planes_(planes.begin(), planes.end()) {}
 
     [[nodiscard]] Extent depths() const override {
-        Extent range;
-        for (const dvec3& p : points_) range.add(view_.depth(p));
-        return range;
+        return reduced(
+            points_->size(), Extent{},
+            [&](std::size_t i, Extent& range) {
+                if (const auto p = at(i)) range.add(view_.depth(*p));
+            },
+            [](Extent& all, const Extent& more) { all.add(more); });
     }
 
     [[nodiscard]] std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
                                                     const LightFrame& light) const override {
         return reduced(
-            points_.size(), std::vector<LightExtents>(slices.size()),
+            points_->size(), std::vector<LightExtents>(slices.size()),
             [&](std::size_t i, std::vector<LightExtents>& extents) {
-                const double depth = view_.depth(points_[i]);
+                const auto p = at(i);
+                if (!p) return;
+                const double depth = view_.depth(*p);
                 for (std::size_t s = 0; s < slices.size(); ++s)
-                    if (depth >= slices[s].from && depth <= slices[s].to) add_point(extents[s], light, points_[i]);
+                    if (depth >= slices[s].from && depth <= slices[s].to) add_point(extents[s], light, *p);
             },
             merge_extents);
     }
 
 private:
+    /// The point, where it counts.
+    [[nodiscard]] std::optional<dvec3> at(std::size_t i) const {
+        if (!points_->asks(light_, i)) return {};
+        const dvec3 p = exact_position(*scene_, *points_, i);
+        for (const dvec4& plane : planes_)
+            if (distance(plane, p - view_.eye()) < 0) return {};
+        return p;
+    }
+
+    const Scene* scene_;
+    const PointBatch* points_;
+    LightId light_;
     View view_;
-    std::vector<dvec3> points_;
+    std::vector<dvec4> planes_;
 };
 
 }  // namespace
