@@ -67,18 +67,23 @@ Cascade window_of(const CascadeOptions& options, const LightFrame& casters, Ligh
     return cascade;
 }
 
-/// The window over a sphere, of a size that does not depend on the camera, whose corner is a multiple of a texel.
-/// Depths are those of all that casts.
+/// The window over a sphere, of a size that does not depend on the camera, whose corner is a multiple of a texel; along
+/// axes where all that casts is no wider than the sphere, the window of that, which stays anyhow. Depths are those of
+/// all that casts.
 Cascade stable_window(const CascadeOptions& options, const LightFrame& casters, const View::Sphere& sphere) {
     Cascade cascade;
     cascade.frame      = casters;
     const dvec2 centre = dvec2(casters.light_space(sphere.centre));
-    cascade.frame.half = dvec2(sphere.radius);
+    cascade.frame.half = glm::min(casters.half, dvec2(sphere.radius));
     add_room(cascade.frame, options, options.border + 1);  // and what snapping moves it
-    const dvec2 texel    = cascade.texel(options.resolution);
-    cascade.frame.centre = glm::floor((centre - cascade.frame.half) / texel) * texel + cascade.frame.half;
-    cascade.low          = dvec3(centre - sphere.radius - kHalfTexel * texel, -kInfinity);
-    cascade.high         = dvec3(centre + sphere.radius + kHalfTexel * texel, kInfinity);
+    const dvec2 texel   = cascade.texel(options.resolution);
+    const dvec2 snapped = glm::floor((centre - cascade.frame.half) / texel) * texel + cascade.frame.half;
+    for (int axis = 0; axis < 2; ++axis) {
+        if (casters.half[axis] <= sphere.radius) continue;
+        cascade.frame.centre[axis] = snapped[axis];
+        cascade.low[axis]          = centre[axis] - sphere.radius - kHalfTexel * texel[axis];
+        cascade.high[axis]         = centre[axis] + sphere.radius + kHalfTexel * texel[axis];
+    }
     return cascade;
 }
 

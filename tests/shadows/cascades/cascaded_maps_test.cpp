@@ -263,6 +263,27 @@ TEST(CascadedMaps, DepthsAreThoseOfWhatIsInView) {
     EXPECT_LT(in_view.splits.front(), as_seen.splits.front());
 }
 
+TEST(CascadedMaps, AFloorAtTheEyeLeavesTheSplitsTheirRange) {
+    // Depths from next to nothing: splits begin at a share of the farthest, the first part where the view does.
+    Scene scene             = long_fence();
+    scene.camera.eye        = {-0.5f, 1e-5f, -10};
+    scene.camera.target     = {-0.4f, -2, -15};
+    const PointBatch points = primary(scene);
+    for (const char* settings : {"splits=logarithmic", "stable=true", "window=frustum", "depth_range=visible"}) {
+        const Cascades fit = Maps(scene, settings).fit(points);
+        EXPECT_NEAR(fit.splits.front(), 1e-4 * fit.splits.back(), 1e-9 * fit.splits.back()) << settings;
+        int nearer = 0, in_part = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!points.asks(0, i)) continue;
+            const dvec3 p = exact_position(scene, points, i);
+            nearer += fit.view.depth(p) < fit.splits.front();
+            in_part += fit.choose(p).first == 0;
+        }
+        EXPECT_GT(nearer, 20000) << settings;
+        EXPECT_GE(in_part, nearer) << settings;
+    }
+}
+
 TEST(CascadedMaps, WhatCastsFromOutsideTheViewShades) {
     // A roof over the light's side of what the camera sees, behind the camera and high above: nothing of it is in view.
     Scene scene;
@@ -342,7 +363,7 @@ TEST(CascadedMaps, StableTexelsStayWhereTheyAreWhenTheCameraMoves) {
         const Cascades first         = maps.fit(points);
         const VisibilityPlane before = maps.visibility(points);
         const double texel           = first.parts[0].texel(512).x;
-        int compared = 0, changed = 0, grids = 0, moved_grids = 0;
+        int compared = 0, changed = 0, grids = 0, following = 0, moved_grids = 0;
         for (const vec3 way : {vec3(1, 0, 0), vec3(-1, 0.3f, 0.2f), vec3(0.2f, 0.1f, -1), vec3(0, -1, 0.5f)})
             for (const double step : {0.11, 0.37, 0.93}) {
                 const vec3 by               = static_cast<float>(step * texel) * glm::normalize(way);
@@ -355,12 +376,16 @@ TEST(CascadedMaps, StableTexelsStayWhereTheyAreWhenTheCameraMoves) {
                 }
                 for (std::size_t k = 0; k < now.parts.size(); ++k) {
                     const LightFrame &a = first.parts[k].frame, &b = now.parts[k].frame;
-                    const dvec2 size  = first.parts[k].texel(512);
-                    const dvec2 steps = ((b.centre - b.half) - (a.centre - a.half)) / size;
-                    const dvec2 from  = (b.centre - b.half) / now.parts[k].texel(512);
-                    ++grids;
-                    moved_grids += a.half != b.half || a.x != b.x || glm::length(steps - glm::round(steps)) > 1e-6 ||
-                                   glm::length(from - glm::round(from)) > 1e-6;
+                    const dvec2 size = first.parts[k].texel(512);
+                    for (int axis = 0; axis < 2; ++axis) {
+                        // Along an axis without bounds the window is that of all that casts, wherever the camera is.
+                        const bool follows = std::isfinite(now.parts[k].low[axis]);
+                        const double from  = (b.centre - b.half)[axis] / size[axis];
+                        const double steps = follows ? from - std::round(from) : b.centre[axis] - a.centre[axis];
+                        ++grids;
+                        following += follows;
+                        moved_grids += a.half != b.half || a.x != b.x || std::abs(steps) > 1e-6;
+                    }
                 }
                 for (std::size_t i = 0; i < points.size(); ++i) {
                     const dvec3 p   = exact_position(scene, points, i);
@@ -370,7 +395,8 @@ TEST(CascadedMaps, StableTexelsStayWhereTheyAreWhenTheCameraMoves) {
                     changed += before.s[i] != after.s[i];
                 }
             }
-        EXPECT_EQ(grids, 48);
+        EXPECT_EQ(grids, 96);
+        EXPECT_GT(following, 20);
         EXPECT_GT(compared, 100000);
         if (stable) {
             EXPECT_EQ(moved_grids, 0);
@@ -385,6 +411,7 @@ TEST(CascadedMaps, StableTexelsStayWhereTheyAreWhenTheCameraMoves) {
 TEST(CascadedMaps, StableWindowsHoldTheirPartOfTheViewWhereverTheCameraLooks) {
     Scene scene = long_fence();
     const Maps maps(scene, "stable=true,blend=0.2");
+    int held = 0;
     dvec2 half{0};
     for (int turn = 0; turn < 12; ++turn) {
         const float angle       = 0.5f * static_cast<float>(turn);
@@ -395,11 +422,16 @@ TEST(CascadedMaps, StableWindowsHoldTheirPartOfTheViewWhereverTheCameraLooks) {
             for (const dvec3& corner : fit.view.corners(fit.splits[k], fit.splits[k + 1])) {
                 const dvec2 at = (dvec2(fit.parts[k].frame.light_space(corner)) - fit.parts[k].frame.centre) /
                                  fit.parts[k].frame.half;
-                // Within the map by as much as a filter of one texel asks for.
-                EXPECT_LT(std::max(std::abs(at.x), std::abs(at.y)), 1 - 2 * 2.0 / 2048) << turn << ' ' << k;
+                // Within the map by as much as a filter of one texel asks for; or nothing casts beyond.
+                for (int axis = 0; axis < 2; ++axis) {
+                    if (!std::isfinite(fit.parts[k].low[axis])) continue;
+                    EXPECT_LT(std::abs(at[axis]), 1 - 2 * 2.0 / 2048) << turn << ' ' << k;
+                    ++held;
+                }
                 EXPECT_TRUE(fit.parts[k].answers(corner));
             }
     }
+    EXPECT_GT(held, 100);
 }
 
 TEST(CascadedMaps, SpheresHoldTheCornersAndTouchThem) {
