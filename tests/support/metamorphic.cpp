@@ -247,7 +247,10 @@ Asked dyadic(Scene scene, int width, int height) {
         light.direction     = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
     }
     Asked asked{std::move(scene), {}};
-    asked.points = primary_points(RayScene(asked.scene), asked.scene, asked.scene.camera, width, height);
+    // A batch without a raster is of a picture of the scene's own size, for methods that ask what the camera sees.
+    asked.scene.width  = width;
+    asked.scene.height = height;
+    asked.points       = primary_points(RayScene(asked.scene), asked.scene, asked.scene.camera, width, height);
     for (std::size_t i = 0; i < asked.points.size(); ++i)
         if (asked.points.triangle[i] != kNoTriangle) set_dyadic_point(asked, i);
     face_lights(asked.points, asked.scene);

@@ -1,0 +1,388 @@
+// Cascaded shadow maps: the view of the camera is split by depth, and each part has a shadow map of its own, so that
+// texels are small where pixels are.
+//
+//   aim         what casts, as the light sees it, and the window that holds it; other lights than directional ones:
+//               one map or a cube, drawn (LightViews)
+//   visibility  splits the depths that the camera sees, fits a window to each part, draws the maps that some point
+//               needs, and compares each point with the map of its part
+// Nothing of a camera is kept from one call to the next: a camera that moves draws all maps again, and the times say
+// so.
+//
+// This work is based on:
+// Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
+// Wolfgang Engel. Cascaded Shadow Maps. 2006
+// Fan Zhang, Hanqiu Sun, Leilei Xu, Lee Kit Lun. Parallel-Split Shadow Maps for Large-Scale Virtual Environments. 2006
+// Michal Valient. Stable Rendering of Cascaded Shadow Maps. 2008 (stable)
+// Andrew Lauritzen, Marco Salvi, Aaron Lefohn. Sample Distribution Shadow Maps. 2011 (depth_range=visible)
+#include "umbra/shadows/cascades/cascaded_maps.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/render/facing.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/shadows/maps/facets.h"
+
+namespace umbra {
+namespace {
+
+using Options = CascadedMapsOptions;
+
+const std::vector<Parameter> kCascadeParameters{
+    parameter<&Options::cascades>({.name  = "cascades",
+                                   .doc   = "Parts that the view of a directional light's points is split into; each "
+                                            "has a map.",
+                                   .unit  = "maps",
+                                   .phase = Phase::visibility,
+                                   .min   = 1,
+                                   .max   = 8}),
+    parameter<&Options::resolution>({.name  = "resolution",
+                                     .doc   = "Texels along each side of a map; of other lights, too: a cube has six.",
+                                     .unit  = "texels",
+                                     .phase = Phase::aim,
+                                     .min   = 16,
+                                     .max   = 16384,
+                                     .sweep = "256|512|1024|2048|4096"}),
+    parameter<&Options::splits>({.name  = "splits",
+                                 .doc   = "Depths at which parts meet. uniform: of equal depth; logarithmic: each part "
+                                          "ends at the same multiple of its beginning; practical: between the two.",
+                                 .phase = Phase::visibility,
+                                 .choices = "uniform|logarithmic|practical"}),
+    parameter<&Options::lambda>({.name  = "lambda",
+                                 .doc   = "splits=practical: the logarithmic depth's weight; the rest is the uniform "
+                                          "one's.",
+                                 .phase = Phase::visibility,
+                                 .min   = 0,
+                                 .max   = 1}),
+    parameter<&Options::depth_range>(
+        {.name    = "depth_range",
+         .doc     = "Depths that are split. scene: of all geometry within the view, seen or hidden; visible: of the "
+                    "points that the picture shows, to which the windows are fitted, too. Without a picture, visible "
+                    "traces one.",
+         .phase   = Phase::visibility,
+         .choices = "scene|visible"}),
+    parameter<&Options::window>(
+        {.name    = "window",
+         .doc     = "What a map covers. frustum: the part of the view, as far as something casts there; receivers: "
+                    "what lies in that part, and depths are split of what may be shaded alone. Not of stable windows.",
+         .phase   = Phase::visibility,
+         .choices = "receivers|frustum"}),
+    parameter<&Options::stable>({.name = "stable",
+                                 .doc =
+                                     "A map covers the sphere around its part of the view and moves in whole texels, "
+                                     "so that shadow edges stand still while the camera moves.",
+                                 .phase = Phase::visibility}),
+    parameter<&Options::blend>({.name = "blend",
+                                .doc  = "How much of a part's end fades into the next part; 0: each point has one map.",
+                                .unit = "depths of the part",
+                                .phase = Phase::visibility,
+                                .min   = 0,
+                                .max   = 1}),
+    parameter<&Options::filter>({.name    = "filter",
+                                 .doc     = "nearest: one comparison; pcf: the mean of several around the point.",
+                                 .phase   = Phase::aim,
+                                 .choices = "nearest|pcf",
+                                 .sweep   = "nearest|pcf"}),
+    parameter<&Options::radius>({.name  = "radius",
+                                 .doc   = "pcf: compares (2 radius + 1)^2 texels, which are wider in farther parts.",
+                                 .unit  = "texels",
+                                 .phase = Phase::aim,
+                                 .min   = 0,
+                                 .max   = 16}),
+    parameter<&Options::bilinear>(
+        {.name  = "bilinear",
+         .doc   = "pcf: bilinear weights, so that the kernel does not step from texel to texel.",
+         .phase = Phase::visibility}),
+    parameter<&Options::bias>(
+        {.name    = "bias",
+         .doc     = "Reference depth of the comparison. manual: the depth of the point plus constant and slope bias. "
+                    "receiver_plane: the receiver's plane at the texel, minus a rounding margin. auto: the smaller of the "
+                    "two, minus a texel width and a quarter of the depth gradient, at most 16 texel widths in front of "
+                    "the plane.",
+         .phase   = Phase::visibility,
+         .choices = "auto|receiver_plane|manual"}),
+    parameter<&Options::constant>({.name  = "constant",
+                                   .doc   = "Moves the point towards the light.",
+                                   .unit  = "texel widths at the point's depth",
+                                   .phase = Phase::aim,
+                                   .min   = 0,
+                                   .max   = 1e6}),
+    parameter<&Options::slope>({.name  = "slope",
+                                .doc   = "Moves the point towards the light.",
+                                .unit  = "depth gradients of the receiver's plane a texel",
+                                .phase = Phase::visibility,
+                                .min   = 0,
+                                .max   = 1e6}),
+    parameter<&Options::normal_offset>({.name = "normal_offset",
+                                        .doc = "Moves the point along its normal, times the sine of the light's angle.",
+                                        .unit  = "texel widths",
+                                        .phase = Phase::aim,
+                                        .min   = 0,
+                                        .max   = 64}),
+};
+
+}  // namespace
+
+void CascadedMaps::configure(const Settings& settings) {
+    const Options o = options_ = settings.as<Options>();
+    bias_                      = {o.bias, o.constant, o.slope, o.normal_offset};
+    filter_                    = o.filter == CascadeFilter::nearest ? Filter{} : Filter{o.radius, o.bilinear};
+    // What the filter and the offset may ask for, and a rounding.
+    const double border   = filter_.radius + bias_.normal_offset + 2;
+    const double headroom = std::max(64.0, kMostAutomatic * (4 * filter_.radius + 2)) + bias_.constant;
+    if (4 * border > o.resolution)
+        throw UsageError(
+            fmt::format("cascaded_maps: radius={} and normal_offset={} reach over a quarter of resolution={}, expected "
+                        "a resolution "
+                        "of at least {}",
+                        filter_.radius, bias_.normal_offset, o.resolution, std::ceil(4 * border)));
+    const double map = 4.0 * o.resolution * o.resolution;
+    if ((o.cascades + 1) * map > LightViews::half_of_memory())
+        throw UsageError(
+            fmt::format("cascaded_maps: cascades={} and resolution={} take more than half of the machine's "
+                        "memory ({:.0f} MiB a map), expected fewer or smaller ones",
+                        o.cascades, o.resolution, map / (1 << 20)));
+    cascade_options_ = {.cascades   = o.cascades,
+                        .splits     = o.splits,
+                        .lambda     = o.lambda,
+                        .window     = o.window,
+                        .stable     = o.stable,
+                        .blend      = o.blend,
+                        .resolution = o.resolution,
+                        .border     = border,
+                        .headroom   = headroom};
+    view_options_    = {.method = "cascaded_maps", .resolution = o.resolution, .border = border, .headroom = headroom};
+    if (views_) views_->set_options(view_options_);
+}
+
+Service CascadedMaps::serves(const SceneFacts& facts) const {
+    const auto suns  = std::ranges::count(facts.lights, LightKind::directional, &LightFacts::kind);
+    const bool other = suns < std::ssize(facts.lights);
+    std::string why  = "any triangles, through maps that sample depth";
+    if (suns > 0)
+        why += other ? "; directional lights by cascades, others by one map or a cube" : ", one each part of the view";
+    else
+        why += "; no light is directional: there are no cascades, but one map or a cube, as shadow_zbuffer has them";
+    if (!facts.hard_lights_only) why += "; area lights are taken as their centres, so that penumbrae are missing";
+    return {How::approximately, why + "."};
+}
+
+void CascadedMaps::build(const Scene& scene, const SceneFacts& facts) {
+    const auto suns = std::ranges::count(scene.lights, LightKind::directional, &Light::kind);
+    scene_          = &scene;
+    casters_.reset();
+    window_.reset();
+    views_.reset();
+    if (suns > 0) casters_.emplace(scene, facts, true);
+    if (suns < std::ssize(scene.lights)) views_.emplace(scene, facts, view_options_);
+}
+
+void CascadedMaps::aim(LightId light) {
+    const Light& aimed = scene_->lights[light];
+    is_sun_            = aimed.kind == LightKind::directional;
+    if (!is_sun_) {
+        views_->fit(light);
+        views_->rasterise();
+        return;
+    }
+    window_.reset();
+    casters_->select(aimed);
+    if (casters_->box().empty()) return;
+    window_ = looking_along(dvec3(casters_->box().centre()), dvec3(aimed.direction), false);
+    fit_to_scene(*window_, *casters_, kInfinity);
+}
+
+std::optional<Cascades> CascadedMaps::fit(const PointBatch& points, LightId light) const {
+    if (!window_) return {};
+    const CameraFrame camera =
+        points.raster ? *points.raster : frame(scene_->camera, std::max(1, scene_->width), std::max(1, scene_->height));
+    const View view(camera);
+    std::vector<dvec4> planes;
+    if (options_.window == CascadeWindow::receivers) {
+        const auto sides = window_sides(*window_, view);
+        planes.assign(sides.begin(), sides.end());
+    }
+    if (options_.depth_range == DepthRange::visible) {
+        if (points.raster)
+            return fit_cascades(cascade_options_, *window_, view, *receivers_of(*scene_, points, light, view, planes));
+        // The points may be any, and answers must not depend on which are asked together: the picture's own decide.
+        try {
+            const RayScene rays(*scene_);
+            const PointBatch seen = primary_points(rays, *scene_, scene_->camera, camera.width, camera.height);
+            return fit_cascades(cascade_options_, *window_, view, *receivers_of(*scene_, seen, light, view, planes));
+        } catch (const InputError&) {  // an eye too far away for rays: what is in view serves as well
+        }
+    }
+    return fit_cascades(cascade_options_, *window_, view, *receivers_in_view(*scene_, view, planes));
+}
+
+/// Maps of one light, and which of them answer a point.
+struct CascadedMaps::Lookups {
+    std::span<const MapView> views{};             ///< of other lights than directional ones
+    std::optional<Cascades> cascades{};           ///< of directional ones
+    std::vector<std::optional<MapView>> drawn{};  ///< the maps of `cascades`, the whole's last: those that are asked
+
+    struct Asked {
+        std::size_t view;  ///< index of `views` or of `drawn`
+        Receiver receiver;
+    };
+    /// At most two maps, the second's share of the answer among them. None: nothing shades the point.
+    struct Answer {
+        std::optional<Asked> first{}, second{};
+        double share = 0;
+    };
+    [[nodiscard]] Answer at(const Facet& facet, dvec3 p, const Bias& bias, const Filter& filter) const {
+        Answer answer;
+        for (std::size_t v = 0; v < views.size(); ++v)
+            if (const auto receiver = receive(views[v], facet, p, bias, filter)) {
+                answer.first = {v, *receiver};
+                return answer;
+            }
+        if (!cascades) return answer;
+        const Cascades::Choice choice = cascades->choose(p);
+        const auto ask                = [&](std::size_t k) -> std::optional<Asked> {
+            if (k == Cascades::kLit || !drawn[k]) return {};
+            const auto receiver = receive(*drawn[k], facet, p, bias, filter);
+            return receiver ? std::optional<Asked>({k, *receiver}) : std::nullopt;
+        };
+        answer.first  = ask(choice.first);
+        answer.second = ask(choice.second);
+        answer.share  = choice.share;
+        return answer;
+    }
+    [[nodiscard]] const MapView& view(const Asked& asked) const {
+        return views.empty() ? *drawn[asked.view] : views[asked.view];
+    }
+};
+
+CascadedMaps::Lookups CascadedMaps::look_up(const PointBatch& points, LightId light) const {
+    Lookups lookups;
+    if (!is_sun_) {
+        lookups.views = views_->views();
+        return lookups;
+    }
+    lookups.cascades = fit(points, light);
+    if (!lookups.cascades) return lookups;
+    const Cascades& cascades = *lookups.cascades;
+    std::atomic<std::uint32_t> asked{0};
+    const auto note = [&](std::size_t k) {
+        const std::uint32_t bit = k == Cascades::kLit ? 0 : 1u << k;
+        if ((bit & ~asked.load(std::memory_order_relaxed)) != 0) asked |= bit;
+    };
+    for_each_facet(*scene_, points, light, [&](std::size_t, const Facet&, dvec3 p) {
+        const Cascades::Choice choice = cascades.choose(p);
+        note(choice.first);
+        note(choice.second);
+    });
+    lookups.drawn.resize(cascades.parts.size() + 1);
+    for (std::size_t k = 0; k <= cascades.parts.size(); ++k) {
+        const Cascade& cascade = k < cascades.parts.size() ? cascades.parts[k] : cascades.whole;
+        if ((asked >> k & 1) == 0 || !cascade.casts) continue;
+        const dmat4 clip_from_world = cascade.frame.clip_from_world();
+        const auto triangles        = casters_->seen_by(clip_from_world);
+        if (triangles.empty()) continue;
+        MapView& view = lookups.drawn[k].emplace(
+            MapView{cascade.frame, DepthMap(options_.resolution, options_.resolution, DepthFormat::float32)});
+        view.map.draw(clip_from_world, scene_->positions, triangles, Faces::all);
+    }
+    return lookups;
+}
+
+void CascadedMaps::visibility(const PointBatch& points, LightId light, Visibility out) const {
+    const Lookups lookups = look_up(points, light);
+    const auto lit        = [&](const std::optional<Lookups::Asked>& asked) {
+        return asked ? lit_share(lookups.view(*asked).map, asked->receiver, bias_.mode, filter_) : 1.0f;
+    };
+    for_each_facet(*scene_, points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+        if (centre_is_behind(*scene_, points, light, i)) {
+            out.s[i] = 0;
+            return;
+        }
+        const Lookups::Answer answer = lookups.at(facet, p, bias_, filter_);
+        const float first            = lit(answer.first);
+        if (answer.share == 0) {
+            out.s[i] = first;
+            return;
+        }
+        const auto share = static_cast<float>(answer.share);
+        out.s[i]         = std::clamp((1 - share) * first + share * lit(answer.second), 0.0f, 1.0f);
+    });
+}
+
+/// The triangle whose depth the texel holds that blocks the point, the nearest of several. Draws the maps again.
+void CascadedMaps::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
+    const Lookups lookups = look_up(points, light);
+    struct Sample {
+        std::size_t view = ~std::size_t{0};
+        ivec2 at{0};
+    };
+    std::vector<Sample> samples(points.size());
+    for_each_facet(*scene_, points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+        const Lookups::Answer answer = lookups.at(facet, p, bias_, filter_);
+        for (const auto& asked : {answer.first, answer.second}) {
+            if (!asked) continue;
+            if (const auto at = blocked_sample(lookups.view(*asked).map, asked->receiver, bias_.mode, filter_)) {
+                samples[i] = {asked->view, *at};
+                return;
+            }
+        }
+    });
+    std::ranges::fill(blockers, kNoTriangle);
+    const std::size_t views = is_sun_ ? lookups.drawn.size() : lookups.views.size();
+    for (std::size_t v = 0; v < views; ++v) {
+        if (std::ranges::find(samples, v, &Sample::view) == samples.end()) continue;
+        const MapView& view = is_sun_ ? *lookups.drawn[v] : lookups.views[v];
+        std::vector<TriangleId> owners;
+        if (is_sun_) {
+            const dmat4 clip_from_world = view.frame.clip_from_world();
+            owners                      = view.map.owners(clip_from_world, scene_->positions, scene_->triangles,
+                                                          casters_->seen_by(clip_from_world), Faces::all);
+        } else {
+            owners = views_->owners(view);
+        }
+        for (std::size_t i = 0; i < samples.size(); ++i)
+            if (samples[i].view == v)
+                blockers[i] = owners[static_cast<std::size_t>(samples[i].at.y) * view.map.width() + samples[i].at.x];
+    }
+}
+
+std::size_t CascadedMaps::memory_bytes() const {
+    std::size_t bytes = (casters_ ? casters_->memory_bytes() : 0) + (views_ ? views_->memory_bytes() : 0);
+    if (is_sun_ && window_)
+        bytes += sizeof(std::uint32_t) * options_.cascades * options_.resolution * options_.resolution;
+    return bytes;
+}
+
+extern const MethodInfo cascaded_maps;
+const MethodInfo cascaded_maps{
+    .name  = "cascaded_maps",
+    .title = "Cascaded shadow maps",
+    .paper =
+        "Fan Zhang, Hanqiu Sun, Leilei Xu, Lee Kit Lun, Parallel-Split Shadow Maps for Large-Scale Virtual "
+        "Environments, 2006",
+    .summary =
+        "Splits the camera's view by depth and gives each part a shadow map of its own for every directional light, so "
+        "that texels are small near the eye. A camera that moves has all cascades fitted and drawn again. Errs as a "
+        "shadow z-buffer does, by the texels of a point's cascade; points outside of the view have one map of the "
+        "whole "
+        "scene. Other lights than directional ones have no cascades: they have one map or a cube. The memory includes "
+        "the cascades' maps, which are held while S_j is computed.",
+    .parameters = kCascadeParameters,
+    .presets    = {{"textbook", "bias=manual,constant=4,window=frustum",
+                    "Zhang 2006: practical splits, windows of the view's parts, and a constant bias of four texels."},
+                   {"fast", "resolution=512", "Maps of 512 x 512 texels."},
+                   {"stable", "stable=true,filter=pcf",
+                    "Valient 2008: shadow edges that stand still while the camera moves."},
+                   {"samples", "splits=logarithmic,depth_range=visible",
+                    "Lauritzen 2011: cascades fitted to what the picture shows."},
+                   {"best", "cascades=8,resolution=4096,filter=pcf,depth_range=visible",
+                    "Eight maps of 4096 x 4096 texels, 3 x 3 comparisons."}},
+    .by_default = false,
+    .shown_on   = {"low_sun_fence", "fog_colonnade", "sun_on_plane"},
+    .create     = create<CascadedMaps>};
+
+}  // namespace umbra

@@ -1,0 +1,79 @@
+// Cascades: the view is split by depth, and each part has a window onto the scene of its own, as the light sees it.
+//
+// This work is based on:
+// Wolfgang Engel. Cascaded Shadow Maps. 2006
+// Fan Zhang, Hanqiu Sun, Leilei Xu, Lee Kit Lun. Parallel-Split Shadow Maps for Large-Scale Virtual Environments. 2006
+// Brandon Lloyd, David Tuft, Sung-eui Yoon, Dinesh Manocha. Warping and Partitioning for Low Error Shadow Maps. 2006
+// Michal Valient. Stable Rendering of Cascaded Shadow Maps. 2008
+// Andrew Lauritzen, Marco Salvi, Aaron Lefohn. Sample Distribution Shadow Maps. 2011
+#pragma once
+
+#include <vector>
+
+#include "umbra/shadows/cascades/receivers.h"
+#include "umbra/shadows/cascades/splits.h"
+
+namespace umbra {
+
+/// What a cascade's window is fitted to.
+enum class CascadeWindow : std::uint8_t {
+    receivers,  ///< what of the scene lies in the part of the view and may be shaded
+    frustum     ///< the part of the view, whatever is in it
+};
+
+struct CascadeOptions {
+    int cascades         = 4;  ///< > 0
+    Splits splits        = Splits::practical;
+    double lambda        = 0.5;
+    CascadeWindow window = CascadeWindow::receivers;
+    bool stable          = false;  ///< windows hold the sphere about the part of the view, and move in whole texels
+    double blend         = 0;      ///< of a cascade's depth: how much of its end is answered by the next one, too
+    int resolution       = 2048;   ///< texels a side of a map
+    double border        = 2;      ///< texels by which a map reaches over its window
+    double headroom      = 64;     ///< widths of a texel by which a bias may move points towards the light
+};
+
+/// One map's window, and where it answers.
+struct Cascade {
+    LightFrame frame{};     ///< reaches without end; border and headroom included
+    dvec3 low{-kInfinity};  ///< bounds of what it answers, light space of `frame`; infinite where nothing casts beyond
+    dvec3 high{kInfinity};
+    bool casts = true;  ///< else nothing in it is shaded, and no map is needed
+    /// Along x and y, world units.
+    [[nodiscard]] dvec2 texel(int resolution) const { return 2.0 * frame.half / static_cast<double>(resolution); }
+    [[nodiscard]] bool answers(dvec3 p) const;
+};
+
+/// What bounds the points that can be shaded, as `planes` of receivers_in_view: the window of all that casts, in its
+/// own roll.
+[[nodiscard]] std::array<dvec4, 4> window_sides(const LightFrame& casters, const View& view);
+
+/// The windows of one light for one camera.
+struct Cascades {
+    std::vector<Cascade> parts;  ///< near to far; empty where the camera sees nothing that may be shaded
+    Cascade whole;               ///< over all that casts: for points that no part answers, as those outside of the view
+    std::vector<double> splits;  ///< depths that bound the parts, one more than parts
+    View view;
+    double blend;
+
+    /// Which windows answer a point: indices of parts, parts.size() for the whole, kLit where nothing can shade it.
+    struct Choice {
+        std::size_t first  = kLit;
+        std::size_t second = kLit;
+        double share       = 0;  ///< of the second, [0, 1]; where it is 0 there is none
+    };
+    static constexpr std::size_t kLit = ~std::size_t{0};
+    [[nodiscard]] Choice choose(dvec3 p) const;
+};
+
+/// Fits cascades to what `receivers` says the camera sees. `casters` is the light's view of all that casts, as
+/// fit_to_scene makes it; all windows have its roll, in which the floors and walls of most scenes lie along the texels:
+/// then also light that grazes them finds contacts where they are.
+///
+/// The splits go from the least to the greatest depth; of a nearest depth below 1/10000 of the farthest, only the
+/// splits take notice as if it were that. `stable` rounds both to quarters of octaves, outwards, so that they stay
+/// while the camera moves a little.
+[[nodiscard]] Cascades fit_cascades(const CascadeOptions& options, const LightFrame& casters, const View& view,
+                                    const Receivers& receivers);
+
+}  // namespace umbra

@@ -1,0 +1,227 @@
+#include "umbra/shadows/cascades/receivers.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "umbra/core/base/parallel.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::size_t kBlock = 4096;  // entries that are reduced by one task
+
+/// add(i, partial) for all i below `count`, in parallel; merge(all, partial) in their order.
+template <class T, class Add, class Merge>
+T reduced(std::size_t count, const T& nothing, const Add& add, const Merge& merge) {
+    const std::size_t blocks = (count + kBlock - 1) / kBlock;
+    std::vector<T> partial(blocks, nothing);
+    parallel_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+            for (std::size_t i = block * kBlock; i < std::min((block + 1) * kBlock, count); ++i) add(i, partial[block]);
+    });
+    T all = nothing;
+    for (const T& p : partial) merge(all, p);
+    return all;
+}
+
+void merge_extents(std::vector<LightExtents>& all, const std::vector<LightExtents>& more) {
+    for (std::size_t s = 0; s < all.size(); ++s)
+        for (std::size_t k = 0; k < all[s].size(); ++k) all[s][k].add(more[s][k]);
+}
+
+void add_point(LightExtents& to, const LightFrame& light, dvec3 p) {
+    const dvec3 v = light.light_space(p);
+    for (int k = 0; k < 3; ++k) to[k].add(v[k]);
+}
+
+double distance(const dvec4& plane, dvec3 v) { return glm::dot(dvec3(plane), v) + plane.w; }
+
+/// A triangle, or what is left of one: convex, corners relative to the eye.
+struct Part {
+    std::array<dvec3, 16> corners;  // 3, and one more for each of at most 11 planes
+    int count = 0;
+
+    /// Keeps what lies on the plane's positive side. Cuts are computed from the inner corner to the outer one, so that
+    /// they do not depend on which corner comes first.
+    void cut(const dvec4& plane) {
+        Part kept;
+        for (int i = 0; i < count; ++i) {
+            const dvec3 a = corners[i], b = corners[(i + 1) % count];
+            const double u = distance(plane, a), v = distance(plane, b);
+            if (u >= 0) kept.corners[kept.count++] = a;
+            if (u >= 0 && v < 0) kept.corners[kept.count++] = a + u / (u - v) * (b - a);
+            if (u < 0 && v >= 0) kept.corners[kept.count++] = b + v / (v - u) * (a - b);
+        }
+        *this = kept;
+    }
+};
+
+class SceneInView final : public Receivers {
+public:
+    SceneInView(const Scene& scene, const View& view, std::span<const dvec4> planes)
+        : scene_(&scene), view_(view), corners_(scene.positions.size()) {
+        const auto sides = view.sides();
+        planes_.assign(sides.begin(), sides.end());
+        planes_.insert(planes_.end(), planes.begin(), planes.end());
+        forward_ = dvec3(sides.back());
+        parallel_ranges(corners_.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const dvec3 p(scene.positions[i]);
+                corners_[i].depth = view_.depth(p);
+                for (std::size_t k = 0; k < planes_.size(); ++k)
+                    if (distance(planes_[k], p - view_.eye()) < 0) corners_[i].outside |= 1u << k;
+            }
+        });
+    }
+
+    [[nodiscard]] Extent depths() const override {
+        const auto merge = [](Extent& all, const Extent& more) { all.add(more); };
+        Extent all       = reduced(
+                  corners_.size(), Extent{},
+                  [&](std::size_t i, Extent& range) {
+                if (corners_[i].outside == 0) range.add(corners_[i].depth);
+            },
+                  merge);
+        all.add(reduced(
+            scene_->triangles.size(), Extent{},
+            [&](std::size_t t, Extent& range) {
+                const Seen seen = see(t);
+                if (seen.misses || seen.cut_by == 0) return;  // its corners are counted above
+                const Part part = cut(t, seen);
+                for (int i = 0; i < part.count; ++i) range.add(glm::dot(forward_, part.corners[i]));
+            },
+            merge));
+        return all;
+    }
+
+    [[nodiscard]] std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
+                                                    const LightFrame& light) const override {
+        const std::vector<LightExtents> nothing(slices.size());
+        std::vector<LightExtents> all = reduced(
+            corners_.size(), nothing,
+            [&](std::size_t i, std::vector<LightExtents>& extents) {
+                if (corners_[i].outside != 0) return;
+                for (std::size_t s = 0; s < slices.size(); ++s)
+                    if (corners_[i].depth >= slices[s].from && corners_[i].depth <= slices[s].to)
+                        add_point(extents[s], light, dvec3(scene_->positions[i]));
+            },
+            merge_extents);
+        merge_extents(all, reduced(
+                               scene_->triangles.size(), nothing,
+                               [&](std::size_t t, std::vector<LightExtents>& extents) {
+                                   const Seen seen = see(t);
+                                   if (seen.misses) return;
+                                   for (std::size_t s = 0; s < slices.size(); ++s) {
+                                       const auto [from, to] = slices[s];
+                                       if (seen.depths.max < from || seen.depths.min > to) continue;
+                                       if (seen.cut_by == 0 && seen.depths.min >= from && seen.depths.max <= to)
+                                           continue;  // as above
+                                       Part part = cut(t, seen);
+                                       part.cut({forward_, -from});
+                                       part.cut({-forward_, to});
+                                       for (int i = 0; i < part.count; ++i)
+                                           add_point(extents[s], light, view_.eye() + part.corners[i]);
+                                   }
+                               },
+                               merge_extents));
+        return all;
+    }
+
+private:
+    struct Corner {
+        double depth          = 0;
+        std::uint32_t outside = 0;  ///< bit k: beyond planes_[k]
+    };
+    struct Seen {
+        bool misses;           ///< all of it lies beyond one plane
+        std::uint32_t cut_by;  ///< bit k: it crosses planes_[k]
+        Extent depths;
+    };
+
+    [[nodiscard]] Seen see(std::size_t t) const {
+        Seen seen{true, 0, {}};
+        std::uint32_t all = ~0u;
+        for (int k = 0; k < 3; ++k) {
+            const Corner& corner = corners_[scene_->triangles[t][k]];
+            seen.cut_by |= corner.outside;
+            all &= corner.outside;
+            seen.depths.add(corner.depth);
+        }
+        seen.misses = all != 0;
+        return seen;
+    }
+
+    [[nodiscard]] Part cut(std::size_t t, const Seen& seen) const {
+        Part part;
+        for (int k = 0; k < 3; ++k)
+            part.corners[part.count++] = dvec3(scene_->vertex(static_cast<TriangleId>(t), k)) - view_.eye();
+        for (std::size_t k = 0; k < planes_.size(); ++k)
+            if ((seen.cut_by >> k & 1) != 0) part.cut(planes_[k]);
+        return part;
+    }
+
+    const Scene* scene_;
+    View view_;
+    std::vector<dvec4> planes_;
+    dvec3 forward_{0};
+    std::vector<Corner> corners_;  ///< [position]
+};
+
+class SeenPoints final : public Receivers {
+public:
+    SeenPoints(const Scene& scene, const PointBatch& points, LightId light, const View& view,
+               std::span<const dvec4> planes)
+        : scene_(&scene), points_(&points), light_(light), view_(view), planes_(planes.begin(), planes.end()) {}
+
+    [[nodiscard]] Extent depths() const override {
+        return reduced(
+            points_->size(), Extent{},
+            [&](std::size_t i, Extent& range) {
+                if (const auto p = at(i)) range.add(view_.depth(*p));
+            },
+            [](Extent& all, const Extent& more) { all.add(more); });
+    }
+
+    [[nodiscard]] std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
+                                                    const LightFrame& light) const override {
+        return reduced(
+            points_->size(), std::vector<LightExtents>(slices.size()),
+            [&](std::size_t i, std::vector<LightExtents>& extents) {
+                const auto p = at(i);
+                if (!p) return;
+                const double depth = view_.depth(*p);
+                for (std::size_t s = 0; s < slices.size(); ++s)
+                    if (depth >= slices[s].from && depth <= slices[s].to) add_point(extents[s], light, *p);
+            },
+            merge_extents);
+    }
+
+private:
+    /// The point, where it counts.
+    [[nodiscard]] std::optional<dvec3> at(std::size_t i) const {
+        if (!points_->asks(light_, i)) return {};
+        const dvec3 p = exact_position(*scene_, *points_, i);
+        for (const dvec4& plane : planes_)
+            if (distance(plane, p - view_.eye()) < 0) return {};
+        return p;
+    }
+
+    const Scene* scene_;
+    const PointBatch* points_;
+    LightId light_;
+    View view_;
+    std::vector<dvec4> planes_;
+};
+
+}  // namespace
+
+std::unique_ptr<Receivers> receivers_in_view(const Scene& scene, const View& view, std::span<const dvec4> planes) {
+    return std::make_unique<SceneInView>(scene, view, planes);
+}
+
+std::unique_ptr<Receivers> receivers_of(const Scene& scene, const PointBatch& points, LightId light, const View& view,
+                                        std::span<const dvec4> planes) {
+    return std::make_unique<SeenPoints>(scene, points, light, view, planes);
+}
+
+}  // namespace umbra
