@@ -39,7 +39,7 @@ struct FilteredOptions {
     double negative_exponent  = 5;
     double bleed              = 0;
     double min_variance       = 1e-7;
-    double moment_bias        = 3e-6;
+    double moment_bias        = 3e-7;
     EmptySamples empty        = EmptySamples::apart;
     MomentPrecision precision = MomentPrecision::single;
     DepthBias bias            = DepthBias::automatic;
@@ -156,6 +156,12 @@ const std::vector<Parameter> kFilteredParameters{
          .max   = 1}),
 };
 
+/// Widths of a texel between what the map is fitted to and what is nearer to the light, all of which counts as on the
+/// near plane: a quarter of the map's side, so that exponentials of the two depths differ, too.
+double headroom(const FilteredOptions& options) {
+    return std::max(0.25 * options.resolution, kMostAutomatic * (4 * options.radius + 2)) + options.constant;
+}
+
 class FilteredMap final : public Method {
 public:
     void configure(const Settings& settings) override {
@@ -174,7 +180,7 @@ public:
                               .surround       = options_.surround,
                               // What the filter and the offset may ask for, and a rounding.
                               .border       = options_.radius + bias_.normal_offset + 2,
-                              .headroom     = std::max(64.0, kMostAutomatic * (4 * options_.radius + 2)) + bias_.constant,
+                              .headroom     = headroom(options_),
                               .memory_limit = share * LightViews::half_of_memory()};
         if (views_) views_->set_options(map_options_);
         if (4 * map_options_.border > map_options_.resolution)
@@ -264,7 +270,10 @@ private:
     [[nodiscard]] float lit(const MapView& view, const MomentMap& map, const Receiver& receiver) const {
         const FilteredDepth filtered = map.at(receiver.x, receiver.y);
         if (filtered.drawn == 0) return 1;
-        const double z     = linear_depth(view.frame, receiver.r + total_bias(receiver));
+        // As far as the empty texels, and no farther; where those are apart, what lies behind all that is drawn does
+        // so by its distance.
+        const double most  = options_.empty == EmptySamples::far ? 1 : kInfinity;
+        const double z     = std::min(linear_depth(view.frame, receiver.r + total_bias(receiver)), most);
         const double bound = lit_bound(bound_, filtered.moments, z);
         const double cut   = std::max(0.0, (bound - options_.bleed) / (1 - options_.bleed));
         return static_cast<float>(std::clamp(1 - filtered.drawn * (1 - cut), 0.0, 1.0));

@@ -7,13 +7,16 @@
 namespace umbra {
 namespace {
 
+constexpr double kDeepest = 1e6;
 constexpr int kTileWidth = 128, kTileHeight = 64;  // with five channels in double, half a megabyte
 
 }  // namespace
 
 double linear_depth(const LightFrame& frame, double nearness) {
-    const double r = std::clamp(nearness, 0.0, 1.0);
-    return frame.perspective ? (1 - r) / (r * (frame.far / frame.near - 1) + 1) : 1 - r;
+    const double r = std::min(nearness, 1.0);
+    if (!frame.perspective) return std::min(1 - r, kDeepest);
+    const double inverse = r * (frame.far / frame.near - 1) + 1;  // near over depth, in units of near over far
+    return inverse * kDeepest > 1 - r ? (1 - r) / inverse : kDeepest;
 }
 
 MomentMap::MomentMap(const MapView& view, const MomentBound& bound, int radius, EmptySamples empty,

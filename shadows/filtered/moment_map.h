@@ -18,7 +18,8 @@ enum class EmptySamples : std::uint8_t {
     apart  ///< nothing: the map keeps the fraction that was drawn, and the moments of that
 };
 
-/// The depth of a nearness, [0, 1], linear between the frame's near and far planes; beyond them 0 and 1.
+/// The depth of a nearness: 0 on the frame's near plane and before it, 1 on the far plane; linear, behind that, too, up
+/// to 1e6.
 [[nodiscard]] double linear_depth(const LightFrame& frame, double nearness);
 
 /// Means of moments about a position.

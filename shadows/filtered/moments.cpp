@@ -66,12 +66,9 @@ double hamburger(const Moments& b, double value) {
 
 namespace {
 
-/// Chebyshev's bound of a warped depth exp(+-c x), given at its value there: a spread of z is 2 c times as large, in
-/// units of that value.
-double warped_bound(double mean, double mean_square, double value, double exponent, double min_variance) {
-    const double slope = 2 * exponent * value;
-    return chebyshev(mean, mean_square, value, slope * slope * min_variance);
-}
+/// At one of two depths, as where a filter holds an occluder and the receiver, the bound of msm jumps: rounding would
+/// say on which side. It is asked for that much before, in units of x.
+constexpr double kBeforeDepth = 2e-6;
 
 }  // namespace
 
@@ -85,16 +82,19 @@ double lit_bound(const MomentBound& bound, const Moments& means, double z) {
             constexpr Moments kTowards{0, 0.375, 0, 0.375};
             Moments biased = means;
             for (std::size_t k = 0; k < biased.size(); ++k) biased[k] += bound.moment_bias * (kTowards[k] - means[k]);
-            return 1 - hamburger(biased, x);
+            return 1 - hamburger(biased, x - kBeforeDepth);
         }
         case MomentKind::evsm2:
         case MomentKind::evsm4: break;
     }
-    const double near_bound =
-        warped_bound(means[0], means[1], std::exp(bound.positive * x), bound.positive, bound.min_variance);
-    if (bound.kind == MomentKind::evsm2) return near_bound;
-    return std::min(near_bound, warped_bound(means[2], means[3], -std::exp(-bound.negative * x), bound.negative,
-                                             bound.min_variance));
+    // A warped depth changes by 2 c times its own size a unit of z. exp(c x) in units of that at x, which may lie
+    // beyond what is a number; exp(-d x) only becomes 0 there.
+    const double shrink = std::exp(-bound.positive * x), slope = 2 * bound.positive;
+    const double by_positive =
+        chebyshev(means[0] * shrink, means[1] * shrink * shrink, 1, slope * slope * bound.min_variance);
+    if (bound.kind == MomentKind::evsm2) return by_positive;
+    const double warped = -std::exp(-bound.negative * x), change = 2 * bound.negative * warped;
+    return std::min(by_positive, chebyshev(means[2], means[3], warped, change * change * bound.min_variance));
 }
 
 }  // namespace umbra

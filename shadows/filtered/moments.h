@@ -39,11 +39,10 @@ struct MomentBound {
     double moment_bias  = 0;  ///< of msm: share of other moments that is mixed in, [0, 1]
 };
 
-/// The moments of one depth, z in [0, 1].
+/// The moments of one depth, z in [0, 1]. What is asked may lie beyond.
 [[nodiscard]] Moments moments_of(const MomentBound& bound, double z);
 
-/// An upper bound of P(depth >= z), [0, 1], from the means of moments; esm: an estimate that is one for exponents of
-/// any size.
+/// An upper bound of P(depth >= z), [0, 1], from the means of moments; z in [0, 1e6].
 [[nodiscard]] double lit_bound(const MomentBound& bound, const Moments& means, double z);
 
 /// Chebyshev's inequality of one side (Cantelli): the largest P(X >= value) of all distributions with this mean and
