@@ -37,7 +37,7 @@ struct FilteredOptions {
     int radius                = 1;
     double positive_exponent  = 40;
     double negative_exponent  = 5;
-    double bleed              = 0;
+    double bleed              = 0.1;
     double min_variance       = 1e-7;
     double moment_bias        = 3e-7;
     EmptySamples empty        = EmptySamples::apart;
@@ -155,6 +155,8 @@ const std::vector<Parameter> kFilteredParameters{
          .min   = 0,
          .max   = 1}),
 };
+
+constexpr double kSteps = 0x1p16;  // of S_j: floats keep moments to 2^-24, and bounds are ratios of their differences
 
 /// Widths of a texel between what the map is fitted to and what is nearer to the light, all of which counts as on the
 /// near plane: a quarter of the map's side, so that exponentials of the two depths differ, too.
@@ -276,7 +278,9 @@ private:
         const double z     = std::min(linear_depth(view.frame, receiver.r + total_bias(receiver)), most);
         const double bound = lit_bound(bound_, filtered.moments, z);
         const double cut   = std::max(0.0, (bound - options_.bleed) / (1 - options_.bleed));
-        return static_cast<float>(std::clamp(1 - filtered.drawn * (1 - cut), 0.0, 1.0));
+        const double s     = std::clamp(1 - filtered.drawn * (1 - cut), 0.0, 1.0);
+        // Bounds tend to 0 and 1; what float moments do not tell from these is 0 or 1.
+        return static_cast<float>(std::round(s * kSteps) / kSteps);
     }
 
     FilteredOptions options_;
@@ -303,7 +307,7 @@ const MethodInfo filtered_map{
         "point from one bilinear mean. Errs as a shadow z-buffer does by texels, bias and a filter that softens hard "
         "shadows; besides, it leaks light where a filter holds several depths.",
     .parameters = kFilteredParameters,
-    .presets    = {{"textbook", "kind=vsm,fit=scene,empty=far,bias=manual",
+    .presets    = {{"textbook", "kind=vsm,fit=scene,empty=far,bias=manual,bleed=0",
                     "Donnelly, Lauritzen 2006: mean and mean square of one map of the whole scene."},
                    {"fast", "resolution=512", "A map of 512 x 512 texels."},
                    {"best", "resolution=4096", "A map of 4096 x 4096 texels."}},

@@ -310,18 +310,19 @@ TEST(FilteredMap, OnlyLetsLightThroughAgainstPcfOfTheSameMap) {
         for (const int radius : {0, 1, 3})
             for (const char* fit : {"casters", "scene"}) {
                 const Scene scene      = clutter(light);
-                const LightViews views = drawn_views(scene, 256, radius, std::string_view(fit) == "casters", 0.01);
+                const LightViews views = drawn_views(scene, 128, radius, std::string_view(fit) == "casters", 0.01);
                 for (const char* empty : {"far", "apart"})
                     for (const char* kind : kKinds) {
                         const std::string settings = fmt::format(
-                            "kind={},radius={},fit={},empty={},resolution=256,bias=manual,constant=0.01,min_variance="
+                            "kind={},radius={},fit={},empty={},resolution=128,bleed=0,bias=manual,constant=0.01,min_"
+                            "variance="
                             "1e-"
                             "12,moment_bias=0,precision=double",
                             kind, radius, fit, empty);
                         std::size_t darker = 0, leaks = 0, shadow = 0;
                         double worst = 0;
                         for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
-                            const PointBatch points       = points_on(scene, object, object == 0 ? 120 : 4);
+                            const PointBatch points       = points_on(scene, object, object == 0 ? 100 : 3);
                             const VisibilityPlane got     = look_up(scene, points, settings);
                             const std::vector<float> want = pcf(scene, points, views, radius, 0.01);
                             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -395,15 +396,18 @@ TEST(FilteredMap, IsTheBoxFiltersShareBehindOneOccluder) {
                 const bool msm = std::string_view(kind) == "msm", is_esm = std::string_view(kind) == "esm";
                 const VisibilityPlane s = look_up(
                     scene, points,
-                    fmt::format("kind={},radius={},resolution={},fit={},empty={},bias=manual,constant={},min_variance="
-                                "1e-10,moment_bias=0,precision=double,positive_exponent={}",
-                                kind, kRadius, kResolution, fit, empty, msm ? 0.1 : 0.0, is_esm ? 350 : 40));
+                    fmt::format(
+                        "kind={},radius={},resolution={},fit={},empty={},bleed=0,bias=manual,constant={},min_variance="
+                        "1e-10,moment_bias=0,precision=double,positive_exponent={}",
+                        kind, kRadius, kResolution, fit, empty, msm ? 0.1 : 0.0, is_esm ? 350 : 40));
                 int between = 0;
                 for (std::size_t i = 0; i < points.size(); ++i) {
                     const double share = share_beyond(view, double(points.px[i]), kRadius);
-                    // Depth is kept in float, 2^-24, times the exponent of esm. The sheet is all that is fitted to and
-                    // drawn: a hundredth of the depth range lies between it and empty texels on the far plane.
-                    EXPECT_NEAR(s.s[i], share, is_esm ? 1.1e-3 : 1e-4)
+                    // Depth is kept in float, 2^-24, times the exponent of esm. As the far plane, empty texels lie a
+                    // hundredth of the depth range behind the sheet, where that is all that is drawn.
+                    const bool is_close =
+                        is_esm && std::string_view(fit) == "casters" && std::string_view(empty) == "far";
+                    EXPECT_NEAR(s.s[i], share, is_close ? 1.1e-3 : 1e-4)
                         << kind << ' ' << fit << ' ' << empty << ' ' << points.px[i];
                     between += share > 0.01 && share < 0.99;
                 }
@@ -422,11 +426,11 @@ TEST(FilteredMap, ExponentialsLeakByTheirExponent) {
     for (const double c : {0.5, 2.0}) {
         const VisibilityPlane s =
             look_up(scene, points,
-                    fmt::format("kind=esm,radius={},resolution={},fit=scene,bias=manual,positive_exponent={}", kRadius,
-                                kResolution, c));
+                    fmt::format("kind=esm,radius={},resolution={},fit=scene,bleed=0,bias=manual,positive_exponent={}",
+                                kRadius, kResolution, c));
         for (std::size_t i = 0; i < points.size(); ++i) {
             const double share = share_beyond(view, double(points.px[i]), kRadius);
-            EXPECT_NEAR(s.s[i], share + (1 - share) * std::exp(-2 * c * height), 1e-5) << c << ' ' << points.px[i];
+            EXPECT_NEAR(s.s[i], share + (1 - share) * std::exp(-2 * c * height), 2e-5) << c << ' ' << points.px[i];
         }
     }
 }
@@ -444,9 +448,10 @@ TEST(FilteredMap, EmptyTexelsTakeNoLightFromWhatIsDrawnAndGiveNone) {
         const auto error = [&](const char* empty) {
             const VisibilityPlane s = look_up(
                 scene, points,
-                fmt::format("kind={},radius={},resolution={},empty={},bias=manual,constant=0.1,precision=double,"
-                            "moment_bias=0",
-                            kind, kRadius, kResolution, empty));
+                fmt::format(
+                    "kind={},radius={},resolution={},empty={},bleed=0,bias=manual,constant=0.1,precision=double,"
+                    "moment_bias=0",
+                    kind, kRadius, kResolution, empty));
             double most = 0;
             for (std::size_t i = 0; i < points.size(); ++i) most = std::max(most, double(s.s[i]) - double(want[i]));
             return most;
@@ -479,8 +484,9 @@ TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
                                 fmt::format("radius={},resolution={},fit=scene,bias=manual,min_variance=0,{}", kRadius,
                                             kResolution, settings));
     };
-    const VisibilityPlane vsm = lit("kind=vsm"), cut = lit("kind=vsm,bleed=0.2"), all_cut = lit("kind=vsm,bleed=0.26");
-    float most = 0;
+    const VisibilityPlane vsm = lit("kind=vsm,bleed=0"), cut = lit("kind=vsm,bleed=0.2"),
+                          all_cut = lit("kind=vsm,bleed=0.26");
+    float most                    = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         // Depths below the upper sheet: 0 where it is, 2 beside it, 3 on the floor.
         const double beside = share_beyond(view, double(points.px[i]), kRadius);
@@ -497,11 +503,11 @@ TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
         return *std::ranges::max_element(plane.s);
     };
     // The lower sheet is one unit over the floor.
-    EXPECT_LT(most_of("kind=esm"), 1.01 * std::exp(-80 / (view.frame.far - view.frame.near)));
-    EXPECT_LT(most_of("kind=evsm2"), 0.001f);
-    EXPECT_LT(most_of("kind=evsm4"), 0.001f);
-    EXPECT_LT(most_of("kind=msm"), 0.01f);
-    EXPECT_GT(most_of("kind=evsm4,positive_exponent=1,negative_exponent=1"), 0.03f);
+    EXPECT_LT(most_of("kind=esm,bleed=0"), 1.01 * std::exp(-80 / (view.frame.far - view.frame.near)));
+    EXPECT_LT(most_of("kind=evsm2,bleed=0"), 0.001f);
+    EXPECT_LT(most_of("kind=evsm4,bleed=0"), 0.001f);
+    EXPECT_LT(most_of("kind=msm,bleed=0"), 0.01f);
+    EXPECT_GT(most_of("kind=evsm4,positive_exponent=1,negative_exponent=1,bleed=0"), 0.03f);
 }
 
 // ---- numbers
@@ -509,19 +515,18 @@ TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
 
 TEST(FilteredMap, NumbersStayWithinRangeAtExtremes) {
     for (const float size : {1.0f, 1e6f, 1e-6f})
-        for (Light light : {sun({0.3f, -1, 0.2f}), lamp({0.5f, 4, 0.6f}), lamp({-0.3f, 1.2f, 0.9f}),
-                            lamp({0.3e9f, 1e9f, 0.2e9f}), lamp({0.3e6f, 1e6f, 0.2e6f})}) {
+        for (Light light : {sun({0.3f, -1, 0.2f}), lamp({-0.3f, 1.2f, 0.9f}), lamp({0.3e9f, 1e9f, 0.2e9f})}) {
             Scene scene = clutter(light);
             for (vec3& p : scene.positions) p *= size;
             scene.lights[0].position *= size;
             scene.camera.eye *= size;
-            const PointBatch points = points_on(scene, 0, 60), ball = points_on(scene, 1, 4);
+            const PointBatch points = points_on(scene, 0, 50), ball = points_on(scene, 1, 4);
             for (const char* kind : kKinds)
                 for (const char* numbers :
-                     {"positive_exponent=42,negative_exponent=42,radius=16",
-                      "positive_exponent=350,negative_exponent=350,precision=double,radius=16",
+                     {"positive_exponent=42,negative_exponent=42,radius=12",
+                      "positive_exponent=350,negative_exponent=350,precision=double,radius=12",
                       "min_variance=0,moment_bias=0,radius=2,empty=far", "min_variance=0,moment_bias=0,radius=0"}) {
-                    const std::string settings = fmt::format("kind={},resolution=128,{}", kind, numbers);
+                    const std::string settings = fmt::format("kind={},resolution=96,{}", kind, numbers);
                     int shadow                 = 0;
                     for (const PointBatch* batch : {&points, &ball})
                         for (const float s : look_up(scene, *batch, settings).s) {
@@ -538,7 +543,7 @@ TEST(FilteredMap, ExponentsAreCutOnlyWhereFloatsNeedIt) {
     const Scene scene       = clutter(sun({0.3f, -1, 0.2f}));
     const PointBatch points = points_on(scene, 0, 100);
     const auto s            = [&](const char* settings) {
-        return look_up(scene, points, fmt::format("resolution=128,radius=3,{}", settings)).s;
+        return look_up(scene, points, fmt::format("resolution=128,radius=3,bleed=0,{}", settings)).s;
     };
     EXPECT_EQ(s("positive_exponent=42"), s("positive_exponent=200"));
     EXPECT_EQ(s("negative_exponent=42"), s("negative_exponent=200"));
