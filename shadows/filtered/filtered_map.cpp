@@ -61,7 +61,7 @@ const std::vector<Parameter> kFilteredParameters{
                 "an exponential; evsm4: of two, the second of negative depth; msm: means of four powers.",
          .phase   = Phase::aim,
          .choices = "vsm|esm|evsm2|evsm4|msm",
-         .sweep   = "vsm|esm|evsm2|evsm4|msm"}),
+         .sweep   = "vsm|evsm4|msm"}),
     parameter<&FilteredOptions::resolution>({.name  = "resolution",
                                              .doc   = "Texels along each side of a map; a cube has six maps.",
                                              .unit  = "texels",
@@ -76,7 +76,7 @@ const std::vector<Parameter> kFilteredParameters{
          .phase = Phase::aim,
          .min   = 0,
          .max   = 64,
-         .sweep = "0|1|2|4"}),
+         .sweep = "1|4"}),
     parameter<&FilteredOptions::positive_exponent>(
         {.name  = "positive_exponent",
          .doc   = "esm, evsm2, evsm4: factor of depth, -1 to 1, in the exponential; taken as 42 at most where "
