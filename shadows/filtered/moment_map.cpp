@@ -37,8 +37,17 @@ void MomentMap::fill(std::vector<Number>& kept, const MapView& view, const Momen
     const int side     = 2 * radius + 1;
     const double share = 1.0 / (static_cast<double>(side) * side);
     const int across = (width_ + kTileWidth - 1) / kTileWidth, down = (height_ + kTileHeight - 1) / kTileHeight;
+    const auto is_empty = [&](int x, int y) {
+        return x < 0 || y < 0 || x >= width_ || y >= height_ || view.map.is_empty(x, y);
+    };
+    const auto are_empty = [&](int left, int right, int top, int bottom) {
+        for (int y = top; y < bottom; ++y)
+            for (int x = left; x < right; ++x)
+                if (!is_empty(x, y)) return false;
+        return true;
+    };
     const auto sample = [&](int x, int y) -> Channels {
-        if (x < 0 || y < 0 || x >= width_ || y >= height_ || view.map.is_empty(x, y)) return of_empty_;
+        if (is_empty(x, y)) return of_empty_;
         Channels c{};
         std::ranges::copy(moments_of(bound, linear_depth(view.frame, view.map.nearness(x, y))), c.begin());
         if (empty_ == EmptySamples::apart) c[static_cast<std::size_t>(channels_) - 1] = 1;
@@ -53,6 +62,15 @@ void MomentMap::fill(std::vector<Number>& kept, const MapView& view, const Momen
             const int top           = static_cast<int>(tile) / across * kTileHeight,
                       bottom        = std::min(top + kTileHeight, height_);
             const std::size_t pitch = static_cast<std::size_t>(right - left) * channels_;
+            const auto kept_row     = [&](int y) {
+                return kept.data() + (static_cast<std::size_t>(y) * width_ + left) * channels_;
+            };
+            if (are_empty(left - radius, right + radius, top - radius, bottom + radius)) {
+                for (int y = top; y < bottom; ++y)
+                    for (std::size_t k = 0; k < pitch; ++k)
+                        kept_row(y)[k] = static_cast<Number>(of_empty_[k % static_cast<std::size_t>(channels_)]);
+                continue;
+            }
             row.resize(static_cast<std::size_t>(right - left + 2 * radius) * channels_);
             rows.assign(pitch * static_cast<std::size_t>(bottom - top + 2 * radius), 0);
             for (int y = top - radius; y < bottom + radius; ++y) {
@@ -68,7 +86,7 @@ void MomentMap::fill(std::vector<Number>& kept, const MapView& view, const Momen
                 for (int i = 0; i < side; ++i)
                     for (std::size_t k = 0; k < pitch; ++k)
                         row[k] += rows[static_cast<std::size_t>(y - top + i) * pitch + k];
-                Number* const to = kept.data() + (static_cast<std::size_t>(y) * width_ + left) * channels_;
+                Number* const to = kept_row(y);
                 for (std::size_t k = 0; k < pitch; ++k) to[k] = static_cast<Number>(share * row[k]);
             }
         }
