@@ -303,9 +303,9 @@ const MethodInfo filtered_map{
         "Variance Shadow Maps, 2008; Christoph Peters, Reinhard Klein, Moment Shadow Mapping, 2015",
     .summary =
         "Turns the depth of what the light sees into moments, averages them over a box, and bounds the lit fraction of "
-        "a "
-        "point from one bilinear mean. Errs as a shadow z-buffer does by texels, bias and a filter that softens hard "
-        "shadows; besides, it leaks light where a filter holds several depths.",
+        "a point from one bilinear mean. Errs as a shadow z-buffer does by texels and bias, blurs hard edges, and "
+        "leaks "
+        "light where a filter holds several depths; acne where light falls at a thousandth of a radian or less.",
     .parameters = kFilteredParameters,
     .presets    = {{"textbook", "kind=vsm,fit=scene,empty=far,bias=manual,bleed=0",
                     "Donnelly, Lauritzen 2006: mean and mean square of one map of the whole scene."},
