@@ -16,11 +16,12 @@
 namespace umbra {
 namespace {
 
-constexpr double kGuard      = 1.5;   // triangles are clipped where |X| or |Y| exceeds this many W
-constexpr double kMinW       = 1e-9;  // and where W is less than this
-constexpr int kBandRows      = 32;    // 32 rows of 2048 samples fit a core's second-level cache
-constexpr std::size_t kChunk = 2048;  // triangles snapped by one task
-constexpr std::size_t kBatch = 32;    // chunks between two joins: their triangles stay in cache until they are filled
+constexpr double kGuard        = 1.5;      // triangles are clipped where |X| or |Y| exceeds this many W
+constexpr double kMinW         = 1e-9;     // and where W is less than this
+constexpr int kBandRows        = 32;       // 32 rows of 2048 samples fit a core's second-level cache
+constexpr std::size_t kChunk   = 2048;     // triangles snapped by one task
+constexpr std::size_t kCleared = 1 << 18;  // samples cleared by one task
+constexpr std::size_t kBatch   = 32;  // chunks between two joins: their triangles stay in cache until they are filled
 
 /// Corners in units of 1 / kSnap, such that sample (x, y) lies at (kSnap x, kSnap y). Of positive area.
 struct Snapped {
@@ -299,7 +300,15 @@ DepthMap::DepthMap(int width, int height, DepthFormat format)
       format_(format),
       step_(1 / unorm_max(format)),
       far_word_(format == DepthFormat::float32 ? kFarWord : static_cast<std::uint32_t>(unorm_max(format))),
-      words_(static_cast<std::size_t>(width) * height, far_word_) {}
+      words_(std::make_unique_for_overwrite<std::uint32_t[]>(samples())) {
+    clear();
+}
+
+void DepthMap::clear() {
+    parallel_ranges(samples(), kCleared, [&](std::size_t begin, std::size_t end) {
+        std::fill(words_.get() + begin, words_.get() + end, far_word_);
+    });
+}
 
 double DepthMap::quantum(double r) const {
     if (format_ != DepthFormat::float32) return step_;
@@ -312,7 +321,7 @@ void DepthMap::draw(const dmat4& clip_from_world, std::span<const vec3> position
     with_format(format_, [&](auto format) {
         rasterise(width_, height_, clip_from_world, positions, runs, faces,
                   [&](const Snapped& t, const uvec3*, int row_begin, int row_end) {
-                      std::uint32_t* const words = words_.data();
+                      std::uint32_t* const words = words_.get();
                       fill<format.value>(t, row_begin, row_end, width_, far_word_,
                                          [words](std::size_t sample, std::uint32_t word) {
                                              words[sample] = std::min(words[sample], word);
@@ -324,7 +333,7 @@ void DepthMap::draw(const dmat4& clip_from_world, std::span<const vec3> position
 std::vector<std::uint32_t> DepthMap::owners(const dmat4& clip_from_world, std::span<const vec3> positions,
                                             std::span<const uvec3> all, std::span<const std::span<const uvec3>> runs,
                                             Faces faces) const {
-    std::vector<std::uint32_t> owners(words_.size(), kNoOwner);
+    std::vector<std::uint32_t> owners(samples(), kNoOwner);
     with_format(format_, [&](auto format) {
         rasterise(width_, height_, clip_from_world, positions, runs, faces,
                   [&](const Snapped& t, const uvec3* from, int row_begin, int row_end) {

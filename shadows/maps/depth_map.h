@@ -6,6 +6,7 @@
 #pragma once
 
 #include <bit>
+#include <memory>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -22,13 +23,15 @@ enum class Faces : std::uint8_t { all, front, back };
 
 class DepthMap {
 public:
-    /// Cleared. Every sample takes 4 bytes, whatever the format.
+    /// Cleared, in parallel. Every sample takes 4 bytes, whatever the format.
     DepthMap(int width, int height, DepthFormat format);
+    /// As newly made, in the same memory: new memory costs more than drawing a small scene.
+    void clear();
 
     [[nodiscard]] int width() const { return width_; }
     [[nodiscard]] int height() const { return height_; }
     [[nodiscard]] DepthFormat format() const { return format_; }
-    [[nodiscard]] std::size_t memory_bytes() const { return words_.size() * sizeof(words_[0]); }
+    [[nodiscard]] std::size_t memory_bytes() const { return samples() * sizeof(words_[0]); }
 
     /// Nearness kept at sample (x, y); 0 where nothing was drawn. x to the right and y down as the light sees it.
     [[nodiscard]] double nearness(int x, int y) const {
@@ -67,6 +70,7 @@ public:
 
 private:
     static constexpr std::uint32_t kFarWord = 0x3f800000;  ///< the bits of 1.0f
+    [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(width_) * height_; }
 
     int width_, height_;
     DepthFormat format_;
@@ -74,7 +78,7 @@ private:
     std::uint32_t far_word_;  ///< nearness 0
     // Unorm depth as it is; float as kFarWord - (bits of r), since the bits of floats that are not negative are in the
     // floats' order.
-    std::vector<std::uint32_t> words_;
+    std::unique_ptr<std::uint32_t[]> words_;
 };
 
 }  // namespace umbra

@@ -61,7 +61,20 @@ void LightViews::add_view(LightFrame frame, int resolution) {
             fmt::format("{}: resolution={} takes more than half of the machine's memory "
                         "({:.0f} MiB a map, {} of them so far), expected a smaller one",
                         options_.method, options_.resolution, bytes / (1 << 20), views_.size()));
-    views_.push_back({frame, DepthMap(resolution, resolution, options_.format)});
+    views_.push_back({frame, new_map(resolution)});
+}
+
+DepthMap LightViews::new_map(int resolution) {
+    const auto fits  = [&](const DepthMap& m) { return m.width() == resolution && m.format() == options_.format; };
+    const auto found = std::ranges::find_if(spare_, fits);
+    if (found == spare_.end()) {
+        spare_.clear();
+        return {resolution, resolution, options_.format};
+    }
+    DepthMap map = std::move(*found);
+    spare_.erase(found);
+    map.clear();
+    return map;
 }
 
 void LightViews::fit_directional(dvec3 direction) {
@@ -115,15 +128,20 @@ void LightViews::fit_around(const Light& light) {
 }
 
 void LightViews::fit(LightId light) {
+    for (MapView& view : views_) spare_.push_back(std::move(view.map));
     views_.clear();
     cover_all_     = true;
     const Light& l = casters_.scene().lights[light];
     casters_.select(l);
-    if (casters_.box().empty()) return;
+    if (casters_.box().empty()) {
+        spare_.clear();
+        return;
+    }
     if (l.kind == LightKind::directional)
         fit_directional(dvec3(l.direction));
     else
         fit_around(l);
+    spare_.clear();
 }
 
 void LightViews::rasterise() {

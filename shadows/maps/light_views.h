@@ -61,6 +61,8 @@ public:
 
 private:
     void add_view(LightFrame frame, int resolution);
+    /// A cleared map, in the memory of a spare one if it can be had.
+    [[nodiscard]] DepthMap new_map(int resolution);
     void fit_directional(dvec3 direction);
     void fit_around(const Light& light);
     /// Depth limits of a perspective window about the axis, with no geometry nearer to the light than `nearest`.
@@ -69,6 +71,7 @@ private:
     Options options_;
     Casters casters_;
     std::vector<MapView> views_;
+    std::vector<DepthMap> spare_;  ///< maps of the last fit, while the next one goes on
     bool cover_all_ = true;
 };
 

@@ -333,6 +333,29 @@ TEST(ShadowZBuffer, MapsThatDoNotFitIntoMemoryAreRefused) {
     }
 }
 
+TEST(ShadowZBuffer, MapsInUsedMemoryAreAsNewOnes) {
+    Scene scene = square_over_floor(point_light({0.1f, 1.5f, 0.1f}));
+    scene.lights.push_back(point_light({0.9f, 1.2f, -0.6f}));
+    scene.lights.push_back(directional_light({0.1f, -1, 0.2f}));
+    const SceneFacts facts = find_facts(scene);
+    const LightViews::Options options{.resolution = 64, .fit_to_casters = false};
+    LightViews used(scene, facts, options);
+    for (const LightId light : {0u, 1u, 2u, 1u, 0u}) {
+        LightViews fresh(scene, facts, options);
+        for (LightViews* views : {&used, &fresh}) views->fit(light), views->rasterise();
+        ASSERT_EQ(used.views().size(), fresh.views().size());
+        EXPECT_EQ(used.memory_bytes(), fresh.memory_bytes());
+        std::size_t drawn = 0;
+        for (std::size_t v = 0; v < fresh.views().size(); ++v)
+            for (int y = 0; y < options.resolution; ++y)
+                for (int x = 0; x < options.resolution; ++x) {
+                    ASSERT_EQ(used.views()[v].map.word(x, y), fresh.views()[v].map.word(x, y)) << light << ' ' << v;
+                    drawn += fresh.views()[v].map.is_empty(x, y) ? 0 : 1;
+                }
+        EXPECT_GT(drawn, 500u);
+    }
+}
+
 TEST(ShadowZBuffer, NothingLeaksThroughACubesSeams) {
     // A sphere of occluders round the light, a room round both: no point of the room sees the light, every point of
     // the inner sphere does. The light is off the middle, so that the seams meet facets anyhow.
