@@ -1,6 +1,7 @@
 #include "umbra/shadows/filtered/moment_map.h"
 
 #include <cmath>
+#include <vector>
 
 #include "umbra/core/base/parallel.h"
 
@@ -23,17 +24,16 @@ MomentMap::MomentMap(const MapView& view, const MomentBound& bound, int radius, 
                      MomentPrecision precision)
     : width_(view.map.width()), height_(view.map.height()), channels_(channel_count(bound.kind, empty)), empty_(empty) {
     if (empty == EmptySamples::far) std::ranges::copy(moments_of(bound, 1), of_empty_.begin());
-    if (precision == MomentPrecision::twofold) kept_.emplace<std::vector<double>>();
-    std::visit(
-        [&](auto& kept) {
-            kept.resize(static_cast<std::size_t>(width_) * height_ * channels_);
-            fill(kept, view, bound, radius);
-        },
-        kept_);
+    // Not cleared: the tiles are filled in parallel, and what is touched first by one thread is slow to get.
+    if (precision == MomentPrecision::twofold)
+        kept_ = std::make_unique_for_overwrite<double[]>(numbers());
+    else
+        kept_ = std::make_unique_for_overwrite<float[]>(numbers());
+    std::visit([&](const auto& kept) { fill(kept.get(), view, bound, radius); }, kept_);
 }
 
 template <class Number>
-void MomentMap::fill(std::vector<Number>& kept, const MapView& view, const MomentBound& bound, int radius) const {
+void MomentMap::fill(Number* kept, const MapView& view, const MomentBound& bound, int radius) const {
     const int side     = 2 * radius + 1;
     const double share = 1.0 / (static_cast<double>(side) * side);
     const int across = (width_ + kTileWidth - 1) / kTileWidth, down = (height_ + kTileHeight - 1) / kTileHeight;
@@ -63,7 +63,7 @@ void MomentMap::fill(std::vector<Number>& kept, const MapView& view, const Momen
                       bottom        = std::min(top + kTileHeight, height_);
             const std::size_t pitch = static_cast<std::size_t>(right - left) * channels_;
             const auto kept_row     = [&](int y) {
-                return kept.data() + (static_cast<std::size_t>(y) * width_ + left) * channels_;
+                return kept + (static_cast<std::size_t>(y) * width_ + left) * channels_;
             };
             if (are_empty(left - radius, right + radius, top - radius, bottom + radius)) {
                 for (int y = top; y < bottom; ++y)
@@ -94,7 +94,7 @@ void MomentMap::fill(std::vector<Number>& kept, const MapView& view, const Momen
 }
 
 template <class Number>
-MomentMap::Channels MomentMap::mean(const std::vector<Number>& kept, double x, double y) const {
+MomentMap::Channels MomentMap::mean(const Number* kept, double x, double y) const {
     const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
     const double fx = x - 0.5 - left, fy = y - 0.5 - top;
     Channels sum{};
@@ -112,7 +112,7 @@ MomentMap::Channels MomentMap::mean(const std::vector<Number>& kept, double x, d
 }
 
 FilteredDepth MomentMap::at(double x, double y) const {
-    const Channels c = std::visit([&](const auto& kept) { return mean(kept, x, y); }, kept_);
+    const Channels c = std::visit([&](const auto& kept) { return mean(kept.get(), x, y); }, kept_);
     FilteredDepth filtered;
     if (empty_ == EmptySamples::apart) filtered.drawn = c[static_cast<std::size_t>(channels_) - 1];
     if (filtered.drawn <= 0) return {0, {}};
@@ -123,7 +123,7 @@ FilteredDepth MomentMap::at(double x, double y) const {
 }
 
 std::size_t MomentMap::memory_bytes() const {
-    return std::visit([](const auto& kept) { return kept.size() * sizeof(kept[0]); }, kept_);
+    return std::visit([&](const auto& kept) { return numbers() * sizeof(kept[0]); }, kept_);
 }
 
 int MomentMap::bytes_per_sample(MomentKind kind, EmptySamples empty, MomentPrecision precision) {

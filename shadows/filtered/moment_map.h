@@ -1,8 +1,8 @@
 // A depth map as means of moments: what a filter may average, unlike depth itself.
 #pragma once
 
+#include <memory>
 #include <variant>
-#include <vector>
 
 #include "umbra/shadows/filtered/moments.h"
 #include "umbra/shadows/maps/light_views.h"
@@ -51,15 +51,16 @@ private:
     [[nodiscard]] static int channel_count(MomentKind kind, EmptySamples empty) {
         return moment_count(kind) + (empty == EmptySamples::apart ? 1 : 0);
     }
+    [[nodiscard]] std::size_t numbers() const { return static_cast<std::size_t>(width_) * height_ * channels_; }
     template <class Number>
-    void fill(std::vector<Number>& kept, const MapView& view, const MomentBound& bound, int radius) const;
+    void fill(Number* kept, const MapView& view, const MomentBound& bound, int radius) const;
     template <class Number>
-    [[nodiscard]] Channels mean(const std::vector<Number>& kept, double x, double y) const;
+    [[nodiscard]] Channels mean(const Number* kept, double x, double y) const;
 
     int width_, height_, channels_;
     EmptySamples empty_;
     Channels of_empty_{};  ///< what an empty sample has
-    std::variant<std::vector<float>, std::vector<double>> kept_;
+    std::variant<std::unique_ptr<float[]>, std::unique_ptr<double[]>> kept_;
 };
 
 }  // namespace umbra
