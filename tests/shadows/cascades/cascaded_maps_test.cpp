@@ -412,7 +412,6 @@ TEST(CascadedMaps, StableWindowsHoldTheirPartOfTheViewWhereverTheCameraLooks) {
     Scene scene = long_fence();
     const Maps maps(scene, "stable=true,blend=0.2");
     int held = 0;
-    dvec2 half{0};
     for (int turn = 0; turn < 12; ++turn) {
         const float angle       = 0.5f * static_cast<float>(turn);
         scene.camera.target     = scene.camera.eye + vec3(std::cos(angle), -0.2f, std::sin(angle));

@@ -515,7 +515,7 @@ TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
 
 TEST(FilteredMap, NumbersStayWithinRangeAtExtremes) {
     for (const float size : {1.0f, 1e6f, 1e-6f})
-        for (Light light : {sun({0.3f, -1, 0.2f}), lamp({-0.3f, 1.2f, 0.9f}), lamp({0.3e9f, 1e9f, 0.2e9f})}) {
+        for (const Light& light : {sun({0.3f, -1, 0.2f}), lamp({-0.3f, 1.2f, 0.9f}), lamp({0.3e9f, 1e9f, 0.2e9f})}) {
             Scene scene = clutter(light);
             for (vec3& p : scene.positions) p *= size;
             scene.lights[0].position *= size;
