@@ -36,6 +36,9 @@ struct ReportLine {
     bool without_exr     = false;
 };
 
+/// Of the times on the pages: a third of what `umbra compare` takes.
+constexpr Repeats kReportRepeats{.max_runs = 5, .budget_ms = 100};
+
 /// A part of `umbra sweep` on three of the canonical scenes that takes seconds: presets, and a coarse line a method.
 SweepOptions canonical_sweep(const fs::path& out) {
     SweepOptions sweep;
@@ -136,6 +139,7 @@ int run_everything(const fs::path& out, Language language, const Common& common)
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
+    options.repeats       = kReportRepeats;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
     const ScenesDone done = compare_on_terminal(compared_scenes(), options, common, also, language);
     const int code        = exit_code(done);
