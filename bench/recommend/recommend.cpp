@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
@@ -15,7 +16,8 @@
 namespace umbra {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr double kUnknown      = std::numeric_limits<double>::infinity();
+constexpr double kTooExpensive = 5;  ///< one run each: more than a busy machine makes of equal settings
 
 std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
     const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
@@ -52,10 +54,16 @@ public:
     }
 
     /// The settings that may be the answer: of each family the first within the limits; and those that the answer is
-    /// compared with: of each family the first and the last.
+    /// compared with: of each family the first and the last. The reference comes first, since its price passes over
+    /// others.
     void look_at_families() {
-        for (const Family& family : families(options_.choices)) {
+        std::vector<Family> all = families(options_.choices);
+        std::stable_partition(all.begin(), all.end(),
+                              [](const Family& f) { return f.settings.front().info->reference; });
+        for (Family& family : all) {
             result_.settings += family.settings.size();
+            while (!family.settings.empty() && pass_over(family.settings.back())) family.settings.pop_back();
+            if (family.settings.empty()) continue;
             const auto good = first_good(family.settings.size(), [&](std::size_t k) {
                 return result_.candidates[look(family.settings[k])].within(options_.limits);
             });
@@ -65,24 +73,54 @@ public:
         result_.looked_at = result_.candidates.size();
     }
 
-    void time_candidates() {
-        std::vector<std::size_t> who;
-        std::vector<MethodChoice> choices;
+    /// Whether a setting cannot be the answer nor a step of the staircase, whatever its errors: the reference, or one
+    /// without errors, is within the limits and cheaper by far. Memory is no error: others may need less than these.
+    bool pass_over(const MethodChoice& choice) {
+        if (choice.info->reference || options_.limits.front().metric->name == "memory_mb") return false;
         for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
-            if (!result_.candidates[k].unfit.empty()) continue;
-            who.push_back(k);
-            choices.push_back(result_.candidates[k].choice);
+            const Candidate& c = result_.candidates[k];
+            if (!c.unfit.empty() || !c.within(options_.limits)) continue;
+            if (!c.choice.info->reference && *c.bounds[0] > 0) continue;
+            const std::optional<double> mine = price(choice), other = price(c.choice);
+            if (!mine || !other || *mine <= kTooExpensive * *other) continue;
+            result_.passed_over.push_back({choice, k, *mine / *other});
+            return true;
         }
-        const TimedTogether together = lab_.times(choices, options_.turns);
+        return false;
+    }
+
+    /// Each candidate gets its price as its cost, and those that may be the answer or a step, and the reference, the
+    /// median of rounds in turns: the fewer take turns, the more rounds fit into the budget.
+    void time_candidates() {
+        std::vector<std::size_t> fit, who;
+        for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
+            Candidate& c = result_.candidates[k];
+            if (!c.unfit.empty()) continue;
+            c.cost = price(c.choice);
+            if (c.cost) fit.push_back(k);
+        }
+        std::vector<MethodChoice> choices;
+        TurnOptions turns = options_.turns;
+        for (const std::size_t k : fit) {
+            const Candidate& c = result_.candidates[k];
+            if (!c.choice.info->reference &&
+                std::ranges::any_of(fit, [&](std::size_t other) { return outdoes(result_.candidates[other], c); }))
+                continue;
+            who.push_back(k);
+            choices.push_back(c.choice);
+            turns.first.push_back(lab_.price(c.choice));
+        }
+        const TimedTogether together = lab_.times(choices, turns);
         if (who.empty()) return;
         const Json& bar   = together.turns.at("noise_bar");
         result_.noise_bar = bar.is_number() ? bar.get<double>() : kUnknown;
         for (std::size_t t = 0; t < who.size(); ++t) {
             const Json& times = together.settings[t];
+            Candidate& c      = result_.candidates[who[t]];
+            c.cost.reset();
             if (times.is_null()) continue;
-            Candidate& c = result_.candidates[who[t]];
-            c.costs      = costs_a_round(times, options_.workload);
-            c.cost       = cost_of(times, options_.workload);
+            c.costs = costs_a_round(times, options_.workload);
+            c.cost  = cost_of(times, options_.workload);
         }
     }
 
@@ -95,6 +133,23 @@ public:
     }
 
 private:
+    /// Whether `a` is cheaper than `b` by far and no worse: within the limits if `b` is, and its bound no higher.
+    [[nodiscard]] bool outdoes(const Candidate& a, const Candidate& b) const {
+        const bool no_worse = a.within(options_.limits) || !b.within(options_.limits);
+        const bool lower    = a.bounds[0] && (!b.bounds[0] || *a.bounds[0] <= *b.bounds[0]);
+        return no_worse && lower && *b.cost > kTooExpensive * *a.cost;
+    }
+
+    /// Milliseconds a frame by one run; nothing where the setting does not serve.
+    [[nodiscard]] std::optional<double> price(const MethodChoice& choice) {
+        const std::optional<RunTimes> run = lab_.price(choice);
+        if (!run) return std::nullopt;
+        const auto sum = [](const std::vector<double>& lights) {
+            return std::accumulate(lights.begin(), lights.end(), 0.0);
+        };
+        return frame_cost_ms(options_.workload, run->build, sum(run->aim), sum(run->visibility));
+    }
+
     SceneLab& lab_;
     const RecommendOptions& options_;
     Recommendation& result_;
@@ -199,8 +254,9 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
         return Rival{k, ratio.median, ratio.interval.low, ratio.interval.high};
     };
     for (std::size_t n = 1; n < within.size(); ++n) {
-        const Ratio ratio = search.ratio(within[n], *r.chosen);
-        if (!differs(ratio, r.noise_bar))
+        const Ratio ratio   = search.ratio(within[n], *r.chosen);
+        const bool by_price = ratio.pairs < 2;  // no rounds, hence no interval and no noise bar
+        if (by_price ? ratio.median <= kTooExpensive : !differs(ratio, r.noise_bar))
             r.tied.push_back(rival(within[n]));
         else if (!r.runner_up)
             r.runner_up = rival(within[n]);

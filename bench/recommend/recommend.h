@@ -48,8 +48,8 @@ struct Candidate {
     std::vector<Json> views;                    ///< cells
     std::vector<std::optional<double>> bounds;  ///< [limit]
     std::string unfit;                          ///< why it is no candidate at all; empty where it is one
-    std::vector<double> costs;                  ///< ms a frame, one a round; empty where not timed
-    std::optional<double> cost;                 ///< their median
+    std::vector<double> costs;                  ///< ms a frame, one a round; empty where it took part in none
+    std::optional<double> cost;                 ///< their median; of one run where there are none
     [[nodiscard]] bool within(std::span<const Limit> limits) const;
     /// The largest bound over its limit; infinite where a bound is not known.
     [[nodiscard]] double worst_ratio(std::span<const Limit> limits) const;
@@ -59,6 +59,14 @@ struct Candidate {
 struct Rival {
     std::size_t candidate;
     double ratio, low, high;  ///< its cost over that of the recommendation
+};
+
+/// A setting that was not looked at: by one run each, it costs over five times as much as a candidate within the limits
+/// that has no errors or is the reference.
+struct PassedOver {
+    MethodChoice choice;
+    std::size_t candidate;  ///< the cheaper one
+    double ratio;           ///< of the costs
 };
 
 /// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest.
@@ -76,6 +84,7 @@ struct Recommendation {
     std::optional<Rival> cheapest;            ///< of all that were timed, whatever their errors
     std::optional<Rival> exact;               ///< the reference method, where it was timed
     std::vector<Step> staircase;              ///< by descending error
+    std::vector<PassedOver> passed_over;      ///< in the order in which they were met
     std::vector<Json> held_out;               ///< cells of the chosen one in views that it was not chosen on
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
     double noise_bar = 0;

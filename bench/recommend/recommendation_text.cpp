@@ -67,6 +67,8 @@ std::string errors_in_words(const Candidate& c, const RecommendOptions& options)
 
 std::string rival_in_words(const Rival& rival, const Recommendation& r) {
     const Candidate& c = r.candidates[rival.candidate];
+    if (rival.low == rival.high)
+        return fmt::format("{} ({:.3f} ms, {:.2f} times by one run)", c.choice.text(), *c.cost, rival.ratio);
     return fmt::format("{} ({:.3f} ms, {:.2f} times, {:.2f} to {:.2f})", c.choice.text(), *c.cost, rival.ratio,
                        rival.low, rival.high);
 }
@@ -117,11 +119,17 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
     Json unfit = Json::array();
     for (const Candidate& c : r.candidates)
         if (!c.unfit.empty()) unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
-    record["unfit"]     = std::move(unfit);
-    record["workload"]  = to_text(options.workload);
-    record["views"]     = options.views;
-    record["settings"]  = {{"looked_at", r.looked_at}, {"of", r.settings}};
-    record["noise_bar"] = number(r.noise_bar);
+    record["unfit"]  = std::move(unfit);
+    Json passed_over = Json::array();
+    for (const PassedOver& p : r.passed_over)
+        passed_over.push_back({{"method", p.choice.text()},
+                               {"cheaper", r.candidates[p.candidate].choice.text()},
+                               {"cost_ratio", number(p.ratio)}});
+    record["passed_over"] = std::move(passed_over);
+    record["workload"]    = to_text(options.workload);
+    record["views"]       = options.views;
+    record["settings"]    = {{"looked_at", r.looked_at}, {"of", r.settings}};
+    record["noise_bar"]   = number(r.noise_bar);
     return record;
 }
 
@@ -159,8 +167,12 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     text += staircase_in_words(r, options);
     for (const Candidate& c : r.candidates)
         if (!c.unfit.empty()) text += fmt::format("  Left out: {}: {}\n", c.choice.text(), c.unfit);
+    for (const PassedOver& p : r.passed_over)
+        text += fmt::format("  Not looked at: {}: one run costs {:.0f} times as much as one of {}\n", p.choice.text(),
+                            p.ratio, r.candidates[p.candidate].choice.text());
+    const std::size_t asked = r.settings - r.passed_over.size();
     return text + fmt::format("  {} of {} settings were looked at, in {} views each{}.\n", r.looked_at, r.settings,
-                              options.views, r.looked_at < r.settings ? "; bisection saved the others" : "");
+                              options.views, r.looked_at < asked ? "; bisection saved others" : "");
 }
 
 }  // namespace umbra

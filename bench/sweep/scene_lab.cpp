@@ -48,16 +48,35 @@ Json SceneLab::reference() {
     return made.at("reference");
 }
 
-std::string SceneLab::time_key(const MethodChoice& choice) {
+std::string SceneLab::machine_key(const std::string& kind, const MethodChoice& choice) {
     const Json machine = machine_json(thread_count());
-    return combined_key({"time", machine.at("cpu").get<std::string>(), fmt::format("{}", thread_count()),
+    return combined_key({kind, machine.at("cpu").get<std::string>(), fmt::format("{}", thread_count()),
                          machine.at("compiler").get<std::string>(), view(0).key(choice)});
+}
+
+std::optional<RunTimes> SceneLab::price(const MethodChoice& choice) {
+    const std::string key = machine_key("price", choice);
+    if (const auto found = store_.find(key)) {
+        const Json& price = found->at("price");
+        return RunTimes{price.at("build_ms").get<double>(), price.at("aim_ms").get<std::vector<double>>(),
+                        price.at("visibility_ms").get<std::vector<double>>()};
+    }
+    if (options_.progress) options_.progress(fmt::format("price: {}", choice.text()));
+    const Turns turns  = time_in_turns(view(0).prepared(), {&choice, 1}, {.rounds = 1, .budget_ms = 0});
+    const TurnTimes& t = turns.settings.front();
+    if (t.build.empty() || !t.failed.empty()) return std::nullopt;
+    RunTimes price{t.build.front()};
+    for (const std::vector<double>& light : t.light_aim) price.aim.push_back(light.front());
+    for (const std::vector<double>& light : t.light_visibility) price.visibility.push_back(light.front());
+    store_.keep({{"key", key},
+                 {"price", {{"build_ms", price.build}, {"aim_ms", price.aim}, {"visibility_ms", price.visibility}}}});
+    return price;
 }
 
 std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice> choices) {
     TimedTogether all;
     for (const MethodChoice& choice : choices) {
-        auto found = store_.find(time_key(choice));
+        auto found = store_.find(machine_key("time", choice));
         if (!found) return std::nullopt;
         if (all.settings.empty())
             all.turns = found->at("turns");
@@ -80,7 +99,7 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
         const TurnTimes& t = turns.settings[k];
         const bool timed   = !t.build.empty() && t.failed.empty();
         all.settings.push_back(timed ? turn_times_json(t) : Json());
-        store_.keep({{"key", time_key(choices[k])}, {"times", all.settings.back()}, {"turns", all.turns}});
+        store_.keep({{"key", machine_key("time", choices[k])}, {"times", all.settings.back()}, {"turns", all.turns}});
     }
     return all;
 }

@@ -41,13 +41,18 @@ public:
     [[nodiscard]] Json cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 
+    /// The first run of a setting on view 0, alone: a price, not a time to compare closely. It is found where a run on
+    /// this machine has paid it. Nothing where the setting does not serve, or failed.
+    [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice);
+
     /// Times of settings that took turns with one another. They are found where a run on this machine timed all of
     /// these together; otherwise all of them are timed now, also those that an earlier run has timed among others: a
     /// ratio of times from two runs would say as much of the machine as of the settings.
     [[nodiscard]] TimedTogether times(std::span<const MethodChoice> choices, TurnOptions options);
 
 private:
-    [[nodiscard]] std::string time_key(const MethodChoice& choice);
+    /// Of what was measured on this machine: `kind` is "time" or "price".
+    [[nodiscard]] std::string machine_key(const std::string& kind, const MethodChoice& choice);
     [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);
 
     std::shared_ptr<const Scene> scene_;
