@@ -29,16 +29,17 @@ struct PointTile {
     }
 };
 
-/// Calls body(tile) for tiles that hold each point of the batch once, from many threads.
+/// Calls body(tile) for tiles that hold each point of the batch once, from many threads. A thread takes about `grain`
+/// tiles at a time.
 template <class Body>
-void for_each_tile(const PointBatch& points, const Body& body) {
+void for_each_tile(const PointBatch& points, const Body& body, std::size_t grain = 8) {
     const bool raster        = points.raster.has_value();
     const std::size_t n      = points.size();
     const std::size_t width  = raster ? points.raster->width : PointTile::kWidth;
     const std::size_t height = raster ? points.raster->height : (n + PointTile::kWidth - 1) / PointTile::kWidth;
     const std::size_t across = (width + PointTile::kWidth - 1) / PointTile::kWidth;
     const std::size_t down   = (height + PointTile::kHeight - 1) / PointTile::kHeight;
-    parallel_ranges(across * down, 8, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(across * down, grain, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t)
             body(PointTile{t % across * PointTile::kWidth, t / across * PointTile::kHeight, width, height, n});
     });

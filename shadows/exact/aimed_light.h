@@ -14,6 +14,9 @@ public:
 
     [[nodiscard]] bool round() const { return light_.kind != LightKind::rectangle; }
 
+    /// Whether all points see it in one plane, up to rounding.
+    [[nodiscard]] bool flat() const { return light_.kind != LightKind::sphere; }
+
     /// The light's plane as p sees it. Nothing where p is within a sphere light.
     [[nodiscard]] std::optional<LightPlane> plane_from(const ExactPoint& p) const;
 

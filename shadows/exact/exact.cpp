@@ -3,11 +3,14 @@
 // that no triangle covers as seen from there (exact_area.h).
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/tiles.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/exact/exact_area.h"
 #include "umbra/shadows/method.h"
@@ -178,26 +181,34 @@ private:
     void see_area(const PointBatch& points, LightId light, Visibility out) const {
         const bool irradiance = options.measure == Measure::irradiance;
         const bool bracket    = irradiance || scene_->lights[light].kind != LightKind::rectangle;
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            ExactArea::Workspace work;
-            for (std::size_t i = begin; i < end; ++i) {
-                if (!points.asks(light, i)) continue;
-                const Facing facing            = points.facing[light][i];
-                const ExactArea::Answer answer = area_.seen(points.triangle[i], points.u[i], points.v[i],
-                                                            facing == Facing::partly, points.flipped[i] ? -1 : 1, work);
-                out.s[i]                       = irradiance ? answer.irradiance : answer.visibility;
-                out.answer[i]                  = answer.edge_on ? Answer::on_boundary : Answer::given;
-                if (has_filters_) {
-                    const auto passed =
-                        area_.seen_through(points.triangle[i], points.u[i], points.v[i], facing == Facing::partly,
-                                           points.flipped[i] ? -1 : 1, answer, work);
-                    if (!passed) out.answer[i] = Answer::undefined;
-                    out.s[i] = passed ? mean_of(*passed) : 0.0f;
-                    if (!out.colour.empty() && passed) out.colour[i] = *passed;
-                }
-                if (bracket) out.half_width[i] = irradiance ? answer.irradiance_half_width : answer.half_width;
+        const auto see        = [&](std::size_t i, ExactArea::Workspace& work) {
+            const bool partly = points.facing[light][i] == Facing::partly;
+            const int turn    = points.flipped[i] ? -1 : 1;
+            const ExactArea::Answer answer =
+                area_.seen(points.triangle[i], points.u[i], points.v[i], partly, turn, work);
+            out.s[i]      = irradiance ? answer.irradiance : answer.visibility;
+            out.answer[i] = answer.edge_on ? Answer::on_boundary : Answer::given;
+            if (has_filters_) {
+                const auto passed =
+                    area_.seen_through(points.triangle[i], points.u[i], points.v[i], partly, turn, answer, work);
+                if (!passed) out.answer[i] = Answer::undefined;
+                out.s[i] = passed ? mean_of(*passed) : 0.0f;
+                if (!out.colour.empty() && passed) out.colour[i] = *passed;
             }
-        });
+            if (bracket) out.half_width[i] = irradiance ? answer.irradiance_half_width : answer.half_width;
+        };
+        const auto see_tile = [&](const PointTile& tile) {
+            ExactArea::Workspace work;
+            std::array<std::uint32_t, PointTile::kPoints> asked;
+            std::size_t count = 0;
+            tile.for_each_run([&](std::size_t first, std::size_t n) {
+                for (std::size_t i = first; i < first + n; ++i)
+                    if (points.asks(light, i)) asked[count++] = static_cast<std::uint32_t>(i);
+            });
+            const auto see_group = [&](std::size_t i) { see(i, work); };
+            area_.for_all(points, std::span(asked).first(count), work, see_group);
+        };
+        for_each_tile(points, see_tile, 1);
     }
 
     /// `crosses` as soon as one triangle is crossed; else `touches` if any is touched. `last` is tried first.

@@ -15,6 +15,9 @@ constexpr Answer kAllVisible{.visibility = 1, .irradiance = 1};
 /// edges are kept. Where the plane is rougher, an edge that was left out might lie over the light.
 constexpr double kRoughest = (kCutReach - 1) / 4;
 
+/// Candidates are few where every point may ask each of them: so many, or this part of all edges.
+constexpr std::size_t kFew = 64, kPart = 12;
+
 /// A value and its half width. What differs from 0 or 1 by no more than `unsure`, rounding, may be 0 or 1.
 std::pair<float, float> value_of(const Bracket& bracket, double unsure) {
     const auto [low, high] = bracket;
@@ -66,6 +69,51 @@ ExactArea::Answer ExactArea::seen_in_rough_plane(const Sight& sight, Workspace& 
     return !layers ? kNothingKnown : *layers > 0 ? Answer{} : kAllVisible;
 }
 
+void ExactArea::find_silhouette(const Viewpoint& viewpoint, const FloatSpace& space, Workspace& work) const {
+    if (work.in_group && space.orientation())
+        edges_.pick(viewpoint, space, kGatherReach, work.group, work.silhouette);
+    else
+        edges_.gather(viewpoint, space, kGatherReach, work.silhouette);
+}
+
+/// Splits points in two groups of one size, apart from each other.
+void ExactArea::halve(const PointBatch& points, std::span<std::uint32_t> which) {
+    Box box;
+    for (const std::uint32_t i : which) box = extend(box, points.position(i));
+    const vec3 size   = box.max - box.min;
+    const int axis    = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto middle = which.begin() + static_cast<std::ptrdiff_t>(which.size() / 2);
+    std::nth_element(which.begin(), middle, which.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return points.position(a)[axis] < points.position(b)[axis];
+    });
+}
+
+/// Finds the candidates of all these points. False where they are too many for that, or the light is in no one plane.
+bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint32_t> which, Workspace& work) const {
+    if (which.size() < kFewest || !light_.flat()) return false;
+    constexpr double kApart = 1.0 / 8;  // of the distance to the light: they do not lie together
+    const auto at           = [&](std::uint32_t i) {
+        return ExactPoint(*occluders_.scene, points.triangle[i], points.u[i], points.v[i]);
+    };
+    const std::uint32_t middle = which[which.size() / 2];
+    const Viewpoint viewpoint(*occluders_.scene, points.triangle[middle], points.u[middle], points.v[middle],
+                              work.coplanar);
+    const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
+    if (!plane || !(plane->rounding <= kRoughest)) return false;
+    const FloatSpace space(viewpoint.point(), *plane);
+    if (!space.orientation()) return false;
+    double around = 0;
+    for (const std::uint32_t i : which) {
+        const ExactPoint p = at(i);
+        around             = std::max(around, largest(p.rounded() - viewpoint.point().rounded()) + p.slack());
+    }
+    if (around > kApart * largest(space.to_centre().value)) return false;
+    const std::size_t most = std::max(kFew, edges_.candidates() / kPart);
+    // The planes of two points differ by twice what each may be off.
+    return edges_.gather_around(viewpoint, space, kGatherReach + 4 * kRoughest,
+                                (1 + 4 * kUnit) * (around + viewpoint.point().slack()), most, work.group);
+}
+
 ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const {
     const Viewpoint viewpoint(*occluders_.scene, own, u, v, work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
@@ -78,10 +126,10 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
         const VisiblePart<FloatSpace> part(sight, space, measure_, work.in_double);
         // What hid the whole light of the point before often hides it from this one.
         if (work.blocker != kNoTriangle && work.blocker != own && part.is_hidden_by(work.blocker)) return {};
-        edges_.gather(viewpoint, space, kGatherReach, work.silhouette);
+        find_silhouette(viewpoint, space, work);
         if (const auto area = part.find(work.silhouette, work.blocker)) return answer(*area, light_.round());
     } else {
-        edges_.gather(viewpoint, space, kGatherReach, work.silhouette);
+        find_silhouette(viewpoint, space, work);
     }
 
     const RationalSpace exact_space(viewpoint.point(), *plane);

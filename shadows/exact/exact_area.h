@@ -1,6 +1,9 @@
 // Exact visibility of area lights: how much of a rectangle, disk or sphere light a named surface point sees.
 #pragma once
 
+#include <span>
+
+#include "umbra/core/render/points.h"
 #include "umbra/shadows/exact/visible_part.h"
 
 namespace umbra::exact_detail {
@@ -27,6 +30,8 @@ public:
     struct Workspace {
         CoplanarTriangles coplanar;
         std::vector<SilhouetteEdge> silhouette;
+        EdgeGroup group;  ///< edges for all points of a group
+        bool in_group = false;
         std::vector<TriangleId> between;
         PartialCovering<double> in_double;
         PartialCovering<Rational> in_rationals;
@@ -41,6 +46,22 @@ public:
     void build(const Scene& scene, const BoxTree& triangles);
     void aim(const Light& light);
 
+    /// Calls see(i) for all these points of the batch, in any order; changes the order of `which`. What `seen` needs is
+    /// looked for once for points that lie together: while it runs, `seen` may be called with this workspace for i
+    /// alone.
+    template <class See>
+    void for_all(const PointBatch& points, std::span<std::uint32_t> which, Workspace& work, const See& see) const {
+        work.in_group = look_around(points, which, work);
+        if (work.in_group || which.size() < 2 * kFewest || !light_.flat()) {
+            for (const std::uint32_t i : which) see(i);
+            work.in_group = false;
+            return;
+        }
+        halve(points, which);
+        for_all(points, which.first(which.size() / 2), work, see);
+        for_all(points, which.subspan(which.size() / 2), work, see);
+    }
+
     /// For a point of triangle `own`; `partly`: the triangle's plane cuts the light; `turn`: -1 where the side that
     /// sees is against the triangle's winding, else 1. From any thread, each with a workspace of its own.
     [[nodiscard]] Answer seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const;
@@ -54,6 +75,12 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
+    static constexpr std::size_t kFewest = 4;  ///< points for which it is worth looking once for all of them
+
+    [[nodiscard]] bool look_around(const PointBatch& points, std::span<const std::uint32_t> which,
+                                   Workspace& work) const;
+    static void halve(const PointBatch& points, std::span<std::uint32_t> which);
+    void find_silhouette(const Viewpoint& viewpoint, const FloatSpace& space, Workspace& work) const;
     [[nodiscard]] Answer seen_in_rough_plane(const Sight& sight, Workspace& work) const;
 
     Arithmetic arithmetic_;

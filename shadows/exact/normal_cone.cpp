@@ -29,11 +29,11 @@ NormalCone NormalCone::joined(const NormalCone& a, const NormalCone& b) {
     return around(axis, std::max(reach(a), reach(b)) + kWidening);
 }
 
-bool NormalCone::one_sided(const Box& box, dvec3 p) const {
+bool NormalCone::one_sided(const Box& box, dvec3 p, double around) const {
     if (half_angle > kWidest) return false;
     const dvec3 lo(box.min), hi(box.max);
     const dvec3 to_box    = 0.5 * (lo + hi) - p;
-    const double distance = glm::length(to_box), radius = 0.5 * glm::length(hi - lo);
+    const double distance = glm::length(to_box), radius = 0.5 * glm::length(hi - lo) + around;
     if (!(distance > radius)) return false;
     // The angle between the axis and a segment to any point of the box differs from that of the segment to its centre,
     // and the normal's from the axis: together by at most half_angle + asin(radius / distance).

@@ -17,8 +17,9 @@ struct NormalCone {
     [[nodiscard]] static NormalCone around(vec3 axis, float half_angle);
     [[nodiscard]] static NormalCone joined(const NormalCone& a, const NormalCone& b);
 
-    /// Whether p is surely on one side of every plane that meets the box and whose normal is in the cone.
-    [[nodiscard]] bool one_sided(const Box& box, dvec3 p) const;
+    /// Whether p, and all that is at most `around` from it, is surely on one side of every plane that meets the box and
+    /// whose normal is in the cone.
+    [[nodiscard]] bool one_sided(const Box& box, dvec3 p, double around = 0) const;
 };
 
 }  // namespace umbra::exact_detail

@@ -111,6 +111,111 @@ void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space
     tree_->visit(region, enter, take);
 }
 
+/// Whether the edge's two triangles surely cancel for all points at most `around` from this one in every coordinate.
+bool SilhouetteEdges::cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const {
+    if (edge.count != 2) return false;
+    const Entries d   = viewpoint.point().to(occluders_->position(edge.a));
+    const double sure = kNormalError * (largest(d.value) + around) + 4 * d.error;
+    int change        = 0;
+    for (std::uint32_t k = 0; k < 2; ++k) {
+        const dvec3 n(edge.normal[k]);
+        const double over = glm::dot(d.value, n);
+        if (!(std::abs(over) > sure + around * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)))) return false;
+        change += (over > 0) == uses_[edge.first + k].forward ? 1 : -1;
+    }
+    return change == 0;
+}
+
+bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, const FloatSpace& space, double reach, double around,
+                                    std::size_t most, EdgeGroup& group) const {
+    group.origin = viewpoint.point().rounded();
+    group.edges.clear();
+    // From a point p + d the light lies in p's region moved by at most d.
+    BoxTree::Region region = shaft(viewpoint.point(), space, reach);
+    region.slack += around;
+    const double far = 1.75 * around;  // more than the root of three
+    const auto enter = [&](std::uint32_t node, const Box& box) {
+        return !cones_[node].one_sided(box, region.from, far);
+    };
+    tree_->visit(region, enter, [&](std::uint32_t e) {
+        if (!cancels_around(viewpoint, edges_[e], around)) group.edges.push_back(e);
+        return group.edges.size() <= most;
+    });
+    const std::size_t n = group.edges.size();
+    if (n > most) return false;
+    for (int k = 0; k < 3; ++k) {
+        for (auto* list : {&group.a, &group.b, &group.first, &group.second}) (*list)[k].resize(n);
+        for (std::size_t e = 0; e < n; ++e) {
+            const CandidateEdge& edge = edges_[group.edges[e]];
+            group.a[k][e] = static_cast<float>(static_cast<double>(occluders_->position(edge.a)[k]) - group.origin[k]);
+            group.b[k][e] = static_cast<float>(static_cast<double>(occluders_->position(edge.b)[k]) - group.origin[k]);
+            group.first[k][e]  = turned(edge, 0)[k];
+            group.second[k][e] = turned(edge, 1)[k];
+        }
+    }
+    return true;
+}
+
+/// The normal of a triangle of the edge, against the edge where the triangle uses it backwards; 0 where it is unknown.
+vec3 SilhouetteEdges::turned(const CandidateEdge& edge, std::uint32_t k) const {
+    if (edge.count != 2) return vec3(0);
+    return uses_[edge.first + k].forward ? edge.normal[k] : -edge.normal[k];
+}
+
+void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, double reach, EdgeGroup& group,
+                           std::vector<SilhouetteEdge>& found) const {
+    // Floats, with a bound of 2^-19 of the largest coordinates: each is rounded to 2^-24 of itself, and so is each of
+    // five operations on products with numbers of at most 1.
+    constexpr float kRounding    = 0x1p-19f;
+    const BoxTree::Region region = shaft(viewpoint.point(), space, reach);
+    struct Plane {
+        float x, y, z, offset, tilt;
+    };
+    std::array<Plane, 5> planes;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        const dvec3 n     = region.planes[k].normal;
+        const double size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+        planes[k] = {float(n.x / size), float(n.y / size), float(n.z / size), float(region.planes[k].offset / size),
+                     kRounding + static_cast<float>(4 * region.tilt / size)};
+    }
+    const dvec3 moved = region.from - group.origin;
+    const float dx = float(moved.x), dy = float(moved.y), dz = float(moved.z);
+    // Below 2^-126 a float is off by up to 2^-150, whatever its size; so is what a few dozen operations leave there.
+    constexpr float kDenormal = 0x1p-140f;
+    const float slack         = static_cast<float>(4 * region.slack) + kDenormal,
+                d             = std::abs(dx) + std::abs(dy) + std::abs(dz);
+    const std::size_t n       = group.edges.size();
+    group.out.resize(n);
+    const float *ax = group.a[0].data(), *ay = group.a[1].data(), *az = group.a[2].data();
+    const float *bx = group.b[0].data(), *by = group.b[1].data(), *bz = group.b[2].data();
+    const float *fx = group.first[0].data(), *fy = group.first[1].data(), *fz = group.first[2].data();
+    const float *sx = group.second[0].data(), *sy = group.second[1].data(), *sz = group.second[2].data();
+    std::int32_t* out = group.out.data();
+    for (std::size_t e = 0; e < n; ++e) {
+        const float x = ax[e] - dx, y = ay[e] - dy, z = az[e] - dz;
+        const float one = fx[e] * x + fy[e] * y + fz[e] * z, other = sx[e] * x + sy[e] * y + sz[e] * z;
+        const float sure = kRounding * (std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + d) + slack;
+        out[e]           = (int{one > sure} & int{other < -sure}) | (int{one < -sure} & int{other > sure});
+    }
+    for (const Plane plane : planes) {
+        const float least = plane.tilt * (d + std::abs(plane.offset)) + slack;
+        for (std::size_t e = 0; e < n; ++e) {
+            const float p    = plane.x * (ax[e] - dx) + plane.y * (ay[e] - dy) + plane.z * (az[e] - dz) + plane.offset,
+                        q    = plane.x * (bx[e] - dx) + plane.y * (by[e] - dy) + plane.z * (bz[e] - dz) + plane.offset;
+            const float size = std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + std::abs(bx[e]) + std::abs(by[e]) +
+                               std::abs(bz[e]);
+            const float beyond = -(plane.tilt * size + least);
+            out[e] |= int{p < beyond} & int{q < beyond};
+        }
+    }
+    found.clear();
+    for (std::size_t e = 0; e < n; ++e) {
+        if (out[e] != 0) continue;
+        const int change = change_at(viewpoint, edges_[group.edges[e]]);
+        if (change != 0) found.push_back({group.edges[e], change});
+    }
+}
+
 std::size_t SilhouetteEdges::memory_bytes() const {
     return uses_.size() * sizeof(EdgeUse) + edges_.size() * sizeof(CandidateEdge) + cones_.size() * sizeof(NormalCone) +
            (tree_ ? tree_->memory_bytes() : 0);

@@ -8,6 +8,7 @@
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "umbra/shadows/exact/light_space.h"
@@ -31,6 +32,17 @@ struct SilhouetteEdge {
     int change;
 };
 
+/// Edges that may be silhouette edges for some of several points. Coordinates are relative to one of these, rounded to
+/// float, in a list each, so that a loop takes eight edges at a time.
+struct EdgeGroup {
+    dvec3 origin{0};
+    std::vector<std::uint32_t> edges{};
+    std::array<std::vector<float>, 3> a{}, b{};           ///< both ends
+    std::array<std::vector<float>, 3> first{}, second{};  ///< normals of the two triangles, turned by their use of the
+                                                          ///< edge; 0 where they are not two, or thin
+    std::vector<std::int32_t> out{};                      ///< for one point: surely no silhouette edge before the light
+};
+
 class SilhouetteEdges {
 public:
     /// `occluders` must outlive this object.
@@ -40,7 +52,17 @@ public:
     void gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
                 std::vector<SilhouetteEdge>& found) const;
 
+    /// Candidates for several points that lie together, of a light in one plane: for the point of `viewpoint` and for
+    /// all that lie at most `around` from it in every coordinate. The orientation of `space` is known.
+    /// False where there are more than `most`.
+    [[nodiscard]] bool gather_around(const Viewpoint& viewpoint, const FloatSpace& space, double reach, double around,
+                                     std::size_t most, EdgeGroup& group) const;
+    /// As `gather`, among the candidates of a group, for one of its points.
+    void pick(const Viewpoint& viewpoint, const FloatSpace& space, double reach, EdgeGroup& group,
+              std::vector<SilhouetteEdge>& found) const;
+
     [[nodiscard]] const CandidateEdge& candidate(std::uint32_t k) const { return edges_[k]; }
+    [[nodiscard]] std::size_t candidates() const { return edges_.size(); }
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
@@ -48,6 +70,8 @@ private:
     [[nodiscard]] bool continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const;
     [[nodiscard]] NormalCone cone_of(const CandidateEdge& edge) const;
     [[nodiscard]] int change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const;
+    [[nodiscard]] vec3 turned(const CandidateEdge& edge, std::uint32_t k) const;
+    [[nodiscard]] bool cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const;
 
     const Occluders* occluders_ = nullptr;
     std::vector<EdgeUse> uses_;

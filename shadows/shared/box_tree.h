@@ -85,6 +85,26 @@ public:
         }
     }
 
+    /// Calls visit(item) for every item in nodes that enter(box) says yes to, and whose parents it said yes to. The
+    /// last call of `enter` before a visit was for the item's leaf.
+    template <class Enter, class Visit>
+    void visit_entered(const Enter& enter, const Visit& visit) const {
+        if (nodes_.empty()) return;
+        std::uint32_t stack[64];
+        int depth      = 0;
+        stack[depth++] = 0;
+        while (depth > 0) {
+            const Node& node = nodes_[stack[--depth]];
+            if (!enter(Box{node.min, node.max})) continue;
+            if (node.count > 0) {
+                for (std::uint32_t k = 0; k < node.count; ++k) visit(order_[node.first + k]);
+            } else {
+                stack[depth++] = node.first;
+                stack[depth++] = node.first + 1;
+            }
+        }
+    }
+
     /// What `enter` may want to know: of(item) of all items in a node, joined; one a node.
     template <class Of, class Join>
     [[nodiscard]] auto summaries(const Of& of, const Join& join) const {
