@@ -1,9 +1,10 @@
 #include "umbra/shadows/shared/binned_shadows.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <bit>
-#include <mutex>
+#include <memory>
 #include <optional>
 
 #include "umbra/core/base/geometry.h"
@@ -22,6 +23,7 @@ using exact_detail::ExactPoint;
 using exact_detail::Segment;
 
 constexpr std::uint8_t kNowhere = 0xff;
+constexpr std::size_t kPart     = 16384;  ///< points that one thread places at a time
 
 /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
 bool blocks(const Scene& scene, TriangleId t) {
@@ -131,36 +133,62 @@ void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<Tri
 BinnedShadows::Picture BinnedShadows::bin(const PointBatch& points, LightId light) const {
     const Light& lamp = scene_->lights[light];
     Picture picture{&lamp, LightImage(lamp, centre_, reach_)};
-    std::vector<vec3> positions(points.size());
-    std::vector<PointBins::Entry> all(points.size());
-    std::vector<std::uint8_t> face(points.size(), kNowhere);
-    std::mutex mutex;
-    parallel_ranges(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        vec3 reach(0);
-        std::vector<std::uint32_t> without;
+    // Pages of memory are first touched where they are filled, by all threads.
+    const std::size_t n  = points.size();
+    const auto positions = std::make_unique_for_overwrite<vec3[]>(n);
+    const auto all       = std::make_unique_for_overwrite<PointBins::Entry[]>(n);
+    const auto sorted    = std::make_unique_for_overwrite<PointBins::Entry[]>(n);
+    const auto face      = std::make_unique_for_overwrite<std::uint8_t[]>(n);
+    struct Part {
+        std::array<std::size_t, 6> next{};  ///< points of each face; then where its next one goes
+        std::vector<std::uint32_t> without{};
+        vec3 reach{0};
+    };
+    std::vector<Part> parts((n + kPart - 1) / kPart);
+    const auto each_part = [&](const auto& body) {
+        parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k) body(parts[k], k * kPart, std::min(n, (k + 1) * kPart));
+        });
+    };
+    each_part([&](Part& part, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
+            face[i] = kNowhere;
             if (!points.asks(light, i)) continue;
             const dvec3 p = exact_position(*scene_, points, i);
             positions[i]  = vec3(p - centre_);
-            reach         = glm::max(reach, glm::abs(positions[i]));
+            part.reach    = glm::max(part.reach, glm::abs(positions[i]));
             if (const auto place = picture.image.place(p)) {
                 face[i] = static_cast<std::uint8_t>(place->face);
                 all[i]  = {static_cast<float>(place->at.x), static_cast<float>(place->at.y),
                            static_cast<float>(place->depth), static_cast<std::uint32_t>(i)};
+                ++part.next[face[i]];
             } else {
-                without.push_back(static_cast<std::uint32_t>(i));
+                part.without.push_back(static_cast<std::uint32_t>(i));
             }
         }
-        const std::lock_guard lock(mutex);
-        picture.next_to_light.insert(picture.next_to_light.end(), without.begin(), without.end());
-        picture.reach = glm::max(picture.reach, dvec3(reach));
     });
-    std::vector<PointBins::Entry> of_face;
-    for (int f = 0; f < picture.image.faces(); ++f) {
-        of_face.clear();
-        for (std::size_t i = 0; i < points.size(); ++i)
-            if (face[i] == f) of_face.push_back(all[i]);
-        picture.faces.emplace_back(of_face, positions);
+    const auto faces = static_cast<std::size_t>(picture.image.faces());
+    std::array<std::size_t, 7> first{};
+    for (std::size_t f = 0; f < faces; ++f) {
+        first[f + 1] = first[f];
+        for (Part& part : parts) {
+            const std::size_t count = part.next[f];
+            part.next[f]            = first[f + 1];
+            first[f + 1] += count;
+        }
+    }
+    for (const Part& part : parts) {
+        picture.next_to_light.insert(picture.next_to_light.end(), part.without.begin(), part.without.end());
+        picture.reach = glm::max(picture.reach, dvec3(part.reach));
+    }
+    each_part([&](Part& part, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (face[i] != kNowhere) sorted[part.next[face[i]]++] = all[i];
+    });
+    for (std::size_t f = 0; f < faces; ++f) {
+        const std::size_t count = first[f + 1] - first[f];
+        picture.faces.emplace_back(std::span(sorted.get() + first[f], count), std::span(all.get() + first[f], count),
+                                   std::span(positions.get(), n));
     }
     return picture;
 }

@@ -6,8 +6,10 @@
 // Gregory Johnson, Juhyun Lee, Christopher Burns, William Mark. The Irregular Z-Buffer. 2005
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,21 +41,32 @@ public:
         float u, v, depth;
         std::uint32_t index;
     };
-    /// Sorts `entries`. `positions`: of the batch's points, less the centre.
-    PointBins(std::vector<Entry>& entries, std::span<const vec3> positions);
+    /// Sorts `entries`, by way of `space`, which is as long; what either holds afterwards is undefined. `positions`: of
+    /// the batch's points, less the centre. Uses many threads; the bins do not depend on their number.
+    PointBins(std::span<Entry> entries, std::span<Entry> space, std::span<const vec3> positions);
 
-    [[nodiscard]] std::size_t blocks() const { return blocks_.size(); }
-    [[nodiscard]] const Block& block(std::size_t b) const { return blocks_[b]; }
+    [[nodiscard]] std::size_t blocks() const { return tree_.blocks.size(); }
+    [[nodiscard]] const Block& block(std::size_t b) const { return tree_.blocks[b]; }
     [[nodiscard]] Marks& marks(std::size_t b) const { return marks_[b]; }
 
     /// Calls visit(b) for every block that may hold a point in the extent, farther from the light than its depth.
     template <class Visit>
     void visit(const Extent& extent, const Visit& visit) const {
-        if (!grids_.empty()) visit_grid(0, extent, visit);
+        if (!tree_.grids.empty()) visit_grid(0, extent, visit);
     }
 
 private:
-    /// nx times ny cells, cells_[first] on.
+    /// What places reach over.
+    struct Box2 {
+        float low_u = kFar, low_v = kFar, high_u = -kFar, high_v = -kFar;
+        void add(const Entry& e) { add(Box2{e.u, e.v, e.u, e.v}); }
+        void add(const Box2& other) {
+            low_u = std::min(low_u, other.low_u), low_v = std::min(low_v, other.low_v);
+            high_u = std::max(high_u, other.high_u), high_v = std::max(high_v, other.high_v);
+        }
+        static constexpr float kFar = std::numeric_limits<float>::max();
+    };
+    /// nx times ny cells, cells[first] on.
     struct Grid {
         float low_u, low_v, scale_u, scale_v;
         int nx, ny;
@@ -61,6 +74,10 @@ private:
         /// Grows with the place, also by its rounding, which is what makes ranges of cells complete.
         [[nodiscard]] int column(float u) const { return index((u - low_u) * scale_u, nx); }
         [[nodiscard]] int row(float v) const { return index((v - low_v) * scale_v, ny); }
+        [[nodiscard]] std::size_t cell(const Entry& e) const {
+            return static_cast<std::size_t>(row(e.v)) * static_cast<std::size_t>(nx) +
+                   static_cast<std::size_t>(column(e.u));
+        }
         static int index(float at, int n) {
             return at >= static_cast<float>(n) ? n - 1 : at > 0 ? static_cast<int>(at) : 0;
         }
@@ -70,16 +87,21 @@ private:
         float depth = -1;                  ///< of the farthest point
     };
     static constexpr std::uint32_t kGrid = ~0u;
+    struct Tree {
+        std::vector<Grid> grids{};
+        std::vector<Cell> cells{};
+        std::vector<Block> blocks{};
+    };
 
     template <class Visit>
     void visit_grid(std::size_t g, const Extent& extent, const Visit& visit) const {
-        const Grid& grid = grids_[g];
+        const Grid& grid = tree_.grids[g];
         if (extent.high_u < grid.low_u || extent.high_v < grid.low_v) return;
         const int left = grid.column(extent.low_u), right = grid.column(extent.high_u);
         const int low = grid.row(extent.low_v), high = grid.row(extent.high_v);
         for (int y = low; y <= high; ++y)
             for (int x = left; x <= right; ++x) {
-                const Cell& cell = cells_[grid.first + static_cast<std::uint32_t>(y * grid.nx + x)];
+                const Cell& cell = tree_.cells[grid.first + static_cast<std::uint32_t>(y * grid.nx + x)];
                 if (cell.depth < extent.depth) continue;
                 if (cell.begin == kGrid)
                     visit_grid(cell.end, extent, visit);
@@ -88,11 +110,10 @@ private:
             }
     }
 
-    std::size_t add_grid(std::span<Entry> entries, std::span<Entry> space, int level);
+    static Grid fitted(std::span<const Entry> entries, const Box2& box);
+    static std::uint32_t add_grid(Tree& tree, std::span<Entry> entries, std::span<Entry> space, int level);
 
-    std::vector<Grid> grids_;
-    std::vector<Cell> cells_;
-    std::vector<Block> blocks_;
+    Tree tree_;
     mutable std::vector<Marks> marks_;
 };
 

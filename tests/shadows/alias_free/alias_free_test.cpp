@@ -176,7 +176,7 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
     std::mt19937 random(3);
     std::exponential_distribution<double> crowded(8);  // most in a corner
     std::vector<PointBins::Entry> entries, places;
-    std::vector<vec3> positions(30000);
+    std::vector<vec3> positions(100000);  // more than one chunk
     for (std::uint32_t i = 0; i < positions.size(); ++i) {
         double x = crowded(random), y = crowded(random);
         if (i % 2 == 0) x *= 1e-4, y *= 1e-4;  // half of them in one cell of the first grid
@@ -185,7 +185,8 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
         positions[i] = vec3(x, y, 0);
     }
     places = entries;
-    const PointBins bins(entries, positions);
+    std::vector<PointBins::Entry> space(entries.size());
+    const PointBins bins(entries, space, positions);
     for (int trial = 0; trial < 300; ++trial) {
         const double size = trial % 3 == 0 ? 1e-5 : 0.3;
         const dvec2 low   = trial % 2 == 0 ? dvec2(crowded(random), crowded(random)) * size : dvec2(0.4);
