@@ -25,7 +25,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/gbuffer.h"
-#include "umbra/shadows/maps/facets.h"
+#include "umbra/shadows/maps/answers.h"
 
 namespace umbra {
 namespace {
@@ -40,13 +40,8 @@ const std::vector<Parameter> kCascadeParameters{
                                    .phase = Phase::visibility,
                                    .min   = 1,
                                    .max   = 8}),
-    parameter<&Options::resolution>({.name  = "resolution",
-                                     .doc   = "Texels along each side of a map; of other lights, too: a cube has six.",
-                                     .unit  = "texels",
-                                     .phase = Phase::aim,
-                                     .min   = 16,
-                                     .max   = 16384,
-                                     .sweep = "256|512|1024|2048|4096"}),
+    resolution_parameter<Options>("Texels along each side of a map; of other lights, too: a cube has six.",
+                                  "256|512|1024|2048|4096"),
     parameter<&Options::splits>({.name  = "splits",
                                  .doc   = "Depths at which parts meet. uniform: of equal depth; logarithmic: each part "
                                           "ends at the same multiple of its beginning; practical: between the two.",
@@ -87,42 +82,12 @@ const std::vector<Parameter> kCascadeParameters{
                                  .phase   = Phase::aim,
                                  .choices = "nearest|pcf",
                                  .sweep   = "nearest|pcf"}),
-    parameter<&Options::radius>({.name  = "radius",
-                                 .doc   = "pcf: compares (2 radius + 1)^2 texels, which are wider in farther parts.",
-                                 .unit  = "texels",
-                                 .phase = Phase::aim,
-                                 .min   = 0,
-                                 .max   = 16}),
-    parameter<&Options::bilinear>(
-        {.name  = "bilinear",
-         .doc   = "pcf: bilinear weights, so that the kernel does not step from texel to texel.",
-         .phase = Phase::visibility}),
-    parameter<&Options::bias>(
-        {.name    = "bias",
-         .doc     = "Reference depth of the comparison. manual: the depth of the point plus constant and slope bias. "
-                    "receiver_plane: the receiver's plane at the texel, minus a rounding margin. auto: the smaller of the "
-                    "two, minus a texel width and a quarter of the depth gradient, at most 16 texel widths in front of "
-                    "the plane.",
-         .phase   = Phase::visibility,
-         .choices = "auto|receiver_plane|manual"}),
-    parameter<&Options::constant>({.name  = "constant",
-                                   .doc   = "Moves the point towards the light.",
-                                   .unit  = "texel widths at the point's depth",
-                                   .phase = Phase::aim,
-                                   .min   = 0,
-                                   .max   = 1e6}),
-    parameter<&Options::slope>({.name  = "slope",
-                                .doc   = "Moves the point towards the light.",
-                                .unit  = "depth gradients of the receiver's plane a texel",
-                                .phase = Phase::visibility,
-                                .min   = 0,
-                                .max   = 1e6}),
-    parameter<&Options::normal_offset>({.name = "normal_offset",
-                                        .doc = "Moves the point along its normal, times the sine of the light's angle.",
-                                        .unit  = "texel widths",
-                                        .phase = Phase::aim,
-                                        .min   = 0,
-                                        .max   = 64}),
+    radius_parameter<Options>("pcf: compares (2 radius + 1)^2 texels, which are wider in farther parts.", 16),
+    bilinear_parameter<Options>(),
+    bias_parameter<Options>(),
+    constant_parameter<Options>(),
+    slope_parameter<Options>(),
+    normal_offset_parameter<Options>(),
 };
 
 }  // namespace
@@ -131,16 +96,8 @@ void CascadedMaps::configure(const Settings& settings) {
     const Options o = options_ = settings.as<Options>();
     bias_                      = {o.bias, o.constant, o.slope, o.normal_offset};
     filter_                    = o.filter == CascadeFilter::nearest ? Filter{} : Filter{o.radius, o.bilinear};
-    // What the filter and the offset may ask for, and a rounding.
-    const double border   = filter_.radius + bias_.normal_offset + 2;
-    const double headroom = std::max(64.0, kMostAutomatic * (4 * filter_.radius + 2)) + bias_.constant;
-    if (4 * border > o.resolution)
-        throw UsageError(
-            fmt::format("cascaded_maps: radius={} and normal_offset={} reach over a quarter of resolution={}, expected "
-                        "a resolution "
-                        "of at least {}",
-                        filter_.radius, bias_.normal_offset, o.resolution, std::ceil(4 * border)));
-    const double map = 4.0 * o.resolution * o.resolution;
+    const MapMargins room      = margins("cascaded_maps", o, filter_.radius, filter_.radius);
+    const double map           = 4.0 * o.resolution * o.resolution;
     if ((o.cascades + 1) * map > LightViews::half_of_memory())
         throw UsageError(
             fmt::format("cascaded_maps: cascades={} and resolution={} take more than half of the machine's "
@@ -153,9 +110,10 @@ void CascadedMaps::configure(const Settings& settings) {
                         .stable     = o.stable,
                         .blend      = o.blend,
                         .resolution = o.resolution,
-                        .border     = border,
-                        .headroom   = headroom};
-    view_options_    = {.method = "cascaded_maps", .resolution = o.resolution, .border = border, .headroom = headroom};
+                        .border     = room.border,
+                        .headroom   = room.headroom};
+    view_options_    = {
+           .method = "cascaded_maps", .resolution = o.resolution, .border = room.border, .headroom = room.headroom};
     if (views_) views_->set_options(view_options_);
 }
 
@@ -198,8 +156,7 @@ void CascadedMaps::aim(LightId light) {
 
 std::optional<Cascades> CascadedMaps::fit(const PointBatch& points, LightId light) const {
     if (!window_) return {};
-    const CameraFrame camera =
-        points.raster ? *points.raster : frame(scene_->camera, std::max(1, scene_->width), std::max(1, scene_->height));
+    const CameraFrame camera = picture_of(*scene_, points);
     const View view(camera);
     std::vector<dvec4> planes;
     if (options_.window == CascadeWindow::receivers) {
@@ -226,10 +183,7 @@ struct CascadedMaps::Lookups {
     std::optional<Cascades> cascades{};           ///< of directional ones
     std::vector<std::optional<MapView>> drawn{};  ///< the maps of `cascades`, the whole's last: those that are asked
 
-    struct Asked {
-        std::size_t view;  ///< index of `views` or of `drawn`
-        Receiver receiver;
-    };
+    using Asked = FoundReceiver;  ///< its view is an index of `views` or of `drawn`
     /// At most two maps, the second's share of the answer among them. None: nothing shades the point.
     struct Answer {
         std::optional<Asked> first{}, second{};
@@ -237,11 +191,7 @@ struct CascadedMaps::Lookups {
     };
     [[nodiscard]] Answer at(const Facet& facet, dvec3 p, const Bias& bias, const Filter& filter) const {
         Answer answer;
-        for (std::size_t v = 0; v < views.size(); ++v)
-            if (const auto receiver = receive(views[v], facet, p, bias, filter)) {
-                answer.first = {v, *receiver};
-                return answer;
-            }
+        answer.first = receive(views, facet, p, bias, filter);
         if (!cascades) return answer;
         const Cascades::Choice choice = cascades->choose(p);
         const auto ask                = [&](std::size_t k) -> std::optional<Asked> {
@@ -295,7 +245,7 @@ CascadedMaps::Lookups CascadedMaps::look_up(const PointBatch& points, LightId li
 void CascadedMaps::visibility(const PointBatch& points, LightId light, Visibility out) const {
     const Lookups lookups = look_up(points, light);
     const auto lit        = [&](const std::optional<Lookups::Asked>& asked) {
-        return asked ? lit_share(lookups.view(*asked).map, asked->receiver, bias_.mode, filter_) : 1.0f;
+        return asked ? lit_share(lookups.view(*asked), asked->receiver, bias_.mode, filter_) : 1.0f;
     };
     for_each_facet(*scene_, points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
         if (centre_is_behind(*scene_, points, light, i)) {
@@ -316,38 +266,16 @@ void CascadedMaps::visibility(const PointBatch& points, LightId light, Visibilit
 /// The triangle whose depth the texel holds that blocks the point, the nearest of several. Draws the maps again.
 void CascadedMaps::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
     const Lookups lookups = look_up(points, light);
-    struct Sample {
-        std::size_t view = ~std::size_t{0};
-        ivec2 at{0};
-    };
-    std::vector<Sample> samples(points.size());
+    BlockingSamples samples(points.size());
     for_each_facet(*scene_, points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
         const Lookups::Answer answer = lookups.at(facet, p, bias_, filter_);
-        for (const auto& asked : {answer.first, answer.second}) {
-            if (!asked) continue;
-            if (const auto at = blocked_sample(lookups.view(*asked).map, asked->receiver, bias_.mode, filter_)) {
-                samples[i] = {asked->view, *at};
+        for (const auto& asked : {answer.first, answer.second})
+            if (asked && samples.find(i, asked->view, lookups.view(*asked), asked->receiver, bias_.mode, filter_))
                 return;
-            }
-        }
     });
-    std::ranges::fill(blockers, kNoTriangle);
-    const std::size_t views = is_sun_ ? lookups.drawn.size() : lookups.views.size();
-    for (std::size_t v = 0; v < views; ++v) {
-        if (std::ranges::find(samples, v, &Sample::view) == samples.end()) continue;
-        const MapView& view = is_sun_ ? *lookups.drawn[v] : lookups.views[v];
-        std::vector<TriangleId> owners;
-        if (is_sun_) {
-            const dmat4 clip_from_world = view.frame.clip_from_world();
-            owners                      = view.map.owners(clip_from_world, scene_->positions, scene_->triangles,
-                                                          casters_->seen_by(clip_from_world), Faces::all);
-        } else {
-            owners = views_->owners(view);
-        }
-        for (std::size_t i = 0; i < samples.size(); ++i)
-            if (samples[i].view == v)
-                blockers[i] = owners[static_cast<std::size_t>(samples[i].at.y) * view.map.width() + samples[i].at.x];
-    }
+    samples.name(blockers, [&](std::size_t v) {
+        return is_sun_ ? owners(*lookups.drawn[v], *casters_, Faces::all) : views_->owners(v);
+    });
 }
 
 std::size_t CascadedMaps::memory_bytes() const {

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "umbra/shadows/cascades/cascades.h"
-#include "umbra/shadows/maps/depth_lookup.h"
 #include "umbra/shadows/maps/light_views.h"
+#include "umbra/shadows/maps/map_options.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -13,10 +13,9 @@ namespace umbra {
 enum class DepthRange : std::uint8_t { scene, visible };
 enum class CascadeFilter : std::uint8_t { nearest, pcf };
 
-/// The parameters; cascaded_maps.cpp documents each.
-struct CascadedMapsOptions {
+/// The parameters; cascaded_maps.cpp and map_options.h document each.
+struct CascadedMapsOptions : ComparingOptions {
     int cascades           = 4;
-    int resolution         = 2048;
     Splits splits          = Splits::practical;
     double lambda          = 0.5;
     DepthRange depth_range = DepthRange::scene;
@@ -24,12 +23,6 @@ struct CascadedMapsOptions {
     bool stable            = false;
     double blend           = 0;
     CascadeFilter filter   = CascadeFilter::nearest;
-    int radius             = 1;
-    bool bilinear          = true;
-    BiasMode bias          = BiasMode::automatic;
-    double constant        = 0;
-    double slope           = 0;
-    double normal_offset   = 0;
 };
 
 class CascadedMaps final : public Method {

@@ -16,25 +16,18 @@
 #include <cmath>
 #include <optional>
 
-#include <fmt/format.h>
-
-#include "umbra/core/base/error.h"
-#include "umbra/core/render/facing.h"
 #include "umbra/shadows/filtered/moment_map.h"
-#include "umbra/shadows/maps/depth_lookup.h"
-#include "umbra/shadows/maps/facets.h"
+#include "umbra/shadows/maps/answers.h"
+#include "umbra/shadows/maps/map_options.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
 namespace {
 
 enum class DepthBias : std::uint8_t { automatic, manual };
-enum class MapFit : std::uint8_t { casters, scene };
 
-struct FilteredOptions {
+struct FilteredOptions : MapOptions, ViewOptions {
     MomentKind kind           = MomentKind::evsm4;
-    int resolution            = 2048;
-    int radius                = 1;
     double positive_exponent  = 40;
     double negative_exponent  = 5;
     double bleed              = 0.1;
@@ -43,11 +36,6 @@ struct FilteredOptions {
     EmptySamples empty        = EmptySamples::apart;
     MomentPrecision precision = MomentPrecision::single;
     DepthBias bias            = DepthBias::automatic;
-    double constant           = 0;
-    double slope              = 0;
-    double normal_offset      = 0;
-    MapFit fit                = MapFit::casters;
-    double surround           = 0.5;
 };
 
 // The squares of exponentials are kept: exp(2 c) and exp(-2 c) are normal floats up to c = 43, normal doubles up to
@@ -62,21 +50,10 @@ const std::vector<Parameter> kFilteredParameters{
          .phase   = Phase::aim,
          .choices = "vsm|esm|evsm2|evsm4|msm",
          .sweep   = "vsm|evsm4|msm"}),
-    parameter<&FilteredOptions::resolution>({.name  = "resolution",
-                                             .doc   = "Texels along each side of a map; a cube has six maps.",
-                                             .unit  = "texels",
-                                             .phase = Phase::aim,
-                                             .min   = 16,
-                                             .max   = 16384,
-                                             .sweep = "512|1024|2048|4096"}),
-    parameter<&FilteredOptions::radius>(
-        {.name  = "radius",
-         .doc   = "Filter: the mean of (2 radius + 1)^2 texels, and between them bilinear.",
-         .unit  = "texels",
-         .phase = Phase::aim,
-         .min   = 0,
-         .max   = 64,
-         .sweep = "1|4"}),
+    resolution_parameter<FilteredOptions>("Texels along each side of a map; a cube has six maps.",
+                                          "512|1024|2048|4096"),
+    radius_parameter<FilteredOptions>("Filter: the mean of (2 radius + 1)^2 texels, and between them bilinear.", 64,
+                                      "1|4"),
     parameter<&FilteredOptions::positive_exponent>(
         {.name  = "positive_exponent",
          .doc   = "esm, evsm2, evsm4: factor of depth, -1 to 1, in the exponential; taken as 42 at most where "
@@ -122,47 +99,14 @@ const std::vector<Parameter> kFilteredParameters{
                   "width and a quarter of the depth gradient, each times 2 radius + 1, at most 16 such widths.",
          .phase = Phase::visibility,
          .choices = "auto|manual"}),
-    parameter<&FilteredOptions::constant>({.name  = "constant",
-                                           .doc   = "Moves the point towards the light.",
-                                           .unit  = "texel widths at the point's depth",
-                                           .phase = Phase::aim,
-                                           .min   = 0,
-                                           .max   = 1e6}),
-    parameter<&FilteredOptions::slope>({.name  = "slope",
-                                        .doc   = "Moves the point towards the light.",
-                                        .unit  = "depth gradients of the receiver's plane a texel",
-                                        .phase = Phase::visibility,
-                                        .min   = 0,
-                                        .max   = 1e6}),
-    parameter<&FilteredOptions::normal_offset>(
-        {.name  = "normal_offset",
-         .doc   = "Moves the point along its normal, times the sine of the light's angle.",
-         .unit  = "texel widths",
-         .phase = Phase::aim,
-         .min   = 0,
-         .max   = 64}),
-    parameter<&FilteredOptions::fit>(
-        {.name    = "fit",
-         .doc     = "What a map covers. scene: everything; casters: what can block the light, without planes that have "
-                    "everything else in front of them.",
-         .phase   = Phase::build,
-         .choices = "casters|scene"}),
-    parameter<&FilteredOptions::surround>(
-        {.name  = "surround",
-         .doc   = "Spot lights: resolution of the maps outside the cone, relative to the cone's own map; 0: no such "
-                  "maps, points there are undefined.",
-         .phase = Phase::aim,
-         .min   = 0,
-         .max   = 1}),
+    constant_parameter<FilteredOptions>(),
+    slope_parameter<FilteredOptions>(),
+    normal_offset_parameter<FilteredOptions>(),
+    fit_parameter<FilteredOptions>(),
+    surround_parameter<FilteredOptions>(),
 };
 
 constexpr double kSteps = 0x1p16;  // of S_j: floats keep moments to 2^-24, and bounds are ratios of their differences
-
-/// Widths of a texel between what the map is fitted to and what is nearer to the light, all of which counts as on the
-/// near plane: a quarter of the map's side, so that exponentials of the two depths differ, too.
-double headroom(const FilteredOptions& options) {
-    return std::max(0.25 * options.resolution, kMostAutomatic * (4 * options.radius + 2)) + options.constant;
-}
 
 class FilteredMap final : public Method {
 public:
@@ -176,20 +120,18 @@ public:
                  options_.slope, options_.normal_offset};
         // Moments are kept beside the depth that they are made of.
         const double share = 4.0 / (4 + MomentMap::bytes_per_sample(options_.kind, options_.empty, options_.precision));
-        map_options_       = {.method         = "filtered_map",
-                              .resolution     = options_.resolution,
-                              .fit_to_casters = options_.fit == MapFit::casters,
-                              .surround       = options_.surround,
-                              // What the filter and the offset may ask for, and a rounding.
-                              .border       = options_.radius + bias_.normal_offset + 2,
-                              .headroom     = headroom(options_),
-                              .memory_limit = share * LightViews::half_of_memory()};
+        // What is nearer to the light than what the map is fitted to counts as on the near plane: a quarter of the
+        // map's side before that, so that exponentials of the two depths differ, too.
+        const MapMargins room =
+            margins("filtered_map", options_, options_.radius, options_.radius, 0.25 * options_.resolution);
+        map_options_ = {.method         = "filtered_map",
+                        .resolution     = options_.resolution,
+                        .fit_to_casters = options_.fit == Fit::casters,
+                        .surround       = options_.surround,
+                        .border         = room.border,
+                        .headroom       = room.headroom,
+                        .memory_limit   = share * LightViews::half_of_memory()};
         if (views_) views_->set_options(map_options_);
-        if (4 * map_options_.border > map_options_.resolution)
-            throw UsageError(fmt::format(
-                "filtered_map: radius={} and normal_offset={} reach over a quarter of resolution={}, "
-                "expected a resolution of at least {}",
-                options_.radius, bias_.normal_offset, map_options_.resolution, std::ceil(4 * map_options_.border)));
     }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
@@ -212,50 +154,22 @@ public:
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        const std::vector<MapView>& views = views_->views();
-        for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-            if (centre_is_behind(views_->scene(), points, light, i)) {
-                out.s[i] = 0;
-                return;
-            }
-            for (std::size_t v = 0; v < views.size(); ++v)
-                if (const std::optional<Receiver> receiver = receive(views[v], facet, p, bias_, filter_)) {
-                    out.s[i] = lit(views[v], maps_[v], *receiver);
-                    return;
-                }
-            // No view covers the point: nothing blocks the light there, or nobody looked.
-            out.s[i] = 1;
-            if (!views_->cover_all()) out.answer[i] = Answer::undefined;
+        look_up(*views_, points, light, bias_, filter_, out, [&](std::size_t v, const Receiver& receiver, dvec3) {
+            return lit(views_->views()[v], maps_[v], receiver);
         });
     }
 
     /// Whose depth the map holds in the texel under the filter that blocks the point, the nearest of several. Draws the
     /// maps again.
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
-        struct Sample {
-            std::size_t view = ~std::size_t{0};
-            ivec2 at{0};
-        };
-        const std::vector<MapView>& views = views_->views();
-        std::vector<Sample> samples(points.size());
+        BlockingSamples samples(points.size());
         for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-            for (std::size_t v = 0; v < views.size(); ++v)
-                if (std::optional<Receiver> receiver = receive(views[v], facet, p, bias_, filter_)) {
-                    receiver->bias = total_bias(*receiver);
-                    if (const auto at = blocked_sample(views[v].map, *receiver, BiasMode::manual, filter_))
-                        samples[i] = {v, *at};
-                    return;
-                }
+            if (auto found = receive(views_->views(), facet, p, bias_, filter_)) {
+                found->receiver.bias = total_bias(found->receiver);
+                samples.find(i, found->view, views_->views()[found->view], found->receiver, BiasMode::manual, filter_);
+            }
         });
-        std::ranges::fill(blockers, kNoTriangle);
-        for (std::size_t v = 0; v < views.size(); ++v) {
-            if (std::ranges::find(samples, v, &Sample::view) == samples.end()) continue;
-            const std::vector<TriangleId> owners = views_->owners(views[v]);
-            for (std::size_t i = 0; i < samples.size(); ++i)
-                if (samples[i].view == v)
-                    blockers[i] =
-                        owners[static_cast<std::size_t>(samples[i].at.y) * views[v].map.width() + samples[i].at.x];
-        }
+        samples.name(blockers, [&](std::size_t v) { return views_->owners(v); });
     }
 
     /// Moments, and the depth that blame asks.

@@ -103,10 +103,10 @@ double Casters::distance(dvec3 p) const {
     return nearest;
 }
 
-std::vector<std::span<const uvec3>> Casters::seen_by(const dmat4& clip_from_world) const {
+std::vector<std::span<const uvec3>> Casters::seen_by(const dmat4& clip_from_world, bool all) const {
     std::vector<std::span<const uvec3>> runs;
     for (const Part& part : parts_) {
-        if (!has(drawn_, part)) continue;
+        if (!all && !has(drawn_, part)) continue;
         std::array<int, 5> outside{};
         for (int corner = 0; corner < 8; ++corner) {
             const dvec4 c = clip_from_world * dvec4(corner & 1 ? part.box.max.x : part.box.min.x,

@@ -69,8 +69,9 @@ public:
     /// From p to the nearest point of what is fitted to.
     [[nodiscard]] double distance(dvec3 p) const;
 
-    /// The triangles that are drawn, without parts whose boxes lie wholly beyond one side of the view.
-    [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world) const;
+    /// The triangles that are drawn, or `all` of the scene, without parts whose boxes lie wholly beyond one side of the
+    /// view.
+    [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world, bool all = false) const;
 
 private:
     static constexpr std::size_t kGrain      = 4096;

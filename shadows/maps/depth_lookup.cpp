@@ -16,12 +16,17 @@ constexpr double kAutoGradient = 0.25;  // depth gradients a sample: enough for 
 constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
 /// Does the map show anything nearer than the receiver at sample (i, j)?
-bool is_blocked(const DepthMap& map, const Receiver& p, int i, int j, BiasMode mode) {
-    if (i < 0 || j < 0 || i >= map.width() || j >= map.height()) return false;
-    double r = p.r;
+bool is_blocked(const MapView& view, const Receiver& p, int i, int j, BiasMode mode) {
+    if (i < 0 || j < 0 || i >= view.map.width() || j >= view.map.height()) return false;
+    const bool halfway  = view.midpoint && !view.midpoint->is_empty(i, j);
+    const DepthMap& map = halfway ? *view.midpoint : view.map;
+    double r            = p.r;
     if (mode != BiasMode::manual) {
         const double plane = p.r + p.r_x * (i + 0.5 - p.x) + p.r_y * (j + 0.5 - p.y);
-        r = mode == BiasMode::automatic ? plane + std::min(std::max(0.0, p.r - plane) + p.slack, p.most) : plane;
+        if (mode == BiasMode::receiver_plane)
+            r = plane;
+        else
+            r = plane + (halfway ? p.snapping : std::min(std::max(0.0, p.r - plane) + p.slack, p.most));
     }
     return map.nearness(i, j) > std::max(r + p.bias, 0.0);  // behind all that casts, r is negative
 }
@@ -68,49 +73,30 @@ std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p
     if (bias.mode == BiasMode::manual) return receiver;
     const double largest = glm::length(p) + glm::length(f.origin) + std::abs(v.z);
     receiver.bias += view.map.quantum(receiver.r) + kRounding * largest * f.nearness_per_depth(v.z);
-    receiver.slack = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
-    receiver.most  = samples * kMostAutomatic * per_width;
+    receiver.slack    = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
+    receiver.most     = samples * kMostAutomatic * per_width;
+    receiver.snapping = snapping;
     if (bias.mode == BiasMode::receiver_plane) receiver.bias += snapping;
     return receiver;
 }
 
-float lit_share(const DepthMap& map, const Receiver& p, BiasMode mode, const Filter& filter) {
-    const int radius = filter.radius;
-    if (!filter.bilinear) {
-        const int x = static_cast<int>(std::floor(p.x));
-        const int y = static_cast<int>(std::floor(p.y));
-        if (radius == 0) return is_blocked(map, p, x, y, mode) ? 0.0f : 1.0f;
-        int lit = 0;
-        for (int j = -radius; j <= radius; ++j)
-            for (int i = -radius; i <= radius; ++i) lit += !is_blocked(map, p, x + i, y + j, mode);
-        return static_cast<float>(lit) / static_cast<float>((2 * radius + 1) * (2 * radius + 1));
-    }
-    // A box of 2 radius + 1 samples that moves with the point: its border samples count by how much of them it covers.
-    const int x     = static_cast<int>(std::floor(p.x - 0.5));
-    const int y     = static_cast<int>(std::floor(p.y - 0.5));
-    const double fx = p.x - 0.5 - x;
-    const double fy = p.y - 0.5 - y;
-    double lit      = 0;
-    for (int j = -radius; j <= radius + 1; ++j)
-        for (int i = -radius; i <= radius + 1; ++i) {
-            if (is_blocked(map, p, x + i, y + j, mode)) continue;
-            const double wx = i == -radius ? 1 - fx : i == radius + 1 ? fx : 1;
-            const double wy = j == -radius ? 1 - fy : j == radius + 1 ? fy : 1;
-            lit += wx * wy;
-        }
-    return static_cast<float>(std::clamp(lit / ((2 * radius + 1) * (2 * radius + 1)), 0.0, 1.0));
+std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet& facet, dvec3 p, const Bias& bias,
+                                     const Filter& filter) {
+    for (std::size_t v = 0; v < views.size(); ++v)
+        if (const auto receiver = receive(views[v], facet, p, bias, filter)) return FoundReceiver{v, *receiver};
+    return {};
 }
 
-namespace {
-
-/// Point k of n, evenly over the unit disk.
-/// [Helmut Vogel, A Better Way to Construct the Sunflower Head, 1979]
-dvec2 on_disk(int k, int n) {
-    const double radius = std::sqrt((k + 0.5) / n), angle = k * 2.399963229728653;
-    return {radius * std::cos(angle), radius * std::sin(angle)};
+float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
+    if (filter.is_one_sample())
+        return is_blocked(view, p, static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)), mode) ? 0.0f
+                                                                                                               : 1.0f;
+    double lit         = 0;
+    const double whole = for_each_sample({p.x, p.y}, p.turn, filter, [&](int i, int j, double weight) {
+        if (!is_blocked(view, p, i, j, mode)) lit += weight;
+    });
+    return static_cast<float>(std::clamp(lit / whole, 0.0, 1.0));
 }
-
-}  // namespace
 
 float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode, const SoftFilter& filter) {
     const LightFrame& f    = view.frame;
@@ -120,39 +106,34 @@ float soft_share(const MapView& view, const Receiver& receiver, double depth, Bi
         const dvec2 wide = filter.size * (1 / std::max(z, f.near) - 1 / depth) * per_window;
         return glm::clamp(wide, dvec2(0.5), dvec2(std::max(0.5, filter.texels)));
     };
-    const auto blocked = [&](dvec2 within, int k, ivec2& at) {
-        const dvec2 offset = within * on_disk(k, filter.samples);
+    const auto blocked = [&](dvec2 within, dvec2 point, ivec2& at) {
+        const dvec2 offset = within * turned(point, receiver.turn);
         at = {static_cast<int>(std::floor(receiver.x + offset.x)), static_cast<int>(std::floor(receiver.y + offset.y))};
-        return is_blocked(view.map, receiver, at.x, at.y, mode);
+        return is_blocked(view, receiver, at.x, at.y, mode);
     };
     const dvec2 search = reach(f.near);
     double sum         = 0;
     int blockers       = 0;
     ivec2 at{0};
-    for (int k = 0; k < filter.samples; ++k) {
-        if (!blocked(search, k, at)) continue;
+    for (const dvec2 point : filter.points) {
+        if (!blocked(search, point, at)) continue;
         sum += f.depth(view.map.nearness(at.x, at.y));
         ++blockers;
     }
     if (blockers == 0) return 1;
     const dvec2 penumbra = reach(sum / blockers);
     int lit              = 0;
-    for (int k = 0; k < filter.samples; ++k) lit += blocked(penumbra, k, at) ? 0 : 1;
-    return static_cast<float>(lit) / static_cast<float>(filter.samples);
+    for (const dvec2 point : filter.points) lit += blocked(penumbra, point, at) ? 0 : 1;
+    return static_cast<float>(lit) / static_cast<float>(filter.points.size());
 }
 
-std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& p, BiasMode mode, const Filter& filter) {
-    const double shift = filter.bilinear ? 0.5 : 0.0;  // as in lit_share
-    const int x        = static_cast<int>(std::floor(p.x - shift));
-    const int y        = static_cast<int>(std::floor(p.y - shift));
-    const int last     = filter.radius + (filter.bilinear ? 1 : 0);
+std::optional<ivec2> blocked_sample(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
     std::optional<ivec2> nearest;
     double least = std::numeric_limits<double>::infinity();
-    for (int j = y - filter.radius; j <= y + last; ++j)
-        for (int i = x - filter.radius; i <= x + last; ++i) {
-            const double distance = std::hypot(i + 0.5 - p.x, j + 0.5 - p.y);
-            if (distance < least && is_blocked(map, p, i, j, mode)) least = distance, nearest = ivec2(i, j);
-        }
+    for_each_sample({p.x, p.y}, p.turn, filter, [&](int i, int j, double) {
+        const double distance = std::hypot(i + 0.5 - p.x, j + 0.5 - p.y);
+        if (distance < least && is_blocked(view, p, i, j, mode)) least = distance, nearest = ivec2(i, j);
+    });
     return nearest;
 }
 

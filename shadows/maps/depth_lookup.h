@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "umbra/shadows/maps/kernels.h"
 #include "umbra/shadows/maps/light_views.h"
 
 namespace umbra {
@@ -43,11 +44,6 @@ struct Bias {
     double normal_offset = 0;
 };
 
-struct Filter {
-    int radius    = 0;  ///< (2 radius + 1)^2 samples
-    bool bilinear = false;
-};
-
 /// A surface point's triangle, exact in double.
 struct Facet {
     dvec3 a, ab, ac;
@@ -61,20 +57,32 @@ struct Receiver {
     double r_x, r_y;             ///< nearness of its plane, a sample
     double bias;                 ///< nearness added to all comparisons
     double slack = 0, most = 0;  ///< automatic: nearness added to the nearer of plane and point, most above the plane
+    double snapping = 0;         ///< automatic: nearness by which its plane may be off in the map
+    dvec2 turn{1, 0};            ///< cosine and sine of the angle that discs are rotated by
 };
 
 /// The receiver in a view, or nothing where the view does not cover it.
 [[nodiscard]] std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p, const Bias& bias,
                                               const Filter& filter);
 
-/// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth.
-[[nodiscard]] float lit_share(const DepthMap& map, const Receiver& receiver, BiasMode mode, const Filter& filter);
+/// The receiver in the first of several views that covers the point, and which it is.
+struct FoundReceiver {
+    std::size_t view = 0;
+    Receiver receiver;
+};
+[[nodiscard]] std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet& facet, dvec3 p,
+                                                   const Bias& bias, const Filter& filter);
+
+/// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth. A sample
+/// that has a midpoint is compared with the point's plane (manual: with the point) without slack: the surface that
+/// casts is half of its body away. [Andrew Woo, The Shadow Depth Map Revisited, Graphics Gems III, 1992]
+[[nodiscard]] float lit_share(const MapView& view, const Receiver& receiver, BiasMode mode, const Filter& filter);
 
 /// PCSS: a search for what blocks, and then PCF as wide as the penumbra that a light of this size has behind it.
 struct SoftFilter {
-    int samples   = 32;  ///< of the search, and of the filter
-    double size   = 0;   ///< of the light: the radius of a disk of its area, world units, > 0
-    double texels = 64;  ///< farthest from the point that a sample is taken
+    std::span<const dvec2> points{};  ///< in the unit disk, of the search and of the filter: even_disk
+    double size   = 0;                ///< of the light: the radius of a disk of its area, world units, > 0
+    double texels = 64;               ///< farthest from the point that a sample is taken
 };
 
 /// The share of a light with an area that reaches the receiver at `depth` along a perspective view, as if the light
@@ -84,7 +92,7 @@ struct SoftFilter {
                                const SoftFilter& filter);
 
 /// Of those samples that lit_share finds blocked, the one nearest to the point; none where it finds none.
-[[nodiscard]] std::optional<ivec2> blocked_sample(const DepthMap& map, const Receiver& receiver, BiasMode mode,
+[[nodiscard]] std::optional<ivec2> blocked_sample(const MapView& view, const Receiver& receiver, BiasMode mode,
                                                   const Filter& filter);
 
 }  // namespace umbra

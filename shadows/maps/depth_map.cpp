@@ -330,6 +330,31 @@ void DepthMap::draw(const dmat4& clip_from_world, std::span<const vec3> position
     });
 }
 
+void DepthMap::draw_behind(const DepthMap& first, const dmat4& clip_from_world, std::span<const vec3> positions,
+                           std::span<const std::span<const uvec3>> runs, Faces faces) {
+    constexpr std::uint32_t kRoundings = 8;  // of a surface that is drawn twice, as two triangles with other corners
+    with_format(format_, [&](auto format) {
+        rasterise(width_, height_, clip_from_world, positions, runs, faces,
+                  [&](const Snapped& t, const uvec3*, int row_begin, int row_end) {
+                      fill<format.value>(
+                          t, row_begin, row_end, width_, far_word_, [&](std::size_t sample, std::uint32_t word) {
+                              if (word > first.words_[sample] && word - first.words_[sample] > kRoundings)
+                                  words_[sample] = std::min(words_[sample], word);
+                          });
+                  });
+    });
+}
+
+void DepthMap::move_towards(const DepthMap& first, const std::function<double(double, double)>& between) {
+    with_format(format_, [&](auto format) {
+        parallel_ranges(samples(), kCleared, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (words_[i] != far_word_)
+                    words_[i] = encode<format.value>(between(decode(first.words_[i]), decode(words_[i])), far_word_);
+        });
+    });
+}
+
 std::vector<std::uint32_t> DepthMap::owners(const dmat4& clip_from_world, std::span<const vec3> positions,
                                             std::span<const uvec3> all, std::span<const std::span<const uvec3>> runs,
                                             Faces faces) const {

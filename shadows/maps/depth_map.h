@@ -6,6 +6,7 @@
 #pragma once
 
 #include <bit>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -34,10 +35,7 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const { return samples() * sizeof(words_[0]); }
 
     /// Nearness kept at sample (x, y); 0 where nothing was drawn. x to the right and y down as the light sees it.
-    [[nodiscard]] double nearness(int x, int y) const {
-        if (format_ == DepthFormat::float32) return std::bit_cast<float>(kFarWord - word(x, y));
-        return 1 - word(x, y) * step_;
-    }
+    [[nodiscard]] double nearness(int x, int y) const { return decode(word(x, y)); }
     [[nodiscard]] bool is_empty(int x, int y) const { return word(x, y) == far_word_; }
 
     /// As kept: smaller is nearer, in every format.
@@ -58,6 +56,14 @@ public:
     void draw(const dmat4& clip_from_world, std::span<const vec3> positions,
               std::span<const std::span<const uvec3>> runs, Faces faces);
 
+    /// Draws as `draw` does what lies behind `first`, a map of this size and format into which the same was drawn:
+    /// every sample keeps the second surface, if there is one that lies farther by more than a few roundings.
+    void draw_behind(const DepthMap& first, const dmat4& clip_from_world, std::span<const vec3> positions,
+                     std::span<const std::span<const uvec3>> runs, Faces faces);
+
+    /// In every sample that is not empty keeps between(r of `first`, r of this), in [0, 1], instead of r. Parallel.
+    void move_towards(const DepthMap& first, const std::function<double(double first, double second)>& between);
+
     /// Which triangle each sample shows: draws the same once more and names the one whose depth the map kept, the first
     /// of several, by its index in `all`, of which the runs are parts; kNoOwner where there is none. As costly as
     /// drawing: for explaining a map.
@@ -70,6 +76,10 @@ public:
 
 private:
     static constexpr std::uint32_t kFarWord = 0x3f800000;  ///< the bits of 1.0f
+    [[nodiscard]] double decode(std::uint32_t word) const {
+        if (format_ == DepthFormat::float32) return std::bit_cast<float>(kFarWord - word);
+        return 1 - word * step_;
+    }
     [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(width_) * height_; }
 
     int width_, height_;

@@ -23,15 +23,16 @@ double LightViews::half_of_memory() { return 0.5 * usable_memory(); }
 
 std::size_t LightViews::memory_bytes() const {
     std::size_t bytes = casters_.memory_bytes();
-    for (const MapView& view : views_) bytes += view.map.memory_bytes();
+    for (const MapView& view : views_)
+        bytes += view.map.memory_bytes() + (view.midpoint ? view.midpoint->memory_bytes() : 0);
     return bytes;
 }
 
-std::vector<TriangleId> LightViews::owners(const MapView& view) const {
+std::vector<TriangleId> owners(const MapView& view, const Casters& casters, Faces faces) {
     static_assert(DepthMap::kNoOwner == kNoTriangle);
     const dmat4 clip_from_world = view.frame.clip_from_world();
-    return view.map.owners(clip_from_world, scene().positions, scene().triangles, casters_.seen_by(clip_from_world),
-                           options_.faces);
+    const Scene& scene          = casters.scene();
+    return view.map.owners(clip_from_world, scene.positions, scene.triangles, casters.seen_by(clip_from_world), faces);
 }
 
 void LightViews::add_view(LightFrame frame, int resolution) {
@@ -55,13 +56,14 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     // The scene's last depth is not nearness 0, where the steps of floats no longer tell how far they are rounded.
     frame.far += 0.01 * (frame.far - frame.near);
     if (casters_.seen_by(frame.clip_from_world()).empty()) return;
-    const double bytes = 4.0 * resolution * resolution;
+    const double bytes = (options_.midpoints ? 8.0 : 4.0) * resolution * resolution;
     if (static_cast<double>(memory_bytes()) + bytes > options_.memory_limit)
         throw UsageError(
             fmt::format("{}: resolution={} takes more than half of the machine's memory "
                         "({:.0f} MiB a map, {} of them so far), expected a smaller one",
                         options_.method, options_.resolution, bytes / (1 << 20), views_.size()));
     views_.push_back({frame, new_map(resolution)});
+    if (options_.midpoints) views_.back().midpoint = new_map(resolution);
 }
 
 DepthMap LightViews::new_map(int resolution) {
@@ -128,7 +130,10 @@ void LightViews::fit_around(const Light& light) {
 }
 
 void LightViews::fit(LightId light) {
-    for (MapView& view : views_) spare_.push_back(std::move(view.map));
+    for (MapView& view : views_) {
+        spare_.push_back(std::move(view.map));
+        if (view.midpoint) spare_.push_back(std::move(*view.midpoint));
+    }
     views_.clear();
     cover_all_     = true;
     const Light& l = casters_.scene().lights[light];
@@ -145,9 +150,19 @@ void LightViews::fit(LightId light) {
 }
 
 void LightViews::rasterise() {
+    const std::vector<vec3>& positions = casters_.scene().positions;
     for (MapView& view : views_) {
         const dmat4 clip_from_world = view.frame.clip_from_world();
-        view.map.draw(clip_from_world, casters_.scene().positions, casters_.seen_by(clip_from_world), options_.faces);
+        const auto triangles        = casters_.seen_by(clip_from_world);
+        view.map.draw(clip_from_world, positions, triangles, options_.faces);
+        if (!view.midpoint) continue;
+        // What blocks nothing may be the second surface: a box's lower side, on a floor.
+        view.midpoint->draw_behind(view.map, clip_from_world, positions, casters_.seen_by(clip_from_world, true),
+                                   options_.faces);
+        const LightFrame& f = view.frame;
+        view.midpoint->move_towards(view.map, [&f](double first, double second) {
+            return f.nearness(0.5 * (f.depth(first) + f.depth(second)));
+        });
     }
 }
 

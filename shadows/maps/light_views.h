@@ -9,6 +9,8 @@
 // Maps reach over their view's border by as much as the filter does, so that no filter ever crosses a cube's seam.
 #pragma once
 
+#include <optional>
+
 #include "umbra/shadows/maps/depth_map.h"
 #include "umbra/shadows/maps/light_frame.h"
 
@@ -17,8 +19,13 @@ namespace umbra {
 /// A map and where it looks from.
 struct MapView {
     LightFrame frame;
-    DepthMap map;
+    DepthMap map;                        ///< of the first surface that the light sees
+    std::optional<DepthMap> midpoint{};  ///< halfway in depth between that and the second, where there are two
 };
+
+/// Which triangle each sample of a view's map shows that `faces` of `casters` were drawn into, kNoTriangle where none.
+/// Draws the map again.
+[[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const Casters& casters, Faces faces);
 
 class LightViews {
 public:
@@ -33,6 +40,7 @@ public:
         bool fit_to_casters = true;
         bool all_depths     = false;  ///< the maps keep how near everything is that they show; otherwise what is nearer
                                       ///< than all that they are fitted to has nearness 1
+        bool midpoints      = false;  ///< the views have midpoints, which takes as much memory and time as the maps
         double surround     = 0.5;
         double border       = 2;                 ///< samples by which a map reaches over its view
         double headroom     = 64;                ///< samples' widths by which a bias may move points towards the light
@@ -48,12 +56,14 @@ public:
     /// Chooses the views of `light` and fits them; their maps are empty. Throws UsageError where the maps take more
     /// than `memory_limit`.
     void fit(LightId light);
-    /// Draws the depth of what casts into the maps of all views.
+    /// Draws the depth of what casts into the maps of all views, and their midpoints.
     void rasterise();
 
     [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
-    /// Which triangle each sample of a view's map shows, kNoTriangle where none. Draws the map again.
-    [[nodiscard]] std::vector<TriangleId> owners(const MapView& view) const;
+    /// Which triangle each sample of view k's map shows, kNoTriangle where none. Draws the map again.
+    [[nodiscard]] std::vector<TriangleId> owners(std::size_t k) const {
+        return umbra::owners(views_[k], casters_, options_.faces);
+    }
     /// False where what lies outside a spot's cone was left out; else nothing that casts lies where no view looks.
     [[nodiscard]] bool cover_all() const { return cover_all_; }
     [[nodiscard]] const Scene& scene() const { return casters_.scene(); }

@@ -4,12 +4,16 @@
 // aim fits frames to that as the light sees it, one map or six (light_views.h, light_frame.h), and rasterises its depth
 // into each (depth_map.h).
 // visibility takes each point to the view that covers it, projects it there, moves it towards the light by the bias,
-// and compares its depth with those that the filter asks for (depth_lookup.h): S_j is the fraction that does not block.
+// and compares its depth with those that the filter asks for (kernels.h, depth_lookup.h): S_j is the fraction that does
+// not block. If it is asked to, it then looks for contacts in the picture (contact_march.h).
 //
 // This work is based on:
 // Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
 // William Reeves, David Salesin, Robert Cook. Rendering Antialiased Shadows with Depth Maps. 1987 (PCF)
+// Ignacio Castano. Shadow Mapping Summary, Part 1. 2013 (kernel=castano3, castano5, castano7)
+// Jorge Jimenez. Next Generation Post Processing in Call of Duty: Advanced Warfare. 2014 (rotation=gradient)
 // Randima Fernando. Percentage-Closer Soft Shadows. 2005 (PCSS)
+// Andrew Woo. The Shadow Depth Map Revisited. Graphics Gems III. 1992 (surface=midpoint)
 // Yulan Wang, Steven Molnar. Second-Depth Shadow Mapping. 1994 (faces=back)
 // Christian Schueler. Eliminating Surface Acne with Gradient Shadow Mapping. 2005 (the receiver's plane as bias)
 // Daniel Holbert. Saying Goodbye to Shadow Acne. 2011 (normal offset)
@@ -18,11 +22,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "umbra/core/base/error.h"
-#include "umbra/core/render/facing.h"
-#include "umbra/shadows/maps/facets.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/shadows/maps/answers.h"
 
 namespace umbra {
 namespace {
@@ -30,43 +32,16 @@ namespace {
 using Options = ZBufferOptions;
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::resolution>({.name  = "resolution",
-                                     .doc   = "Texels along each side of a map; a cube has six maps.",
-                                     .unit  = "texels",
-                                     .phase = Phase::aim,
-                                     .min   = 16,
-                                     .max   = 16384,
-                                     .sweep = "256|512|1024|2048|4096|8192"}),
+    resolution_parameter<Options>("Texels along each side of a map; a cube has six maps.",
+                                  "256|512|1024|2048|4096|8192"),
     parameter<&Options::depth>({.name    = "depth",
                                 .doc     = "Bits of a depth value; float stores reversed depth.",
                                 .phase   = Phase::aim,
                                 .choices = "16|24|32|float"}),
-    parameter<&Options::bias>(
-        {.name    = "bias",
-         .doc     = "Reference depth of the comparison. manual: the depth of the point plus constant and slope bias. "
-                    "receiver_plane: the receiver's plane at the texel, minus a rounding margin. auto: the smaller of the "
-                    "two, minus a texel width and a quarter of the depth gradient, at most 16 texel widths in front of "
-                    "the plane.",
-         .phase   = Phase::visibility,
-         .choices = "auto|receiver_plane|manual"}),
-    parameter<&Options::constant>({.name  = "constant",
-                                   .doc   = "Moves the point towards the light.",
-                                   .unit  = "texel widths at the point's depth",
-                                   .phase = Phase::aim,
-                                   .min   = 0,
-                                   .max   = 1e6}),
-    parameter<&Options::slope>({.name  = "slope",
-                                .doc   = "Moves the point towards the light.",
-                                .unit  = "depth gradients of the receiver's plane a texel",
-                                .phase = Phase::visibility,
-                                .min   = 0,
-                                .max   = 1e6}),
-    parameter<&Options::normal_offset>({.name = "normal_offset",
-                                        .doc = "Moves the point along its normal, times the sine of the light's angle.",
-                                        .unit  = "texel widths",
-                                        .phase = Phase::aim,
-                                        .min   = 0,
-                                        .max   = 64}),
+    bias_parameter<Options>(),
+    constant_parameter<Options>(),
+    slope_parameter<Options>(),
+    normal_offset_parameter<Options>(),
     parameter<&Options::filter>({.name    = "filter",
                                  .doc     = "nearest: one comparison; pcf: the mean of several around the point; pcss: "
                                             "for area lights a search for blockers, and pcf as wide as the penumbra "
@@ -74,23 +49,29 @@ const std::vector<Parameter> kParameters{
                                  .phase   = Phase::aim,
                                  .choices = "nearest|pcf|pcss",
                                  .sweep   = "nearest|pcf"}),
-    parameter<&Options::radius>({.name  = "radius",
-                                 .doc   = "pcf: compares (2 radius + 1)^2 texels.",
-                                 .unit  = "texels",
-                                 .phase = Phase::aim,
-                                 .min   = 0,
-                                 .max   = 16}),
-    parameter<&Options::bilinear>(
-        {.name  = "bilinear",
-         .doc   = "pcf: bilinear weights, so that the kernel does not step from texel to texel.",
-         .phase = Phase::visibility}),
-    parameter<&Options::samples>({.name        = "samples",
-                                  .doc         = "pcss: texels compared, in the search and again in the filter.",
-                                  .unit        = "texels",
-                                  .phase       = Phase::aim,
-                                  .min         = 1,
-                                  .max         = 1024,
-                                  .area_lights = true}),
+    parameter<&Options::kernel>(
+        {.name  = "kernel",
+         .doc   = "pcf: which texels are compared. grid: a square of them; disc: those at points spread evenly over a "
+                  "disk of radius + 1/2; castano3, castano5, castano7: 3, 5 or 7 a side that count most in the middle, "
+                  "and move with the point.",
+         .phase = Phase::aim,
+         .choices = "grid|disc|castano3|castano5|castano7"}),
+    radius_parameter<Options>("pcf: compares (2 radius + 1)^2 texels, not of Castano's kernels.", 16),
+    bilinear_parameter<Options>(),
+    parameter<&Options::rotation>(
+        {.name  = "rotation",
+         .doc   = "kernel=disc and pcss: rotates the points of each disc. noise: by an angle that the point's position "
+                  "in the map decides; gradient: by one that its pixel decides, spread over any 3 x 3 pixels; points "
+                  "that no picture shows have the pixel that the camera sees them through.",
+         .phase = Phase::visibility,
+         .choices = "none|noise|gradient"}),
+    parameter<&Options::samples>(
+        {.name  = "samples",
+         .doc   = "kernel=disc: points compared; pcss: texels, in the search and again in the filter.",
+         .unit  = "texels",
+         .phase = Phase::aim,
+         .min   = 1,
+         .max   = 1024}),
     parameter<&Options::search>({.name        = "search",
                                  .doc         = "pcss: how far from the point texels are compared, at most.",
                                  .unit        = "sides of the map",
@@ -103,18 +84,38 @@ const std::vector<Parameter> kParameters{
                                          "occluders whose normals point outwards.",
                                 .phase = Phase::aim,
                                 .choices = "all|front|back"}),
-    parameter<&Options::fit>({.name = "fit",
-                              .doc = "What a map covers. scene: everything; casters: what can block the light, without "
-                                     "planes that have everything else in front of them.",
-                              .phase   = Phase::build,
-                              .choices = "casters|scene"}),
-    parameter<&Options::surround>({.name = "surround",
-                                   .doc =
-                                       "Spot lights: resolution of the maps outside the cone, relative to the cone's "
-                                       "own map; 0: no such maps, points there are undefined.",
-                                   .phase = Phase::aim,
-                                   .min   = 0,
-                                   .max   = 1}),
+    parameter<&Options::surface>(
+        {.name = "surface",
+         .doc  = "Depth that a texel keeps. first: of the first surface that the light sees; midpoint: halfway between "
+                 "it and the second, if there is one, so that the lit sides of closed occluders need no bias: bias=auto "
+                 "is then receiver_plane. Where one surface is alone, its own, with the bias that is set.",
+         .phase   = Phase::aim,
+         .choices = "first|midpoint"}),
+    parameter<&Options::contact_steps>(
+        {.name = "contact_steps",
+         .doc =
+             "Contact shadows: steps of a march through the picture, from the point towards the light; a point is dark "
+             "where a step lies just behind what the picture shows. 0: no march. Points without a picture have one of "
+             "the scene traced.",
+         .unit  = "steps",
+         .phase = Phase::visibility,
+         .min   = 0,
+         .max   = 1024}),
+    parameter<&Options::contact_length>({.name  = "contact_length",
+                                         .doc   = "How far that march goes.",
+                                         .unit  = "world units",
+                                         .phase = Phase::visibility,
+                                         .min   = 1e-6,
+                                         .max   = 1e6}),
+    parameter<&Options::contact_thickness>(
+        {.name  = "contact_thickness",
+         .doc   = "How thick what the picture shows is taken to be: a step further behind it is not dark.",
+         .unit  = "world units",
+         .phase = Phase::visibility,
+         .min   = 0,
+         .max   = 1e6}),
+    fit_parameter<Options>(),
+    surround_parameter<Options>(),
 };
 
 }  // namespace
@@ -122,27 +123,32 @@ const std::vector<Parameter> kParameters{
 void ShadowZBuffer::configure(const Settings& settings) {
     const Options o = settings.as<Options>();
     bias_           = {o.bias, o.constant, o.slope, o.normal_offset};
-    filter_         = o.filter == FilterKind::nearest ? Filter{} : Filter{o.radius, o.bilinear};
+    contact_        = {o.contact_steps, o.contact_length, o.contact_thickness};
+    points_         = even_disk(o.samples);
+    rotation_       = o.rotation;
+    filter_         = {};
+    if (o.filter != FilterKind::nearest) filter_ = {kernel_radius(o.kernel, o.radius), o.bilinear, o.kernel, points_};
     finds_blockers_ = o.filter == FilterKind::pcss;
-    soft_           = {.samples = o.samples, .texels = o.search * o.resolution};
-    map_options_    = {
-           .method         = "shadow_zbuffer",
-           .resolution     = o.resolution,
-           .format         = o.depth,
-           .faces          = o.faces,
-           .fit_to_casters = o.fit == Fit::casters,
-           .all_depths     = finds_blockers_,
-           .surround       = o.surround,
-           // What the filter and the offset may ask for, and a rounding.
-           .border   = std::max<double>(filter_.radius, finds_blockers_ ? soft_.texels : 0) + bias_.normal_offset + 2,
-           .headroom = std::max(64.0, kMostAutomatic * (4 * filter_.radius + 2)) + bias_.constant};
+    // The light's size stays: aim is not repeated where only the bias changes.
+    soft_.points = points_;
+    soft_.texels = o.search * o.resolution;
+    if (finds_blockers_ && !profile(o.kernel).empty())
+        throw UsageError(
+            "shadow_zbuffer: filter=pcss filters as wide as the penumbra, and Castano's kernels have one width, "
+            "expected kernel=grid or kernel=disc");
+    const double reach    = std::max<double>(filter_.radius, finds_blockers_ ? soft_.texels : 0);
+    const MapMargins room = margins("shadow_zbuffer", o, filter_.radius, reach);
+    map_options_          = {.method         = "shadow_zbuffer",
+                             .resolution     = o.resolution,
+                             .format         = o.depth,
+                             .faces          = o.faces,
+                             .fit_to_casters = o.fit == Fit::casters,
+                             .all_depths     = finds_blockers_,
+                             .midpoints      = o.surface == KeptSurface::midpoint,
+                             .surround       = o.surround,
+                             .border         = room.border,
+                             .headroom       = room.headroom};
     if (views_) views_->set_options(map_options_);
-    if (4 * map_options_.border > map_options_.resolution)
-        throw UsageError(fmt::format(
-            "shadow_zbuffer: radius={} and normal_offset={} reach over a quarter of resolution={}, expected a "
-            "resolution "
-            "of at least {}",
-            filter_.radius, bias_.normal_offset, map_options_.resolution, std::ceil(4 * map_options_.border)));
 }
 
 Service ShadowZBuffer::serves(const SceneFacts& facts) const {
@@ -152,6 +158,8 @@ Service ShadowZBuffer::serves(const SceneFacts& facts) const {
                                : "; area lights are taken as their centres, so that penumbrae are missing";
     if (map_options_.faces != Faces::all && (facts.open_objects > 0 || facts.nonmanifold_objects > 0))
         why += "; open meshes cast with one side only";
+    if (rotation_ == Rotation::gradient) why += "; samples depend on the pixel that the camera sees a point through";
+    if (contact_.steps > 0) why += "; contact shadows of what the camera sees";
     return {How::approximately, why + "."};
 }
 
@@ -175,49 +183,73 @@ void ShadowZBuffer::aim(LightId light) {
     views_->rasterise();
 }
 
+Receiver ShadowZBuffer::rotated(Receiver receiver, const CameraFrame& camera, dvec3 p) const {
+    if (rotation_ == Rotation::noise) receiver.turn = noise_turn(receiver.x, receiver.y);
+    if (rotation_ != Rotation::gradient) return receiver;
+    // Behind a perspective eye there are no pixels.
+    const dvec3 pixel = camera.project(p);
+    if (pixel.z > 0 || camera.projection == Projection::orthographic)
+        receiver.turn = gradient_turn(std::floor(pixel.x), std::floor(pixel.y));
+    return receiver;
+}
+
+const PointBatch* ShadowZBuffer::picture(const PointBatch& points, PointBatch& traced) const {
+    if (contact_.steps == 0) return nullptr;
+    if (points.raster) return &points;
+    const Scene& scene       = views_->scene();
+    const CameraFrame camera = picture_of(scene, points);
+    try {
+        traced = primary_points(RayScene(scene), scene, scene.camera, camera.width, camera.height);
+    } catch (const InputError&) {  // an eye too far away for rays
+        return nullptr;
+    }
+    return &traced;
+}
+
 void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        if (centre_is_behind(views_->scene(), points, light, i)) {
-            out.s[i] = 0;
-            return;
-        }
-        for (const MapView& view : views_->views())
-            if (const std::optional<Receiver> biased = receive(view, facet, p, bias_, filter_)) {
-                out.s[i] = is_soft_ ? soft_share(view, *biased, view.frame.light_space(p).z, bias_.mode, soft_)
-                                    : lit_share(view.map, *biased, bias_.mode, filter_);
-                return;
-            }
-        // No view covers the point: nothing blocks the light there, or nobody looked.
-        out.s[i] = 1;
-        if (!views_->cover_all()) out.answer[i] = Answer::undefined;
+    const CameraFrame camera = picture_of(views_->scene(), points);
+    const auto share         = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+        const MapView& view = views_->views()[v];
+        return is_soft_ ? soft_share(view, receiver, view.frame.light_space(p).z, bias_.mode, soft_)
+                                : lit_share(view, receiver, bias_.mode, filter_);
+    };
+    const auto rotated_share = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+        return share(v, rotated(receiver, camera, p), p);
+    };
+    if (rotation_ == Rotation::none)
+        look_up(*views_, points, light, bias_, filter_, out, share);
+    else
+        look_up(*views_, points, light, bias_, filter_, out, rotated_share);
+
+    PointBatch traced;
+    const PointBatch* const seen = picture(points, traced);
+    if (seen == nullptr) return;
+    const Light& lamp = views_->scene().lights[light];
+    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet&, dvec3 p) {
+        if (out.s[i] > 0 && march(*seen, p, lamp, contact_)) out.s[i] = 0;
     });
 }
 
 void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
-    struct Sample {
-        std::size_t view = ~std::size_t{0};
-        ivec2 at{0};
-    };
-    const std::vector<MapView>& views = views_->views();
-    std::vector<Sample> samples(points.size());
     // What the search of pcss may find lies farther off; few points are asked.
-    const Filter asked = is_soft_ ? Filter{static_cast<int>(std::ceil(soft_.texels)), false} : filter_;
+    const Filter asked       = is_soft_ ? Filter{static_cast<int>(std::ceil(soft_.texels)), false} : filter_;
+    const CameraFrame camera = picture_of(views_->scene(), points);
+    BlockingSamples samples(points.size());
     for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        for (std::size_t v = 0; v < views.size(); ++v)
-            if (const std::optional<Receiver> receiver = receive(views[v], facet, p, bias_, filter_)) {
-                if (const auto at = blocked_sample(views[v].map, *receiver, bias_.mode, asked)) samples[i] = {v, *at};
-                return;
-            }
+        if (const auto found = receive(views_->views(), facet, p, bias_, filter_))
+            samples.find(i, found->view, views_->views()[found->view], rotated(found->receiver, camera, p), bias_.mode,
+                         asked);
     });
-    std::ranges::fill(blockers, kNoTriangle);
-    for (std::size_t v = 0; v < views.size(); ++v) {
-        if (std::ranges::find(samples, v, &Sample::view) == samples.end()) continue;
-        const std::vector<TriangleId> owners = views_->owners(views[v]);
-        for (std::size_t i = 0; i < samples.size(); ++i)
-            if (samples[i].view == v)
-                blockers[i] =
-                    owners[static_cast<std::size_t>(samples[i].at.y) * views[v].map.width() + samples[i].at.x];
-    }
+    samples.name(blockers, [&](std::size_t v) { return views_->owners(v); });
+
+    PointBatch traced;
+    const PointBatch* const seen = picture(points, traced);
+    if (seen == nullptr) return;
+    const Light& lamp = views_->scene().lights[light];
+    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet&, dvec3 p) {
+        if (blockers[i] != kNoTriangle) return;
+        if (const auto pixel = march(*seen, p, lamp, contact_)) blockers[i] = seen->triangle[*pixel];
+    });
 }
 
 std::size_t ShadowZBuffer::memory_bytes() const { return views_ ? views_->memory_bytes() : 0; }
@@ -238,6 +270,9 @@ const MethodInfo shadow_zbuffer{
                     "Williams 1978: one map of the whole scene and a constant bias of four texels."},
                    {"fast", "resolution=512", "A map of 512 x 512 texels."},
                    {"soft", "filter=pcss", "Fernando 2005: penumbrae of area lights, by a search for blockers."},
+                   {"smooth", "filter=pcf,kernel=castano7",
+                    "Castano 2013: edges blurred over eight texels, without steps."},
+                   {"midpoint", "surface=midpoint", "Woo 1992: closed occluders cast from half of their depth."},
                    {"best", "resolution=8192,filter=pcf", "A map of 8192 x 8192 texels, 3 x 3 comparisons."}},
     .create     = create<ShadowZBuffer>};
 

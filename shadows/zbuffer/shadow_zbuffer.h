@@ -3,30 +3,28 @@
 
 #include <optional>
 
-#include "umbra/shadows/maps/depth_lookup.h"
+#include "umbra/shadows/maps/map_options.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/zbuffer/contact_march.h"
 
 namespace umbra {
 
 enum class FilterKind : std::uint8_t { nearest, pcf, pcss };
-enum class Fit : std::uint8_t { casters, scene };
+enum class KeptSurface : std::uint8_t { first, midpoint };
 
-/// The parameters; shadow_zbuffer.cpp documents each.
-struct ZBufferOptions {
-    int resolution       = 2048;
-    DepthFormat depth    = DepthFormat::float32;
-    BiasMode bias        = BiasMode::automatic;
-    double constant      = 0;
-    double slope         = 0;
-    double normal_offset = 0;
-    FilterKind filter    = FilterKind::nearest;
-    int radius           = 1;
-    bool bilinear        = true;
-    int samples          = 32;
-    double search        = 0.1;
-    Faces faces          = Faces::all;
-    Fit fit              = Fit::casters;
-    double surround      = 0.5;
+/// The parameters; shadow_zbuffer.cpp and map_options.h document each.
+struct ZBufferOptions : ComparingOptions, ViewOptions {
+    DepthFormat depth        = DepthFormat::float32;
+    FilterKind filter        = FilterKind::nearest;
+    Kernel kernel            = Kernel::grid;
+    Rotation rotation        = Rotation::none;
+    int samples              = 32;
+    double search            = 0.1;
+    Faces faces              = Faces::all;
+    KeptSurface surface      = KeptSurface::first;
+    int contact_steps        = 0;
+    double contact_length    = 0.3;
+    double contact_thickness = 0.1;
 };
 
 class ShadowZBuffer final : public Method {
@@ -41,8 +39,17 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const override;
 
 private:
+    /// With the angle that discs about a point at world position p are rotated by; `camera` has its pixel.
+    [[nodiscard]] Receiver rotated(Receiver receiver, const CameraFrame& camera, dvec3 p) const;
+
+    /// Of the points, if they have one, or traced into `traced`: none where there is no march, or no eye near enough.
+    [[nodiscard]] const PointBatch* picture(const PointBatch& points, PointBatch& traced) const;
+
     Bias bias_;
+    ContactMarch contact_;
+    std::vector<dvec2> points_;  ///< of discs
     Filter filter_;
+    Rotation rotation_ = Rotation::none;
     SoftFilter soft_;              ///< of the light that it is aimed at
     bool finds_blockers_ = false;  ///< filter=pcss
     bool is_soft_        = false;  ///< and the light has an area

@@ -11,7 +11,7 @@
 #include "umbra/core/errors/shadow_edges.h"
 #include "umbra/core/errors/visibility_error.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/scene/primitives.h"
+#include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
@@ -19,31 +19,14 @@ namespace {
 
 // ---- scenes --------------------------------------------------------------------------------------------------------
 
-void add_mesh(Scene& scene, std::string name, const Mesh& mesh) {
-    if (scene.materials.empty()) scene.materials.emplace_back();
-    add_object(scene, std::move(name), mesh.positions, mesh.normals, mesh.triangles, 0);
-}
-Mesh moved(const Mesh& mesh, vec3 by) {
-    mat4 m(1);
-    m[3] = vec4(by, 1);
-    return transformed(mesh, m);
-}
-Light sun(vec3 direction) {
-    Light light;
-    light.name      = "sun";
-    light.kind      = LightKind::directional;
-    light.direction = glm::normalize(direction);
-    return light;
-}
-
 /// A floor along -z with a fence beside the camera, from its feet to 150 units away.
 Scene long_fence(vec3 direction = {1, -0.35f, -0.3f}) {
     Scene scene;
-    add_mesh(scene, "floor", moved(make_plane(60, 200), {0, 0, -90}));
+    add_mesh(scene, "floor", make_plane(60, 200), {0, 0, -90});
     for (int i = 0; i < 60; ++i)
-        add_mesh(scene, fmt::format("post {}", i),
-                 moved(make_box({0.2f, 1.2f, 0.15f}), {-1.5f, 0.6f, 1 - 2.5f * static_cast<float>(i)}));
-    scene.lights        = {sun(direction)};
+        add_mesh(scene, fmt::format("post {}", i), make_box({0.2f, 1.2f, 0.15f}),
+                 {-1.5f, 0.6f, 1 - 2.5f * static_cast<float>(i)});
+    scene.lights        = {directional_light(direction)};
     scene.camera.eye    = {1.5f, 1.7f, 3};
     scene.camera.target = {0.5f, 0.5f, -20};
     scene.camera.fov_y  = 50;
@@ -57,10 +40,9 @@ Scene boxes_in_view() {
     Scene scene;
     add_mesh(scene, "floor", make_plane(30, 30));
     for (int i = 0; i < 5; ++i)
-        add_mesh(scene, fmt::format("box {}", i),
-                 moved(make_box({0.5f, 1 + 0.2f * static_cast<float>(i), 0.7f}),
-                       {static_cast<float>(i) - 2, 0.7f, 0.6f * static_cast<float>(i % 3) - 0.5f}));
-    scene.lights        = {sun({0.7f, -1, 0.3f})};
+        add_mesh(scene, fmt::format("box {}", i), make_box({0.5f, 1 + 0.2f * static_cast<float>(i), 0.7f}),
+                 {static_cast<float>(i) - 2, 0.7f, 0.6f * static_cast<float>(i % 3) - 0.5f});
+    scene.lights        = {directional_light({0.7f, -1, 0.3f})};
     scene.camera.eye    = {0.5f, 5, 9};
     scene.camera.target = {0, 0.3f, 0};
     scene.width         = 160;
@@ -141,11 +123,11 @@ TEST(CascadedMaps, SplitsAreTheFormulas) {
 /// Two bodies of facets, one near and one that reaches over the far end of the view, seen along the light.
 Scene bodies_along_the_light() {
     Scene scene;
-    add_mesh(scene, "near", moved(make_sphere(0.3f, 24, 12), {0, 0, -4}));
+    add_mesh(scene, "near", make_sphere(0.3f, 24, 12), {0, 0, -4});
     // Not round, so that it has the picture's axes.
     add_mesh(scene, "far",
              transformed(make_sphere(1, 48, 24), mat4(60, 0, 0, 0, 0, 46, 0, 0, 0, 0, 60, 0, 0, 0, -200, 1)));
-    scene.lights        = {sun({0, 0, -1})};
+    scene.lights        = {directional_light({0, 0, -1})};
     scene.camera.eye    = {0, 0, 0};
     scene.camera.target = {0, 0, -1};
     scene.camera.fov_y  = 20;
@@ -247,7 +229,7 @@ TEST(CascadedMaps, WindowsOfReceiversAreSmallerThanThoseOfTheView) {
 TEST(CascadedMaps, DepthsAreThoseOfWhatIsInView) {
     // A floor that the view's sides cut, and a ball behind the camera that says nothing.
     Scene scene = boxes_in_view();
-    add_mesh(scene, "behind", moved(make_sphere(1, 16, 8), {0.5f, 6, 30}));
+    add_mesh(scene, "behind", make_sphere(1, 16, 8), {0.5f, 6, 30});
     const PointBatch points  = primary(scene);
     const Cascades in_view   = Maps(scene, "window=frustum").fit(points);
     const Cascades as_seen   = Maps(scene, "window=frustum,depth_range=visible").fit(points);
@@ -288,9 +270,9 @@ TEST(CascadedMaps, WhatCastsFromOutsideTheViewShades) {
     // A roof over the light's side of what the camera sees, behind the camera and high above: nothing of it is in view.
     Scene scene;
     add_mesh(scene, "floor", make_plane(40, 40));
-    add_mesh(scene, "roof", moved(make_box({4, 0.2f, 4}), {0, 30, 30}));
-    add_mesh(scene, "box", moved(make_box({0.4f, 0.4f, 0.4f}), {3, 0.2f, 0}));
-    scene.lights            = {sun({0, -1, -1})};
+    add_mesh(scene, "roof", make_box({4, 0.2f, 4}), {0, 30, 30});
+    add_mesh(scene, "box", make_box({0.4f, 0.4f, 0.4f}), {3, 0.2f, 0});
+    scene.lights            = {directional_light({0, -1, -1})};
     scene.camera.eye        = {0, 3, 7};
     scene.camera.target     = {0, 0, 0};
     scene.width             = 160;
@@ -465,7 +447,7 @@ TEST(CascadedMaps, LitSurfacesAreLitInAllPartsAndAtTheSeams) {
     for (vec3& p : dome.positions) p.y = -0.001f * (p.x * p.x + p.z * p.z);
     dome.normals.clear();
     add_mesh(scene, "dome", dome);
-    scene.lights            = {sun({0.5f, -0.5f, -0.2f})};
+    scene.lights            = {directional_light({0.5f, -0.5f, -0.2f})};
     scene.camera.eye        = {3, 2.5f, 40};
     scene.camera.target     = {0, -1, -10};
     scene.width             = 240;
@@ -708,7 +690,7 @@ TEST(CascadedMaps, OtherLightsHaveOneMapOrACube) {
 TEST(CascadedMaps, NothingThatCastsLeavesAllLit) {
     Scene scene;
     add_mesh(scene, "floor", make_plane(4, 4));
-    scene.lights                = {sun({0.3f, -1, 0.2f})};
+    scene.lights                = {directional_light({0.3f, -1, 0.2f})};
     scene.camera.eye            = {0, 3, 5};
     const PointBatch points     = primary(scene);
     const VisibilityPlane plane = answers(scene, points, "cascaded_maps");

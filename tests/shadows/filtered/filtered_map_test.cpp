@@ -10,11 +10,11 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/filtered/moment_map.h"
 #include "umbra/shadows/maps/depth_lookup.h"
 #include "umbra/shadows/maps/facets.h"
 #include "umbra/tests/support/known_scenes.h"
+#include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
@@ -24,38 +24,9 @@ constexpr const char* kKinds[] = {"vsm", "esm", "evsm2", "evsm4", "msm"};
 
 // ---- scenes --------------------------------------------------------------------------------------------------------
 
-Light sun(vec3 direction) {
-    Light light;
-    light.name      = "light";
-    light.kind      = LightKind::directional;
-    light.direction = direction;
-    return light;
-}
-Light lamp(vec3 position) {
-    Light light;
-    light.name     = "light";
-    light.position = position;
-    return light;
-}
-Light spot(vec3 position, vec3 axis, float cutoff_degrees) {
-    Light light       = lamp(position);
-    light.kind        = LightKind::spot;
-    light.direction   = glm::normalize(axis);
-    light.spot.cutoff = glm::radians(cutoff_degrees);
-    return light;
-}
-
-void add(Scene& scene, const char* name, const Mesh& mesh, vec3 by = vec3(0)) {
-    if (scene.materials.empty()) scene.materials.emplace_back();
-    mat4 m(1);
-    m[3]             = vec4(by, 1);
-    const Mesh moved = transformed(mesh, m);
-    add_object(scene, name, moved.positions, moved.normals, moved.triangles, 0);
-}
-
 /// The sheet x0 <= x <= x1, |z| <= 4 at height y.
 void add_sheet(Scene& scene, const char* name, float x0, float x1, float y) {
-    add(scene, name, make_plane(x1 - x0, 8), {0.5f * (x0 + x1), y, 0});
+    add_mesh(scene, name, make_plane(x1 - x0, 8), {0.5f * (x0 + x1), y, 0});
 }
 
 Scene floor_under(const Light& light) {
@@ -64,22 +35,6 @@ Scene floor_under(const Light& light) {
     scene.lights     = {light};
     scene.camera.eye = {0, 10, 0};
     return scene;
-}
-
-/// n (n + 1) / 2 points inside each triangle of an object.
-PointBatch points_on(const Scene& scene, std::uint32_t object, int n) {
-    PointBatch batch;
-    batch.eye        = scene.camera.eye;
-    const Object& o  = scene.objects[object];
-    std::size_t next = 0;
-    batch.resize(static_cast<std::size_t>(o.triangle_count) * n * (n + 1) / 2);
-    for (TriangleId t = o.first_triangle; t < o.first_triangle + o.triangle_count; ++t)
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; i + j < n; ++j)
-                set_point(batch, next++, scene, t, (static_cast<float>(i) + 0.31f) / static_cast<float>(n),
-                          (static_cast<float>(j) + 0.37f) / static_cast<float>(n));
-    face_lights(batch, scene);
-    return batch;
 }
 
 VisibilityPlane look_up(const Scene& scene, const PointBatch& points, const std::string& settings) {
@@ -109,7 +64,7 @@ std::vector<float> pcf(const Scene& scene, const PointBatch& points, const Light
     for_each_facet(scene, points, 0, [&](std::size_t i, const Facet& facet, dvec3 p) {
         for (const MapView& view : views.views())
             if (const auto receiver = receive(view, facet, p, bias, {radius, true})) {
-                s[i] = lit_share(view.map, *receiver, BiasMode::manual, {radius, true});
+                s[i] = lit_share(view, *receiver, BiasMode::manual, {radius, true});
                 return;
             }
     });
@@ -292,15 +247,16 @@ TEST(Moments, AFloorAndABiasActAsStated) {
 /// A ball, a box and a leaning sheet over a floor: many depths in one filter.
 Scene clutter(const Light& light) {
     Scene scene = floor_under(light);
-    add(scene, "ball", make_sphere(0.7f, 24, 12), {0.2f, 1.1f, 0.3f});
-    add(scene, "box", make_box({0.8f, 1.4f, 0.5f}), {-1.1f, 0.7f, -0.4f});
+    add_mesh(scene, "ball", make_sphere(0.7f, 24, 12), {0.2f, 1.1f, 0.3f});
+    add_mesh(scene, "box", make_box({0.8f, 1.4f, 0.5f}), {-1.1f, 0.7f, -0.4f});
     const mat4 leaning(0.8f, 0.6f, 0, 0, -0.6f, 0.8f, 0, 0, 0, 0, 1, 0, 0.9f, 1.8f, -0.6f, 1);
-    add(scene, "sheet", transformed(make_plane(1.5f, 1), leaning));
+    add_mesh(scene, "sheet", transformed(make_plane(1.5f, 1), leaning));
     return scene;
 }
 
-const Light kLights[] = {sun({0, -1, 0}), sun({0.3f, -1, 0.2f}), lamp({0.5f, 4, 0.6f}), lamp({-0.3f, 1.2f, 0.9f}),
-                         spot({1, 4, 0}, {-0.3f, -1, 0}, 40)};
+const Light kLights[] = {directional_light({0, -1, 0}), directional_light({0.3f, -1, 0.2f}),
+                         point_light({0.5f, 4, 0.6f}), point_light({-0.3f, 1.2f, 0.9f}),
+                         spot_light({1, 4, 0}, {-0.3f, -1, 0}, 40)};
 
 TEST(FilteredMap, OnlyLetsLightThroughAgainstPcfOfTheSameMap) {
     // In double, with the same depth to compare: a 100th of a texel in front of the surface, so that whether the
@@ -379,7 +335,7 @@ PointBatch line_across(const Scene& scene, int n = 401) {
 
 /// A sheet that hides x < 0 from the light above, one unit over the floor.
 Scene half_plane() {
-    Scene scene = floor_under(sun({0, -1, 0}));
+    Scene scene = floor_under(directional_light({0, -1, 0}));
     add_sheet(scene, "sheet", -4, 0, 1);
     return scene;
 }
@@ -438,9 +394,9 @@ TEST(FilteredMap, ExponentialsLeakByTheirExponent) {
 TEST(FilteredMap, EmptyTexelsTakeNoLightFromWhatIsDrawnAndGiveNone) {
     // The floor is not drawn, and a block far down the light's way makes the map deeper than the floor here: as the far
     // plane, empty texels lie behind the floor, and the mean depth with them.
-    Scene scene = floor_under(sun(glm::normalize(vec3(0, -1, 1))));
+    Scene scene = floor_under(directional_light(glm::normalize(vec3(0, -1, 1))));
     add_sheet(scene, "sheet", -4, 0, 1);
-    add(scene, "block", make_box({0.4f, 0.4f, 0.4f}), {3, 0.2f, 3.5f});
+    add_mesh(scene, "block", make_box({0.4f, 0.4f, 0.4f}), {3, 0.2f, 3.5f});
     const PointBatch points = line_across(scene);
     const LightViews views  = drawn_views(scene, kResolution, kRadius, true);
     const auto want         = pcf(scene, points, views, kRadius, 0.1);
@@ -468,7 +424,7 @@ TEST(FilteredMap, EmptyTexelsTakeNoLightFromWhatIsDrawnAndGiveNone) {
 
 /// Sheets at heights 3, over x < 0, and 1, over all: the floor sees nothing of the light.
 Scene two_occluders() {
-    Scene scene = floor_under(sun({0, -1, 0}));
+    Scene scene = floor_under(directional_light({0, -1, 0}));
     add_sheet(scene, "upper", -4, 0, 3);
     add_sheet(scene, "lower", -4, 4, 1);
     return scene;
@@ -515,7 +471,8 @@ TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
 
 TEST(FilteredMap, NumbersStayWithinRangeAtExtremes) {
     for (const float size : {1.0f, 1e6f, 1e-6f})
-        for (const Light& light : {sun({0.3f, -1, 0.2f}), lamp({-0.3f, 1.2f, 0.9f}), lamp({0.3e9f, 1e9f, 0.2e9f})}) {
+        for (const Light& light : {directional_light({0.3f, -1, 0.2f}), point_light({-0.3f, 1.2f, 0.9f}),
+                                   point_light({0.3e9f, 1e9f, 0.2e9f})}) {
             Scene scene = clutter(light);
             for (vec3& p : scene.positions) p *= size;
             scene.lights[0].position *= size;
@@ -540,7 +497,7 @@ TEST(FilteredMap, NumbersStayWithinRangeAtExtremes) {
 }
 
 TEST(FilteredMap, ExponentsAreCutOnlyWhereFloatsNeedIt) {
-    const Scene scene       = clutter(sun({0.3f, -1, 0.2f}));
+    const Scene scene       = clutter(directional_light({0.3f, -1, 0.2f}));
     const PointBatch points = points_on(scene, 0, 100);
     const auto s            = [&](const char* settings) {
         return look_up(scene, points, fmt::format("resolution=128,radius=3,bleed=0,{}", settings)).s;
@@ -552,7 +509,7 @@ TEST(FilteredMap, ExponentsAreCutOnlyWhereFloatsNeedIt) {
 }
 
 TEST(FilteredMap, SameForAnyNumberOfThreads) {
-    const Scene scene       = clutter(lamp({-0.3f, 1.2f, 0.9f}));
+    const Scene scene       = clutter(point_light({-0.3f, 1.2f, 0.9f}));
     const PointBatch points = points_on(scene, 0, 100);
     for (const char* kind : kKinds) {
         std::vector<float> expected;
@@ -570,7 +527,7 @@ TEST(FilteredMap, SameForAnyNumberOfThreads) {
 
 TEST(MomentMap, SamplesAreMeansOverTheirBox) {
     // Against sums over the depth map, sample by sample, across borders of tiles and of the map.
-    const Scene scene      = clutter(sun({0.3f, -1, 0.2f}));
+    const Scene scene      = clutter(directional_light({0.3f, -1, 0.2f}));
     const LightViews views = drawn_views(scene, 200, 3, true);
     const MapView& view    = views.views().at(0);
     const MomentBound vsm{MomentKind::vsm};
@@ -626,9 +583,9 @@ TEST(MomentMap, DepthIsLinearAndEndsAtTheFrame) {
 
 TEST(FilteredMap, NothingLeaksThroughACubesSeams) {
     Scene scene;
-    add(scene, "room", make_box({8, 8, 8}));
-    add(scene, "shade", make_sphere(1, 48, 24));
-    scene.lights          = {lamp({0.2f, 0.1f, -0.15f})};
+    add_mesh(scene, "room", make_box({8, 8, 8}));
+    add_mesh(scene, "shade", make_sphere(1, 48, 24));
+    scene.lights          = {point_light({0.2f, 0.1f, -0.15f})};
     scene.camera.eye      = scene.lights[0].position;  // two-sided materials turn inwards
     const PointBatch room = points_on(scene, 0, 100), ball = points_on(scene, 1, 6);
     for (const char* kind : kKinds)
@@ -641,7 +598,7 @@ TEST(FilteredMap, NothingLeaksThroughACubesSeams) {
 }
 
 TEST(FilteredMap, AFloorAloneIsLit) {
-    Scene scene = floor_under(sun({0, -1, 0}));
+    Scene scene = floor_under(directional_light({0, -1, 0}));
     for (const Light& light : kLights)
         for (const char* kind : kKinds)
             for (const char* fit : {"casters", "scene"}) {
@@ -655,7 +612,7 @@ TEST(FilteredMap, AFloorAloneIsLit) {
 
 TEST(FilteredMap, BiasesMoveThePointTowardsTheLight) {
     // Deep in the shadow of a sheet that hangs 40 texels over the floor: each bias beyond that lights it.
-    Scene scene = floor_under(sun(glm::normalize(vec3(1, -1, 0))));
+    Scene scene = floor_under(directional_light(glm::normalize(vec3(1, -1, 0))));
     add_sheet(scene, "sheet", -1, 1, 0.5f);
     const PointBatch points = line_across(scene);
     const LightViews views  = drawn_views(scene, 512, 1, false);
@@ -682,7 +639,7 @@ TEST(FilteredMap, BiasesMoveThePointTowardsTheLight) {
 }
 
 TEST(FilteredMap, ParametersRepeatThePhasesThatTheyName) {
-    const Scene scene       = clutter(spot({1, 4, 0}, {-0.3f, -1, 0}, 25));
+    const Scene scene       = clutter(spot_light({1, 4, 0}, {-0.3f, -1, 0}, 25));
     const PointBatch points = points_on(scene, 0, 80);
     for (const char* kind : kKinds)
         for (const char* change :
@@ -740,7 +697,7 @@ TEST(FilteredMap, BlamesTheNearestTexelThatBlocks) {
         EXPECT_EQ(scene.objects[scene.triangle_object[who[i]]].name, points.px[i] < 0 ? "upper" : "lower");
     }
     // Nothing to blame where nothing blocks, though the floor's own texels lie before points between them.
-    Scene open      = floor_under(sun({1, -1, 0.4f}));
+    Scene open      = floor_under(directional_light({1, -1, 0.4f}));
     const auto lone = points_on(open, 0, 40);
     MethodCase lit("filtered_map:resolution=128,radius=2,fit=scene", open);
     lit.prepare(0);

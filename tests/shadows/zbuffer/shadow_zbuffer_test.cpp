@@ -7,45 +7,14 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/maps/light_views.h"
-#include "umbra/shadows/method.h"
+#include "umbra/tests/support/map_scenes.h"
+#include "umbra/tests/support/method_case.h"
 
 namespace umbra {
 namespace {
 
 // ---- scenes --------------------------------------------------------------------------------------------------------
-
-std::uint32_t add_mesh(Scene& scene, std::string name, const Mesh& mesh) {
-    if (scene.materials.empty()) scene.materials.emplace_back();
-    return add_object(scene, std::move(name), mesh.positions, mesh.normals, mesh.triangles, 0);
-}
-Mesh moved(const Mesh& mesh, vec3 by) {
-    mat4 m(1);
-    m[3] = vec4(by, 1);
-    return transformed(mesh, m);
-}
-
-Light point_light(vec3 position) {
-    Light light;
-    light.name     = "light";
-    light.position = position;
-    return light;
-}
-Light directional_light(vec3 direction) {
-    Light light;
-    light.name      = "light";
-    light.kind      = LightKind::directional;
-    light.direction = direction;
-    return light;
-}
-Light spot_light(vec3 position, vec3 axis, float cutoff_degrees) {
-    Light light       = point_light(position);
-    light.kind        = LightKind::spot;
-    light.direction   = glm::normalize(axis);
-    light.spot.cutoff = glm::radians(cutoff_degrees);
-    return light;
-}
 
 constexpr float kFloor  = 4;  ///< side of the floor, in y = 0
 constexpr float kSquare = 1;  ///< side of the square above it
@@ -55,7 +24,7 @@ constexpr float kHeight = 1;
 Scene square_over_floor(const Light& light) {
     Scene scene;
     add_mesh(scene, "floor", make_plane(kFloor, kFloor));
-    add_mesh(scene, "square", moved(make_plane(kSquare, kSquare), {0, kHeight, 0}));
+    add_mesh(scene, "square", make_plane(kSquare, kSquare), {0, kHeight, 0});
     scene.lights.push_back(light);
     scene.camera.eye = {0, 10, 0};
     return scene;
@@ -79,34 +48,13 @@ double depth_in_shadow(const Light& light, dvec3 p) {
 
 // ---- running -------------------------------------------------------------------------------------------------------
 
-/// n (n + 1) / 2 points inside each triangle of an object.
-PointBatch points_on(const Scene& scene, std::uint32_t object, int n) {
-    PointBatch batch;
-    batch.eye        = scene.camera.eye;
-    const Object& o  = scene.objects[object];
-    std::size_t next = 0;
-    batch.resize(static_cast<std::size_t>(o.triangle_count) * n * (n + 1) / 2);
-    for (TriangleId t = o.first_triangle; t < o.first_triangle + o.triangle_count; ++t)
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; i + j < n; ++j)
-                set_point(batch, next++, scene, t, (static_cast<float>(i) + 0.31f) / static_cast<float>(n),
-                          (static_cast<float>(j) + 0.37f) / static_cast<float>(n));
-    face_lights(batch, scene);
-    return batch;
-}
-
 using Plane = VisibilityPlane;
 
 Plane look_up(const Scene& scene, const PointBatch& batch, std::string_view choice) {
-    const MethodChoice method = parse_method(choice);
-    const auto zbuffer        = method.make();
-    const SceneFacts facts    = find_facts(scene);
-    EXPECT_EQ(zbuffer->serves(facts).how, How::approximately);
-    zbuffer->build(scene, facts);
-    zbuffer->aim(0);
-    Plane plane(batch.size());
-    zbuffer->visibility(batch, 0, plane.out());
-    return plane;
+    MethodCase run(choice, scene);
+    EXPECT_EQ(run.serves().how, How::approximately);
+    run.prepare(0);
+    return run.visibility(batch, 0);
 }
 
 /// Counts against the closed form, and how far from the border the farthest wrong point lies.
@@ -232,7 +180,7 @@ TEST(ShadowZBuffer, AutomaticBiasDetachesByNoMoreThanItStates) {
         const auto scene_with = [&](double height) {
             Scene scene;
             add_mesh(scene, "floor", make_plane(kFloor, kFloor));
-            add_mesh(scene, "square", moved(make_plane(kSquare, kSquare), {0, static_cast<float>(height), 0}));
+            add_mesh(scene, "square", make_plane(kSquare, kSquare), {0, static_cast<float>(height), 0});
             scene.lights     = {light};
             scene.camera.eye = {0, 10, 0};
             return scene;
@@ -266,7 +214,7 @@ TEST(ShadowZBuffer, AutomaticBiasDetachesByNoMoreThanItStates) {
 TEST(ShadowZBuffer, GrazingLightKeepsTheShadowOfWhatStandsOnTheFloor) {
     Scene scene;
     add_mesh(scene, "floor", make_plane(kFloor, kFloor));
-    add_mesh(scene, "box", moved(make_box({0.5f, 1, 0.5f}), {1, 0.5f, 0}));
+    add_mesh(scene, "box", make_box({0.5f, 1, 0.5f}), {1, 0.5f, 0});
     scene.camera.eye = {0, 10, 0};
     for (double cosine : {1e-2, 1e-3, 1e-4, 1e-5}) {
         scene.lights           = {slanted_light(cosine, kPi)};
@@ -298,9 +246,9 @@ TEST(ShadowZBuffer, LampsFarAwayShadeAsSunsDo) {
 TEST(ShadowZBuffer, ARoofThatIsNotFittedToShadesWhatIs) {
     // The largest plane, before all that the map's depth is fitted to; the box's top is the first of that.
     Scene scene;
-    add_mesh(scene, "roof", moved(make_plane(40, 40), {0, 3, 0}));
+    add_mesh(scene, "roof", make_plane(40, 40), {0, 3, 0});
     add_mesh(scene, "floor", make_plane(kFloor, kFloor));
-    add_mesh(scene, "box", moved(make_box({1, 1, 1}), {0, 0.5f, 0}));
+    add_mesh(scene, "box", make_box({1, 1, 1}), {0, 0.5f, 0});
     scene.camera.eye = {1, 2.5f, 1};
     for (const Light& light : {directional_light({0, -1, 0}), directional_light({0.2f, -1, 0.1f}),
                                point_light({0, 30, 0}), point_light({0.2f, 3.5f, 0})})
@@ -383,8 +331,8 @@ TEST(ShadowZBuffer, NothingLeaksThroughACubesSeams) {
 TEST(ShadowZBuffer, SixteenBitsAreWorseThanFloatsWhereNearAndFarLieFarApart) {
     // A chip beside the light makes the range of depths large; a leaf lies just above the floor.
     Scene scene = square_over_floor(point_light({0.3f, 3, 0.4f}));
-    add_mesh(scene, "chip", moved(make_plane(1e-4f, 1e-4f), {0.3f, 2.99f, 0.4f}));
-    add_mesh(scene, "leaf", moved(make_plane(1, 1), {1.4f, 0.001f, 1.4f}));
+    add_mesh(scene, "chip", make_plane(1e-4f, 1e-4f), {0.3f, 2.99f, 0.4f});
+    add_mesh(scene, "leaf", make_plane(1, 1), {1.4f, 0.001f, 1.4f});
     const PointBatch floor = points_on(scene, 0, 200);
     const auto shadowed    = [&](const char* depth) {
         const Plane plane = look_up(scene, floor, fmt::format("shadow_zbuffer:bias=receiver_plane,depth={}", depth));
@@ -458,11 +406,10 @@ TEST(ShadowZBuffer, FittingToCastersLosesNoShadow) {
     // A floor forty times as wide as what is on it, and reaches a little into it; walls; and what lies under it.
     Scene scene;
     add_mesh(scene, "floor", make_plane(40, 40));
-    add_mesh(
-        scene, "wall",
-        moved(transformed(make_plane(40, 40), mat4(0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)), {-20, 19.9f, 0}));
-    add_mesh(scene, "box", moved(make_box({1, 1, 1}), {0, 0.4f, 0}));
-    add_mesh(scene, "far box", moved(make_box({1, 1, 1}), {-17, 3, 2}));
+    add_mesh(scene, "wall", transformed(make_plane(40, 40), mat4(0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1)),
+             {-20, 19.9f, 0});
+    add_mesh(scene, "box", make_box({1, 1, 1}), {0, 0.4f, 0});
+    add_mesh(scene, "far box", make_box({1, 1, 1}), {-17, 3, 2});
     scene.camera.eye = {5, 10, 5};
     for (const Light& light : {directional_light({-1, -0.7f, 0.2f}), directional_light({-0.4f, -1, 0.1f}),
                                point_light({6, 7, 1}), point_light({0, -9, 0})}) {
@@ -497,7 +444,7 @@ TEST(ShadowZBuffer, SpotsAnswerOutsideTheirConesUnlessToldNotTo) {
 TEST(ShadowZBuffer, SecondDepthNeedsNoBiasOnClosedOccluders) {
     Scene scene;
     add_mesh(scene, "floor", make_plane(kFloor, kFloor));
-    add_mesh(scene, "ball", moved(make_sphere(0.5f, 64, 32), {0, 1, 0}));
+    add_mesh(scene, "ball", make_sphere(0.5f, 64, 32), {0, 1, 0});
     scene.lights.push_back(directional_light({0.3f, -1, 0.2f}));
     scene.camera.eye      = {0, 10, 0};
     const PointBatch ball = points_on(scene, 1, 3);
@@ -541,7 +488,7 @@ TEST(ShadowZBuffer, FilteringGivesSharesAtTheBorderOnly) {
 TEST(ShadowZBuffer, WallSquareToTheLightAtTheEndOfTheScene) {
     // Nothing lies behind the wall, and its depth is the same everywhere: rounding alone must not shadow it.
     Scene scene = square_over_floor(point_light({0.3f, 3, 0.4f}));
-    add_mesh(scene, "wall", moved(make_plane(20, 20), {0, -5, 0}));
+    add_mesh(scene, "wall", make_plane(20, 20), {0, -5, 0});
     for (const char* depth : {"float", "32", "24", "16"}) {
         const PointBatch wall = points_on(scene, 2, 30);
         const Plane plane     = look_up(scene, wall, fmt::format("shadow_zbuffer:fit=scene,depth={}", depth));

@@ -1,0 +1,63 @@
+// The answers of a light's views for all points of a batch: S_j, and which triangles block.
+#pragma once
+
+#include <functional>
+
+#include "umbra/core/render/facing.h"
+#include "umbra/core/render/visibility.h"
+#include "umbra/shadows/maps/facets.h"
+#include "umbra/shadows/maps/light_views.h"
+
+namespace umbra {
+
+/// Writes S_j of every point that asks for it, in parallel: 0 where the light's centre is behind the point's plane,
+/// share(v, receiver, p) where view v is the first that covers the point, and where none does 1, or `undefined`
+/// where nobody looked. `p` is the point in world space.
+template <class Share>
+void look_up(const LightViews& views, const PointBatch& points, LightId light, const Bias& bias, const Filter& filter,
+             Visibility out, const Share& share) {
+    const std::span<const MapView> all = views.views();
+    for_each_facet(views.scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+        if (centre_is_behind(views.scene(), points, light, i)) {
+            out.s[i] = 0;
+            return;
+        }
+        for (std::size_t v = 0; v < all.size(); ++v)
+            if (const std::optional<Receiver> receiver = receive(all[v], facet, p, bias, filter)) {
+                out.s[i] = share(v, *receiver, p);
+                return;
+            }
+        out.s[i] = 1;
+        if (!views.cover_all()) out.answer[i] = Answer::undefined;
+    });
+}
+
+/// The picture that points are seen in: their raster's, or without one that of the scene's camera, in the scene's size,
+/// so that answers do not depend on which points are asked together.
+[[nodiscard]] CameraFrame picture_of(const Scene& scene, const PointBatch& points);
+
+/// For each point of a batch the sample of one of several maps that blocks it, and then the triangle that it shows.
+class BlockingSamples {
+public:
+    explicit BlockingSamples(std::size_t points) : samples_(points) {}
+
+    /// Looks for the sample of map k that blocks point i, the nearest of several, and says whether there is one.
+    /// Different points may be looked for in several threads at once.
+    bool find(std::size_t i, std::size_t k, const MapView& view, const Receiver& receiver, BiasMode mode,
+              const Filter& filter);
+
+    /// Writes one triangle a point, kNoTriangle where no sample was found. `owners(k)` is asked for the maps in which
+    /// one was (LightViews::owners).
+    void name(std::span<TriangleId> blockers,
+              const std::function<std::vector<TriangleId>(std::size_t k)>& owners) const;
+
+private:
+    static constexpr std::size_t kNone = ~std::size_t{0};
+    struct Sample {
+        std::size_t map = kNone;
+        std::size_t at  = 0;  ///< row by row
+    };
+    std::vector<Sample> samples_;
+};
+
+}  // namespace umbra
