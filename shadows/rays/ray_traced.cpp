@@ -8,17 +8,11 @@
 // Carsten Waechter, Nikolaus Binder. A Fast and Robust Method for Avoiding Self-Intersection. 2019
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 
-#include "umbra/core/base/parallel.h"
-#include "umbra/core/render/sampling.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/rays/near_light.h"
-#include "umbra/shadows/rays/starts.h"
-#include "umbra/shadows/rays/target.h"
+#include "umbra/shadows/shared/light_rays.h"
 
 namespace umbra {
 namespace {
@@ -73,11 +67,6 @@ const std::vector<Parameter> kParameters{
                                   .area_lights = true}),
 };
 
-/// Whether any of `count` points asks for S_j, by their facing.
-bool any_asks(const Facing* facing, std::size_t count) {
-    return std::any_of(facing, facing + count, [](Facing f) { return f >= Facing::partly; });
-}
-
 class RayTraced final : public MethodWith<Options> {
 public:
     [[nodiscard]] Measure measures() const override { return options.measure; }
@@ -100,107 +89,34 @@ public:
     }
 
     void aim(LightId light) override {
-        target_     = make_target(scene_->lights[light], rays_->space());
-        near_light_ = NearLight(*scene_, *rays_, light);
-        set_.emplace(options.sampler, is_area(target_.kind) ? options.samples : 1,
-                     static_cast<std::uint32_t>(options.seed) + 0x9e3779b9u * light);
+        const LightKind kind = scene_->lights[light].kind;
+        light_.emplace(*scene_, *rays_, light, samples_of(light, kind, options.sampler, options.samples, options.seed));
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override;
 
-    /// What the ray to the light meets first; of an area light, the first ray that meets anything. Samples are
-    /// keyed by the point's index in the batch, so that these rays differ from those of visibility, and are as good.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override;
+    /// Its rays differ from those of visibility, and are as good.
+    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
+        light_->blame(start_places(), points, light, blockers);
+    }
 
     [[nodiscard]] std::size_t memory_bytes() const override {
-        return (rays_ ? rays_->memory_bytes() : 0) + (set_ ? set_->memory_bytes() : 0) + near_light_.memory_bytes();
+        return (rays_ ? rays_->memory_bytes() : 0) + (light_ ? light_->memory_bytes() : 0);
     }
 
 private:
     [[nodiscard]] StartPlaces start_places() const {
         return {*scene_, rays_->space(), options.offset, static_cast<float>(options.epsilon) * diagonal_};
     }
-    std::size_t hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count, ShadowRay* rays) const;
-    void trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
-    template <class Body>
-    bool for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const;
     [[nodiscard]] float visible_irradiance(const Starts& starts, int lane, PointKey key) const;
     [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const;
     void trace_area_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
-    [[nodiscard]] TriangleId first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const;
 
     const Scene* scene_ = nullptr;
     float diagonal_     = 0;  ///< of the scene
     std::optional<RayScene> rays_;
-    Target target_;
-    std::optional<SampleSet> set_;
-    NearLight near_light_;
+    std::optional<LightRays> light_;
 };
-
-/// Writes one ray for each of the `count` points that faces the light, from `rays` on. Returns how many.
-std::size_t RayTraced::hard_light_rays(const Starts& starts, const Facing* facing, std::size_t count,
-                                       ShadowRay* rays) const {
-    const bool parallel  = target_.kind == LightKind::directional;
-    const float per_unit = parallel ? 0 : target_.per_unit;
-    float dx[8], dy[8], dz[8], tnear[8];
-    for (int k = 0; k < 8; ++k) {
-        dx[k]            = target_.centre.x - per_unit * starts.x[k];
-        dy[k]            = target_.centre.y - per_unit * starts.y[k];
-        dz[k]            = target_.centre.z - per_unit * starts.z[k];
-        const float rise = starts.nx[k] * dx[k] + starts.ny[k] * dy[k] + starts.nz[k] * dz[k];
-        tnear[k]         = starts.height[k] / std::max(rise, 1e-30f);
-    }
-    const float tfar    = parallel ? kInfinity : target_.reach;
-    std::size_t written = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-        if (facing[k] < Facing::partly) continue;
-        rays[written++] = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k],        dy[k],
-                           dz[k],       0,           tfar,        ~0u,      starts.id[k], 0};
-    }
-    return written;
-}
-
-/// Calls body(packet) for each eight samples of the light, with their rays ready, until it returns false. Lanes are
-/// valid where there is a sample and it lies in front of the point's plane. False where the point lies within the
-/// light.
-template <class Body>
-bool RayTraced::for_each_packet(const Starts& starts, int lane, PointKey key, const Body& body) const {
-    const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]), n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
-    vec3 to_centre = target_.centre - o * target_.per_unit, axis_u = target_.axis_u, axis_v = target_.axis_v;
-    if (target_.kind == LightKind::sphere) {
-        TangentDisk disk;
-        if (!tangent_disk(dvec3(o), target_.sphere, target_.radius, disk)) return false;
-        const double per_unit = 1 / target_.unit;
-        to_centre             = vec3((disk.centre - dvec3(o)) * per_unit);
-        axis_u                = vec3(disk.axis_u * per_unit);
-        axis_v                = vec3(disk.axis_v * per_unit);
-    }
-    ShadowPacket packet;
-    for (int k = 0; k < 8; ++k) {
-        packet.org_x[k] = o.x, packet.org_y[k] = o.y, packet.org_z[k] = o.z;
-        packet.id[k] = starts.id[lane];
-    }
-    for (int first = 0; first < options.samples; first += 8) {
-        Samples8 samples;
-        set_->eight(key, first, samples);
-        if (target_.kind == LightKind::rectangle)
-            for (int k = 0; k < 8; ++k) samples.x[k] = 2 * samples.x[k] - 1, samples.y[k] = 2 * samples.y[k] - 1;
-        else
-            map_to_disk(samples);
-        for (int k = 0; k < 8; ++k) {
-            const float dx   = to_centre.x + samples.x[k] * axis_u.x + samples.y[k] * axis_v.x;
-            const float dy   = to_centre.y + samples.x[k] * axis_u.y + samples.y[k] * axis_v.y;
-            const float dz   = to_centre.z + samples.x[k] * axis_u.z + samples.y[k] * axis_v.z;
-            const float rise = n.x * dx + n.y * dy + n.z * dz;
-            packet.dir_x[k] = dx, packet.dir_y[k] = dy, packet.dir_z[k] = dz;
-            packet.tnear[k] = starts.height[lane] / std::max(rise, 1e-30f);
-            packet.tfar[k]  = target_.reach;
-            packet.valid[k] = rise > 0 && first + k < options.samples ? -1 : 0;
-        }
-        if (!body(packet)) return true;
-    }
-    return true;
-}
 
 /// Stands for S_j where the point's plane leaves so little of the light that no sample is in front of it: there is no
 /// irradiance to take a fraction of.
@@ -212,7 +128,7 @@ constexpr float kNoSample = -1;
 float RayTraced::visible_irradiance(const Starts& starts, int lane, PointKey key) const {
     const vec3 n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
     double seen = 0, all = 0;
-    const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
+    const bool outside = light_->for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
         double weight[8];
         for (int k = 0; k < 8; ++k) {
             const dvec3 d(packet.dir_x[k], packet.dir_y[k], packet.dir_z[k]);
@@ -232,40 +148,8 @@ float RayTraced::visible_irradiance(const Starts& starts, int lane, PointKey key
 
 /// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
 float RayTraced::visible_fraction(const Starts& starts, int lane, PointKey key) const {
-    if (options.measure == Measure::irradiance) return visible_irradiance(starts, lane, key);
-    int seen           = 0;
-    const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
-        rays_->occluded(packet);
-        for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
-        return true;
-    });
-    return outside ? static_cast<float>(seen) / static_cast<float>(options.samples) : 1;
-}
-
-/// Hard lights: all rays of a tile are one list, since neighbours meet the same triangles.
-void RayTraced::trace_hard_light(const PointBatch& points, LightId light, const PointTile& tile,
-                                 std::span<float> s) const {
-    const FlushDenormals flush;
-    const StartPlaces places = start_places();
-    const Facing* facing     = points.facing[light].data();
-    Starts starts;
-    ShadowRay rays[PointTile::kPoints];
-    std::size_t traced = 0;
-    tile.for_each_run([&](std::size_t first, std::size_t count) {
-        if (!any_asks(facing + first, count)) return;
-        places.load(points, first, count, starts);
-        traced += hard_light_rays(starts, facing + first, count, rays + traced);
-    });
-    if (traced == 0) return;
-    rays_->occluded(std::span(rays, traced));
-    std::size_t next = 0;
-    tile.for_each_run([&](std::size_t first, std::size_t count) {
-        for (std::size_t i = first; i < first + count; ++i) {
-            if (!points.asks(light, i)) continue;
-            const bool blocked = rays[next++].tfar < 0 || near_light_.blocker(points, i) != kNoTriangle;
-            s[i]               = blocked ? 0.0f : 1.0f;
-        }
-    });
+    return options.measure == Measure::irradiance ? visible_irradiance(starts, lane, key)
+                                                  : light_->visible_fraction(starts, lane, key);
 }
 
 /// Area lights: eight rays of one point are a packet.
@@ -280,60 +164,20 @@ void RayTraced::trace_area_light(const PointBatch& points, LightId light, const 
         places.load(points, first, count, starts);
         for (std::size_t k = 0; k < count; ++k)
             if (points.asks(light, first + k))
-                s[first + k] = visible_fraction(starts, static_cast<int>(k), set_->key(first + k));
+                s[first + k] = visible_fraction(starts, static_cast<int>(k), light_->samples().key(first + k));
     });
 }
 
 void RayTraced::visibility(const PointBatch& points, LightId light, Visibility out) const {
     for_each_tile(points, [&](const PointTile& tile) {
-        if (is_area(target_.kind))
+        if (is_area(light_->target().kind))
             trace_area_light(points, light, tile, out.s);
         else
-            trace_hard_light(points, light, tile, out.s);
+            light_->trace_hard_light(start_places(), points, light, tile, out.s);
     });
     if (options.measure == Measure::area) return;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (out.s[i] == kNoSample) out.s[i] = 0, out.answer[i] = Answer::undefined;
-}
-
-TriangleId RayTraced::first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const {
-    if (!is_area(target_.kind)) {
-        ShadowRay ray;
-        hard_light_rays(lane_alone(starts, lane), &facing, 1, &ray);
-        return rays_->first_hit(ray);
-    }
-    // Where little of the light is hidden one set of samples may miss it: sixteen are tried.
-    TriangleId blocker = kNoTriangle;
-    for (std::uint64_t attempt = 0; attempt < 16 && blocker == kNoTriangle; ++attempt)
-        for_each_packet(starts, lane, set_->key(16 * point + attempt), [&](const ShadowPacket& packet) {
-            for (int k = 0; k < 8 && blocker == kNoTriangle; ++k)
-                if (packet.valid[k] != 0)
-                    blocker = rays_->first_hit({packet.org_x[k], packet.org_y[k], packet.org_z[k], packet.tnear[k],
-                                                packet.dir_x[k], packet.dir_y[k], packet.dir_z[k], 0, packet.tfar[k],
-                                                ~0u, packet.id[k], 0});
-            return blocker == kNoTriangle;
-        });
-    return blocker;
-}
-
-void RayTraced::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
-    const std::vector<Facing>& facing = points.facing[light];
-    const StartPlaces places          = start_places();
-    parallel_ranges((points.size() + 7) / 8, 8, [&](std::size_t begin, std::size_t end) {
-        const FlushDenormals flush;
-        Starts starts;
-        for (std::size_t first = 8 * begin; first < std::min(8 * end, points.size()); first += 8) {
-            const std::size_t count = std::min<std::size_t>(8, points.size() - first);
-            places.load(points, first, count, starts);
-            for (std::size_t k = 0; k < count; ++k) {
-                TriangleId& blocker = blockers[first + k];
-                blocker             = kNoTriangle;
-                if (facing[first + k] < Facing::partly) continue;
-                blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], first + k);
-                if (blocker == kNoTriangle) blocker = near_light_.blocker(points, first + k);
-            }
-        }
-    });
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // The program as people and scripts see it: exit codes, messages, JSON.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -491,9 +492,16 @@ TEST_F(Cli, InspectSaysHowClosedMeshesAreOriented) {
 TEST_F(Cli, RenderIsTheSameForAnyNumberOfThreads) {
     for (const umbra::MethodInfo* info : umbra::methods()) {
         const std::string method(info->name);
-        const std::string options = " --size 160x90 --quiet --method " + method + " -o ";
-        ASSERT_EQ(umbra("--threads 1 render " + kScene + options + file("one.exr")).exit_code, 0);
-        ASSERT_EQ(umbra("--threads 3 render " + kScene + options + file("three.exr")).exit_code, 0);
+        const auto render = [&](int threads, const std::string& scene, const char* to) {
+            return umbra(fmt::format("--threads {} render {} --size 160x90 --quiet --method {} -o {}", threads, scene,
+                                     method, file(to)))
+                .exit_code;
+        };
+        // Exit code 1: the method does not serve this scene; one with an area light it does.
+        const int first         = render(1, kScene, "one.exr");
+        const std::string scene = first == 1 ? "umbra_penumbra" : kScene;
+        ASSERT_EQ(first == 1 ? render(1, scene, "one.exr") : first, 0) << method;
+        ASSERT_EQ(render(3, scene, "three.exr"), 0) << method;
         EXPECT_EQ(umbra("diff " + file("one.exr") + " " + file("three.exr")).exit_code, 0) << method;
     }
 }

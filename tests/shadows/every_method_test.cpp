@@ -301,11 +301,12 @@ double miss(const Scene& scene, const PointBatch& points, std::size_t i, const L
 }
 
 TEST_P(Contract, BlamesATriangleThatBlocks) {
-    std::size_t named = 0;
+    std::size_t named = 0, served = 0;
     for (const char* name : {"two_lights", "open_meshes", "room"}) {
         const KnownScene known = known_scene(name);
         MethodCase run(info(), known.scene);
         if (!run.serves()) continue;
+        ++served;
         const PointBatch raster = primary(known.scene);
         // What a method samples, as texels of a map, may lie off the segment to the light. One that answers by
         // irradiance interpolates between patches: near a shadow's edge points are dark that nothing hides.
@@ -330,6 +331,7 @@ TEST_P(Contract, BlamesATriangleThatBlocks) {
             EXPECT_LE(off + std::ranges::count(who, kNoTriangle), std::ptrdiff_t(who.size() / one_in)) << name;
         }
     }
+    if (served == 0) GTEST_SKIP() << "it serves none of these scenes";
     EXPECT_GT(named, 500u);
 }
 

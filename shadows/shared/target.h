@@ -3,7 +3,7 @@
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/scene/lights.h"
-#include "umbra/shadows/rays/near_light.h"
+#include "umbra/shadows/shared/near_light.h"
 
 namespace umbra::rays {
 

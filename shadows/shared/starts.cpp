@@ -1,4 +1,4 @@
-#include "umbra/shadows/rays/starts.h"
+#include "umbra/shadows/shared/starts.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "umbra/shadows/rays/target.h"
+#include "umbra/shadows/shared/target.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "umbra/shadows/rays/near_light.h"
+#include "umbra/shadows/shared/near_light.h"
 
 #include <cmath>
 
