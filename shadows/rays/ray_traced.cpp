@@ -13,11 +13,15 @@
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/shared/light_rays.h"
+#include "umbra/shadows/rays/light_shafts.h"
 
 namespace umbra {
 namespace {
 
 using namespace rays;
+
+/// Which rays are not traced.
+enum class Cull : std::uint8_t { none, shafts };
 
 struct Options {
     OffsetPolicy offset = OffsetPolicy::skip_triangle;
@@ -26,6 +30,7 @@ struct Options {
     Sampler sampler     = Sampler::sobol;
     int seed            = 0;
     Measure measure     = Measure::area;
+    Cull cull           = Cull::shafts;
 };
 
 const std::vector<Parameter> kParameters{
@@ -65,6 +70,12 @@ const std::vector<Parameter> kParameters{
                                   .phase       = Phase::visibility,
                                   .choices     = "area|irradiance",
                                   .area_lights = true}),
+    parameter<&Options::cull>({.name = "cull",
+                               .doc  = "Which rays to an area light are not traced: none, or those that a shaft from a "
+                                       "tile of points to the light decides. S_j is the same, bit for bit.",
+                               .phase       = Phase::build,
+                               .choices     = "none|shafts",
+                               .area_lights = true}),
 };
 
 class RayTraced final : public MethodWith<Options> {
@@ -82,15 +93,18 @@ public:
                 "one ray in float arithmetic decides each point: correct except for rounding at creases"};
     }
 
-    void build(const Scene& scene, const SceneFacts&) override {
+    void build(const Scene& scene, const SceneFacts& facts) override {
         scene_    = &scene;
         diagonal_ = bounds(scene).diagonal();
         rays_.emplace(scene, Met::blocking);
+        shafts_.reset();
+        if (options.cull == Cull::shafts && !facts.hard_lights_only) shafts_.emplace(scene, rays_->space());
     }
 
     void aim(LightId light) override {
         const LightKind kind = scene_->lights[light].kind;
         light_.emplace(*scene_, *rays_, light, samples_of(light, kind, options.sampler, options.samples, options.seed));
+        if (shafts_) shafts_->aim(light_->target());
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override;
@@ -101,7 +115,8 @@ public:
     }
 
     [[nodiscard]] std::size_t memory_bytes() const override {
-        return (rays_ ? rays_->memory_bytes() : 0) + (light_ ? light_->memory_bytes() : 0);
+        return (rays_ ? rays_->memory_bytes() : 0) + (shafts_ ? shafts_->memory_bytes() : 0) +
+               (light_ ? light_->memory_bytes() : 0);
     }
 
 private:
@@ -115,6 +130,7 @@ private:
     const Scene* scene_ = nullptr;
     float diagonal_     = 0;  ///< of the scene
     std::optional<RayScene> rays_;
+    std::optional<LightShafts> shafts_;
     std::optional<LightRays> light_;
 };
 
@@ -158,13 +174,27 @@ void RayTraced::trace_area_light(const PointBatch& points, LightId light, const 
     const FlushDenormals flush;
     const StartPlaces places = start_places();
     const Facing* facing     = points.facing[light].data();
-    Starts starts;
+    TileStarts starts;
+    std::size_t run = 0;
+    bool asks       = false;
     tile.for_each_run([&](std::size_t first, std::size_t count) {
-        if (!any_asks(facing + first, count)) return;
-        places.load(points, first, count, starts);
-        for (std::size_t k = 0; k < count; ++k)
-            if (points.asks(light, first + k))
-                s[first + k] = visible_fraction(starts, static_cast<int>(k), light_->samples().key(first + k));
+        if (any_asks(facing + first, count)) places.load(points, first, count, starts[run]), asks = true;
+        ++run;
+    });
+    if (!asks) return;
+    // Shafts are for rays that start at their points.
+    TileKnown known{};
+    if (shafts_ && options.offset == OffsetPolicy::skip_triangle) known = shafts_->known(points, light, tile, starts);
+    run = 0;
+    tile.for_each_run([&](std::size_t first, std::size_t count) {
+        const Known here = known[run];
+        for (std::size_t k = 0; k < count; ++k) {
+            if (!points.asks(light, first + k)) continue;
+            s[first + k] = here != Known::nothing
+                               ? (here == Known::lit ? 1.0f : 0.0f)
+                               : visible_fraction(starts[run], static_cast<int>(k), light_->samples().key(first + k));
+        }
+        ++run;
     });
 }
 

@@ -1,0 +1,82 @@
+// Rays to an area light that need not be traced: what all rays from a tile of points to the light must meet, or cannot
+// meet.
+//
+// A shaft is the convex hull of a box around some points and a box around the light. If no triangle that the rays can
+// meet reaches into it, all of its points see all of the light; if one triangle covers it from side to side, none of
+// them sees any. Else rays decide. Shafts are widened by far more than the rounding of rays, so that the rays would
+// have said the same.
+//
+// This work is based on:
+// Eric Haines, John Wallace. Shaft Culling for Efficient Ray-Cast Radiosity. 1994
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "umbra/core/render/ray.h"
+#include "umbra/core/render/tiles.h"
+#include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/shared/starts.h"
+#include "umbra/shadows/shared/target.h"
+
+namespace umbra::rays {
+
+/// What is known of all rays of a run of points (PointTile::for_each_run) without tracing them.
+enum class Known : std::uint8_t {
+    nothing,  ///< rays have to tell
+    lit,      ///< none is blocked
+    umbra     ///< all are blocked
+};
+
+inline constexpr std::size_t kRunsPerTile = PointTile::kPoints / 8;
+using TileStarts                          = std::array<Starts, kRunsPerTile>;
+using TileKnown                           = std::array<Known, kRunsPerTile>;
+
+/// Const members may be called from many threads.
+class LightShafts {
+public:
+    /// Finds the bounds of all triangles that block light, in ray space. `scene` must outlive this object. Where a tree
+    /// of them would take longer than the rays that it saves there is none, and nothing is ever known.
+    LightShafts(const Scene& scene, const RaySpace& space);
+
+    /// For rays to this light. Of lights without an area, and of those that are a million times as far away as the
+    /// scene is wide, nothing is known: a ray that meets nothing takes less time than a shaft.
+    void aim(const Target& target);
+
+    /// What is known of the runs of a tile, in their order. Rays start at `starts`, each on its own triangle, which it
+    /// does not meet (OffsetPolicy::skip_triangle). Something is known only of runs whose points that ask lie in one
+    /// plane and have all of the light well above it.
+    [[nodiscard]] TileKnown known(const PointBatch& points, LightId light, const PointTile& tile,
+                                  const TileStarts& starts) const;
+
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    struct Run;
+    struct Few;
+    class Shaft;
+    struct Cluster {
+        TriangleId first    = 0;
+        std::uint32_t count = 0;
+    };
+
+    [[nodiscard]] std::array<dvec3, 3> corners(TriangleId t) const;
+    [[nodiscard]] bool in_one_plane(TriangleId t, TriangleId with) const;
+    [[nodiscard]] Run look_at(const PointBatch& points, LightId light, std::size_t first, std::size_t count,
+                              const Starts& starts) const;
+    [[nodiscard]] Run joined(const Run& a, const Run& b) const;
+    [[nodiscard]] std::optional<Shaft> shaft(const Run& run) const;
+    [[nodiscard]] Known resolve(const Run& run, const Few* among, Few& few) const;
+
+    const Scene* scene_;
+    RaySpace space_;
+    std::vector<Cluster> clusters_;
+    std::optional<BoxTree> tree_;  ///< of the clusters' boxes; none: nothing is known
+    bool usable_ = false;          ///< for this light
+    dmat3 axes_{1};                ///< of boxes, columns in ray space: those of the light, so that it fills its own
+    dvec3 low_{0}, high_{0};       ///< box around the light, along these axes
+};
+
+}  // namespace umbra::rays
