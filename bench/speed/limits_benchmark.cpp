@@ -1,9 +1,7 @@
 // How close the G-buffer, one S_j pass and the build come to bare Embree loops on the same scene.
 //
-// Each iteration runs ours and the bare loop in turn, so that a machine whose speed drifts cannot favour one. Reported
-// is ours; the counters hold the medians in ms and `ratio`, the median over the turns of ours by the fastest bare loop
-// (`cpu_ratio`: the same of processor time, which other programs on the machine disturb less).
-// Before the clock starts the answers are compared, and a wrong one gets no number.
+// Ours and the bare loops take turns (in_turns.h); ours is divided by the fastest of them. Before the clock starts the
+// answers are compared, and a wrong one gets no number. At the end the ratios are printed once more, as a table.
 //
 //     limits_benchmark [--scene=FILE] [--size=WxH] [Google Benchmark's options]
 #if __has_include(<embree3/rtcore.h>)
@@ -15,13 +13,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <functional>
 #include <string_view>
 
+#include "umbra/bench/speed/in_turns.h"
 #include "umbra/bench/speed/speed_scenes.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
@@ -109,7 +106,7 @@ struct BareGBuffer {
     std::vector<std::uint32_t> triangle;
 };
 
-constexpr int kTileWidth = 16, kTileHeight = 8;
+constexpr int kTileWidth = 16, kTileHeight = 8, kMostSamples = 64;
 
 template <class Tile>
 void for_tiles(int width, int height, const Tile& tile) {
@@ -156,14 +153,16 @@ void bare_gbuffer(const Bare& bare, const CameraFrame& f, BareGBuffer& g) {
     });
 }
 
-/// Bare shadow rays from its own G-buffer; visible samples a pixel. `samples`: 1 aims at the centre, 16 jitters 4 x 4.
+/// Bare shadow rays from its own G-buffer; visible samples a pixel. Jitters across x across of them; one is aimed at
+/// the centre.
 struct BareShadows {
     const Bare& bare;
     const CameraFrame& frame;
     const BareGBuffer& g;
     const Light& light;
-    int samples;
+    int across;
     std::vector<std::uint8_t> seen;
+    int samples = across * across;
 
     [[nodiscard]] bool facing(int i) const {
         const vec3 d = light.position - vec3(g.px[i], g.py[i], g.pz[i]);
@@ -175,8 +174,8 @@ struct BareShadows {
             random = random * 1664525u + 1013904223u;
             return static_cast<float>(random >> 8) * 0x1p-24f;
         };
-        const float u = (static_cast<float>(k & 3) + next()) / 4 - 0.5f;
-        const float v = (static_cast<float>(k >> 2) + next()) / 4 - 0.5f;
+        const float u = (static_cast<float>(k % across) + next()) / static_cast<float>(across) - 0.5f;
+        const float v = (static_cast<float>(k / across) + next()) / static_cast<float>(across) - 0.5f;
         return light.position + light.edge_u * u + light.edge_v * v;
     }
 
@@ -227,8 +226,8 @@ struct BareShadows {
     void streams() {
         for_tiles(frame.width, frame.height, [&](int x0, int y0) {
             auto random = static_cast<std::uint32_t>(y0 * frame.width + x0);
-            alignas(64) static thread_local RTCRay rays[kTileWidth * kTileHeight * 16];
-            static thread_local int pixel[kTileWidth * kTileHeight * 16];
+            alignas(64) static thread_local RTCRay rays[kTileWidth * kTileHeight * kMostSamples];
+            static thread_local int pixel[kTileWidth * kTileHeight * kMostSamples];
             unsigned count = 0;
             for (int y = y0; y < y0 + kTileHeight; ++y)
                 for (int x = x0; x < x0 + kTileWidth; ++x) {
@@ -249,61 +248,6 @@ struct BareShadows {
         });
     }
 };
-
-// ---- timing in turns -----------------------------------------------------------------------------------------------
-
-/// Milliseconds on the clock, and of all processors together: the second is what a busy machine leaves comparable.
-struct Cost {
-    double wall = 0, cpu = 0;
-};
-
-Cost cost_of(const std::function<void()>& f) {
-    const auto begin        = std::chrono::steady_clock::now();
-    const std::clock_t work = std::clock();
-    f();
-    return {std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(),
-            1e3 * static_cast<double>(std::clock() - work) / CLOCKS_PER_SEC};
-}
-
-double median(std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
-}
-
-struct Contender {
-    std::string name;
-    std::function<void()> run;
-};
-
-/// Runs ours and the bare ones round after round, in an order that turns.
-void in_turns(benchmark::State& state, const std::function<void()>& ours, const std::vector<Contender>& bare) {
-    std::vector<Contender> all{{"ours", ours}};
-    all.insert(all.end(), bare.begin(), bare.end());
-    for (const Contender& c : all) c.run();
-    std::vector<std::vector<double>> wall(all.size());
-    std::vector<double> ratios, cpu_ratios;
-    std::size_t round = 0;
-    for (auto _ : state) {
-        std::vector<Cost> costs(all.size());
-        for (std::size_t k = 0; k < all.size(); ++k) {
-            const std::size_t which = (k + round) % all.size();
-            costs[which]            = cost_of(all[which].run);
-        }
-        ++round;
-        for (std::size_t k = 0; k < all.size(); ++k) wall[k].push_back(costs[k].wall);
-        const auto fastest = [&](double Cost::*member) {
-            double least = costs[1].*member;
-            for (std::size_t k = 2; k < all.size(); ++k) least = std::min(least, costs[k].*member);
-            return least;
-        };
-        ratios.push_back(costs[0].wall / fastest(&Cost::wall));
-        cpu_ratios.push_back(costs[0].cpu / fastest(&Cost::cpu));
-        state.SetIterationTime(costs[0].wall / 1e3);
-    }
-    for (std::size_t k = 0; k < all.size(); ++k) state.counters[all[k].name + "_ms"] = median(wall[k]);
-    state.counters["ratio"]     = median(ratios);
-    state.counters["cpu_ratio"] = median(cpu_ratios);
-}
 
 // ---- the passes ----------------------------------------------------------------------------------------------------
 
@@ -332,7 +276,7 @@ struct Bench {
 
 void time_build(benchmark::State& state, Bench& bench) {
     bench.prepare();
-    in_turns(state, [&] { RayScene(bench.scene); },
+    in_turns(state, bench.name + "/build", [&] { RayScene(bench.scene); },
              {{"bare", [&] { Bare(bench.scene, RTC_SCENE_FLAG_NONE); }},
               {"robust", [&] { Bare(bench.scene, RTC_SCENE_FLAG_ROBUST); }}});
     state.counters["triangles"] = static_cast<double>(bench.scene.triangles.size());
@@ -348,17 +292,18 @@ void time_gbuffer(benchmark::State& state, Bench& bench) {
     BareGBuffer scratch;
     PointBatch points;
     const CameraFrame f = *bench.points.raster;
-    in_turns(state,
+    in_turns(state, bench.name + "/gbuffer",
              [&] { primary_points(*bench.rays, bench.scene, bench.scene.camera, bench.width, bench.height, points); },
              {{"bare", [&] { bare_gbuffer(*bench.fast, f, scratch); }},
               {"robust", [&] { bare_gbuffer(*bench.robust, f, scratch); }}});
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * bench.points.size()));
 }
 
-void time_visibility(benchmark::State& state, Bench& bench, LightId light, const char* settings) {
+/// `across`: light samples are across times across.
+void time_visibility(benchmark::State& state, Bench& bench, LightId light, int across) {
     bench.prepare();
-    const int samples         = light == 0 ? 1 : 16;
-    const MethodChoice choice = parse_method(settings);
+    const int samples         = across * across;
+    const MethodChoice choice = parse_method(fmt::format("ray_traced:samples={}", samples));
     const auto method         = choice.make();
     method->build(bench.scene, find_facts(bench.scene));
     method->aim(light);
@@ -370,7 +315,7 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, const
                            f,
                            bench.bare_points,
                            bench.scene.lights[light],
-                           samples,
+                           across,
                            std::vector<std::uint8_t>(bench.points.size())};
     };
     BareShadows fast = shadows(*bench.fast), robust = shadows(*bench.robust);
@@ -391,7 +336,8 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, const
                                 {"stream", [&] { fast.streams(); }},
                                 {"robust_packet", [&] { robust.packets(); }},
                                 {"robust_stream", [&] { robust.streams(); }}};
-    in_turns(state, ours, bare);
+    in_turns(state, fmt::format("{}/{}", bench.name, light == 0 ? "point" : fmt::format("area{}", samples)), ours,
+             bare);
     state.counters["difference"] = difference / count;
     state.SetItemsProcessed(static_cast<std::int64_t>(static_cast<double>(state.iterations()) * count * samples));
 }
@@ -435,13 +381,16 @@ int main(int argc, char** argv) {
         add(
             "gbuffer", [&b](benchmark::State& s) { time_gbuffer(s, b); }, 11);
         add(
-            "point", [&b](benchmark::State& s) { time_visibility(s, b, 0, "ray_traced"); }, 11);
+            "point", [&b](benchmark::State& s) { time_visibility(s, b, 0, 1); }, 11);
         add(
-            "area16", [&b](benchmark::State& s) { time_visibility(s, b, 1, "ray_traced:samples=16"); }, 5);
+            "area16", [&b](benchmark::State& s) { time_visibility(s, b, 1, 4); }, 5);
+        add(
+            "area64", [&b](benchmark::State& s) { time_visibility(s, b, 1, 8); }, 5);
     }
     int count = static_cast<int>(rest.size());
     benchmark::Initialize(&count, rest.data());
     if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
     benchmark::RunSpecifiedBenchmarks();
+    print_ratios();
     return 0;
 }
