@@ -68,13 +68,23 @@ template <class Wanted>
 void shade_some(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility, Image& image,
                 const Wanted& wanted) {
     const PhongSum sum(scene, *points.raster);
-    parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!wanted(i)) continue;
-            dvec3 light = scene.background;
-            if (points.triangle[i] != kNoTriangle)
-                light = sum.at(points, i, shading_normal(scene, points, i), visibility);
-            write_light(image, i, light);
+    const bool lanes = sum.has_lanes(visibility);
+    parallel_ranges((points.size() + 7) / 8, 128, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t eight = begin; eight < end; ++eight) {
+            unsigned which = 0;
+            for (std::size_t k = 0; k < std::min<std::size_t>(8, points.size() - 8 * eight); ++k)
+                which |= wanted(8 * eight + k) ? 1u << k : 0;
+            if (lanes) {
+                if (which != 0) sum.at_eight(points, 8 * eight, which, visibility, image.data.data());
+                continue;
+            }
+            for (std::size_t i = 8 * eight; which != 0; ++i, which >>= 1) {
+                if ((which & 1) == 0) continue;
+                dvec3 light = scene.background;
+                if (points.triangle[i] != kNoTriangle)
+                    light = sum.at(points, i, shading_normal(scene, points, i), visibility);
+                write_light(image, i, light);
+            }
         }
     });
 }
