@@ -184,38 +184,75 @@ private:
         std::uint8_t flipped[8], done[8];
     };
 
-    void place(const Hits8& hits, Points8& out) const {
-        float a[3][8], b[3][8], c[3][8];
+    /// Triangles (a, a + b, a + c) of eight hits, and what follows from them alone.
+    struct Triangles8 {
+        double a[3][8], b[3][8], c[3][8];
+        double n[3][8], length[8];  ///< cross(b, c) and its length
+        double sides[8], reach[8];  ///< see keeps_sign
         double two_sided[8];
-        for (int k = 0; k < 8; ++k) {
-            const TriangleId t = hits.triangle[k];
+    };
+
+    void load(const TriangleId* triangles, int count, Triangles8& to) const {
+        const double eye_reach = sum_of_magnitudes(to_eye());
+        for (int k = 0; k < count; ++k) {
+            const TriangleId t = triangles[k];
             if (t == kNoTriangle) {
-                for (int d = 0; d < 3; ++d) a[d][k] = b[d][k] = c[d][k] = 0;
-                two_sided[k] = 1;
+                for (int d = 0; d < 3; ++d) to.a[d][k] = to.b[d][k] = to.c[d][k] = 0;
+                to.two_sided[k] = 1;
                 continue;
             }
             const uvec3& corner = scene_.triangles[t];
             const vec3 &p = scene_.positions[corner.x], &q = scene_.positions[corner.y],
                        &r = scene_.positions[corner.z];  // references: copies would pass through the stack
-            a[0][k] = p.x, a[1][k] = p.y, a[2][k] = p.z;
-            b[0][k] = q.x, b[1][k] = q.y, b[2][k] = q.z;
-            c[0][k] = r.x, c[1][k] = r.y, c[2][k] = r.z;
+            for (int d = 0; d < 3; ++d) {
+                to.a[d][k] = static_cast<double>(p[d]);
+                to.b[d][k] = static_cast<double>(q[d]), to.c[d][k] = static_cast<double>(r[d]);
+            }
             const auto both = [&] { return scene_.material(t).two_sided; };
-            two_sided[k]    = all_two_sided_ || both() ? 1 : 0;
+            to.two_sided[k] = all_two_sided_ || both() ? 1 : 0;
         }
-        // To the eye: eye - p, or against an orthographic view.
-        const double pull      = window_ ? 0 : 1;
-        const dvec3 eye        = window_ ? -batch_.raster->forward : dvec3(batch_.eye);
-        const double eye_reach = sum_of_magnitudes(eye);
-        double towards[8], length[8], sides[8], reach[8];
-        for (int k = 0; k < 8; ++k) {
-            const double ax = static_cast<double>(a[0][k]), ay = static_cast<double>(a[1][k]),
-                         az = static_cast<double>(a[2][k]);
-            const double bx = static_cast<double>(b[0][k]) - ax, by = static_cast<double>(b[1][k]) - ay,
-                         bz = static_cast<double>(b[2][k]) - az;
-            const double cx = static_cast<double>(c[0][k]) - ax, cy = static_cast<double>(c[1][k]) - ay,
-                         cz = static_cast<double>(c[2][k]) - az;
+        for (int k = 0; k < count; ++k) {
+            for (int d = 0; d < 3; ++d) to.b[d][k] -= to.a[d][k], to.c[d][k] -= to.a[d][k];
+            const double bx = to.b[0][k], by = to.b[1][k], bz = to.b[2][k];
+            const double cx = to.c[0][k], cy = to.c[1][k], cz = to.c[2][k];
             const double nx = by * cz - cy * bz, ny = bz * cx - cz * bx, nz = bx * cy - cx * by;
+            to.n[0][k] = nx, to.n[1][k] = ny, to.n[2][k] = nz;
+            to.length[k] = std::sqrt(nx * nx + ny * ny + nz * nz);
+            to.sides[k]  = sum_of_magnitudes(bx, by, bz) * sum_of_magnitudes(cx, cy, cz);
+            to.reach[k]  = eye_reach + sum_of_magnitudes(to.a[0][k], to.a[1][k], to.a[2][k]);
+        }
+    }
+
+    /// Neighbouring pixels mostly see the same triangle.
+    void load(const TriangleId (&triangles)[8], Triangles8& to) const {
+        const bool same = std::all_of(triangles, triangles + 8, [&](TriangleId t) { return t == triangles[0]; });
+        load(triangles, same ? 1 : 8, to);
+        if (!same) return;
+        const auto spread = [](double(&lanes)[8]) { std::fill_n(lanes + 1, 7, lanes[0]); };
+        for (auto* vector : {&to.a, &to.b, &to.c, &to.n})
+            for (auto& lanes : *vector) spread(lanes);
+        spread(to.length), spread(to.sides), spread(to.reach), spread(to.two_sided);
+    }
+
+    /// The eye, or against an orthographic view.
+    [[nodiscard]] dvec3 to_eye() const { return window_ ? -batch_.raster->forward : dvec3(batch_.eye); }
+
+    void place(const Hits8& hits, Points8& out) const {
+        std::copy_n(hits.triangle, 8, out.triangle);
+        if (std::all_of(hits.triangle, hits.triangle + 8, [](TriangleId t) { return t == kNoTriangle; })) {
+            for (float* plane : {out.u, out.v, out.px, out.py, out.pz, out.nx, out.ny, out.nz})
+                std::fill_n(plane, 8, 0.0f);
+            std::fill_n(out.flipped, 8, std::uint8_t{0});
+            return;
+        }
+        Triangles8 t;
+        load(hits.triangle, t);
+        const double pull = window_ ? 0 : 1;  // to the eye: eye - p, or against an orthographic view
+        const dvec3 eye   = to_eye();
+        double towards[8];
+        for (int k = 0; k < 8; ++k) {
+            const double ax = t.a[0][k], ay = t.a[1][k], az = t.a[2][k], bx = t.b[0][k], by = t.b[1][k], bz = t.b[2][k],
+                         cx = t.c[0][k], cy = t.c[1][k], cz = t.c[2][k], nx = t.n[0][k], ny = t.n[1][k], nz = t.n[2][k];
             // The ray o + t d meets a + u b + v c. [Tomas Moeller, Ben Trumbore, 1997]
             const double dx = hits.along[0][k], dy = hits.along[1][k], dz = hits.along[2][k];
             const double sx = hits.origin[0][k] - ax, sy = hits.origin[1][k] - ay, sz = hits.origin[2][k] - az;
@@ -226,11 +263,8 @@ private:
             const double u = static_cast<double>(out.u[k]), v = static_cast<double>(out.v[k]);
             const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
             const double ex = eye.x - pull * px, ey = eye.y - pull * py, ez = eye.z - pull * pz;
-            length[k]           = std::sqrt(nx * nx + ny * ny + nz * nz);
-            sides[k]            = sum_of_magnitudes(bx, by, bz) * sum_of_magnitudes(cx, cy, cz);
-            reach[k]            = eye_reach + sum_of_magnitudes(ax, ay, az);
-            towards[k]          = (nx * ex + ny * ey + nz * ez) * two_sided[k];
-            const double factor = (towards[k] < 0 ? -1.0 : 1.0) / length[k];
+            towards[k]          = (nx * ex + ny * ey + nz * ez) * t.two_sided[k];
+            const double factor = (towards[k] < 0 ? -1.0 : 1.0) / t.length[k];
             out.px[k] = static_cast<float>(px), out.py[k] = static_cast<float>(py), out.pz[k] = static_cast<float>(pz);
             out.nx[k] = static_cast<float>(nx * factor);
             out.ny[k] = static_cast<float>(ny * factor);
@@ -239,10 +273,10 @@ private:
         for (int k = 0; k < 8; ++k) {
             const double sum = static_cast<double>(out.u[k]) + static_cast<double>(out.v[k]);
             out.flipped[k]   = towards[k] < 0;
-            const bool sure  = keeps_sign(towards[k], sides[k], reach[k]) | (two_sided[k] == 0);
-            out.done[k] = (out.u[k] >= 0) & (out.v[k] >= 0) & (sum < 1) & keeps_direction(length[k], sides[k]) & sure;
+            const bool sure  = keeps_sign(towards[k], t.sides[k], t.reach[k]) | (t.two_sided[k] == 0);
+            out.done[k] =
+                (out.u[k] >= 0) & (out.v[k] >= 0) & (sum < 1) & keeps_direction(t.length[k], t.sides[k]) & sure;
         }
-        std::copy_n(hits.triangle, 8, out.triangle);
         for (int k = 0; k < 8; ++k) {
             if (hits.triangle[k] != kNoTriangle) continue;
             out.u[k] = out.v[k] = out.px[k] = out.py[k] = out.pz[k] = out.nx[k] = out.ny[k] = out.nz[k] = 0;
