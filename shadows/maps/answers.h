@@ -17,18 +17,25 @@ template <class Share>
 void look_up(const LightViews& views, const PointBatch& points, LightId light, const Bias& bias, const Filter& filter,
              Visibility out, const Share& share) {
     const std::span<const MapView> all = views.views();
-    for_each_facet(views.scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        if (centre_is_behind(views.scene(), points, light, i)) {
+    for_each_eight_facets(views.scene(), points, light, [&](std::size_t first, unsigned which, const FacetPoints8& at) {
+        for (int k = 0; k < 8; ++k) {
+            const std::size_t i = first + static_cast<std::size_t>(k);
+            if ((which >> k & 1) == 0 || !centre_is_behind(views.scene(), points, light, i)) continue;
             out.s[i] = 0;
-            return;
+            which &= ~(1u << k);
         }
-        for (std::size_t v = 0; v < all.size(); ++v)
-            if (const std::optional<Receiver> receiver = receive(all[v], facet, p, bias, filter)) {
-                out.s[i] = share(v, *receiver, p);
-                return;
-            }
-        out.s[i] = 1;
-        if (!views.cover_all()) out.answer[i] = Answer::undefined;
+        for (std::size_t v = 0; v < all.size() && which != 0; ++v) {
+            const Receivers8 receivers = receive_eight(all[v], at, which, bias, filter);
+            for (int k = 0; k < 8; ++k)
+                if ((receivers.covered >> k & 1) != 0)
+                    out.s[first + static_cast<std::size_t>(k)] = share(v, receivers.lane(k), at.point(k));
+            which &= ~receivers.covered;
+        }
+        for (std::size_t i = first; which != 0; ++i, which >>= 1) {
+            if ((which & 1) == 0) continue;
+            out.s[i] = 1;
+            if (!views.cover_all()) out.answer[i] = Answer::undefined;
+        }
     });
 }
 

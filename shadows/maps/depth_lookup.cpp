@@ -2,18 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace umbra {
 namespace {
-
-// The automatic bias of a nearest sample; a kernel of n by n samples, whose outermost lie n times as far off, has n
-// times as much.
-constexpr double kAutoWidth    = 1;     // widths of a sample: what a hollow that turns by 45 degrees rises at its rim
-constexpr double kAutoGradient = 0.25;  // depth gradients a sample: enough for nearly all points of scanned meshes
-
-/// Positions and their distances from the light are rounded to this share of the coordinates and the distance.
-constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();
 
 /// Does the map show anything nearer than the receiver at sample (i, j)?
 bool is_blocked(const MapView& view, const Receiver& p, int i, int j, BiasMode mode) {
@@ -72,7 +63,7 @@ std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p
     receiver.bias          = bias.constant * per_width + bias.slope * gradient;
     if (bias.mode == BiasMode::manual) return receiver;
     const double largest = glm::length(p) + glm::length(f.origin) + std::abs(v.z);
-    receiver.bias += view.map.quantum(receiver.r) + kRounding * largest * f.nearness_per_depth(v.z);
+    receiver.bias += view.map.quantum(receiver.r) + kPositionRounding * largest * f.nearness_per_depth(v.z);
     receiver.slack    = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
     receiver.most     = samples * kMostAutomatic * per_width;
     receiver.snapping = snapping;

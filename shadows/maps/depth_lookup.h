@@ -2,6 +2,7 @@
 // bias), and which samples are asked (the filter).
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "umbra/shadows/maps/kernels.h"
@@ -35,6 +36,11 @@ enum class BiasMode : std::uint8_t {
 /// Daniel Holbert. Saying Goodbye to Shadow Acne. 2011; Hang Dou, Yajie Yan, Ethan Kerzner, Zeng Dai, Chris Wyman.
 /// Adaptive Depth Bias for Shadow Maps. 2014; John Isidoro. Shadow Mapping: GPU-based Tips and Techniques. 2006.
 inline constexpr double kMostAutomatic = 16;
+/// Of a nearest sample; a kernel of n by n samples, whose outermost lie n times as far off, has n times as much.
+inline constexpr double kAutoWidth    = 1;     ///< in widths: what a hollow that turns by 45 degrees rises at its rim
+inline constexpr double kAutoGradient = 0.25;  ///< in depth gradients: enough for nearly all points of scanned meshes
+/// Positions and their distances from the light are rounded to this share of the coordinates and the distance.
+inline constexpr double kPositionRounding = 8 * std::numeric_limits<double>::epsilon();
 
 /// The first and the last move the point in widths of a sample there, `slope` in depth gradients of its plane.
 struct Bias {
