@@ -78,10 +78,41 @@ std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet
     return {};
 }
 
+namespace {
+
+/// The weight of the square's samples, all in the map, that are not blocked: is_blocked of each, with what the samples
+/// of a column and of a row have alike computed once.
+double lit_in_square(const MapView& view, const Receiver& p, BiasMode mode, const SquareKernel& square) {
+    double across[SquareKernel::kMostInRow], nearest[SquareKernel::kMostInRow], counts[SquareKernel::kMostInRow];
+    for (int k = 0; k < square.side; ++k) across[k] = p.r + p.r_x * (square.x + k + 0.5 - p.x);
+    double lit = 0;
+    for (int j = 0; j < square.side; ++j) {
+        const double down = p.r_y * (square.y + j + 0.5 - p.y);
+        for (int k = 0; k < square.side; ++k) nearest[k] = view.map.nearness(square.x + k, square.y + j);
+        for (int k = 0; k < square.side; ++k) {
+            const double plane = across[k] + down, above = p.r - plane;
+            const double eased = (above > 0 ? above : 0.0) + p.slack;
+            const double by    = mode == BiasMode::automatic ? (p.most < eased ? p.most : eased) : 0.0;
+            const double r     = (mode == BiasMode::manual ? p.r : plane + by) + p.bias;
+            counts[k]          = nearest[k] > (r > 0 ? r : 0.0) ? 0 : square.across[k] * square.down[j];
+        }
+        for (int k = 0; k < square.side; ++k) lit += counts[k];
+    }
+    return lit;
+}
+
+}  // namespace
+
 float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
     if (filter.is_one_sample())
         return is_blocked(view, p, static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)), mode) ? 0.0f
                                                                                                                : 1.0f;
+    if (filter.kernel != Kernel::disc && !view.midpoint) {
+        const SquareKernel square = square_kernel({p.x, p.y}, filter);
+        if (square.x >= 0 && square.y >= 0 && square.x + square.side <= view.map.width() &&
+            square.y + square.side <= view.map.height())
+            return static_cast<float>(std::clamp(lit_in_square(view, p, mode, square) / square.whole, 0.0, 1.0));
+    }
     double lit         = 0;
     const double whole = for_each_sample({p.x, p.y}, p.turn, filter, [&](int i, int j, double weight) {
         if (!is_blocked(view, p, i, j, mode)) lit += weight;

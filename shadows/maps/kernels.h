@@ -79,35 +79,25 @@ struct Filter {
     return {turn.x * q.x - turn.y * q.y, turn.y * q.x + turn.x * q.y};
 }
 
-/// Calls body(i, j, weight) for each sample that the filter asks for about `at`, in samples, with a disc turned by
-/// `turn`. Samples may lie outside the map, and those of a disc come several times. Returns the sum of the weights.
-template <class Body>
-double for_each_sample(dvec2 at, dvec2 turn, const Filter& filter, const Body& body) {
-    constexpr int kMostInRow = 34;
-    const auto below         = [](double v) { return static_cast<int>(std::floor(v)); };
-    if (filter.kernel == Kernel::disc) {
-        const double radius = filter.radius + 0.5;
-        for (const dvec2 point : filter.points) {
-            const dvec2 q = at + radius * turned(point, turn);
-            if (!filter.bilinear) {
-                body(below(q.x), below(q.y), 1.0);
-                continue;
-            }
-            const int x = below(q.x - 0.5), y = below(q.y - 0.5);
-            const double fx = q.x - 0.5 - x, fy = q.y - 0.5 - y;
-            body(x, y, (1 - fx) * (1 - fy));
-            body(x + 1, y, fx * (1 - fy));
-            body(x, y + 1, (1 - fx) * fy);
-            body(x + 1, y + 1, fx * fy);
-        }
-        return static_cast<double>(filter.points.size());
-    }
+/// The samples of a kernel that is a square: x + i, y + j for i, j < side, of weight across[i] * down[j].
+struct SquareKernel {
+    static constexpr int kMostInRow = 34;
+    int x = 0, y = 0, side = 0;
+    double across[kMostInRow], down[kMostInRow];
+    double whole = 0;  ///< sum of the weights
+};
+
+/// Of a filter other than a disc about `at`, in samples.
+inline SquareKernel square_kernel(dvec2 at, const Filter& filter) {
+    const auto below = [](double v) { return static_cast<int>(std::floor(v)); };
     const int radius = filter.radius;
+    SquareKernel square;
     if (filter.kernel == Kernel::grid && !filter.bilinear) {
-        const int x = below(at.x), y = below(at.y);
-        for (int j = -radius; j <= radius; ++j)
-            for (int i = -radius; i <= radius; ++i) body(x + i, y + j, 1.0);
-        return (2 * radius + 1) * (2 * radius + 1);
+        square.x = below(at.x) - radius, square.y = below(at.y) - radius;
+        square.side = 2 * radius + 1;
+        for (int k = 0; k < square.side; ++k) square.across[k] = square.down[k] = 1;
+        square.whole = square.side * square.side;
+        return square;
     }
     const std::span<const double> heights = profile(filter.kernel);
     const int last                        = 2 * radius + 1;
@@ -120,15 +110,41 @@ double for_each_sample(dvec2 at, dvec2 turn, const Filter& filter, const Body& b
     };
     const int x = below(at.x - 0.5), y = below(at.y - 0.5);
     const double fx = at.x - 0.5 - x, fy = at.y - 0.5 - y;
-    double across[kMostInRow];
-    for (int k = 0; k <= last; ++k) across[k] = weight(k, fx);
-    for (int j = 0; j <= last; ++j) {
-        const double down = weight(j, fy);
-        for (int i = 0; i <= last; ++i) body(x + i - radius, y + j - radius, across[i] * down);
-    }
+    square.x = x - radius, square.y = y - radius;
+    square.side = last + 1;
+    for (int k = 0; k <= last; ++k) square.across[k] = weight(k, fx), square.down[k] = weight(k, fy);
     double sum = heights.empty() ? last : 0;
     for (const double height : heights) sum += height;
-    return sum * sum;
+    square.whole = sum * sum;
+    return square;
+}
+
+/// Calls body(i, j, weight) for each sample that the filter asks for about `at`, in samples, with a disc turned by
+/// `turn`. Samples may lie outside the map, and those of a disc come several times. Returns the sum of the weights.
+template <class Body>
+double for_each_sample(dvec2 at, dvec2 turn, const Filter& filter, const Body& body) {
+    if (filter.kernel != Kernel::disc) {
+        const SquareKernel square = square_kernel(at, filter);
+        for (int j = 0; j < square.side; ++j)
+            for (int i = 0; i < square.side; ++i) body(square.x + i, square.y + j, square.across[i] * square.down[j]);
+        return square.whole;
+    }
+    const auto below    = [](double v) { return static_cast<int>(std::floor(v)); };
+    const double radius = filter.radius + 0.5;
+    for (const dvec2 point : filter.points) {
+        const dvec2 q = at + radius * turned(point, turn);
+        if (!filter.bilinear) {
+            body(below(q.x), below(q.y), 1.0);
+            continue;
+        }
+        const int x = below(q.x - 0.5), y = below(q.y - 0.5);
+        const double fx = q.x - 0.5 - x, fy = q.y - 0.5 - y;
+        body(x, y, (1 - fx) * (1 - fy));
+        body(x + 1, y, fx * (1 - fy));
+        body(x, y + 1, (1 - fx) * fy);
+        body(x + 1, y + 1, fx * fy);
+    }
+    return static_cast<double>(filter.points.size());
 }
 
 }  // namespace umbra
