@@ -13,9 +13,16 @@ namespace umbra::planar {
 
 // ---- building -------------------------------------------------------------------------------------------------------
 
-DarkeningTree::DarkeningTree(std::vector<std::uint32_t> points, std::span<const dvec2> at)
+DarkeningTree::DarkeningTree(std::vector<std::uint32_t> points, std::span<const dvec2> at, bool in_order)
     : points_(std::move(points)) {
-    sort(at);
+    x_.resize(leaf_count() * kLeaf, 0);  // filled up, so that leaves are tested whole
+    y_.resize(leaf_count() * kLeaf, 0);
+    if (in_order)
+        parallel_ranges(at.size(), 65536, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) x_[i] = at[i].x, y_[i] = at[i].y;
+        });
+    else
+        sort(at);
     build_boxes();
     brighten();
 }
@@ -42,8 +49,6 @@ void DarkeningTree::sort(std::span<const dvec2> at) {
     parallel_sort(order.begin(), order.end(),
                   [](const Keyed& l, const Keyed& r) { return l.key != r.key ? l.key < r.key : l.place < r.place; });
     const std::vector<std::uint32_t> unsorted = points_;
-    x_.resize(leaf_count() * kLeaf, 0);  // filled up, so that leaves are tested whole
-    y_.resize(leaf_count() * kLeaf, 0);
     parallel_ranges(at.size(), 65536, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             points_[i] = unsorted[order[i].place];
@@ -72,10 +77,14 @@ void DarkeningTree::build_boxes() {
 void DarkeningTree::set_box(Node& node, std::size_t k, std::size_t child, std::size_t children) const {
     vec2 low(+kInfinity), high(-kInfinity);
     if (child < children && levels_.empty()) {
-        for (std::size_t i = child * kLeaf; i < std::min(points_.size(), (child + 1) * kLeaf); ++i) {
-            low  = glm::min(low, vec2(float_below(x_[i]), float_below(y_[i])));
-            high = glm::max(high, vec2(float_above(x_[i]), float_above(y_[i])));
+        const std::size_t begin = child * kLeaf, end = std::min(points_.size(), begin + kLeaf);
+        dvec2 least(x_[begin], y_[begin]), most      = least;
+        for (std::size_t i = begin + 1; i < end; ++i) {
+            least = glm::min(least, dvec2(x_[i], y_[i]));
+            most  = glm::max(most, dvec2(x_[i], y_[i]));
         }
+        low  = {float_below(least.x), float_below(least.y)};
+        high = {float_above(most.x), float_above(most.y)};
     } else if (child < children) {
         const Node& below = levels_.back()[child];
         for (std::size_t i = 0; i < kBranches; ++i) {

@@ -10,13 +10,14 @@
 
 namespace umbra::planar {
 
-/// Points of a plane as a tree of boxes over their order along the Morton curve: leaves of 16 points, 8 branches a
+/// Points of a plane as a tree of boxes over an order in which neighbours are near: leaves of 16 points, 8 branches a
 /// node. All are bright at first. Points become dark, and stay so until all are brightened; a branch whose points are
 /// all dark is not entered again. Which thread darkens a point makes no difference to the result.
 class DarkeningTree {
 public:
-    /// `points` are indices into the batch, `at` their coordinates in the plane.
-    DarkeningTree(std::vector<std::uint32_t> points, std::span<const dvec2> at);
+    /// `points` are indices into the batch, `at` their coordinates in the plane. `in_order`: they come in such an
+    /// order; else they are sorted along the Morton curve of the plane.
+    DarkeningTree(std::vector<std::uint32_t> points, std::span<const dvec2> at, bool in_order);
 
     /// The points as given, in the tree's order.
     [[nodiscard]] std::span<const std::uint32_t> points() const { return points_; }

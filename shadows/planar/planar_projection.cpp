@@ -22,6 +22,7 @@
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/planar/darkening_tree.h"
+#include "umbra/shadows/planar/groups.h"
 #include "umbra/shadows/planar/project.h"
 
 namespace umbra {
@@ -120,28 +121,36 @@ public:
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.asks(light, i)) out.answer[i] = Answer::undefined;
-        for_each_receiver(points, light, [&](std::size_t r, const std::vector<std::uint32_t>& members) {
+        parallel_ranges(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                if (points.asks(light, i)) out.answer[i] = Answer::undefined;
+        });
+        for_each_receiver(points, light, [&](std::size_t r, std::vector<std::uint32_t>& members) {
             // A light that the point's own triangle faces, but that is not above the plane to which the triangle
             // belongs up to rounding, leaves nothing to project.
             if (std::ranges::none_of(sources_,
                                      [&](const Source& s) { return LocalSource(receivers_[r], s).is_above(); }))
                 return;
-            DarkeningTree tree(members, positions(points, members, receivers_[r]));
-            std::vector<std::uint32_t> sources_seen(members.size(), 0);
+            const std::size_t count = members.size();
+            const auto at           = positions(points, members, receivers_[r]);
+            DarkeningTree tree(std::move(members), at, points.raster.has_value());
+            std::vector<std::uint32_t> sources_seen(count, 0);
             for (std::size_t s = 0; s < sources_.size(); ++s) {
                 const LocalSource source(receivers_[r], sources_[s]);
                 if (!source.is_above()) continue;  // the receiver does not see this part of the light
                 tree.brighten();
                 darken(tree, receivers_[r], source, shadows_[s][r]);
-                for (std::size_t i = 0; i < sources_seen.size(); ++i) sources_seen[i] += !tree.is_dark(i);
+                parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
+                    for (std::size_t i = begin; i < end; ++i) sources_seen[i] += !tree.is_dark(i);
+                });
             }
-            for (std::size_t i = 0; i < sources_seen.size(); ++i) {
-                const std::uint32_t p = tree.points()[i];
-                out.s[p]              = static_cast<float>(sources_seen[i]) / static_cast<float>(sources_.size());
-                out.answer[p]         = Answer::given;
-            }
+            parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const std::uint32_t p = tree.points()[i];
+                    out.s[p]              = static_cast<float>(sources_seen[i]) / static_cast<float>(sources_.size());
+                    out.answer[p]         = Answer::given;
+                }
+            });
         });
     }
 
@@ -182,14 +191,13 @@ private:
     /// Calls body(r, points) with the points on receivers_[r] that face the light, where there are any.
     template <class Body>
     void for_each_receiver(const PointBatch& points, LightId light, const Body& body) const {
-        std::vector<std::vector<std::uint32_t>> groups(receivers_.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (!points.asks(light, i)) continue;
+        auto groups = planar::grouped(points, receivers_.size(), [&](std::size_t i) -> std::size_t {
+            if (!points.asks(light, i)) return Occluders::kNoPlane;
             const std::uint32_t plane = occluders_.plane_of[points.triangle[i]];
-            if (plane == Occluders::kNoPlane) continue;
+            if (plane == Occluders::kNoPlane) return Occluders::kNoPlane;
             const bool below = glm::dot(dvec3(points.normal(i)), receivers_[2 * plane].normal) < 0;
-            groups[2 * plane + below].push_back(static_cast<std::uint32_t>(i));
-        }
+            return 2 * plane + below;
+        });
         for (std::size_t r = 0; r < groups.size(); ++r)
             if (!groups[r].empty()) body(r, groups[r]);
     }
