@@ -314,8 +314,8 @@ TEST(SoftWindows, RoundLightsHaveThePenumbraOfARectangleOfTheirSpread) {
             const auto s            = soft(scene, points, "");
             for (std::size_t i = 0; i < s.size(); ++i) {
                 const double x = double(points.px[i]);
-                // The two shapes differ by 0.021 at most.
-                ASSERT_NEAR(s[i], half_plane(x, double(height), kind), 0.0125 / w + 0.025) << height << ' ' << x;
+                // The two shapes differ by 0.029 at most.
+                ASSERT_NEAR(s[i], half_plane(x, double(height), kind), 0.0125 / w + 0.029) << height << ' ' << x;
                 // Far from the edge it is lit or dark, to the last bit.
                 if (std::abs(x) > 0.6 * w + 0.02) {
                     ASSERT_EQ(s[i], x > 0 ? 1 : 0) << x;
