@@ -5,6 +5,8 @@
 // moments and averages these over a box (moment_map.h).
 // visibility takes each point to the view that covers it, moves it towards the light by the bias, and asks one bilinear
 // mean for a bound of the fraction that does not block (moments.h): what PCF finds by comparing every sample.
+// filter=pcss has windows in place of the box, of any size by summed-area tables (summed_moments.h): those in which it
+// searches for what blocks an area light, and one as wide as the penumbra behind that (shadows/maps/penumbra.h).
 //
 // This work is based on:
 // William Donnelly, Andrew Lauritzen. Variance Shadow Maps. 2006 (kind=vsm)
@@ -12,21 +14,32 @@
 // Marco Salvi. Rendering Filtered Shadows with Exponential Shadow Maps. ShaderX6. 2008 (kind=esm)
 // Andrew Lauritzen, Michael McCool. Layered Variance Shadow Maps. 2008 (kind=evsm2, evsm4)
 // Christoph Peters, Reinhard Klein. Moment Shadow Mapping. 2015 (kind=msm)
+// Randima Fernando. Percentage-Closer Soft Shadows. 2005 (filter=pcss)
+// Andrew Lauritzen. Summed-Area Variance Shadow Maps. GPU Gems 3. 2007 (filter=pcss)
+// Baoguang Yang, Zhao Dong, Jieqing Feng, Hans-Peter Seidel, Jan Kautz. Variance Soft Shadow Mapping. 2010
+// (filter=pcss)
+// Li Shen, Jieqing Feng, Baoguang Yang. Exponential Soft Shadow Mapping. 2013 (filter=pcss, kind=evsm2, evsm4)
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "umbra/shadows/filtered/moment_map.h"
+#include "umbra/core/base/error.h"
+#include "umbra/shadows/filtered/summed_moments.h"
 #include "umbra/shadows/maps/answers.h"
 #include "umbra/shadows/maps/map_options.h"
+#include "umbra/shadows/maps/penumbra.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
 namespace {
 
 enum class DepthBias : std::uint8_t { automatic, manual };
+enum class MomentFilter : std::uint8_t { box, pcss };
 
-struct FilteredOptions : MapOptions, ViewOptions {
+struct FilteredOptions : MapOptions, ViewOptions, SearchOptions {
+    MomentFilter filter       = MomentFilter::box;
+    int parts                 = 2;
+    int searches              = 3;
     MomentKind kind           = MomentKind::evsm4;
     double positive_exponent  = 40;
     double negative_exponent  = 5;
@@ -50,20 +63,44 @@ const std::vector<Parameter> kFilteredParameters{
          .phase   = Phase::aim,
          .choices = "vsm|esm|evsm2|evsm4|msm",
          .sweep   = "vsm|evsm4|msm"}),
+    parameter<&FilteredOptions::filter>(
+        {.name  = "filter",
+         .doc   = "box: a mean about the point. pcss: for area lights the mean depth of what blocks in a wide window, "
+                  "and then the lit fraction of one as wide as the penumbra behind that, both from a summed-area table; "
+                  "for other lights box.",
+         .phase = Phase::aim,
+         .choices     = "box|pcss",
+         .area_lights = true}),
+    search_parameter<FilteredOptions>("pcss: how far from the point windows reach, at most."),
+    parameter<&FilteredOptions::parts>(
+        {.name  = "parts",
+         .doc   = "pcss: parts of a window along each side, each compared with the receiver's plane in its middle.",
+         .phase = Phase::visibility,
+         .min   = 1,
+         .max   = 16,
+         .area_lights = true}),
+    parameter<&FilteredOptions::searches>(
+        {.name        = "searches",
+         .doc         = "pcss: windows that are searched for what blocks, each as wide as the penumbra behind what the "
+                        "one before has found.",
+         .phase       = Phase::visibility,
+         .min         = 1,
+         .max         = 16,
+         .area_lights = true}),
     resolution_parameter<FilteredOptions>("Texels along each side of a map; a cube has six maps.",
                                           "512|1024|2048|4096"),
-    radius_parameter<FilteredOptions>("Filter: the mean of (2 radius + 1)^2 texels, and between them bilinear.", 64,
+    radius_parameter<FilteredOptions>("box: the mean of (2 radius + 1)^2 texels, and between them bilinear.", 64,
                                       "1|4"),
     parameter<&FilteredOptions::positive_exponent>(
         {.name  = "positive_exponent",
          .doc   = "esm, evsm2, evsm4: factor of depth, -1 to 1, in the exponential; taken as 42 at most where "
-                  "precision=float, so that its square is a number.",
+                  "precision=float, so that its square is a number, and as 5 in the tables of filter=pcss.",
          .phase = Phase::aim,
          .min   = 0.01,
          .max   = kMostExponentTwofold}),
     parameter<&FilteredOptions::negative_exponent>(
         {.name  = "negative_exponent",
-         .doc   = "evsm4: the same factor for the exponential of negative depth, with the same limit.",
+         .doc   = "evsm4: the same factor for the exponential of negative depth, with the same limits.",
          .phase = Phase::aim,
          .min   = 0.01,
          .max   = kMostExponentTwofold}),
@@ -115,58 +152,82 @@ public:
         const double most = options_.precision == MomentPrecision::single ? kMostExponentSingle : kMostExponentTwofold;
         bound_ = {options_.kind, std::min(options_.positive_exponent, most), std::min(options_.negative_exponent, most),
                   options_.min_variance, options_.moment_bias};
-        filter_ = {options_.radius, true};
-        bias_   = {options_.bias == DepthBias::manual ? BiasMode::manual : BiasMode::automatic, options_.constant,
+        soft_bound_          = bound_;
+        soft_bound_.positive = std::min(bound_.positive, SummedMoments::kMostExponent);
+        soft_bound_.negative = std::min(bound_.negative, SummedMoments::kMostExponent);
+        finds_blockers_      = options_.filter == MomentFilter::pcss;
+        filter_              = {options_.radius, true};
+        bias_ = {options_.bias == DepthBias::manual ? BiasMode::manual : BiasMode::automatic, options_.constant,
                  options_.slope, options_.normal_offset};
+        if (finds_blockers_ && options_.kind == MomentKind::esm)
+            throw UsageError(
+                "filtered_map: filter=pcss sums exponentials of 5 times the depth at most, of which kind=esm keeps too "
+                "little to tell what blocks, expected kind=vsm, evsm2, evsm4 or msm");
+        search_texels_ = finds_blockers_ ? options_.search * options_.resolution : 0;
         // Moments are kept beside the depth that they are made of.
-        const double share = 4.0 / (4 + MomentMap::bytes_per_sample(options_.kind, options_.empty, options_.precision));
+        int bytes = MomentMap::bytes_per_sample(options_.kind, options_.empty, options_.precision);
+        if (finds_blockers_) bytes = std::max(bytes, SummedMoments::bytes_per_sample(options_.kind, options_.empty));
+        const double share = 4.0 / (4 + bytes);
+        const double reach = std::max<double>(options_.radius, search_texels_);
         // What is nearer to the light than what the map is fitted to counts as on the near plane: a quarter of the
         // map's side before that, so that exponentials of the two depths differ, too.
-        const MapMargins room =
-            margins("filtered_map", options_, options_.radius, options_.radius, 0.25 * options_.resolution);
-        map_options_ = {.method         = "filtered_map",
-                        .resolution     = options_.resolution,
-                        .fit_to_casters = options_.fit == Fit::casters,
-                        .surround       = options_.surround,
-                        .border         = room.border,
-                        .headroom       = room.headroom,
-                        .memory_limit   = share * LightViews::half_of_memory()};
+        const MapMargins room = margins("filtered_map", options_, options_.radius, reach, 0.25 * options_.resolution);
+        map_options_          = {.method         = "filtered_map",
+                                 .resolution     = options_.resolution,
+                                 .fit_to_casters = options_.fit == Fit::casters,
+                                 .all_depths     = finds_blockers_,
+                                 .surround       = options_.surround,
+                                 .border         = room.border,
+                                 .headroom       = room.headroom,
+                                 .memory_limit   = share * LightViews::half_of_memory()};
         if (views_) views_->set_options(map_options_);
     }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         std::string why = "any triangles and lights, through a filtered map that leaks light where depths differ";
-        if (!facts.hard_lights_only) why += "; area lights are taken as their centres, so that penumbrae are missing";
+        if (!facts.hard_lights_only)
+            why += finds_blockers_ ? "; penumbrae are as wide as those behind one blocker that is parallel to the map"
+                                   : "; area lights are taken as their centres, so that penumbrae are missing";
         return {How::approximately, why + "."};
     }
 
     void build(const Scene& scene, const SceneFacts& facts) override {
         maps_.clear();
+        tables_.clear();
         views_.emplace(scene, facts, map_options_);
     }
 
     void aim(LightId light) override {
         maps_.clear();
+        tables_.clear();
         views_->fit(light);
         views_->rasterise();
+        const bool soft = finds_blockers_ && is_area(views_->scene().lights[light].kind);
         for (const MapView& view : views_->views())
-            maps_.emplace_back(view, bound_, options_.radius, options_.empty, options_.precision);
+            if (soft)
+                tables_.emplace_back(view, soft_bound_, options_.empty, 2 * search_texels_);
+            else
+                maps_.emplace_back(view, bound_, options_.radius, options_.empty, options_.precision);
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        look_up(*views_, points, light, bias_, filter_, out, [&](std::size_t v, const Receiver& receiver, dvec3) {
-            return lit(views_->views()[v], maps_[v], receiver);
+        const Light& source = views_->scene().lights[light];
+        look_up(*views_, points, light, bias_, compared(), out, [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+            const MapView& view = views_->views()[v];
+            return tables_.empty() ? lit(view, maps_[v], receiver) : soft_lit(view, tables_[v], receiver, source, p);
         });
     }
 
     /// Whose depth the map holds in the texel under the filter that blocks the point, the nearest of several. Draws the
     /// maps again.
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
+        // What a window shows may lie farther off; few points are asked.
+        const Filter asked = tables_.empty() ? filter_ : Filter{static_cast<int>(std::ceil(search_texels_)), false};
         BlockingSamples samples(points.size());
         for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-            if (auto found = receive(views_->views(), facet, p, bias_, filter_)) {
+            if (auto found = receive(views_->views(), facet, p, bias_, compared())) {
                 found->receiver.bias = total_bias(found->receiver);
-                samples.find(i, found->view, views_->views()[found->view], found->receiver, BiasMode::manual, filter_);
+                samples.find(i, found->view, views_->views()[found->view], found->receiver, BiasMode::manual, asked);
             }
         });
         samples.name(blockers, [&](std::size_t v) { return views_->owners(v); });
@@ -176,34 +237,96 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const override {
         std::size_t bytes = views_ ? views_->memory_bytes() : 0;
         for (const MomentMap& map : maps_) bytes += map.memory_bytes();
+        for (const SummedMoments& table : tables_) bytes += table.memory_bytes();
         return bytes;
     }
 
 private:
+    /// What the automatic bias is for: the parts of a window follow the receiver's plane, however wide it is.
+    [[nodiscard]] Filter compared() const { return tables_.empty() ? filter_ : Filter{}; }
+
     /// Nearness that is added to the point's: the filter's samples have one depth to be compared with.
     [[nodiscard]] static double total_bias(const Receiver& r) { return r.bias + std::min(r.slack, r.most); }
+
+    /// The same point's nearness that what lies at an offset, in samples, is compared with: the nearer of the point
+    /// and its plane there.
+    [[nodiscard]] double nearness_at(const Receiver& r, dvec2 offset) const {
+        if (bias_.mode == BiasMode::manual) return r.r + r.bias;
+        const double plane = r.r + r.r_x * offset.x + r.r_y * offset.y;
+        return plane + std::min(std::max(0.0, r.r - plane) + r.slack, r.most) + r.bias;
+    }
+
+    /// As far as the empty texels, and no farther; where those are apart, what lies behind all that is drawn does so by
+    /// its distance.
+    [[nodiscard]] double compared_depth(const MapView& view, double nearness) const {
+        const double most = options_.empty == EmptySamples::far ? 1 : kInfinity;
+        return std::min(linear_depth(view.frame, nearness), most);
+    }
+
+    [[nodiscard]] double lit(const FilteredDepth& filtered, const MomentBound& of, double z) const {
+        const double bound = lit_bound(of, filtered.moments, z);
+        const double cut   = std::max(0.0, (bound - options_.bleed) / (1 - options_.bleed));
+        const double s     = std::clamp(1 - filtered.drawn * (1 - cut), 0.0, 1.0);
+        // Bounds tend to 0 and 1; what float moments do not tell from these is 0 or 1.
+        return std::round(s * kSteps) / kSteps;
+    }
 
     [[nodiscard]] float lit(const MapView& view, const MomentMap& map, const Receiver& receiver) const {
         const FilteredDepth filtered = map.at(receiver.x, receiver.y);
         if (filtered.drawn == 0) return 1;
-        // As far as the empty texels, and no farther; where those are apart, what lies behind all that is drawn does
-        // so by its distance.
-        const double most  = options_.empty == EmptySamples::far ? 1 : kInfinity;
-        const double z     = std::min(linear_depth(view.frame, receiver.r + total_bias(receiver)), most);
-        const double bound = lit_bound(bound_, filtered.moments, z);
-        const double cut   = std::max(0.0, (bound - options_.bleed) / (1 - options_.bleed));
-        const double s     = std::clamp(1 - filtered.drawn * (1 - cut), 0.0, 1.0);
-        // Bounds tend to 0 and 1; what float moments do not tell from these is 0 or 1.
-        return static_cast<float>(std::round(s * kSteps) / kSteps);
+        return static_cast<float>(lit(filtered, bound_, compared_depth(view, receiver.r + total_bias(receiver))));
+    }
+
+    /// PCSS with means in place of samples. A window has parts x parts of its own, each of which is compared with the
+    /// receiver's plane in its middle: a receiver that slants does not shade itself, and occluders that differ in depth
+    /// fall into different parts.
+    [[nodiscard]] float soft_lit(const MapView& view, const SummedMoments& table, const Receiver& receiver,
+                                 const Light& light, dvec3 p) const {
+        const LightFrame& f = view.frame;
+        const dvec3 q       = f.light_space(p);
+        const dvec2 size    = rectangle_as(f, light, dvec2(q) / q.z);
+        const int parts     = options_.parts;
+        const dvec2 at(receiver.x, receiver.y);
+        // Windows that are searched hold whole samples: four entries of the table in place of sixteen.
+        const auto for_window = [&](double depth, bool searched, const auto& body) {
+            const dvec2 half = penumbra_reach(view, size, depth, q.z, search_texels_) / static_cast<double>(parts);
+            for (int j = 0; j < parts; ++j)
+                for (int i = 0; i < parts; ++i) {
+                    const dvec2 offset = half * dvec2(2 * i + 1 - parts, 2 * j + 1 - parts);
+                    dvec2 low = at + offset - half, high = at + offset + half;
+                    if (searched) low = glm::floor(low), high = glm::ceil(high);
+                    const WindowedDepth part = table.mean(low, high);
+                    if (part.drawn > 0) body(part, compared_depth(view, nearness_at(receiver, offset)));
+                }
+        };
+        // The mean of the first window also has what blocks other points alone; the next windows are narrower.
+        double blocking = f.near;
+        for (int k = 0; k < options_.searches; ++k) {
+            double sum = 0, dark = 0;
+            for_window(blocking, true, [&](const WindowedDepth& part, double z) {
+                const double lit = lit_bound(soft_bound_, part.moments, z), weight = part.drawn * (1 - lit);
+                sum += weight * occluder_depth(lit, part.depth, z);
+                dark += weight;
+            });
+            if (dark == 0) return 1;
+            blocking = f.near + sum / dark * (f.far - f.near);
+        }
+        double blocked = 0;
+        for_window(blocking, false,
+                   [&](const WindowedDepth& part, double z) { blocked += 1 - lit(part, soft_bound_, z); });
+        return static_cast<float>(1 - blocked / (parts * parts));
     }
 
     FilteredOptions options_;
-    MomentBound bound_;
+    MomentBound bound_, soft_bound_;  ///< of maps and of tables
+    bool finds_blockers_  = false;    ///< filter=pcss
+    double search_texels_ = 0;
     Bias bias_;
     Filter filter_;
     LightViews::Options map_options_;
     std::optional<LightViews> views_;
-    std::vector<MomentMap> maps_;  ///< of the views, in their order
+    std::vector<MomentMap> maps_;        ///< of the views, in their order
+    std::vector<SummedMoments> tables_;  ///< in their place, where an area light's blockers are found
 };
 
 }  // namespace
@@ -221,7 +344,9 @@ const MethodInfo filtered_map{
         "leaks "
         "light where a filter holds several depths; acne where light falls at a thousandth of a radian or less.",
     .parameters = kFilteredParameters,
-    .presets    = {{"textbook", "kind=vsm,fit=scene,empty=far,bias=manual,bleed=0",
+    .presets    = {{"soft", "filter=pcss,kind=vsm,bleed=0,min_variance=1e-10,resolution=512",
+                    "Yang and others 2010: penumbrae of area lights, by a search for blockers in means."},
+                   {"textbook", "kind=vsm,fit=scene,empty=far,bias=manual,bleed=0",
                     "Donnelly, Lauritzen 2006: mean and mean square of one map of the whole scene."},
                    {"fast", "resolution=512", "A map of 512 x 512 texels."},
                    {"best", "resolution=4096", "A map of 4096 x 4096 texels."}},

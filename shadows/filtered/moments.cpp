@@ -97,4 +97,8 @@ double lit_bound(const MomentBound& bound, const Moments& means, double z) {
     return std::min(by_positive, chebyshev(means[2], means[3], warped, change * change * bound.min_variance));
 }
 
+double occluder_depth(double lit, double mean_depth, double z) {
+    return lit < 1 ? std::clamp((mean_depth - lit * z) / (1 - lit), 0.0, z) : z;
+}
+
 }  // namespace umbra

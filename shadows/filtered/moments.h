@@ -11,6 +11,8 @@
 // Christoph Peters, Reinhard Klein. Moment Shadow Mapping. 2015
 // Christoph Peters, Cedrick Muenstermann, Nico Wetzstein, Reinhard Klein. Improved Moment Shadow Maps for Translucent
 // Occluders, Soft Shadows and Single Scattering. 2017 (the moments that the bias moves towards)
+// Baoguang Yang, Zhao Dong, Jieqing Feng, Hans-Peter Seidel, Jan Kautz. Variance Soft Shadow Mapping. 2010 (the depth
+// of what blocks)
 #pragma once
 
 #include <array>
@@ -44,6 +46,10 @@ struct MomentBound {
 
 /// An upper bound of P(depth >= z), [0, 1], from the means of moments; z in [0, 1e6].
 [[nodiscard]] double lit_bound(const MomentBound& bound, const Moments& means, double z);
+
+/// The mean depth of what lies before z, [0, z], where the fraction `lit` of all is taken to lie at z and all have this
+/// mean depth; z where nothing lies before it. [Yang and others 2010]
+[[nodiscard]] double occluder_depth(double lit, double mean_depth, double z);
 
 /// Chebyshev's inequality of one side (Cantelli): the largest P(X >= value) of all distributions with this mean and
 /// mean square; 1 where value <= mean. A variance below `least_variance` >= 0 is taken as that.

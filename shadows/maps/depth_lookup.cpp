@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/shadows/maps/penumbra.h"
+
 namespace umbra {
 namespace {
 
@@ -121,25 +123,19 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
 }
 
 float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode, const SoftFilter& filter) {
-    const LightFrame& f    = view.frame;
-    const dvec2 per_window = dvec2(view.map.width(), view.map.height()) / (2.0 * f.half);
-    // The lines from the point to the light's rim are that far apart where they pass the depth z, in samples.
-    const auto reach = [&](double z) {
-        const dvec2 wide = filter.size * (1 / std::max(z, f.near) - 1 / depth) * per_window;
-        return glm::clamp(wide, dvec2(0.5), dvec2(std::max(0.5, filter.texels)));
-    };
+    const auto reach   = [&](double z) { return penumbra_reach(view, dvec2(filter.size), z, depth, filter.texels); };
     const auto blocked = [&](dvec2 within, dvec2 point, ivec2& at) {
         const dvec2 offset = within * turned(point, receiver.turn);
         at = {static_cast<int>(std::floor(receiver.x + offset.x)), static_cast<int>(std::floor(receiver.y + offset.y))};
         return is_blocked(view, receiver, at.x, at.y, mode);
     };
-    const dvec2 search = reach(f.near);
+    const dvec2 search = reach(view.frame.near);
     double sum         = 0;
     int blockers       = 0;
     ivec2 at{0};
     for (const dvec2 point : filter.points) {
         if (!blocked(search, point, at)) continue;
-        sum += f.depth(view.map.nearness(at.x, at.y));
+        sum += view.frame.depth(view.map.nearness(at.x, at.y));
         ++blockers;
     }
     if (blockers == 0) return 1;

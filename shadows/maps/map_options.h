@@ -31,6 +31,11 @@ struct ViewOptions {
     double surround = 0.5;
 };
 
+/// Of those that search for what blocks an area light.
+struct SearchOptions {
+    double search = 0.1;
+};
+
 /// How far maps reach over what they are fitted to, in samples: see LightViews::Options.
 struct MapMargins {
     double border = 2, headroom = 64;
@@ -135,6 +140,17 @@ template <class Options>
          .phase = Phase::aim,
          .min   = 0,
          .max   = 1});
+}
+
+template <class Options>
+[[nodiscard]] Parameter search_parameter(std::string_view doc) {
+    return parameter<&SearchOptions::search, Options>({.name        = "search",
+                                                       .doc         = doc,
+                                                       .unit        = "sides of the map",
+                                                       .phase       = Phase::aim,
+                                                       .min         = 0,
+                                                       .max         = 0.1,
+                                                       .area_lights = true});
 }
 
 }  // namespace umbra

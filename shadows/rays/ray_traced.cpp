@@ -12,8 +12,8 @@
 
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/shared/light_rays.h"
 #include "umbra/shadows/rays/light_shafts.h"
+#include "umbra/shadows/shared/light_rays.h"
 
 namespace umbra {
 namespace {

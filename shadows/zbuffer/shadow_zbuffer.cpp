@@ -25,6 +25,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/shadows/maps/answers.h"
+#include "umbra/shadows/maps/penumbra.h"
 
 namespace umbra {
 namespace {
@@ -72,13 +73,7 @@ const std::vector<Parameter> kParameters{
          .phase = Phase::aim,
          .min   = 1,
          .max   = 1024}),
-    parameter<&Options::search>({.name        = "search",
-                                 .doc         = "pcss: how far from the point texels are compared, at most.",
-                                 .unit        = "sides of the map",
-                                 .phase       = Phase::aim,
-                                 .min         = 0,
-                                 .max         = 0.1,
-                                 .area_lights = true}),
+    search_parameter<Options>("pcss: how far from the point texels are compared, at most."),
     parameter<&Options::faces>({.name  = "faces",
                                 .doc   = "Which side of a triangle casts; back (second depth) and front expect closed "
                                          "occluders whose normals point outwards.",
@@ -165,20 +160,10 @@ Service ShadowZBuffer::serves(const SceneFacts& facts) const {
 
 void ShadowZBuffer::build(const Scene& scene, const SceneFacts& facts) { views_.emplace(scene, facts, map_options_); }
 
-namespace {
-
-/// Of a disk that has the area of the light, as large as a sphere looks.
-double radius_of(const Light& light) {
-    if (light.kind != LightKind::rectangle) return static_cast<double>(light.radius);
-    return std::sqrt(glm::length(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))) / kPi);
-}
-
-}  // namespace
-
 void ShadowZBuffer::aim(LightId light) {
     const Light& aimed = views_->scene().lights[light];
     is_soft_           = finds_blockers_ && is_area(aimed.kind);
-    if (is_soft_) soft_.size = radius_of(aimed);
+    if (is_soft_) soft_.size = disk_radius(aimed);
     views_->fit(light);
     views_->rasterise();
 }

@@ -13,13 +13,12 @@ enum class FilterKind : std::uint8_t { nearest, pcf, pcss };
 enum class KeptSurface : std::uint8_t { first, midpoint };
 
 /// The parameters; shadow_zbuffer.cpp and map_options.h document each.
-struct ZBufferOptions : ComparingOptions, ViewOptions {
+struct ZBufferOptions : ComparingOptions, ViewOptions, SearchOptions {
     DepthFormat depth        = DepthFormat::float32;
     FilterKind filter        = FilterKind::nearest;
     Kernel kernel            = Kernel::grid;
     Rotation rotation        = Rotation::none;
     int samples              = 32;
-    double search            = 0.1;
     Faces faces              = Faces::all;
     KeptSurface surface      = KeptSurface::first;
     int contact_steps        = 0;
