@@ -174,8 +174,9 @@ struct BareShadows {
             random = random * 1664525u + 1013904223u;
             return static_cast<float>(random >> 8) * 0x1p-24f;
         };
-        const float u = (static_cast<float>(k % across) + next()) / static_cast<float>(across) - 0.5f;
-        const float v = (static_cast<float>(k / across) + next()) / static_cast<float>(across) - 0.5f;
+        const int column = k % across, row = k / across;
+        const float u = (static_cast<float>(column) + next()) / static_cast<float>(across) - 0.5f;
+        const float v = (static_cast<float>(row) + next()) / static_cast<float>(across) - 0.5f;
         return light.position + light.edge_u * u + light.edge_v * v;
     }
 

@@ -141,7 +141,7 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
         l.x[k] /= safe, l.y[k] /= safe, l.z[k] /= safe;
     }
     dots(e.n, l, cosine);
-    for (int k = 0; k < kLanes; ++k) s[k] = (length[k] > 0) & (cosine[k] > 0) ? s[k] : 0;
+    for (int k = 0; k < kLanes; ++k) s[k] = ((length[k] > 0) & (cosine[k] > 0)) ? s[k] : 0;
 
     if (light.kind == LightKind::spot || light.photometry) {
         for (int k = 0; k < kLanes; ++k)

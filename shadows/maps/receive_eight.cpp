@@ -43,7 +43,8 @@ Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsign
         ax[k]             = (vx[k] / over - f.centre.x) / f.half.x;
         ay[k]             = (vy[k] / over - f.centre.y) / f.half.y;
         const bool behind = perspective & (vz[k] <= 0);
-        covered[k]        = !behind & !(std::abs(ax[k]) > f.reach) & !(std::abs(ay[k]) > f.reach);
+        const int in_x = !(std::abs(ax[k]) > f.reach), in_y = !(std::abs(ay[k]) > f.reach);
+        covered[k] = static_cast<int>(!behind) & in_x & in_y;
     }
     Receivers8 to;
     for (int k = 0; k < 8; ++k) to.covered |= covered[k] != 0 ? which & 1u << k : 0;

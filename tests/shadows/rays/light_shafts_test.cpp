@@ -48,8 +48,8 @@ PointBatch tile_at(const Scene& scene, double half, double x, double z) {
     points.eye = {0, 1e3f, 0};
     points.resize(PointTile::kPoints);
     for (std::size_t i = 0; i < points.size(); ++i) {
-        const double px = x + 0.5 * ((double(i % 16) + 0.5) / 16 - 0.5),
-                     pz = z + 0.5 * ((double(i / 16) + 0.5) / 8 - 0.5);
+        const std::size_t row = i / 16;
+        const double px = x + 0.5 * ((double(i % 16) + 0.5) / 16 - 0.5), pz = z + 0.5 * ((double(row) + 0.5) / 8 - 0.5);
         const double s = (px + half) / (2 * half), t = (half - pz) / (2 * half);  // along the sheet's edges
         if (s > t)
             set_point(points, i, scene, 0, float(s - t), float(t));
