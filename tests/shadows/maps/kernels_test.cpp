@@ -220,6 +220,16 @@ TEST(Kernels, WhatAllSamplesAgreeOnNoKernelChanges) {
     }
 }
 
+TEST(Kernels, WiderThanTheMapTheyCountItsPartOfTheSquare) {
+    const MapView all = map_of([](int, int) { return true; });
+    for (const int radius : {17, 30, 64})
+        for (const bool bilinear : {false, true}) {
+            const double side = 2 * radius + 1, blocked = std::min<double>(kSize, side);
+            EXPECT_NEAR(share(all, {24.5, 24.5}, {radius, bilinear}), 1 - blocked * blocked / (side * side), 1e-6)
+                << radius << bilinear;
+        }
+}
+
 // ---- rotation ------------------------------------------------------------------------------------------------------
 
 double turns_of(dvec2 turn) {
