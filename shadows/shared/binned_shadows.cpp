@@ -4,15 +4,14 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <memory>
 #include <optional>
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/shadows/shared/binned_points.h"
 #include "umbra/shadows/shared/exact_segment.h"
-#include "umbra/shadows/shared/point_bins.h"
 #include "umbra/shadows/shared/shadow_planes.h"
 
 namespace umbra {
@@ -21,9 +20,6 @@ namespace {
 using namespace binned_shadows_detail;
 using exact_detail::ExactPoint;
 using exact_detail::Segment;
-
-constexpr std::uint8_t kNowhere = 0xff;
-constexpr std::size_t kPart     = 16384;  ///< points that one thread places at a time
 
 /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
 bool blocks(const Scene& scene, TriangleId t) {
@@ -36,9 +32,7 @@ bool blocks(const Scene& scene, TriangleId t) {
 struct BinnedShadows::Picture {
     const Light* light;
     LightImage image;
-    std::vector<PointBins> faces{};
-    std::vector<std::uint32_t> next_to_light{};  ///< points without a place
-    dvec3 reach{0};                              ///< the largest magnitude of each coordinate, less the centre
+    BinnedPoints asking;
 };
 
 namespace {
@@ -86,24 +80,19 @@ BinnedShadows::BinnedShadows(const Scene& scene) : scene_(&scene), casts_(scene.
 
 void BinnedShadows::visibility(const PointBatch& points, LightId light, Visibility out) const {
     const Picture picture = bin(points, light);
-    const auto always     = [](std::uint32_t, TriangleId) {};
-    cast_all(picture, points, always);
-    parallel_ranges(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (points.asks(light, i)) out.s[i] = 1;
+    cast_all(picture, points, [](std::uint32_t, TriangleId) {});
+    const PointBins& bins = picture.asking.bins;
+    parallel_ranges(bins.blocks(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t b = begin; b < end; ++b) {
+            const unsigned crossed = bins.marks(b).crossed, touched = bins.marks(b).touched;
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                const std::uint32_t i = bins.block(b).index[lane];
+                out.s[i]              = (crossed >> lane & 1u) != 0 ? 0.0f : 1.0f;
+                if ((touched & ~crossed) >> lane & 1u) out.answer[i] = Answer::on_boundary;
+            }
+        }
     });
-    for (const PointBins& bins : picture.faces)
-        parallel_ranges(bins.blocks(), 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t b = begin; b < end; ++b)
-                for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                    const std::uint32_t i = bins.block(b).index[lane];
-                    const auto bit        = 1u << lane;
-                    if ((bins.marks(b).crossed & bit) != 0)
-                        out.s[i] = 0;
-                    else if ((bins.marks(b).touched & bit) != 0)
-                        out.answer[i] = Answer::on_boundary;
-                }
-        });
+    for (const std::uint32_t i : picture.asking.next_to_light) out.s[i] = 1;
     each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId, Segment::Meeting meeting) {
         if (meeting == Segment::Meeting::crosses) out.s[i] = 0, out.answer[i] = Answer::given;
         if (meeting == Segment::Meeting::touches) out.answer[i] = Answer::on_boundary;
@@ -131,74 +120,16 @@ void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<Tri
 }
 
 BinnedShadows::Picture BinnedShadows::bin(const PointBatch& points, LightId light) const {
-    const Light& lamp = scene_->lights[light];
-    Picture picture{&lamp, LightImage(lamp, centre_, reach_)};
-    // Pages of memory are first touched where they are filled, by all threads.
-    const std::size_t n  = points.size();
-    const auto positions = std::make_unique_for_overwrite<vec3[]>(n);
-    const auto all       = std::make_unique_for_overwrite<PointBins::Entry[]>(n);
-    const auto sorted    = std::make_unique_for_overwrite<PointBins::Entry[]>(n);
-    const auto face      = std::make_unique_for_overwrite<std::uint8_t[]>(n);
-    struct Part {
-        std::array<std::size_t, 6> next{};  ///< points of each face; then where its next one goes
-        std::vector<std::uint32_t> without{};
-        vec3 reach{0};
-    };
-    std::vector<Part> parts((n + kPart - 1) / kPart);
-    const auto each_part = [&](const auto& body) {
-        parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) body(parts[k], k * kPart, std::min(n, (k + 1) * kPart));
-        });
-    };
-    each_part([&](Part& part, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            face[i] = kNowhere;
-            if (!points.asks(light, i)) continue;
-            const dvec3 p = exact_position(*scene_, points, i);
-            positions[i]  = vec3(p - centre_);
-            part.reach    = glm::max(part.reach, glm::abs(positions[i]));
-            if (const auto place = picture.image.place(p)) {
-                face[i] = static_cast<std::uint8_t>(place->face);
-                all[i]  = {static_cast<float>(place->at.x), static_cast<float>(place->at.y),
-                           static_cast<float>(place->depth), static_cast<std::uint32_t>(i)};
-                ++part.next[face[i]];
-            } else {
-                part.without.push_back(static_cast<std::uint32_t>(i));
-            }
-        }
-    });
-    const auto faces = static_cast<std::size_t>(picture.image.faces());
-    std::array<std::size_t, 7> first{};
-    for (std::size_t f = 0; f < faces; ++f) {
-        first[f + 1] = first[f];
-        for (Part& part : parts) {
-            const std::size_t count = part.next[f];
-            part.next[f]            = first[f + 1];
-            first[f + 1] += count;
-        }
-    }
-    for (const Part& part : parts) {
-        picture.next_to_light.insert(picture.next_to_light.end(), part.without.begin(), part.without.end());
-        picture.reach = glm::max(picture.reach, dvec3(part.reach));
-    }
-    each_part([&](Part& part, std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            if (face[i] != kNowhere) sorted[part.next[face[i]]++] = all[i];
-    });
-    for (std::size_t f = 0; f < faces; ++f) {
-        const std::size_t count = first[f + 1] - first[f];
-        picture.faces.emplace_back(std::span(sorted.get() + first[f], count), std::span(all.get() + first[f], count),
-                                   std::span(positions.get(), n));
-    }
-    return picture;
+    const LightImage image(scene_->lights[light], centre_, reach_);
+    return {&scene_->lights[light], image, bin_points(*scene_, points, light, image, centre_)};
 }
 
 /// Points whose places are unknown against every triangle: calls met(i, t, meeting) until that is false.
 template <class Met>
 void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch& points, const Met& met) const {
-    parallel_ranges(picture.next_to_light.size(), 4, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(picture.asking.next_to_light.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const std::uint32_t i = picture.next_to_light[k];
+            const std::uint32_t i = picture.asking.next_to_light[k];
             const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
             const Segment segment(point, *picture.light);
             for (TriangleId t = 0; t < casts_.size(); ++t)
@@ -214,36 +145,78 @@ void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch&
 template <class Crossed>
 void BinnedShadows::cast_all(const Picture& picture, const PointBatch& points, const Crossed& crossed,
                              bool once) const {
-    parallel_ranges(casts_.size(), 512, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            if (casts_[t] != 0) cast(static_cast<TriangleId>(t), picture, points, crossed, once);
+    const std::size_t groups = (casts_.size() + kLanes - 1) / kLanes;
+    parallel_ranges(groups, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g) cast(g * kLanes, picture, points, crossed, once);
     });
 }
 
+/// The triangles from `first` on, eight or as many as there are.
 template <class Crossed>
-void BinnedShadows::cast(TriangleId t, const Picture& picture, const PointBatch& points, const Crossed& crossed,
+void BinnedShadows::cast(std::size_t first, const Picture& picture, const PointBatch& points, const Crossed& crossed,
                          bool once) const {
-    const std::array<dvec3, 3> corners{dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
-                                       dvec3(scene_->vertex(t, 2))};
-    std::optional<ShadowPlanes> planes;
-    for (int f = 0; f < picture.image.faces(); ++f) {
-        const PointBins& bins = picture.faces[static_cast<std::size_t>(f)];
-        if (bins.blocks() == 0) continue;
-        const std::optional<Extent> extent = picture.image.extent(f, corners);
-        if (!extent) continue;
-        bins.visit(*extent, [&](std::size_t b) {
-            Marks& marks              = bins.marks(b);
-            const std::uint8_t hidden = marks.crossed.load(std::memory_order_relaxed);
-            if ((once && hidden == 0xff) || !ShadowPlanes::any_in(*extent, bins.block(b))) return;
-            if (!planes) {
-                const int side =
-                    side_of_light(*picture.light, scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
-                planes = planes_of(corners, picture.image, picture.reach, centre_, side);
-            }
-            const auto [inside, unsure] = planes->test(bins.block(b));
-            test_lanes(*scene_, *picture.light, t, points, bins.block(b), once ? unsure & ~hidden : unsure, inside,
-                       marks, crossed);
+    LightImage::Corners corners{};
+    unsigned casting = 0;
+    for (std::size_t lane = 0; lane < std::min(kLanes, casts_.size() - first); ++lane) {
+        if (casts_[first + lane] == 0) continue;
+        casting |= 1u << lane;
+        load(*scene_, static_cast<TriangleId>(first + lane), corners, lane);
+    }
+    if (casting == 0) return;
+    const auto corners_of = [&](std::size_t lane) {
+        std::array<dvec3, 3> own;
+        for (std::size_t c = 0; c < 3; ++c) own[c] = {corners[c][0][lane], corners[c][1][lane], corners[c][2][lane]};
+        return own;
+    };
+    std::array<std::optional<ShadowPlanes>, kLanes> planes;
+    const auto meet = [&](std::size_t lane, std::size_t b) {
+        Marks& marks              = picture.asking.bins.marks(b);
+        const std::uint8_t hidden = marks.crossed.load(std::memory_order_relaxed);
+        if (once && hidden == 0xff) return;
+        const auto t = static_cast<TriangleId>(first + lane);
+        if (!planes[lane]) {
+            const int side =
+                side_of_light(*picture.light, scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
+            planes[lane] = planes_of(corners_of(lane), picture.image, picture.asking.reach, centre_, side);
+        }
+        const Block& block          = picture.asking.bins.block(b);
+        const auto [inside, unsure] = planes[lane]->test(block);
+        test_lanes(*scene_, *picture.light, t, points, block, once ? unsure & ~hidden : unsure, inside, marks, crossed);
+    };
+
+    Extents extents;
+    const unsigned within = picture.image.extents(corners, extents) & casting;
+    for (unsigned rest = casting & ~within; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+        for (int f = 0; f < picture.image.faces(); ++f)
+            if (const auto extent = picture.image.extent(f, corners_of(lane)))
+                picture.asking.bins.visit(*extent, [&](std::size_t b, const Extent&) { meet(lane, b); });
+    }
+    // Triangles that are next to one another look for points together.
+    Extent all;
+    all.low_u = all.low_v = all.depth = Extents::kFar, all.high_u = all.high_v = -Extents::kFar;
+    float sum = 0;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        if ((within >> lane & 1u) == 0) {
+            extents.clear(lane);
+            continue;
+        }
+        const Extent own = extents.at(lane);
+        all.low_u = std::min(all.low_u, own.low_u), all.high_u = std::max(all.high_u, own.high_u);
+        all.low_v = std::min(all.low_v, own.low_v), all.high_v = std::max(all.high_v, own.high_v);
+        all.depth = std::min(all.depth, own.depth);
+        sum += own.high_u - own.low_u + (own.high_v - own.low_v);
+    }
+    if (all.high_u - all.low_u + (all.high_v - all.low_v) <= sum) {
+        picture.asking.bins.visit(all, [&](std::size_t b, const Extent& box) {
+            for (unsigned over = triangles_over(extents, box); over != 0; over &= over - 1)
+                meet(static_cast<std::size_t>(std::countr_zero(over)), b);
         });
+        return;
+    }
+    for (unsigned rest = within; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+        picture.asking.bins.visit(extents.at(lane), [&](std::size_t b, const Extent&) { meet(lane, b); });
     }
 }
 

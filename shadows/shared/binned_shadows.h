@@ -44,7 +44,8 @@ private:
     template <class Crossed>
     void cast_all(const Picture& picture, const PointBatch& points, const Crossed& crossed, bool once = true) const;
     template <class Crossed>
-    void cast(TriangleId t, const Picture& picture, const PointBatch& points, const Crossed& crossed, bool once) const;
+    void cast(std::size_t first, const Picture& picture, const PointBatch& points, const Crossed& crossed,
+              bool once) const;
 
     const Scene* scene_ = nullptr;
     dvec3 centre_{0};

@@ -12,6 +12,10 @@ constexpr double kMargin = 1e-9;
 
 constexpr double kRounding = 0x1p-53;
 
+/// From the middle of one face to that of the next: a face reaches from -1 to 1, and a little farther.
+constexpr double kApart = 4;
+dvec2 middle(int face) { return {kApart * face, 0}; }
+
 /// Points that are nearer to the light than this share of their coordinates have places that are off by more than
 /// kMargin / 4: positions are off by a few roundings of these coordinates.
 constexpr double kNear = 2e-6;
@@ -90,39 +94,19 @@ LightImage::LightImage(const Light& light, dvec3 centre, double reach)
 
 dvec3 LightImage::in_face(int face, dvec3 p) const {
     const dvec3 d = p - origin_;
-    if (infinite_) return {glm::dot(d, axes_[0]), glm::dot(d, axes_[1]), glm::dot(d, axes_[2])};
-    const int k = face / 2;
+    const int k   = face / 2;
     return {d[(k + 1) % 3], d[(k + 2) % 3], face % 2 == 0 ? d[k] : -d[k]};
-}
-
-std::optional<LightImage::Place> LightImage::place(dvec3 p) const {
-    if (infinite_) {
-        const dvec3 q = in_face(0, p);
-        return Place{0, dvec2(q), q.z};
-    }
-    const dvec3 d = p - origin_, along = glm::abs(d);
-    if (size(d) <= kNear * std::max(size(p), size(origin_))) return std::nullopt;
-    const int k    = along.x >= along.y && along.x >= along.z ? 0 : along.y >= along.z ? 1 : 2;
-    const int face = 2 * k + (d[k] < 0 ? 1 : 0);
-    const dvec3 q  = in_face(face, p);
-    if (!(q.z > 0)) return std::nullopt;
-    return Place{face, dvec2(q) / q.z, q.z};
 }
 
 std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& corners) const {
     std::array<dvec3, 3> q;
     for (std::size_t k = 0; k < 3; ++k) q[k] = in_face(face, corners[k]);
-    if (infinite_) {
-        const dvec3 low = glm::min(q[0], glm::min(q[1], q[2])), high = glm::max(q[0], glm::max(q[1], q[2]));
-        const dvec3 margin = kMargin * glm::max(glm::abs(low), glm::abs(high)) + 64 * kRounding * reach_;
-        return Extent{dvec2(low - margin), dvec2(high + margin), low.z - margin.z};
-    }
     if (q[0].z <= 0 && q[1].z <= 0 && q[2].z <= 0) return std::nullopt;  // signs of differences of floats are exact
     Outline outline(q);
     const bool is_within =
         std::ranges::all_of(q, [](dvec3 c) { return c.z > 0 && std::abs(c.x) <= c.z && std::abs(c.y) <= c.z; });
     if (!is_within && is_near(q, kNearTriangle * std::max({size(q[0]), size(q[1]), size(q[2])})))
-        return Extent{dvec2(-2), dvec2(2), 0};
+        return Extent{middle(face) - dvec2(kApart / 2), middle(face) + dvec2(kApart / 2), 0};
     if (!is_within)  // wider than the face by the margin, for points on its border
         for (const dvec3 g :
              {dvec3(1, 0, 1 + kMargin), dvec3(-1, 0, 1 + kMargin), dvec3(0, 1, 1 + kMargin), dvec3(0, -1, 1 + kMargin)})
@@ -137,7 +121,124 @@ std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& c
         high           = glm::max(high, at);
         depth          = std::min(depth, c.z);
     }
-    return Extent{low - 4 * kMargin, high + 4 * kMargin, depth * (1 - 4 * kMargin)};
+    return Extent{middle(face) + low - 4 * kMargin, middle(face) + high + 4 * kMargin, depth * (1 - 4 * kMargin)};
+}
+
+// Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
+void LightImage::places(const Corners& corners, const float (&u)[kLanes], const float (&v)[kLanes], Places& to) const {
+    const auto position = [&](std::size_t axis, double* at) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const double a = corners[0][axis][i];
+            at[i]          = a + static_cast<double>(u[i]) * (corners[1][axis][i] - a) +
+                    static_cast<double>(v[i]) * (corners[2][axis][i] - a);
+        }
+    };
+    position(0, to.x), position(1, to.y), position(2, to.z);
+    if (infinite_) {
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const double x = to.x[i] - origin_.x, y = to.y[i] - origin_.y, z = to.z[i] - origin_.z;
+            to.u[i]     = static_cast<float>(x * axes_[0].x + y * axes_[0].y + z * axes_[0].z);
+            to.v[i]     = static_cast<float>(x * axes_[1].x + y * axes_[1].y + z * axes_[1].z);
+            to.depth[i] = static_cast<float>(x * axes_[2].x + y * axes_[2].y + z * axes_[2].z);
+            to.face[i]  = 0;
+        }
+        return;
+    }
+    const double at_origin = size(origin_);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const double x = to.x[i] - origin_.x, y = to.y[i] - origin_.y, z = to.z[i] - origin_.z;
+        const double along_x = std::abs(x), along_y = std::abs(y), along_z = std::abs(z);
+        const bool is_x = (along_x >= along_y) & (along_x >= along_z), is_y = !is_x & (along_y >= along_z);
+        const double farthest = is_x ? along_x : is_y ? along_y : along_z;
+        const double first    = is_x ? x : is_y ? y : z;
+        const double px = std::abs(to.x[i]), py = std::abs(to.y[i]), pz = std::abs(to.z[i]);
+        const double xy = px > py ? px : py, xyz = xy > pz ? xy : pz, reach = xyz > at_origin ? xyz : at_origin;
+        const double face  = (is_x ? 0.0 : is_y ? 2.0 : 4.0) + (first < 0 ? 1.0 : 0.0);
+        const double per_w = 1 / farthest;
+        to.u[i]            = static_cast<float>(kApart * face + (is_x ? y : is_y ? z : x) * per_w);
+        to.v[i]            = static_cast<float>((is_x ? z : is_y ? x : y) * per_w);
+        to.depth[i]        = static_cast<float>(farthest);
+        to.face[i]         = farthest > kNear * reach ? static_cast<std::int32_t>(face) : -1;
+    }
+}
+
+unsigned LightImage::extents(const Corners& corners, Extents& to) const {
+    return infinite_ ? infinite_extents(corners, to) : cube_extents(corners, to);
+}
+
+unsigned LightImage::infinite_extents(const Corners& corners, Extents& to) const {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        double low[3], high[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            double at[3];
+            for (std::size_t c = 0; c < 3; ++c)
+                at[c] = (corners[c][0][i] - origin_.x) * axes_[k].x + (corners[c][1][i] - origin_.y) * axes_[k].y +
+                        (corners[c][2][i] - origin_.z) * axes_[k].z;
+            const double low2 = at[0] < at[1] ? at[0] : at[1], high2 = at[0] < at[1] ? at[1] : at[0];
+            low[k] = low2 < at[2] ? low2 : at[2], high[k] = high2 > at[2] ? high2 : at[2];
+            const double most   = std::abs(low[k]) > std::abs(high[k]) ? std::abs(low[k]) : std::abs(high[k]);
+            const double margin = kMargin * most + 64 * kRounding * reach_;
+            low[k] -= margin, high[k] += margin;
+        }
+        to.low_u[i] = static_cast<float>(low[0]), to.high_u[i] = static_cast<float>(high[0]);
+        to.low_v[i] = static_cast<float>(low[1]), to.high_v[i] = static_cast<float>(high[1]);
+        to.depth[i] = static_cast<float>(low[2]);
+    }
+    return 0xff;
+}
+
+unsigned LightImage::cube_extents(const Corners& corners, Extents& to) const {
+    unsigned ones = 0;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const double x = corners[0][0][i] - origin_.x, y = corners[0][1][i] - origin_.y,
+                     z       = corners[0][2][i] - origin_.z;
+        const double along_x = std::abs(x), along_y = std::abs(y), along_z = std::abs(z);
+        const bool is_x = (along_x >= along_y) & (along_x >= along_z), is_y = !is_x & (along_y >= along_z);
+        const double first = is_x ? x : is_y ? y : z;
+        const double sign  = first < 0 ? -1.0 : 1.0;
+        double low_u = 2, high_u = -2, low_v = 2, high_v = -2, depth = sign * first;
+        bool within = true;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double dx = corners[c][0][i] - origin_.x, dy = corners[c][1][i] - origin_.y,
+                         dz = corners[c][2][i] - origin_.z;
+            const double w  = sign * (is_x ? dx : is_y ? dy : dz);
+            const double qu = is_x ? dy : is_y ? dz : dx, qv = is_x ? dz : is_y ? dx : dy;
+            const double most = w * (1 - 4 * kMargin);
+            within            = within & (std::abs(qu) < most) & (std::abs(qv) < most);
+            const double u = qu / w, v = qv / w;
+            low_u = low_u < u ? low_u : u, high_u = high_u > u ? high_u : u;
+            low_v = low_v < v ? low_v : v, high_v = high_v > v ? high_v : v;
+            depth = depth < w ? depth : w;
+        }
+        const double middle_u = kApart * ((is_x ? 0.0 : is_y ? 2.0 : 4.0) + (first < 0 ? 1.0 : 0.0));
+        to.low_u[i]           = within ? static_cast<float>(middle_u + low_u - 4 * kMargin) : Extents::kFar;
+        to.high_u[i]          = within ? static_cast<float>(middle_u + high_u + 4 * kMargin) : -Extents::kFar;
+        to.low_v[i]           = within ? static_cast<float>(low_v - 4 * kMargin) : Extents::kFar;
+        to.high_v[i]          = within ? static_cast<float>(high_v + 4 * kMargin) : -Extents::kFar;
+        to.depth[i]           = within ? static_cast<float>(depth * (1 - 4 * kMargin)) : 0.0f;
+    }
+    for (std::size_t i = 0; i < kLanes; ++i) ones |= static_cast<unsigned>(!to.empty(i)) << i;
+    return ones;
+}
+
+unsigned points_in(const Extents& boxes, const Extent& triangle) {
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < kLanes; ++i)
+        bits |= static_cast<unsigned>((boxes.low_u[i] <= triangle.high_u) & (boxes.high_u[i] >= triangle.low_u) &
+                                      (boxes.low_v[i] <= triangle.high_v) & (boxes.high_v[i] >= triangle.low_v) &
+                                      (boxes.depth[i] >= triangle.depth))
+                << i;
+    return bits;
+}
+
+unsigned triangles_over(const Extents& triangles, const Extent& box) {
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < kLanes; ++i)
+        bits |= static_cast<unsigned>((triangles.low_u[i] <= box.high_u) & (triangles.high_u[i] >= box.low_u) &
+                                      (triangles.low_v[i] <= box.high_v) & (triangles.high_v[i] >= box.low_v) &
+                                      (triangles.depth[i] <= box.depth))
+                << i;
+    return bits;
 }
 
 }  // namespace umbra::binned_shadows_detail

@@ -1,205 +1,184 @@
 #include "umbra/shadows/shared/point_bins.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/parallel_sort.h"
 
 namespace umbra::binned_shadows_detail {
 namespace {
 
 using Entry = PointBins::Entry;
 
-constexpr std::size_t kInCell     = 16;     ///< points of a cell, on average
-constexpr std::size_t kMost       = 128;    ///< of a cell that is not cut further
-constexpr int kLevels             = 8;      ///< of grids in one another
-constexpr std::size_t kChunk      = 32768;  ///< points that one thread sorts, at least
-constexpr std::size_t kMostChunks = 8;      ///< each of which counts the points of every cell
+/// Blocks of a tile are at most this many times as wide as they would be if its points were spread evenly.
+constexpr float kWidest = 2;
 
-/// Calls body(k), k < n, on one thread or on several.
-template <class Body>
-void each(std::size_t n, bool parallel, const Body& body) {
-    const auto all = [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) body(k);
-    };
-    parallel ? parallel_ranges(n, 1, all) : all(0, n);
+/// Around eight others.
+PointBins::Box box_of(const Extents& children) {
+    PointBins::Box box;
+    for (std::size_t lane = 0; lane < kLanes; ++lane)
+        if (!children.empty(lane))
+            box.add(children.low_u[lane], children.high_u[lane], children.low_v[lane], children.high_v[lane],
+                    children.depth[lane]);
+    return box;
 }
 
-float farthest(std::span<const Entry> own) {
-    float depth = own[0].depth;
-    for (const Entry& e : own) depth = std::max(depth, e.depth);
-    return depth;
-}
-
-std::size_t blocks_for(std::size_t points) { return (points + kLanes - 1) / kLanes; }
-
-void fill_blocks(std::span<const Entry> own, Block* to) {
-    for (std::size_t k = 0; k < own.size(); k += kLanes, ++to)
-        for (std::size_t lane = 0; lane < kLanes; ++lane) {
-            const Entry& e  = own[std::min(k + lane, own.size() - 1)];
-            to->u[lane]     = e.u;
-            to->v[lane]     = e.v;
-            to->depth[lane] = e.depth;
-            to->index[lane] = e.index;
+/// Sorts blocks along a Z-order curve over the box of all.
+void sort(std::vector<std::uint32_t>& order, const PointBins::Box* boxes, const PointBins::Box& all) {
+    const ZOrder curve(all);
+    std::vector<std::uint64_t> keys(order.size());
+    parallel_ranges(order.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const PointBins::Box& box = boxes[order[k]];
+            keys[k] = std::uint64_t{curve.at(0.5f * (box.low_u + box.high_u), 0.5f * (box.low_v + box.high_v))} << 32 |
+                      order[k];
         }
+    });
+    parallel_sort(keys.begin(), keys.end());
+    for (std::size_t k = 0; k < keys.size(); ++k) order[k] = static_cast<std::uint32_t>(keys[k]);
 }
-
-/// Equal parts of the entries, which do not depend on the number of threads.
-struct Chunks {
-    std::size_t size, count;
-    explicit Chunks(std::size_t entries)
-        : size(std::max(kChunk, (entries + kMostChunks - 1) / kMostChunks)), count((entries + size - 1) / size) {}
-    [[nodiscard]] std::span<const Entry> of(std::span<const Entry> all, std::size_t k) const {
-        return all.subspan(k * size, std::min(size, all.size() - k * size));
-    }
-};
 
 }  // namespace
 
-PointBins::Grid PointBins::fitted(std::span<const Entry> entries, const Box2& box) {
-    const float width = box.high_u - box.low_u, height = box.high_v - box.low_v;
-    // Cells as many as points allow, as square as the points' extent.
-    const double cells  = std::max(1.0, static_cast<double>(entries.size()) / static_cast<double>(kInCell));
-    const double aspect = width > 0 && height > 0
-                              ? std::clamp(static_cast<double>(width) / static_cast<double>(height), 1 / cells, cells)
-                          : width > 0 ? cells
-                                      : 1 / cells;
-    const int nx        = std::clamp(static_cast<int>(std::sqrt(cells * aspect)), 1, 4096),
-              ny        = std::clamp(static_cast<int>(cells / nx), 1, 4096);
-    return {box.low_u,
-            box.low_v,
-            width > 0 ? static_cast<float>(nx) / width : 0,
-            height > 0 ? static_cast<float>(ny) / height : 0,
-            nx,
-            ny,
-            0};
+/// Sorts the points of a face along a Z-order curve over their box: its cells are 1024 times 1024; points of one cell
+/// stay in their order.
+class PointBins::Sorter {
+public:
+    /// The points of the face, until the next call.
+    std::span<const std::uint32_t> order(std::span<const Entry> entries, std::uint32_t face, const Box& box) {
+        const ZOrder curve(box);
+        std::size_t n = 0;
+        for (std::uint32_t k = 0; k < entries.size(); ++k)
+            if (entries[k].face == face)
+                keys_[n++] = curve.at(entries[k].u, entries[k].v) >> kDropped << kIndexBits | k;
+        const std::span<std::uint32_t> keys(keys_.data(), n);
+        if (n < 512)
+            std::ranges::sort(keys);
+        else
+            for (int pass = 0; pass < 2; ++pass) sort_by(kIndexBits + 10 * pass, n);
+        for (std::uint32_t& key : keys) key &= kTile - 1;
+        return keys;
+    }
+
+private:
+    static constexpr int kIndexBits = 12, kDropped = 12;  ///< 10 bits of u and of v are kept
+    static_assert(kTile == std::size_t{1} << kIndexBits);
+
+    /// Ten bits from `bit` on, in place by way of `moved_`.
+    void sort_by(int bit, std::size_t n) {
+        std::array<std::uint32_t, 1024> next{};
+        for (std::size_t k = 0; k < n; ++k) ++next[keys_[k] >> bit & 1023u];
+        std::uint32_t sum = 0;
+        for (std::uint32_t& at : next) sum += std::exchange(at, sum);
+        for (std::size_t k = 0; k < n; ++k) moved_[next[keys_[k] >> bit & 1023u]++] = keys_[k];
+        std::swap(keys_, moved_);
+    }
+
+    std::vector<std::uint32_t> keys_ = std::vector<std::uint32_t>(kTile), moved_ = keys_;
+};
+
+PointBins::PointBins(std::size_t tiles, const std::function<std::size_t(std::size_t, Entry*)>& points) {
+    const auto blocks = std::make_unique_for_overwrite<Block[]>(tiles * kTileBlocks);
+    const auto boxes  = std::make_unique_for_overwrite<Box[]>(tiles * kTileBlocks);
+    std::vector<std::array<Box, kFaces>> of_faces(tiles);
+    std::vector<std::size_t> filled(tiles);
+    parallel_ranges(tiles, 1, [&](std::size_t begin, std::size_t end) {
+        const auto entries = std::make_unique_for_overwrite<Entry[]>(kTile);
+        Sorter sorter;
+        for (std::size_t tile = begin; tile < end; ++tile) {
+            const std::span<const Entry> own(entries.get(), points(tile, entries.get()));
+            for (const Entry& e : own) of_faces[tile][e.face].add(e.u, e.u, e.v, e.v, e.depth);
+            filled[tile] = fill_tile(own, of_faces[tile], sorter, blocks.get() + tile * kTileBlocks,
+                                     boxes.get() + tile * kTileBlocks);
+        }
+    });
+    std::vector<std::uint32_t> order;
+    for (std::size_t tile = 0; tile < tiles; ++tile)
+        for (std::size_t k = 0; k < filled[tile]; ++k)
+            order.push_back(static_cast<std::uint32_t>(tile * kTileBlocks + k));
+    double whole = 0, of_tiles = 0;
+    Box everything;
+    for (std::size_t face = 0; face < kFaces; ++face) {
+        Box all;
+        for (const auto& of : of_faces) {
+            if (of[face].empty()) continue;
+            of_tiles += of[face].area();
+            all.add(of[face]);
+        }
+        whole += all.area();
+        if (!all.empty()) everything.add(all);
+    }
+    overlap_ = whole > 0 ? of_tiles / whole : 1;
+    sort(order, boxes.get(), everything);
+    count_  = order.size();
+    blocks_ = std::make_unique_for_overwrite<Block[]>(count_);
+    marks_  = std::make_unique<Marks[]>(count_);
+    std::vector<Box> sorted(count_);
+    parallel_ranges(count_, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) blocks_[k] = blocks[order[k]], sorted[k] = boxes[order[k]];
+    });
+    add_levels(std::move(sorted));
 }
 
-/// Appends the grid of `entries` and all that is in it to `tree`: `entries` are sorted by cell to `space`, which is as
-/// long, and what is cut further is sorted on between the two. Returns the grid.
-std::uint32_t PointBins::add_grid(Tree& tree, std::span<Entry> entries, std::span<Entry> space, int level) {
-    const bool parallel = level == 1;
-    const Chunks chunks(entries.size());
-    std::vector<Box2> boxes(chunks.count);
-    each(chunks.count, parallel, [&](std::size_t k) {
-        for (const Entry& e : chunks.of(entries, k)) boxes[k].add(e);
-    });
-    for (const Box2& box : boxes) boxes[0].add(box);
-    Grid grid        = fitted(entries, boxes[0]);
-    const auto count = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
-    const auto g     = static_cast<std::uint32_t>(tree.grids.size());
-    grid.first       = static_cast<std::uint32_t>(tree.cells.size());
-    tree.grids.push_back(grid);
-    tree.cells.resize(tree.cells.size() + count);
-
-    // Where each chunk's entries of each cell go.
-    std::vector<std::vector<std::uint32_t>> next(chunks.count);
-    each(chunks.count, parallel, [&](std::size_t k) {
-        next[k].resize(count);
-        for (const Entry& e : chunks.of(entries, k)) ++next[k][grid.cell(e)];
-    });
-    std::vector<std::uint32_t> first(count + 1);
-    std::uint32_t sum = 0;
-    for (std::size_t c = 0; c < count; ++c) {
-        first[c] = sum;
-        for (std::vector<std::uint32_t>& of_chunk : next) {
-            const std::uint32_t n = of_chunk[c];
-            of_chunk[c]           = sum;
-            sum += n;
-        }
-    }
-    first[count] = sum;
-    each(chunks.count, parallel, [&](std::size_t k) {
-        for (const Entry& e : chunks.of(entries, k)) space[next[k][grid.cell(e)]++] = e;
-    });
-
-    const auto own_of   = [&](std::size_t c) { return space.subspan(first[c], first[c + 1] - first[c]); };
-    const auto is_heavy = [&](std::size_t c) {
-        const std::size_t n = first[c + 1] - first[c];
-        return n > kMost && n < entries.size() && level < kLevels;
-    };
-    if (!parallel) {
-        for (std::size_t c = 0; c < count; ++c) {
-            const std::span<Entry> own = own_of(c);
-            if (own.empty()) continue;
-            const float depth = farthest(own);
-            if (is_heavy(c)) {
-                const std::uint32_t inner  = add_grid(tree, own, entries.subspan(first[c], own.size()), level + 1);
-                tree.cells[grid.first + c] = {kGrid, inner, depth};
-                continue;
+/// Returns how many blocks are filled.
+std::size_t PointBins::fill_tile(std::span<const Entry> entries, const std::array<Box, kFaces>& boxes, Sorter& sorter,
+                                 Block* blocks, Box* of_blocks) {
+    std::size_t b = 0;
+    // What blocks there are room for besides full ones and the last of each face.
+    std::size_t spare = kTileBlocks - kTile / kLanes - kFaces;
+    for (std::uint32_t face = 0; face < kFaces; ++face) {
+        if (boxes[face].empty()) continue;
+        const std::span<const std::uint32_t> order = sorter.order(entries, face, boxes[face]);
+        const auto parts   = static_cast<float>(std::sqrt(static_cast<double>(order.size()) / kLanes));
+        const float widest = kWidest * boxes[face].perimeter() / parts;
+        Box box;
+        std::size_t lane = 0;
+        const auto close = [&] {
+            Block& block = blocks[b];
+            for (std::size_t k = lane; k < kLanes; ++k) {
+                block.x[k] = block.x[lane - 1], block.y[k] = block.y[lane - 1], block.z[k] = block.z[lane - 1];
+                block.index[k] = block.index[lane - 1];
             }
-            const std::size_t at = tree.blocks.size();
-            tree.blocks.resize(at + blocks_for(own.size()));
-            fill_blocks(own, tree.blocks.data() + at);
-            tree.cells[grid.first + c] = {static_cast<std::uint32_t>(at),
-                                          static_cast<std::uint32_t>(tree.blocks.size()), depth};
+            of_blocks[b] = box;
+            box = {}, lane = 0, ++b;
+        };
+        for (const std::uint32_t k : order) {
+            const Entry& e = entries[k];
+            Box with       = box;
+            with.add(e.u, e.u, e.v, e.v, e.depth);
+            if (lane > 0 && spare > 0 && with.perimeter() > widest) {
+                close(), --spare;
+                with = {};
+                with.add(e.u, e.u, e.v, e.v, e.depth);
+            }
+            box           = with;
+            Block& block  = blocks[b];
+            block.x[lane] = e.x, block.y[lane] = e.y, block.z[lane] = e.z;
+            block.index[lane] = e.index;
+            if (++lane == kLanes) close();
         }
-        return g;
+        if (lane > 0) close();
     }
-
-    // Cells that are cut further grow trees of their own, which are then put together in the order of the cells.
-    std::vector<std::size_t> heavy;
-    for (std::size_t c = 0; c < count; ++c)
-        if (is_heavy(c)) heavy.push_back(c);
-    std::vector<Tree> inner(heavy.size());
-    each(heavy.size(), true, [&](std::size_t h) {
-        const std::span<Entry> own = own_of(heavy[h]);
-        add_grid(inner[h], own, entries.subspan(first[heavy[h]], own.size()), level + 1);
-    });
-    std::vector<std::uint32_t> at_block(count + 1, 0);
-    std::size_t h = 0, grids = tree.grids.size(), cells = tree.cells.size();
-    std::vector<std::uint32_t> at_grid(heavy.size()), at_cell(heavy.size());
-    for (std::size_t c = 0; c < count; ++c) {
-        std::size_t blocks = blocks_for(first[c + 1] - first[c]);
-        if (h < heavy.size() && heavy[h] == c) {
-            blocks     = inner[h].blocks.size();
-            at_grid[h] = static_cast<std::uint32_t>(grids), at_cell[h] = static_cast<std::uint32_t>(cells);
-            grids += inner[h].grids.size(), cells += inner[h].cells.size();
-            ++h;
-        }
-        at_block[c + 1] = at_block[c] + static_cast<std::uint32_t>(blocks);
-    }
-    tree.grids.resize(grids);
-    tree.cells.resize(cells);
-    tree.blocks.resize(at_block[count]);
-    parallel_ranges(count, 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-            const std::span<Entry> own = own_of(c);
-            if (own.empty() || is_heavy(c)) continue;
-            fill_blocks(own, tree.blocks.data() + at_block[c]);
-            tree.cells[grid.first + c] = {at_block[c], at_block[c + 1], farthest(own)};
-        }
-    });
-    each(heavy.size(), true, [&](std::size_t k) {
-        const std::size_t c = heavy[k];
-        for (Grid& own : inner[k].grids) own.first += at_cell[k];
-        for (Cell& own : inner[k].cells) {
-            own.end += own.begin == kGrid ? at_grid[k] : at_block[c];
-            if (own.begin != kGrid) own.begin += at_block[c];
-        }
-        float depth = -1;
-        for (const Cell& own : inner[k].cells) depth = std::max(depth, own.depth);
-        std::ranges::copy(inner[k].grids, tree.grids.begin() + at_grid[k]);
-        std::ranges::copy(inner[k].cells, tree.cells.begin() + at_cell[k]);
-        std::ranges::copy(inner[k].blocks, tree.blocks.begin() + at_block[c]);
-        tree.cells[grid.first + c] = {kGrid, at_grid[k], depth};
-    });
-    return g;
+    return b;
 }
 
-PointBins::PointBins(std::span<Entry> entries, std::span<Entry> space, std::span<const vec3> positions) {
-    if (entries.empty()) return;
-    add_grid(tree_, entries, space, 1);
-    parallel_ranges(tree_.blocks.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-            Block& block = tree_.blocks[b];
-            for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                const vec3 p  = positions[block.index[lane]];
-                block.x[lane] = p.x, block.y[lane] = p.y, block.z[lane] = p.z;
+void PointBins::add_levels(std::vector<Box> boxes) {
+    while (!boxes.empty() && (levels_.empty() || boxes.size() > 1)) {
+        std::vector<Extents> nodes((boxes.size() + kLanes - 1) / kLanes);
+        std::vector<Box> around(nodes.size());
+        parallel_ranges(nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    const std::size_t k = n * kLanes + lane;
+                    k < boxes.size() ? boxes[k].write(nodes[n], lane) : nodes[n].clear(lane);
+                }
+                around[n] = box_of(nodes[n]);
             }
-        }
-    });
-    marks_ = std::vector<Marks>(tree_.blocks.size());
+        });
+        boxes = std::move(around);
+        levels_.push_back(std::move(nodes));
+    }
 }
 
 }  // namespace umbra::binned_shadows_detail

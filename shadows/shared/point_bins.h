@@ -1,5 +1,6 @@
-// Surface points in bins of a light's image: a grid of cells, and a finer grid in each cell that holds many points, so
-// that a floor whose points all lie in a corner of the image is binned as finely as any other.
+// Surface points in bins of eight that are next to one another, and a tree over the bins by where they are in a light's
+// image: what a triangle may hide is found in it. Points come in tiles, in which they are sorted: where the points of a
+// tile are next to one another, as pixels are, all of them need not be.
 //
 // This work is based on:
 // Timo Aila, Samuli Laine. Alias-Free Shadow Maps. 2004
@@ -7,24 +8,49 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
-#include <limits>
+#include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
-#include "umbra/core/render/points.h"
 #include "umbra/shadows/shared/light_image.h"
 
 namespace umbra::binned_shadows_detail {
 
-inline constexpr std::size_t kLanes = 8;
+/// Where something is along a Z-order curve over a box.
+class ZOrder {
+public:
+    template <class Box>
+    explicit ZOrder(const Box& box)
+        : low_u_(box.low_u),
+          low_v_(box.low_v),
+          scale_u_(box.high_u > box.low_u ? 65535 / (box.high_u - box.low_u) : 0),
+          scale_v_(box.high_v > box.low_v ? 65535 / (box.high_v - box.low_v) : 0) {}
 
-/// Eight points: positions less the bins' centre, and places in the light's image. Lanes that no point needs repeat the
-/// last one's.
+    [[nodiscard]] std::uint32_t at(float u, float v) const {
+        return spread(static_cast<std::uint32_t>((u - low_u_) * scale_u_)) |
+               spread(static_cast<std::uint32_t>((v - low_v_) * scale_v_)) << 1;
+    }
+
+private:
+    /// Every second bit of the result, from the lowest on, is a bit of `value` < 65536.
+    static constexpr std::uint32_t spread(std::uint32_t value) {
+        value = (value | value << 8) & 0x00ff00ffu;
+        value = (value | value << 4) & 0x0f0f0f0fu;
+        value = (value | value << 2) & 0x33333333u;
+        return (value | value << 1) & 0x55555555u;
+    }
+
+    float low_u_, low_v_, scale_u_, scale_v_;
+};
+
+/// Eight points: positions less the bins' centre. Lanes that no point needs repeat the last one's.
 struct alignas(32) Block {
     float x[kLanes], y[kLanes], z[kLanes];
-    float u[kLanes], v[kLanes], depth[kLanes];
     std::uint32_t index[kLanes];  ///< in the batch
 };
 
@@ -33,88 +59,86 @@ struct Marks {
     std::atomic<std::uint8_t> crossed{0}, touched{0};
 };
 
-/// The points of one face of a light's image that ask for S_j.
+/// The points that ask a light for S_j.
 class PointBins {
 public:
     /// A place rounded to float. Rounding keeps an order, so that what lies in an extent lies in the rounded extent.
     struct Entry {
+        float x, y, z;  ///< less the centre
         float u, v, depth;
         std::uint32_t index;
+        std::uint32_t face;
     };
-    /// Sorts `entries`, by way of `space`, which is as long; what either holds afterwards is undefined. `positions`: of
-    /// the batch's points, less the centre. Uses many threads; the bins do not depend on their number.
-    PointBins(std::span<Entry> entries, std::span<Entry> space, std::span<const vec3> positions);
+    static constexpr std::size_t kTile = 4096;  ///< points
 
-    [[nodiscard]] std::size_t blocks() const { return tree_.blocks.size(); }
-    [[nodiscard]] const Block& block(std::size_t b) const { return tree_.blocks[b]; }
+    /// Around points, or around boxes.
+    struct Box {
+        float low_u = Extents::kFar, high_u = -Extents::kFar, low_v = Extents::kFar, high_v = -Extents::kFar;
+        float depth = -Extents::kFar;
+
+        void add(float from_u, float to_u, float from_v, float to_v, float at) {
+            low_u = std::min(low_u, from_u), high_u = std::max(high_u, to_u);
+            low_v = std::min(low_v, from_v), high_v = std::max(high_v, to_v);
+            depth = std::max(depth, at);
+        }
+        void add(const Box& other) { add(other.low_u, other.high_u, other.low_v, other.high_v, other.depth); }
+        void write(Extents& to, std::size_t lane) const {
+            to.low_u[lane] = low_u, to.high_u[lane] = high_u, to.low_v[lane] = low_v, to.high_v[lane] = high_v;
+            to.depth[lane] = depth;
+        }
+        [[nodiscard]] bool empty() const { return low_u > high_u; }
+        [[nodiscard]] float perimeter() const { return high_u - low_u + (high_v - low_v); }  ///< half of it
+        [[nodiscard]] double area() const {
+            return empty() ? 0 : static_cast<double>(high_u - low_u) * static_cast<double>(high_v - low_v);
+        }
+    };
+
+    PointBins() = default;
+    /// Bins the points of tiles 0 to `tiles` - 1, those of one after those of another. `points` writes at most kTile of
+    /// a tile to what it gets and returns how many; it is called once for each, from any thread.
+    PointBins(std::size_t tiles, const std::function<std::size_t(std::size_t tile, Entry* to)>& points);
+
+    [[nodiscard]] std::size_t blocks() const { return count_; }
+    [[nodiscard]] const Block& block(std::size_t b) const { return blocks_[b]; }
     [[nodiscard]] Marks& marks(std::size_t b) const { return marks_[b]; }
 
-    /// Calls visit(b) for every block that may hold a point in the extent, farther from the light than its depth.
+    /// How often the boxes of tiles in the light's image cover the boxes of its faces' points: about once where the
+    /// points of a tile are next to one another, as often as there are tiles where points are strewn about.
+    [[nodiscard]] double overlap() const { return overlap_; }
+
+    /// Calls visit(b, box) for every block that may hold a point in the extent, farther from the light than its depth.
     template <class Visit>
     void visit(const Extent& extent, const Visit& visit) const {
-        if (!tree_.grids.empty()) visit_grid(0, extent, visit);
+        if (!levels_.empty()) visit_level(levels_.size() - 1, 0, extent, visit);
     }
 
 private:
-    /// What places reach over.
-    struct Box2 {
-        float low_u = kFar, low_v = kFar, high_u = -kFar, high_v = -kFar;
-        void add(const Entry& e) { add(Box2{e.u, e.v, e.u, e.v}); }
-        void add(const Box2& other) {
-            low_u = std::min(low_u, other.low_u), low_v = std::min(low_v, other.low_v);
-            high_u = std::max(high_u, other.high_u), high_v = std::max(high_v, other.high_v);
-        }
-        static constexpr float kFar = std::numeric_limits<float>::max();
-    };
-    /// nx times ny cells, cells[first] on.
-    struct Grid {
-        float low_u, low_v, scale_u, scale_v;
-        int nx, ny;
-        std::uint32_t first;
-        /// Grows with the place, also by its rounding, which is what makes ranges of cells complete.
-        [[nodiscard]] int column(float u) const { return index((u - low_u) * scale_u, nx); }
-        [[nodiscard]] int row(float v) const { return index((v - low_v) * scale_v, ny); }
-        [[nodiscard]] std::size_t cell(const Entry& e) const {
-            return static_cast<std::size_t>(row(e.v)) * static_cast<std::size_t>(nx) +
-                   static_cast<std::size_t>(column(e.u));
-        }
-        static int index(float at, int n) {
-            return at >= static_cast<float>(n) ? n - 1 : at > 0 ? static_cast<int>(at) : 0;
-        }
-    };
-    struct Cell {
-        std::uint32_t begin = 0, end = 0;  ///< its blocks; or, where `begin` is kGrid, `end` is a grid
-        float depth = -1;                  ///< of the farthest point
-    };
-    static constexpr std::uint32_t kGrid = ~0u;
-    struct Tree {
-        std::vector<Grid> grids{};
-        std::vector<Cell> cells{};
-        std::vector<Block> blocks{};
-    };
+    static constexpr std::size_t kFaces      = 6;
+    static constexpr std::size_t kTileBlocks = kTile / kLanes + 64;  ///< a few more than full ones
+
+    class Sorter;
+    static std::size_t fill_tile(std::span<const Entry> entries, const std::array<Box, kFaces>& boxes, Sorter& sorter,
+                                 Block* blocks, Box* of_blocks);
+    void add_levels(std::vector<Box> boxes);
 
     template <class Visit>
-    void visit_grid(std::size_t g, const Extent& extent, const Visit& visit) const {
-        const Grid& grid = tree_.grids[g];
-        if (extent.high_u < grid.low_u || extent.high_v < grid.low_v) return;
-        const int left = grid.column(extent.low_u), right = grid.column(extent.high_u);
-        const int low = grid.row(extent.low_v), high = grid.row(extent.high_v);
-        for (int y = low; y <= high; ++y)
-            for (int x = left; x <= right; ++x) {
-                const Cell& cell = tree_.cells[grid.first + static_cast<std::uint32_t>(y * grid.nx + x)];
-                if (cell.depth < extent.depth) continue;
-                if (cell.begin == kGrid)
-                    visit_grid(cell.end, extent, visit);
-                else
-                    for (std::uint32_t b = cell.begin; b < cell.end; ++b) visit(b);
-            }
+    void visit_level(std::size_t level, std::size_t node, const Extent& extent, const Visit& visit) const {
+        const Extents& boxes = levels_[level][node];
+        for (unsigned rest = points_in(boxes, extent); rest != 0; rest &= rest - 1) {
+            const auto lane         = static_cast<std::size_t>(std::countr_zero(rest));
+            const std::size_t child = node * kLanes + lane;
+            if (level > 0)
+                visit_level(level - 1, child, extent, visit);
+            else
+                visit(child, boxes.at(lane));
+        }
     }
 
-    static Grid fitted(std::span<const Entry> entries, const Box2& box);
-    static std::uint32_t add_grid(Tree& tree, std::span<Entry> entries, std::span<Entry> space, int level);
-
-    Tree tree_;
-    mutable std::vector<Marks> marks_;
+    double overlap_    = 1;
+    std::size_t count_ = 0;
+    std::unique_ptr<Block[]> blocks_;           ///< those next to one another in the light's image together
+    std::vector<std::vector<Extents>> levels_;  ///< boxes of eight of `used_`, of eight of these, up to one
+    std::unique_ptr<Marks[]> marks_;
 };
 
 }  // namespace umbra::binned_shadows_detail

@@ -21,13 +21,4 @@ ShadowPlanes::Lanes ShadowPlanes::test(const Block& block) const {
     return {static_cast<std::uint8_t>(inside), static_cast<std::uint8_t>(~(inside | outside))};
 }
 
-bool ShadowPlanes::any_in(const Extent& extent, const Block& block) {
-    int any = 0;
-    for (std::size_t i = 0; i < kLanes; ++i)
-        any |= static_cast<int>(block.u[i] >= extent.low_u) & static_cast<int>(block.u[i] <= extent.high_u) &
-               static_cast<int>(block.v[i] >= extent.low_v) & static_cast<int>(block.v[i] <= extent.high_v) &
-               static_cast<int>(block.depth[i] >= extent.depth);
-    return any != 0;
-}
-
 }  // namespace umbra::binned_shadows_detail

@@ -43,9 +43,6 @@ struct ShadowPlanes {
     };
     [[nodiscard]] Lanes test(const Block& block) const;
 
-    /// Whether some point of a block lies in an extent, behind its depth.
-    [[nodiscard]] static bool any_in(const Extent& extent, const Block& block);
-
 private:
     ShadowPlanes() = default;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/shared/binned_points.h"
 #include "umbra/shadows/shared/light_image.h"
 #include "umbra/shadows/shared/point_bins.h"
 #include "umbra/shadows/shared/shadow_planes.h"
@@ -149,6 +150,21 @@ TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
     EXPECT_EQ(unsure, 0b01110000);
 }
 
+/// Eight points in a row from a position, each its own triangle's first corner.
+binned_shadows_detail::LightImage::Places places_of(const binned_shadows_detail::LightImage& image, dvec3 from,
+                                                    dvec3 step) {
+    using namespace binned_shadows_detail;
+    LightImage::Corners corners;
+    const float zero[kLanes]{};
+    for (std::size_t k = 0; k < kLanes; ++k)
+        for (int c = 0; c < 3; ++c)
+            for (int axis = 0; axis < 3; ++axis)
+                corners[c][axis][k] = from[axis] + static_cast<double>(k) * step[axis] + (c == axis ? 0.5 * c : 0.0);
+    LightImage::Places places;
+    image.places(corners, zero, zero, places);
+    return places;
+}
+
 /// Directions to all sides have places, opposite ones on opposite faces; a point has none where rounding of positions
 /// could move it to any side of the light.
 TEST(LightImage, PlacesWhatRoundingCannotMoveAroundTheLight) {
@@ -156,43 +172,137 @@ TEST(LightImage, PlacesWhatRoundingCannotMoveAroundTheLight) {
     Light lamp;
     lamp.position = {1000, 0, 0};
     const LightImage image(lamp, dvec3(0), 1000);
-    for (int k = 0; k < 3; ++k) {
-        dvec3 along(0.1, 0.2, -0.3);
-        along[k]         = 2;
-        const auto there = image.place(dvec3(lamp.position) + along), back = image.place(dvec3(lamp.position) - along);
-        ASSERT_TRUE(there && back);
-        EXPECT_EQ(there->face, 2 * k);
-        EXPECT_EQ(back->face, 2 * k + 1);
-        EXPECT_DOUBLE_EQ(there->depth, 2);
-        EXPECT_DOUBLE_EQ(back->depth, 2);
-        EXPECT_FALSE(image.place(dvec3(lamp.position) + 5e-4 * along)) << "0.001 beside coordinates of 1000";
-        EXPECT_TRUE(image.place(dvec3(lamp.position) + 5e-3 * along));
-    }
+    for (int k = 0; k < 3; ++k)
+        for (const double sign : {1.0, -1.0}) {
+            dvec3 along(0.1, 0.2, -0.3);
+            along[k]         = 2;
+            const auto there = places_of(image, dvec3(lamp.position) + sign * along, sign * along);
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                const double times = static_cast<double>(lane) + 1;
+                EXPECT_EQ(there.face[lane], 2 * k + (sign < 0 ? 1 : 0));
+                EXPECT_NEAR(there.depth[lane], 2 * times, 1e-5);
+                EXPECT_NEAR(there.u[lane], 4.0 * there.face[lane] + sign * along[(k + 1) % 3] / 2, 1e-5);
+                EXPECT_NEAR(there.v[lane], sign * along[(k + 2) % 3] / 2, 1e-6);
+                EXPECT_DOUBLE_EQ(there.y[lane], sign * along.y * times);
+            }
+            const auto near = places_of(image, dvec3(lamp.position) + 5e-4 * sign * along, dvec3(0)),
+                       far  = places_of(image, dvec3(lamp.position) + 5e-3 * sign * along, dvec3(0));
+            EXPECT_EQ(near.face[0], -1) << "0.001 beside coordinates of 1000";
+            EXPECT_EQ(far.face[0], there.face[0]);
+        }
 }
 
-/// Whatever an extent covers is visited, however points are spread.
+/// The extents of eight triangles hold what the triangles do, and no face has anything of those that say to lie in
+/// another; those that pass over a border are left to extent().
+TEST(LightImage, ExtentsOfEightHoldTheirTriangles) {
+    using namespace binned_shadows_detail;
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto anywhere = [&] { return dvec3(uniform(random), uniform(random), uniform(random)); };
+    Light lamp          = lamp_at({0.1f, -0.2f, 0.05f});
+    std::size_t within = 0, over_a_border = 0;
+    for (const Light& light : {lamp, sun_from({0.3f, -1, 0.2f})})
+        for (int trial = 0; trial < 500; ++trial) {
+            const LightImage image(light, dvec3(0), 10);
+            LightImage::Corners corners;
+            std::array<std::array<dvec3, 3>, kLanes> triangles;
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                const dvec3 middle = 5.0 * anywhere();
+                for (int c = 0; c < 3; ++c) {
+                    const auto k       = static_cast<std::size_t>(c);
+                    triangles[lane][k] = dvec3(vec3(middle + 0.8 * anywhere()));
+                    for (int axis = 0; axis < 3; ++axis) corners[c][axis][lane] = triangles[lane][k][axis];
+                }
+            }
+            Extents extents;
+            const unsigned ones = image.extents(corners, extents);
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                if ((ones >> lane & 1u) == 0) {
+                    EXPECT_TRUE(extents.empty(lane));
+                    ++over_a_border;
+                    continue;
+                }
+                ++within;
+                int faces = 0;
+                for (int face = 0; face < 6 && !image.infinite(); ++face)
+                    if (const auto alone = image.extent(face, triangles[lane])) {
+                        ++faces;
+                        EXPECT_NEAR(alone->low_u, extents.low_u[lane], 1e-5);
+                        EXPECT_NEAR(alone->high_u, extents.high_u[lane], 1e-5);
+                        EXPECT_NEAR(alone->low_v, extents.low_v[lane], 1e-5);
+                        EXPECT_NEAR(alone->high_v, extents.high_v[lane], 1e-5);
+                        EXPECT_NEAR(alone->depth, extents.depth[lane], 1e-5);
+                    }
+                EXPECT_TRUE(image.infinite() || faces == 1);
+                for (int point = 0; point < 8; ++point) {
+                    dvec3 weights = glm::abs(anywhere());
+                    weights /= weights.x + weights.y + weights.z;
+                    const auto at = places_of(image,
+                                              weights.x * triangles[lane][0] + weights.y * triangles[lane][1] +
+                                                  weights.z * triangles[lane][2],
+                                              dvec3(0));
+                    EXPECT_TRUE(at.u[0] >= extents.low_u[lane] && at.u[0] <= extents.high_u[lane]);
+                    EXPECT_TRUE(at.v[0] >= extents.low_v[lane] && at.v[0] <= extents.high_v[lane]);
+                    EXPECT_TRUE(at.depth[0] >= extents.depth[lane]);
+                }
+            }
+        }
+    EXPECT_GT(within, 5000u);
+    EXPECT_GT(over_a_border, 300u);
+}
+
+/// Whatever an extent covers is visited, however points are spread; what it does not, mostly not.
 TEST(PointBins, FindEveryPointOfAnExtent) {
     using namespace binned_shadows_detail;
     std::mt19937 random(3);
     std::exponential_distribution<double> crowded(8);  // most in a corner
-    std::vector<PointBins::Entry> entries, places;
-    std::vector<vec3> positions(100000);  // more than one chunk
-    for (std::uint32_t i = 0; i < positions.size(); ++i) {
+    std::vector<PointBins::Entry> places;
+    for (std::uint32_t i = 0; i < 100000; ++i) {
         double x = crowded(random), y = crowded(random);
-        if (i % 2 == 0) x *= 1e-4, y *= 1e-4;  // half of them in one cell of the first grid
+        if (i % 2 == 0) x *= 1e-4, y *= 1e-4;  // half of them in a far corner of it
         if (i % 100 == 0) x = y = 0.5;         // and some in one place
-        entries.push_back({static_cast<float>(x), static_cast<float>(y), static_cast<float>(x + y), i});
-        positions[i] = vec3(x, y, 0);
+        const std::uint32_t face = i % 3;      // beside one another
+        places.push_back({.x     = static_cast<float>(x),
+                          .y     = static_cast<float>(y),
+                          .z     = 0,
+                          .u     = static_cast<float>(x) + 4.0f * static_cast<float>(face),
+                          .v     = static_cast<float>(y),
+                          .depth = static_cast<float>(x + y),
+                          .index = i,
+                          .face  = face});
     }
-    places = entries;
-    std::vector<PointBins::Entry> space(entries.size());
-    const PointBins bins(entries, space, positions);
+    PointBins::Box all;
+    for (const PointBins::Entry& e : places) all.add(e.u, e.u, e.v, e.v, e.depth);
+    const ZOrder curve(all);
+    std::ranges::sort(places, {}, [&](const PointBins::Entry& e) { return curve.at(e.u, e.v); });
+    for (std::uint32_t i = 0; i < places.size(); ++i) places[i].index = i;
+    const std::size_t tiles = (places.size() + PointBins::kTile - 1) / PointBins::kTile + 1;  // the last one is empty
+    const PointBins bins(tiles, [&](std::size_t tile, PointBins::Entry* to) {
+        const std::size_t first = std::min(places.size(), tile * PointBins::kTile),
+                          last  = std::min(places.size(), first + PointBins::kTile);
+        std::copy(places.begin() + static_cast<std::ptrdiff_t>(first),
+                  places.begin() + static_cast<std::ptrdiff_t>(last), to);
+        return last - first;
+    });
+    std::vector<int> binned(places.size());
+    for (std::size_t b = 0; b < bins.blocks(); ++b)
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const Block& block          = bins.block(b);
+            const PointBins::Entry& own = places[block.index[lane]];
+            binned[block.index[lane]] += lane == 0 || block.index[lane] != block.index[lane - 1] ? 1 : 0;
+            EXPECT_TRUE(block.x[lane] == own.x && block.y[lane] == own.y);
+            EXPECT_EQ(own.face, places[block.index[0]].face);
+        }
+    EXPECT_EQ(std::ranges::count(binned, 1), 100000) << "each once";
+    EXPECT_LT(bins.blocks(), 100000u / kLanes + 64 * tiles);
     for (int trial = 0; trial < 300; ++trial) {
         const double size = trial % 3 == 0 ? 1e-5 : 0.3;
-        const dvec2 low   = trial % 2 == 0 ? dvec2(crowded(random), crowded(random)) * size : dvec2(0.4);
+        const dvec2 low =
+            dvec2(trial % 3 * 4, 0) + (trial % 2 == 0 ? dvec2(crowded(random), crowded(random)) * size : dvec2(0.4));
         const Extent extent(low, low + dvec2(crowded(random), crowded(random)) * size, crowded(random) * size);
-        std::vector<bool> found(positions.size());
-        bins.visit(extent, [&](std::size_t b) {
+        std::vector<bool> found(places.size());
+        bins.visit(extent, [&](std::size_t b, const Extent& box) {
+            EXPECT_TRUE(box.low_u <= box.high_u && box.depth >= extent.depth);
             for (const std::uint32_t i : bins.block(b).index) found[i] = true;
         });
         std::size_t wanted = 0;
@@ -203,12 +313,47 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
             EXPECT_TRUE(found[e.index]);
             ++wanted;
         }
-        // A cell holds at most 128 points, but for those in one place.
         const auto visited = static_cast<std::size_t>(std::ranges::count(found, true));
         if (trial % 2 == 0 && size < 1) {
             EXPECT_LT(visited, 3 * wanted + 2000) << trial;
         }
     }
+    EXPECT_LT(bins.overlap(), 1.5);
+}
+
+/// Pixels next to one another need not be sorted; where each of them is somewhere else, points are, and the answers are
+/// the same.
+TEST(PointBins, SortsWhatTilesHaveStrewnAbout) {
+    using namespace binned_shadows_detail;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    Scene confetti = seen_from({0, 0, 9}, {0, 0, 0});
+    confetti.width = 640, confetti.height = 512;
+    std::vector<vec3> corners;
+    std::vector<uvec3> triangles;
+    for (std::uint32_t k = 0; k < 20000; ++k) {
+        const vec3 middle(4 * uniform(random), 3 * uniform(random), 4 * uniform(random));
+        for (int c = 0; c < 3; ++c)
+            corners.push_back(middle + 0.04f * vec3(uniform(random), uniform(random), uniform(random)));
+        triangles.emplace_back(3 * k, 3 * k + 1, 3 * k + 2);
+    }
+    add_object(confetti, "confetti", corners, {}, triangles, 0);
+    confetti.lights   = {lamp_at({12, 1, 0.5f})};
+    const auto binned = [](const Scene& scene) {
+        return bin_points(scene, primary(scene), 0, LightImage(scene.lights[0], dvec3(0), 20), dvec3(0));
+    };
+    EXPECT_TRUE(binned(confetti).sorted);
+    EXPECT_LT(binned(confetti).bins.overlap(), 3);
+    Scene floor = seen_from({0, 3, 3}, {0, 0, 0});
+    floor.width = 640, floor.height = 512, floor.lights = confetti.lights;
+    const Mesh plane = make_plane(30, 30);
+    add_object(floor, "floor", plane.positions, plane.normals, plane.triangles, 0);
+    EXPECT_FALSE(binned(floor).sorted);
+    EXPECT_LT(binned(floor).bins.overlap(), 3);
+    const Compared compared = against_exact(confetti);
+    EXPECT_EQ(compared.different, 0u);
+    EXPECT_GT(compared.umbra, 1000u);
+    EXPECT_GT(compared.lit, 1000u);
 }
 
 /// Slivers, contacts, lights on edges, in corners and next to surfaces, far origins: what is said of a point,

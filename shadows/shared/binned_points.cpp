@@ -1,0 +1,173 @@
+#include "umbra/shadows/shared/binned_points.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/base/parallel_sort.h"
+
+namespace umbra::binned_shadows_detail {
+namespace {
+
+constexpr std::size_t kTileSide = 64;  ///< of a raster, pixels
+constexpr double kMostOverlap   = 8;   ///< of a raster's tiles
+static_assert(kTileSide * kTileSide == PointBins::kTile);
+
+struct Pixel {
+    std::uint8_t column, row;
+};
+/// The pixels of a tile along a Z-order curve.
+constexpr std::array<Pixel, PointBins::kTile> z_order() {
+    std::array<Pixel, PointBins::kTile> order{};
+    for (unsigned k = 0; k < order.size(); ++k)
+        for (int bit = 0; bit < 6; ++bit) {
+            order[k].column |= static_cast<std::uint8_t>((k >> (2 * bit) & 1u) << bit);
+            order[k].row |= static_cast<std::uint8_t>((k >> (2 * bit + 1) & 1u) << bit);
+        }
+    return order;
+}
+constexpr auto kZOrder = z_order();
+
+class Binning {
+public:
+    Binning(const Scene& scene, const PointBatch& points, LightId light, const LightImage& image, dvec3 centre)
+        : scene_(scene), points_(points), light_(light), image_(image), centre_(centre) {}
+
+    BinnedPoints in_order_of_pixels() {
+        const auto width         = static_cast<std::size_t>(points_.raster->width),
+                   height        = static_cast<std::size_t>(points_.raster->height);
+        const std::size_t across = (width + kTileSide - 1) / kTileSide, down = (height + kTileSide - 1) / kTileSide;
+        parts_.assign(across * down, {});
+        return with_parts(PointBins(across * down, [&](std::size_t tile, PointBins::Entry* to) {
+            const std::size_t left = tile % across * kTileSide, top = tile / across * kTileSide;
+            std::array<std::uint32_t, PointBins::kTile> asking;
+            std::size_t n = 0;
+            for (const Pixel pixel : kZOrder) {
+                const std::size_t x = left + pixel.column, y = top + pixel.row;
+                if (x < width && y < height && points_.asks(light_, y * width + x))
+                    asking[n++] = static_cast<std::uint32_t>(y * width + x);
+            }
+            return enter(std::span(asking).first(n), to, parts_[tile]);
+        }));
+    }
+
+    /// So that points that are next to one another in the light's image follow one another: along a Z-order curve.
+    BinnedPoints in_order_of_places() {
+        std::vector<std::uint32_t> asking;
+        for (std::size_t i = 0; i < points_.size(); ++i)
+            if (points_.asks(light_, i)) asking.push_back(static_cast<std::uint32_t>(i));
+        const std::size_t tiles = (asking.size() + PointBins::kTile - 1) / PointBins::kTile;
+        parts_.assign(tiles, {});
+        std::vector<PointBins::Entry> entries(asking.size());
+        std::vector<std::size_t> placed(tiles);
+        parallel_ranges(tiles, 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t tile = begin; tile < end; ++tile)
+                placed[tile] =
+                    enter(of_tile<const std::uint32_t>(asking, tile), &entries[tile * PointBins::kTile], parts_[tile]);
+        });
+        PointBins::Box all;
+        for (std::size_t tile = 0; tile < tiles; ++tile)
+            for (const PointBins::Entry& e : of_tile<PointBins::Entry>(entries, tile).first(placed[tile]))
+                all.add(e.u, e.u, e.v, e.v, e.depth);
+        const ZOrder curve(all);
+        std::vector<std::uint64_t> keys;
+        for (std::size_t tile = 0; tile < tiles; ++tile)
+            for (std::size_t k = tile * PointBins::kTile; k < tile * PointBins::kTile + placed[tile]; ++k)
+                keys.push_back(std::uint64_t{curve.at(entries[k].u, entries[k].v)} << 32 | k);
+        parallel_sort(keys.begin(), keys.end());
+        return with_parts(PointBins((keys.size() + PointBins::kTile - 1) / PointBins::kTile,
+                                    [&](std::size_t tile, PointBins::Entry* to) {
+                                        const auto own = of_tile<const std::uint64_t>(keys, tile);
+                                        for (const std::uint64_t key : own) *to++ = entries[key & 0xffffffffu];
+                                        return own.size();
+                                    }));
+    }
+
+private:
+    /// What some points have besides bins.
+    struct Part {
+        std::vector<std::uint32_t> without{};
+        vec3 reach{0};
+    };
+
+    template <class Item, class Items>
+    static std::span<Item> of_tile(Items& items, std::size_t tile) {
+        const std::size_t first = tile * PointBins::kTile;
+        return std::span<Item>(items).subspan(first, std::min(PointBins::kTile, items.size() - first));
+    }
+
+    /// Writes the points that have a place. Returns how many.
+    std::size_t enter(std::span<const std::uint32_t> which, PointBins::Entry* to, Part& part) const {
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < which.size(); k += kLanes) {
+            const std::size_t count = std::min(kLanes, which.size() - k);
+            LightImage::Corners corners;
+            float u[kLanes], v[kLanes];
+            for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                const std::uint32_t i = which[k + std::min(lane, count - 1)];
+                u[lane] = points_.u[i], v[lane] = points_.v[i];
+                load(scene_, points_.triangle[i], corners, lane);
+            }
+            LightImage::Places places;
+            image_.places(corners, u, v, places);
+            for (std::size_t lane = 0; lane < count; ++lane) {
+                const std::uint32_t i = which[k + lane];
+                const vec3 near(dvec3(places.x[lane], places.y[lane], places.z[lane]) - centre_);
+                part.reach = glm::max(part.reach, glm::abs(near));
+                if (places.face[lane] < 0) {
+                    part.without.push_back(i);
+                    continue;
+                }
+                to[n++] = {.x     = near.x,
+                           .y     = near.y,
+                           .z     = near.z,
+                           .u     = places.u[lane],
+                           .v     = places.v[lane],
+                           .depth = places.depth[lane],
+                           .index = i,
+                           .face  = static_cast<std::uint32_t>(places.face[lane])};
+            }
+        }
+        return n;
+    }
+
+    [[nodiscard]] BinnedPoints with_parts(PointBins bins) const {
+        BinnedPoints all{.bins = std::move(bins)};
+        for (const Part& part : parts_) {
+            all.next_to_light.insert(all.next_to_light.end(), part.without.begin(), part.without.end());
+            all.reach = glm::max(all.reach, dvec3(part.reach));
+        }
+        return all;
+    }
+
+    const Scene& scene_;
+    const PointBatch& points_;
+    LightId light_;
+    const LightImage& image_;
+    dvec3 centre_;
+    std::vector<Part> parts_{};
+};
+
+}  // namespace
+
+BinnedPoints bin_points(const Scene& scene, const PointBatch& points, LightId light, const LightImage& image,
+                        dvec3 centre) {
+    Binning binning(scene, points, light, image, centre);
+    if (points.raster) {
+        BinnedPoints binned = binning.in_order_of_pixels();
+        if (binned.bins.overlap() <= kMostOverlap) return binned;
+    }
+    BinnedPoints binned = binning.in_order_of_places();
+    binned.sorted       = true;
+    return binned;
+}
+
+void load(const Scene& scene, TriangleId t, LightImage::Corners& corners, std::size_t lane) {
+    for (int c = 0; c < 3; ++c) {
+        const vec3 corner = scene.vertex(t, c);
+        for (int axis = 0; axis < 3; ++axis) corners[c][axis][lane] = static_cast<double>(corner[axis]);
+    }
+}
+
+}  // namespace umbra::binned_shadows_detail
