@@ -1,8 +1,11 @@
 #include "umbra/shadows/volumes/seen_volumes.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "umbra/core/base/parallel.h"
 
@@ -10,6 +13,25 @@ namespace umbra {
 namespace {
 
 uvec3 oriented(uvec3 t, int orientation) { return orientation > 0 ? t : uvec3(t[0], t[2], t[1]); }
+
+/// A point that is no deeper than this may be projected anywhere.
+double least_depth(const dvec3& v) { return 0x1p-20 * (std::abs(v.x) + std::abs(v.y)); }
+
+struct SeenBox {
+    dvec3 low, high;  // of (x, y, w)
+};
+/// Of a triangle, and a little larger. Nothing where it does not lie in front of the view.
+std::optional<SeenBox> box_of(const std::array<dvec3, 3>& corners) {
+    dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+    for (const dvec3& v : corners) {
+        if (!(v.z > least_depth(v))) return std::nullopt;
+        const dvec3 projected(v.x / v.z, v.y / v.z, 1 / v.z);
+        low  = glm::min(low, projected);
+        high = glm::max(high, projected);
+    }
+    const dvec3 rounding = 0x1p-40 * glm::max(glm::abs(low), glm::abs(high));
+    return SeenBox{low - rounding, high + rounding};
+}
 
 }  // namespace
 
@@ -33,16 +55,28 @@ void SeenVolumes::add_near_cap(CountingTree& tree, TriangleId t, int orientation
         const Line e = edge(cap.corners[k], cap.corners[(k + 1) % 3]);
         region.add(HalfSpace::side(e.normal, 0, cap.origin_behind ? e.sense : -e.sense));
     }
-    bound(region, cap.corners, depth_fail);
+    if (const auto box = box_of({vertices_[cap.corners[0]], vertices_[cap.corners[1]], vertices_[cap.corners[2]]})) {
+        region.box_min = box->low, region.box_max = box->high;
+        if (depth_fail)
+            region.box_max.z = std::numeric_limits<double>::infinity();
+        else
+            region.box_min.z = -std::numeric_limits<double>::infinity();
+    }
     tree.add(region, cap.origin_behind == depth_fail ? +1 : -1);
 }
 
 void SeenVolumes::add_far_cap(CountingTree& tree, TriangleId t, int orientation) const {
     const uvec3 corners = oriented(meshes_.triangles()[t], orientation);
+    const std::array<dvec3, 3> ends{far(corners[0]), far(corners[1]), far(corners[2])};
+    if (std::ranges::all_of(ends, [](const dvec3& v) { return v.z < -least_depth(v); })) return;  // behind the view
     Region region;
     for (int k = 0; k < 3; ++k) {
         const Line e = far_edge(corners[k], corners[(k + 1) % 3]);
         region.add(HalfSpace::side(e.normal, 0, -e.sense));
+    }
+    if (const auto box = box_of(ends)) {
+        region.box_min = {box->low.x, box->low.y, region.box_min.z};
+        region.box_max = {box->high.x, box->high.y, region.box_max.z};
     }
     tree.add(region, +1);
 }
@@ -108,22 +142,6 @@ SeenVolumes::Line SeenVolumes::edge(std::uint32_t from, std::uint32_t to) const 
 
 SeenVolumes::Line SeenVolumes::far_edge(std::uint32_t from, std::uint32_t to) const {
     return {glm::cross(far(std::min(from, to)), far(std::max(from, to))), from < to ? +1 : -1};
-}
-
-void SeenVolumes::bound(Region& region, uvec3 corners, bool depth_fail) const {
-    dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
-    for (int k = 0; k < 3; ++k) {
-        const dvec3 v = vertices_[corners[k]];
-        if (!(v.z > 0x1p-20 * (std::abs(v.x) + std::abs(v.y)))) return;
-        const dvec3 projected(v.x / v.z, v.y / v.z, 1 / v.z);
-        low  = glm::min(low, projected);
-        high = glm::max(high, projected);
-    }
-    const dvec3 rounding = 0x1p-40 * glm::max(glm::abs(low), glm::abs(high));
-    region.box_min       = low - rounding;
-    region.box_max       = high + rounding;
-    (depth_fail ? region.box_max.z : region.box_min.z) =
-        depth_fail ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
 }
 
 }  // namespace umbra

@@ -60,9 +60,6 @@ private:
 
     [[nodiscard]] dvec3 far(std::uint32_t v) const { return at_infinity_ ? travel_ : vertices_[v] + travel_; }
 
-    /// A box around the points that can count a cap in front of the view: those that it covers, farther or nearer.
-    void bound(Region& region, uvec3 corners, bool depth_fail) const;
-
     const SilhouetteMeshes& meshes_;
     bool at_infinity_;
     dvec3 travel_;
