@@ -82,27 +82,21 @@ std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet
 
 namespace {
 
-/// Of lit_in_square.
-constexpr int kMostInRow = 34;
-
-/// The weight of the square's samples, all in the map and at most kMostInRow in a row, that are not blocked: is_blocked
-/// of each, with what the samples of a column and of a row have alike computed once.
+/// The weight of the square's samples, all in the map, that are not blocked: is_blocked of each, with what the samples
+/// of a column and of a row have alike computed once.
 double lit_in_square(const MapView& view, const Receiver& p, BiasMode mode, const SquareKernel& square) {
-    double weights[kMostInRow], across[kMostInRow], nearest[kMostInRow], counts[kMostInRow];
-    for (int k = 0; k < square.side; ++k) {
-        weights[k] = square.across(k);
-        across[k]  = p.r + p.r_x * (square.x + k + 0.5 - p.x);
-    }
+    double across[SquareKernel::kMostInRow], nearest[SquareKernel::kMostInRow], counts[SquareKernel::kMostInRow];
+    for (int k = 0; k < square.side; ++k) across[k] = p.r + p.r_x * (square.x + k + 0.5 - p.x);
     double lit = 0;
     for (int j = 0; j < square.side; ++j) {
-        const double weight = square.down(j), down = p.r_y * (square.y + j + 0.5 - p.y);
+        const double down = p.r_y * (square.y + j + 0.5 - p.y);
         for (int k = 0; k < square.side; ++k) nearest[k] = view.map.nearness(square.x + k, square.y + j);
         for (int k = 0; k < square.side; ++k) {
             const double plane = across[k] + down, above = p.r - plane;
             const double eased = (above > 0 ? above : 0.0) + p.slack;
             const double by    = mode == BiasMode::automatic ? (p.most < eased ? p.most : eased) : 0.0;
             const double r     = (mode == BiasMode::manual ? p.r : plane + by) + p.bias;
-            counts[k]          = nearest[k] > (r > 0 ? r : 0.0) ? 0 : weights[k] * weight;
+            counts[k]          = nearest[k] > (r > 0 ? r : 0.0) ? 0 : square.across[k] * square.down[j];
         }
         for (int k = 0; k < square.side; ++k) lit += counts[k];
     }
@@ -115,9 +109,9 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
     if (filter.is_one_sample())
         return is_blocked(view, p, static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)), mode) ? 0.0f
                                                                                                                : 1.0f;
-    if (filter.kernel != Kernel::disc && !view.midpoint) {
-        const SquareKernel square({p.x, p.y}, filter);
-        if (square.side <= kMostInRow && square.x >= 0 && square.y >= 0 && square.x + square.side <= view.map.width() &&
+    if (filter.kernel != Kernel::disc && filter.radius <= SquareKernel::kMostRadius && !view.midpoint) {
+        const SquareKernel square = square_kernel({p.x, p.y}, filter);
+        if (square.x >= 0 && square.y >= 0 && square.x + square.side <= view.map.width() &&
             square.y + square.side <= view.map.height())
             return static_cast<float>(std::clamp(lit_in_square(view, p, mode, square) / square.whole, 0.0, 1.0));
     }

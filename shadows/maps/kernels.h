@@ -79,59 +79,69 @@ struct Filter {
     return {turn.x * q.x - turn.y * q.y, turn.y * q.x + turn.x * q.y};
 }
 
-/// The samples of a kernel that is a square, of any width: x + i, y + j for i, j < side, of weight across(i) * down(j).
-class SquareKernel {
-public:
+/// The samples of a kernel that is a square and not too wide: x + i, y + j for i, j < side, of weight
+/// across[i] * down[j].
+struct SquareKernel {
+    static constexpr int kMostRadius = 16, kMostInRow = 2 * kMostRadius + 2;
     int x = 0, y = 0, side = 0;
+    double across[kMostInRow], down[kMostInRow];
     double whole = 0;  ///< sum of the weights
+};
 
-    /// Of a filter other than a disc about `at`, in samples.
-    SquareKernel(dvec2 at, const Filter& filter) : heights_(profile(filter.kernel)) {
-        const auto below = [](double v) { return static_cast<int>(std::floor(v)); };
-        const int last   = 2 * filter.radius + 1;
-        if (filter.kernel == Kernel::grid && !filter.bilinear) {
-            x = below(at.x) - filter.radius, y = below(at.y) - filter.radius;
-            side  = last;
-            whole = static_cast<double>(last) * last;
-            return;
-        }
-        moves_           = true;
-        const int column = below(at.x - 0.5), row = below(at.y - 0.5);
-        part_ = {at.x - 0.5 - column, at.y - 0.5 - row};
-        x = column - filter.radius, y = row - filter.radius;
-        side       = last + 1;
-        double sum = heights_.empty() ? last : 0;
-        for (const double height : heights_) sum += height;
-        whole = sum * sum;
+/// Of a filter other than a disc about `at`, in samples; its radius is at most kMostRadius.
+inline SquareKernel square_kernel(dvec2 at, const Filter& filter) {
+    const auto below = [](double v) { return static_cast<int>(std::floor(v)); };
+    const int radius = filter.radius;
+    SquareKernel square;
+    if (filter.kernel == Kernel::grid && !filter.bilinear) {
+        square.x = below(at.x) - radius, square.y = below(at.y) - radius;
+        square.side = 2 * radius + 1;
+        for (int k = 0; k < square.side; ++k) square.across[k] = square.down[k] = 1;
+        square.whole = square.side * square.side;
+        return square;
     }
-
-    [[nodiscard]] double across(int k) const { return weight(k, part_.x); }
-    [[nodiscard]] double down(int k) const { return weight(k, part_.y); }
-
-private:
-    std::span<const double> heights_;
-    bool moves_ = false;
-    dvec2 part_{0};  ///< of a sample that the kernel lies beyond its own samples
-
-    [[nodiscard]] double height(int k) const { return heights_.empty() ? 1 : heights_[static_cast<std::size_t>(k)]; }
-
-    /// Of sample k of a row.
-    [[nodiscard]] double weight(int k, double part) const {
-        if (!moves_) return 1;
-        const double here  = k < side - 1 ? height(k) : 0;
+    const std::span<const double> heights = profile(filter.kernel);
+    const int last                        = 2 * radius + 1;
+    // Of sample k of a row, where the kernel lies that part of a sample beyond its own samples.
+    const auto weight = [&](int k, double part) {
+        const auto height  = [&](int at_k) { return heights.empty() ? 1 : heights[static_cast<std::size_t>(at_k)]; };
+        const double here  = k < last ? height(k) : 0;
         const double there = k > 0 ? height(k - 1) : 0;
         return here + part * (there - here);
-    }
-};
+    };
+    const int x = below(at.x - 0.5), y = below(at.y - 0.5);
+    const double fx = at.x - 0.5 - x, fy = at.y - 0.5 - y;
+    square.x = x - radius, square.y = y - radius;
+    square.side = last + 1;
+    for (int k = 0; k <= last; ++k) square.across[k] = weight(k, fx), square.down[k] = weight(k, fy);
+    double sum = heights.empty() ? last : 0;
+    for (const double height : heights) sum += height;
+    square.whole = sum * sum;
+    return square;
+}
 
 /// Calls body(i, j, weight) for each sample that the filter asks for about `at`, in samples, with a disc turned by
 /// `turn`. Samples may lie outside the map, and those of a disc come several times. Returns the sum of the weights.
 template <class Body>
 double for_each_sample(dvec2 at, dvec2 turn, const Filter& filter, const Body& body) {
+    if (filter.kernel == Kernel::grid && filter.radius > SquareKernel::kMostRadius) {
+        // Weights differ in its border alone.
+        const dvec2 from = glm::floor(filter.bilinear ? at - 0.5 : at), part = at - 0.5 - from;
+        const int side    = 2 * filter.radius + (filter.bilinear ? 2 : 1);
+        const auto weight = [&](int k, double of) {
+            return !filter.bilinear ? 1.0 : k == 0 ? 1 - of : k == side - 1 ? of : 1.0;
+        };
+        for (int j = 0; j < side; ++j)
+            for (int i = 0; i < side; ++i)
+                body(static_cast<int>(from.x) - filter.radius + i, static_cast<int>(from.y) - filter.radius + j,
+                     weight(i, part.x) * weight(j, part.y));
+        const double width = 2 * filter.radius + 1;
+        return width * width;
+    }
     if (filter.kernel != Kernel::disc) {
-        const SquareKernel square(at, filter);
+        const SquareKernel square = square_kernel(at, filter);
         for (int j = 0; j < square.side; ++j)
-            for (int i = 0; i < square.side; ++i) body(square.x + i, square.y + j, square.across(i) * square.down(j));
+            for (int i = 0; i < square.side; ++i) body(square.x + i, square.y + j, square.across[i] * square.down[j]);
         return square.whole;
     }
     const auto below    = [](double v) { return static_cast<int>(std::floor(v)); };

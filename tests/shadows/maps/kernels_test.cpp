@@ -228,6 +228,13 @@ TEST(Kernels, WiderThanTheMapTheyCountItsPartOfTheSquare) {
             EXPECT_NEAR(share(all, {24.5, 24.5}, {radius, bilinear}), 1 - blocked * blocked / (side * side), 1e-6)
                 << radius << bilinear;
         }
+    // A half-plane's edge passes over a wide kernel sample by sample, and between samples if it is bilinear.
+    const MapView half = map_of([](int x, int) { return x < 24; });
+    for (const double x : {20.0, 20.25, 20.9}) {
+        const double covered = 24 - (x - 17.5);
+        EXPECT_NEAR(share(half, {x, 24.5}, {17, true}), 1 - covered / 35, 1e-6) << x;
+        EXPECT_NEAR(share(half, {x, 24.5}, {17, false}), 1 - (24 - (std::floor(x) - 17)) / 35, 1e-6) << x;
+    }
 }
 
 // ---- rotation ------------------------------------------------------------------------------------------------------
