@@ -100,6 +100,22 @@ void time_all(benchmark::State& state, Stage& stage, std::string_view one, std::
              {{std::string(other), [&] { all(b); }}});
 }
 
+/// What a light that moved costs before S_j is asked for, over a moved object's frame.
+void time_aim(benchmark::State& state, Stage& stage, std::string_view settings) {
+    stage.prepare();
+    if (!parse_method(settings).make()->serves(stage.facts))
+        return state.SkipWithError(fmt::format("{} does not serve this scene", settings).c_str());
+    Ready aimed(stage, settings), all(stage, settings);
+    in_turns(state, fmt::format("{}: aim of {}", stage.name, settings), [&] { aimed.method->aim(0); },
+             {{"build, aim, S_j", [&] {
+                   all.method->build(stage.scene, stage.facts);
+                   all.method->aim(0);
+                   all.see();
+               }}});
+    aimed.see(), all.see();
+    agree(state, aimed, all, 0);
+}
+
 /// The sum over the G-buffer.
 void time_sum(benchmark::State& state, Stage& stage) {
     stage.prepare();
@@ -150,6 +166,8 @@ void add_stage(Stage& s) {
     see("alias_free/rays", "alias_free", "ray_traced", 0.002);
     add("alias_free/rays/object_moved",
         [&s](benchmark::State& state) { time_all(state, s, "alias_free", "ray_traced", 0.002); });
+    for (const char* settings : {"shadow_zbuffer:resolution=2048", "shadow_volumes"})
+        add(fmt::format("aim/{}", settings), [&s, settings](benchmark::State& state) { time_aim(state, s, settings); });
     for (const char* settings : {"planar_projection", "shadow_volumes", "shadow_zbuffer", "shadow_zbuffer:filter=pcf",
                                  "alias_free", "ray_traced", "exact"})
         add(fmt::format("threads/{}", settings),
