@@ -203,8 +203,8 @@ unsigned LightImage::cube_extents(const Corners& corners, Extents& to) const {
                          dz = corners[c][2][i] - origin_.z;
             const double w  = sign * (is_x ? dx : is_y ? dy : dz);
             const double qu = is_x ? dy : is_y ? dz : dx, qv = is_x ? dz : is_y ? dx : dy;
-            const double most = w * (1 - 4 * kMargin);
-            within            = within & (std::abs(qu) < most) & (std::abs(qv) < most);
+            const double most = w * (1 - 4 * kMargin), across = std::abs(qu), down = std::abs(qv);
+            within         = within & (across < most) & (down < most);
             const double u = qu / w, v = qv / w;
             low_u = low_u < u ? low_u : u, high_u = high_u > u ? high_u : u;
             low_v = low_v < v ? low_v : v, high_v = high_v > v ? high_v : v;
