@@ -4,6 +4,7 @@
 #include <array>
 #include <span>
 
+#include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
 
@@ -17,17 +18,14 @@ static_assert(kTileSide * kTileSide == PointBins::kTile);
 struct Pixel {
     std::uint8_t column, row;
 };
-/// The pixels of a tile along a Z-order curve.
-constexpr std::array<Pixel, PointBins::kTile> z_order() {
-    std::array<Pixel, PointBins::kTile> order{};
-    for (unsigned k = 0; k < order.size(); ++k)
-        for (int bit = 0; bit < 6; ++bit) {
-            order[k].column |= static_cast<std::uint8_t>((k >> (2 * bit) & 1u) << bit);
-            order[k].row |= static_cast<std::uint8_t>((k >> (2 * bit + 1) & 1u) << bit);
-        }
-    return order;
+/// The pixels of a tile along Morton's curve.
+constexpr std::array<Pixel, PointBins::kTile> pixels_of_tile() {
+    std::array<Pixel, PointBins::kTile> pixels{};
+    for (std::uint8_t row = 0; row < kTileSide; ++row)
+        for (std::uint8_t column = 0; column < kTileSide; ++column) pixels[morton_code(column, row)] = {column, row};
+    return pixels;
 }
-constexpr auto kZOrder = z_order();
+constexpr auto kPixelsOfTile = pixels_of_tile();
 
 class Binning {
 public:
@@ -43,7 +41,7 @@ public:
             const std::size_t left = tile % across * kTileSide, top = tile / across * kTileSide;
             std::array<std::uint32_t, PointBins::kTile> asking;
             std::size_t n = 0;
-            for (const Pixel pixel : kZOrder) {
+            for (const Pixel pixel : kPixelsOfTile) {
                 const std::size_t x = left + pixel.column, y = top + pixel.row;
                 if (x < width && y < height && points_.asks(light_, y * width + x))
                     asking[n++] = static_cast<std::uint32_t>(y * width + x);
@@ -52,7 +50,7 @@ public:
         }));
     }
 
-    /// So that points that are next to one another in the light's image follow one another: along a Z-order curve.
+    /// So that points that are next to one another in the light's image follow one another: along Morton's curve.
     BinnedPoints in_order_of_places() {
         std::vector<std::uint32_t> asking;
         for (std::size_t i = 0; i < points_.size(); ++i)
@@ -70,7 +68,7 @@ public:
         for (std::size_t tile = 0; tile < tiles; ++tile)
             for (const PointBins::Entry& e : of_tile<PointBins::Entry>(entries, tile).first(placed[tile]))
                 all.add(e.u, e.u, e.v, e.v, e.depth);
-        const ZOrder curve(all);
+        const CurveOver curve(all);
         std::vector<std::uint64_t> keys;
         for (std::size_t tile = 0; tile < tiles; ++tile)
             for (std::size_t k = tile * PointBins::kTile; k < tile * PointBins::kTile + placed[tile]; ++k)

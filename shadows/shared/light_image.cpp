@@ -124,6 +124,27 @@ std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& c
     return Extent{middle(face) + low - 4 * kMargin, middle(face) + high + 4 * kMargin, depth * (1 - 4 * kMargin)};
 }
 
+namespace {
+
+/// The face that a direction from the light points to, by its largest coordinate; without branches.
+struct FaceOf {
+    bool is_x, is_y, is_negative;
+
+    FaceOf(double x, double y, double z) {
+        const double along_x = std::abs(x), along_y = std::abs(y), along_z = std::abs(z);
+        is_x        = (along_x >= along_y) & (along_x >= along_z);
+        is_y        = !is_x & (along_y >= along_z);
+        is_negative = depth(x, y, z) < 0;
+    }
+    /// The coordinates of any direction: along the face's axis, not turned, and across.
+    [[nodiscard]] double depth(double x, double y, double z) const { return is_x ? x : is_y ? y : z; }
+    [[nodiscard]] double u(double x, double y, double z) const { return is_x ? y : is_y ? z : x; }
+    [[nodiscard]] double v(double x, double y, double z) const { return is_x ? z : is_y ? x : y; }
+    [[nodiscard]] double number() const { return (is_x ? 0.0 : is_y ? 2.0 : 4.0) + (is_negative ? 1.0 : 0.0); }
+};
+
+}  // namespace
+
 // Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
 void LightImage::places(const Corners& corners, const float (&u)[kLanes], const float (&v)[kLanes], Places& to) const {
     const auto position = [&](std::size_t axis, double* at) {
@@ -147,18 +168,15 @@ void LightImage::places(const Corners& corners, const float (&u)[kLanes], const 
     const double at_origin = size(origin_);
     for (std::size_t i = 0; i < kLanes; ++i) {
         const double x = to.x[i] - origin_.x, y = to.y[i] - origin_.y, z = to.z[i] - origin_.z;
-        const double along_x = std::abs(x), along_y = std::abs(y), along_z = std::abs(z);
-        const bool is_x = (along_x >= along_y) & (along_x >= along_z), is_y = !is_x & (along_y >= along_z);
-        const double farthest = is_x ? along_x : is_y ? along_y : along_z;
-        const double first    = is_x ? x : is_y ? y : z;
+        const FaceOf of(x, y, z);
+        const double farthest = std::abs(of.depth(x, y, z));
         const double px = std::abs(to.x[i]), py = std::abs(to.y[i]), pz = std::abs(to.z[i]);
         const double xy = px > py ? px : py, xyz = xy > pz ? xy : pz, reach = xyz > at_origin ? xyz : at_origin;
-        const double face  = (is_x ? 0.0 : is_y ? 2.0 : 4.0) + (first < 0 ? 1.0 : 0.0);
-        const double per_w = 1 / farthest;
-        to.u[i]            = static_cast<float>(kApart * face + (is_x ? y : is_y ? z : x) * per_w);
-        to.v[i]            = static_cast<float>((is_x ? z : is_y ? x : y) * per_w);
-        to.depth[i]        = static_cast<float>(farthest);
-        to.face[i]         = farthest > kNear * reach ? static_cast<std::int32_t>(face) : -1;
+        const double face = of.number(), per_w = 1 / farthest;
+        to.u[i]     = static_cast<float>(kApart * face + of.u(x, y, z) * per_w);
+        to.v[i]     = static_cast<float>(of.v(x, y, z) * per_w);
+        to.depth[i] = static_cast<float>(farthest);
+        to.face[i]  = farthest > kNear * reach ? static_cast<std::int32_t>(face) : -1;
     }
 }
 
@@ -190,19 +208,15 @@ unsigned LightImage::infinite_extents(const Corners& corners, Extents& to) const
 unsigned LightImage::cube_extents(const Corners& corners, Extents& to) const {
     unsigned ones = 0;
     for (std::size_t i = 0; i < kLanes; ++i) {
-        const double x = corners[0][0][i] - origin_.x, y = corners[0][1][i] - origin_.y,
-                     z       = corners[0][2][i] - origin_.z;
-        const double along_x = std::abs(x), along_y = std::abs(y), along_z = std::abs(z);
-        const bool is_x = (along_x >= along_y) & (along_x >= along_z), is_y = !is_x & (along_y >= along_z);
-        const double first = is_x ? x : is_y ? y : z;
-        const double sign  = first < 0 ? -1.0 : 1.0;
-        double low_u = 2, high_u = -2, low_v = 2, high_v = -2, depth = sign * first;
+        const dvec3 first(corners[0][0][i] - origin_.x, corners[0][1][i] - origin_.y, corners[0][2][i] - origin_.z);
+        const FaceOf of(first.x, first.y, first.z);
+        const double sign = of.is_negative ? -1.0 : 1.0;
+        double low_u = 2, high_u = -2, low_v = 2, high_v = -2, depth = std::abs(of.depth(first.x, first.y, first.z));
         bool within = true;
         for (std::size_t c = 0; c < 3; ++c) {
             const double dx = corners[c][0][i] - origin_.x, dy = corners[c][1][i] - origin_.y,
                          dz = corners[c][2][i] - origin_.z;
-            const double w  = sign * (is_x ? dx : is_y ? dy : dz);
-            const double qu = is_x ? dy : is_y ? dz : dx, qv = is_x ? dz : is_y ? dx : dy;
+            const double w = sign * of.depth(dx, dy, dz), qu = of.u(dx, dy, dz), qv = of.v(dx, dy, dz);
             const double most = w * (1 - 4 * kMargin), across = std::abs(qu), down = std::abs(qv);
             within         = within & (across < most) & (down < most);
             const double u = qu / w, v = qv / w;
@@ -210,7 +224,7 @@ unsigned LightImage::cube_extents(const Corners& corners, Extents& to) const {
             low_v = low_v < v ? low_v : v, high_v = high_v > v ? high_v : v;
             depth = depth < w ? depth : w;
         }
-        const double middle_u = kApart * ((is_x ? 0.0 : is_y ? 2.0 : 4.0) + (first < 0 ? 1.0 : 0.0));
+        const double middle_u = kApart * of.number();
         to.low_u[i]           = within ? static_cast<float>(middle_u + low_u - 4 * kMargin) : Extents::kFar;
         to.high_u[i]          = within ? static_cast<float>(middle_u + high_u + 4 * kMargin) : -Extents::kFar;
         to.low_v[i]           = within ? static_cast<float>(low_v - 4 * kMargin) : Extents::kFar;
@@ -221,24 +235,28 @@ unsigned LightImage::cube_extents(const Corners& corners, Extents& to) const {
     return ones;
 }
 
-unsigned points_in(const Extents& boxes, const Extent& triangle) {
+namespace {
+
+/// Of which of eight rectangles, whose depth is as `deep` says, an extent shares a part.
+template <class Deep>
+unsigned sharing(const Extents& all, const Extent& one, const Deep& deep) {
     unsigned bits = 0;
     for (std::size_t i = 0; i < kLanes; ++i)
-        bits |= static_cast<unsigned>((boxes.low_u[i] <= triangle.high_u) & (boxes.high_u[i] >= triangle.low_u) &
-                                      (boxes.low_v[i] <= triangle.high_v) & (boxes.high_v[i] >= triangle.low_v) &
-                                      (boxes.depth[i] >= triangle.depth))
+        bits |= static_cast<unsigned>((all.low_u[i] <= one.high_u) & (all.high_u[i] >= one.low_u) &
+                                      (all.low_v[i] <= one.high_v) & (all.high_v[i] >= one.low_v) &
+                                      static_cast<int>(deep(all.depth[i])))
                 << i;
     return bits;
 }
 
+}  // namespace
+
+unsigned points_in(const Extents& boxes, const Extent& triangle) {
+    return sharing(boxes, triangle, [&](float depth) { return depth >= triangle.depth; });
+}
+
 unsigned triangles_over(const Extents& triangles, const Extent& box) {
-    unsigned bits = 0;
-    for (std::size_t i = 0; i < kLanes; ++i)
-        bits |= static_cast<unsigned>((triangles.low_u[i] <= box.high_u) & (triangles.high_u[i] >= box.low_u) &
-                                      (triangles.low_v[i] <= box.high_v) & (triangles.high_v[i] >= box.low_v) &
-                                      (triangles.depth[i] <= box.depth))
-                << i;
-    return bits;
+    return sharing(triangles, box, [&](float depth) { return depth <= box.depth; });
 }
 
 }  // namespace umbra::binned_shadows_detail

@@ -35,10 +35,6 @@ struct alignas(32) Extents {
         low_u[lane] = low_v[lane] = kFar, high_u[lane] = high_v[lane] = -kFar;
         depth[lane] = 0;
     }
-    void set(std::size_t lane, const Extent& e) {
-        low_u[lane] = e.low_u, high_u[lane] = e.high_u, low_v[lane] = e.low_v, high_v[lane] = e.high_v;
-        depth[lane] = e.depth;
-    }
     [[nodiscard]] bool empty(std::size_t lane) const { return low_u[lane] > high_u[lane]; }
     [[nodiscard]] Extent at(std::size_t lane) const {
         Extent e;

@@ -1,7 +1,8 @@
 #include "umbra/shadows/shared/point_bins.h"
 
+#include <boost/sort/spreadsort/integer_sort.hpp>
+
 #include <cmath>
-#include <utility>
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
@@ -24,9 +25,9 @@ PointBins::Box box_of(const Extents& children) {
     return box;
 }
 
-/// Sorts blocks along a Z-order curve over the box of all.
+/// Sorts blocks along Morton's curve over the box of all.
 void sort(std::vector<std::uint32_t>& order, const PointBins::Box* boxes, const PointBins::Box& all) {
-    const ZOrder curve(all);
+    const CurveOver curve(all);
     std::vector<std::uint64_t> keys(order.size());
     parallel_ranges(order.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -41,22 +42,19 @@ void sort(std::vector<std::uint32_t>& order, const PointBins::Box* boxes, const 
 
 }  // namespace
 
-/// Sorts the points of a face along a Z-order curve over their box: its cells are 1024 times 1024; points of one cell
+/// Sorts the points of a face along Morton's curve over their box: its cells are 1024 times 1024; points of one cell
 /// stay in their order.
 class PointBins::Sorter {
 public:
     /// The points of the face, until the next call.
     std::span<const std::uint32_t> order(std::span<const Entry> entries, std::uint32_t face, const Box& box) {
-        const ZOrder curve(box);
+        const CurveOver curve(box);
         std::size_t n = 0;
         for (std::uint32_t k = 0; k < entries.size(); ++k)
             if (entries[k].face == face)
                 keys_[n++] = curve.at(entries[k].u, entries[k].v) >> kDropped << kIndexBits | k;
         const std::span<std::uint32_t> keys(keys_.data(), n);
-        if (n < 512)
-            std::ranges::sort(keys);
-        else
-            for (int pass = 0; pass < 2; ++pass) sort_by(kIndexBits + 10 * pass, n);
+        boost::sort::spreadsort::integer_sort(keys.begin(), keys.end());
         for (std::uint32_t& key : keys) key &= kTile - 1;
         return keys;
     }
@@ -65,17 +63,7 @@ private:
     static constexpr int kIndexBits = 12, kDropped = 12;  ///< 10 bits of u and of v are kept
     static_assert(kTile == std::size_t{1} << kIndexBits);
 
-    /// Ten bits from `bit` on, in place by way of `moved_`.
-    void sort_by(int bit, std::size_t n) {
-        std::array<std::uint32_t, 1024> next{};
-        for (std::size_t k = 0; k < n; ++k) ++next[keys_[k] >> bit & 1023u];
-        std::uint32_t sum = 0;
-        for (std::uint32_t& at : next) sum += std::exchange(at, sum);
-        for (std::size_t k = 0; k < n; ++k) moved_[next[keys_[k] >> bit & 1023u]++] = keys_[k];
-        std::swap(keys_, moved_);
-    }
-
-    std::vector<std::uint32_t> keys_ = std::vector<std::uint32_t>(kTile), moved_ = keys_;
+    std::vector<std::uint32_t> keys_ = std::vector<std::uint32_t>(kTile);
 };
 
 PointBins::PointBins(std::size_t tiles, const std::function<std::size_t(std::size_t, Entry*)>& points) {

@@ -17,34 +17,28 @@
 #include <span>
 #include <vector>
 
+#include "umbra/core/base/morton.h"
 #include "umbra/shadows/shared/light_image.h"
 
 namespace umbra::binned_shadows_detail {
 
-/// Where something is along a Z-order curve over a box.
-class ZOrder {
+/// Where something is along Morton's curve over a box.
+class CurveOver {
 public:
     template <class Box>
-    explicit ZOrder(const Box& box)
+    explicit CurveOver(const Box& box)
         : low_u_(box.low_u),
           low_v_(box.low_v),
           scale_u_(box.high_u > box.low_u ? 65535 / (box.high_u - box.low_u) : 0),
           scale_v_(box.high_v > box.low_v ? 65535 / (box.high_v - box.low_v) : 0) {}
 
+    /// Below 2^32.
     [[nodiscard]] std::uint32_t at(float u, float v) const {
-        return spread(static_cast<std::uint32_t>((u - low_u_) * scale_u_)) |
-               spread(static_cast<std::uint32_t>((v - low_v_) * scale_v_)) << 1;
+        return static_cast<std::uint32_t>(morton_code(static_cast<std::uint32_t>((u - low_u_) * scale_u_),
+                                                      static_cast<std::uint32_t>((v - low_v_) * scale_v_)));
     }
 
 private:
-    /// Every second bit of the result, from the lowest on, is a bit of `value` < 65536.
-    static constexpr std::uint32_t spread(std::uint32_t value) {
-        value = (value | value << 8) & 0x00ff00ffu;
-        value = (value | value << 4) & 0x0f0f0f0fu;
-        value = (value | value << 2) & 0x33333333u;
-        return (value | value << 1) & 0x55555555u;
-    }
-
     float low_u_, low_v_, scale_u_, scale_v_;
 };
 
@@ -137,7 +131,7 @@ private:
     double overlap_    = 1;
     std::size_t count_ = 0;
     std::unique_ptr<Block[]> blocks_;           ///< those next to one another in the light's image together
-    std::vector<std::vector<Extents>> levels_;  ///< boxes of eight of `used_`, of eight of these, up to one
+    std::vector<std::vector<Extents>> levels_;  ///< boxes of eight blocks, of eight of these, up to one
     std::unique_ptr<Marks[]> marks_;
 };
 

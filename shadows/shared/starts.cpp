@@ -43,11 +43,10 @@ vec3 StartPlaces::exact_start(const PointBatch& points, std::size_t i) const {
 void StartPlaces::load(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
     const RaySpace& space = space_;
     const auto load       = [&](const auto& from, auto& to) {
-        const auto* source = from.data() + first;
         if (count == 8)
-            for (int k = 0; k < 8; ++k) to[k] = source[k];  // no call of memmove
+            std::copy_n(from.data() + first, 8, to);
         else
-            std::copy_n(source, count, to);
+            std::copy_n(from.data() + first, count, to);
     };
     load(points.px, starts.x), load(points.py, starts.y), load(points.pz, starts.z);
     load(points.nx, starts.nx), load(points.ny, starts.ny), load(points.nz, starts.nz);

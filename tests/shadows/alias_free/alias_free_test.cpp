@@ -273,7 +273,7 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
     }
     PointBins::Box all;
     for (const PointBins::Entry& e : places) all.add(e.u, e.u, e.v, e.v, e.depth);
-    const ZOrder curve(all);
+    const CurveOver curve(all);
     std::ranges::sort(places, {}, [&](const PointBins::Entry& e) { return curve.at(e.u, e.v); });
     for (std::uint32_t i = 0; i < places.size(); ++i) places[i].index = i;
     const std::size_t tiles = (places.size() + PointBins::kTile - 1) / PointBins::kTile + 1;  // the last one is empty
