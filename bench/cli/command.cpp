@@ -9,6 +9,7 @@
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/suggest.h"
 
@@ -104,6 +105,7 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
 }
 
 int run_command_line(int argc, const char* const* argv) {
+    keep_freed_memory();
     prepare_streams();
     std::string help = "--help";
     try {

@@ -10,6 +10,7 @@
 
 #include "umbra/bench/speed/speed_scenes.h"
 #include "umbra/bench/speed/timed_loop.h"
+#include "umbra/core/base/memory.h"
 #include "umbra/core/base/predicates.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
@@ -202,6 +203,7 @@ void time_shading(benchmark::State& state, const Stage& stage) {
 
 int main(int argc, char** argv) {
     using namespace umbra;
+    keep_freed_memory();  // as `umbra` does
     std::vector<std::unique_ptr<Stage>> stages;
     stages.push_back(std::make_unique<Stage>("small", simple_scene()));
     stages.push_back(std::make_unique<Stage>("medium", tori_scene(32, 16)));

@@ -20,6 +20,7 @@
 
 #include "umbra/bench/speed/in_turns.h"
 #include "umbra/bench/speed/speed_scenes.h"
+#include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
@@ -348,6 +349,7 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, int a
 
 int main(int argc, char** argv) {
     using namespace umbra;
+    keep_freed_memory();  // as `umbra` does
     std::vector<std::unique_ptr<Bench>> benches;
     int width = 1920, height = 1080;
     const auto scene = [&](std::string name, std::function<Scene()> make) {

@@ -23,6 +23,7 @@
 
 #include "umbra/bench/speed/speed_scenes.h"
 #include "umbra/bench/speed/timed_loop.h"
+#include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/shadows/method.h"
@@ -193,6 +194,7 @@ void add_method(Stage& stage, const MethodInfo& info) {
 
 int main(int argc, char** argv) {
     using namespace umbra;
+    keep_freed_memory();  // as `umbra` does
     const std::vector<std::pair<std::string, std::function<Scene()>>> scenes{
         {"small", simple_scene}, {"medium", [] { return tori_scene(32, 16); }}, {"million", [] {
                                                                                      return tori_scene(125, 64);

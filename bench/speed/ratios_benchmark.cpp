@@ -15,6 +15,7 @@
 
 #include "umbra/bench/speed/in_turns.h"
 #include "umbra/bench/speed/speed_scenes.h"
+#include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
@@ -106,14 +107,16 @@ void time_aim(benchmark::State& state, Stage& stage, std::string_view settings) 
     if (!parse_method(settings).make()->serves(stage.facts))
         return state.SkipWithError(fmt::format("{} does not serve this scene", settings).c_str());
     Ready aimed(stage, settings), all(stage, settings);
+    const auto see_all = [&] {
+        all.method->build(stage.scene, stage.facts);
+        all.method->aim(0);
+        all.see();
+    };
+    aimed.method->aim(0);  // once more, as below
+    aimed.see(), see_all();
+    if (!agree(state, aimed, all, 0)) return;
     in_turns(state, fmt::format("{}: aim of {}", stage.name, settings), [&] { aimed.method->aim(0); },
-             {{"build, aim, S_j", [&] {
-                   all.method->build(stage.scene, stage.facts);
-                   all.method->aim(0);
-                   all.see();
-               }}});
-    aimed.see(), all.see();
-    agree(state, aimed, all, 0);
+             {{"build, aim, S_j", see_all}});
 }
 
 /// The sum over the G-buffer.
@@ -179,6 +182,7 @@ void add_stage(Stage& s) {
 
 int main(int argc, char** argv) {
     using namespace umbra;
+    keep_freed_memory();  // as `umbra` does
     int width = 1920, height = 1080;
     std::deque<Stage> stages;
     stages.push_back({"simple", simple_scene});

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "umbra/core/base/memory.h"
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/random_bits.h"
 
@@ -48,11 +47,6 @@ TEST(RandomBits, AreThoseOfSplitMix64) {
     EXPECT_EQ(mixed_bits(0), 0xe220a8397b1dcdafu);
     EXPECT_EQ(mixed_bits(0x9e3779b97f4a7c15u), 0x6e789e6aa1b965f4u);
     EXPECT_EQ(mixed_bits(2 * 0x9e3779b97f4a7c15u), 0x06c45d188009454fu);
-}
-
-TEST(Memory, OfThisMachineIsPlausible) {
-    EXPECT_GT(machine_memory(), 0x1p26);
-    EXPECT_LT(machine_memory(), 0x1p60);
 }
 
 }  // namespace
