@@ -13,10 +13,14 @@ namespace umbra {
 namespace {
 
 /// An exact point of a penumbra costs about the triangles between it and the light. Pictures of up to kWhole points
-/// times triangles are answered whole. Beyond, the sample has kSampled over the triangles, within these limits: of
-/// 16384 points a share of 1 % is known to 0.08 %, of 2048 to 0.2 %.
+/// times triangles are answered whole, if what the method counts at kProbe of the points promises no more than
+/// kWholeSteps for all of them: less than a minute of one core. Beyond, the sample has kSampled over the triangles, or
+/// kSampledSteps over the steps of a point, within these limits: of 16384 points a share of 1 % is known to 0.08 %, of
+/// 2048 to 0.2 %.
 constexpr double kWhole = 3e9, kSampled = 1e9;
+constexpr double kWholeSteps = 1.5e8, kSampledSteps = 5e7;
 constexpr double kFewest = 2048, kMost = 16384;
+constexpr std::uint64_t kProbe = 256;
 
 bool has_surface(const PointBatch& points, std::size_t i) { return points.triangle[i] != kNoTriangle; }
 
@@ -24,10 +28,31 @@ std::uint64_t surface_points(const PointBatch& points) {
     return points.size() - static_cast<std::uint64_t>(std::ranges::count(points.triangle, kNoTriangle));
 }
 
-std::uint64_t affordable(const Scene& scene, std::uint64_t points) {
-    const auto triangles = static_cast<double>(scene.triangles.size());
-    if (static_cast<double>(points) * triangles <= kWhole) return points;
-    return static_cast<std::uint64_t>(std::clamp(kSampled / triangles, kFewest, kMost));
+/// What the method, which is built, counts at one of these points, for all area lights together.
+double steps_of_a_point(Method& method, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
+                        std::optional<LightId>* at) {
+    std::atomic<std::uint64_t> steps = 0;
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        if (!is_area(scene.lights[light].kind)) continue;
+        if (at != nullptr) *at = light;
+        method.aim(light);
+        VisibilityPlane plane(points.size(), facts.has_coloured_filters);
+        Visibility out = plane.out();
+        out.steps      = &steps;
+        method.visibility(points, light, out);
+    }
+    return static_cast<double>(steps) / static_cast<double>(points.size());
+}
+
+/// At how many of `all` points with a surface the reference answers for area lights.
+std::uint64_t affordable(const Reference& reference, const Scene& scene, const SceneFacts& facts,
+                         const PointBatch& points, std::uint64_t all, std::optional<LightId>* at) {
+    const std::uint64_t by_triangles = affordable_points(all, scene.triangles.size(), 0);
+    if (by_triangles < all || all <= kProbe) return by_triangles;
+    const auto method = reference.choice.make();
+    method->build(scene, facts);
+    const double steps = steps_of_a_point(*method, scene, facts, pick(points, stratified_sample(points, kProbe)), at);
+    return affordable_points(all, scene.triangles.size(), steps);
 }
 
 /// The answers at the sample and those of the substitute method elsewhere, which are never compared.
@@ -72,6 +97,15 @@ Reference substitute(Measure measure, const std::string& why) {
 
 }  // namespace
 
+std::uint64_t affordable_points(std::uint64_t all, std::size_t triangles, double steps_of_a_point) {
+    const auto points = static_cast<double>(all), each = static_cast<double>(triangles);
+    double most = points;
+    if (points * each > kWhole) most = std::clamp(kSampled / each, kFewest, kMost);
+    if (points * steps_of_a_point > kWholeSteps)
+        most = std::min(most, std::clamp(kSampledSteps / steps_of_a_point, kFewest, kMost));
+    return std::min(all, static_cast<std::uint64_t>(most));
+}
+
 std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint64_t wanted) {
     const auto width   = static_cast<std::size_t>(points.raster->width),
                height  = static_cast<std::size_t>(points.raster->height);
@@ -105,9 +139,6 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
                            const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at) {
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
-    // Only the exact reference is slow: every other one answers for the whole picture, unless `wanted` says otherwise.
-    if (!wanted) wanted = any_area && reference.choice.info->reference ? affordable(scene, all) : all;
-
     ReferenceRun done{MethodRun{reference.choice}, all, all, {}};
     MethodRun& run = done.run;
     run.method     = reference.choice.make();
@@ -115,6 +146,10 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     if (!run.service)
         throw UsageError(
             fmt::format("{} cannot be the reference of this scene: {}", reference.choice.info->name, run.service.why));
+    // Only the exact reference is slow: every other one answers for the whole picture, unless `wanted` says otherwise.
+    if (!wanted)
+        wanted =
+            any_area && reference.choice.info->reference ? affordable(reference, scene, facts, points, all, at) : all;
     constexpr Repeats kOnce{1, 0};
     if (!any_area || *wanted >= all) {
         run = run_method(reference.choice, scene, facts, points, kOnce, at);

@@ -29,8 +29,12 @@ struct ReferenceRun {
     std::string stand_in;              ///< the other method, as typed; empty where every point is judged
 };
 
-/// `wanted`: how many points to judge an area light on; none: the whole picture where that is not too slow, by a rule
-/// that depends on the scene and the picture alone, so that figures come out the same on every machine. The sample is
+/// At how many of `all` points the reference answers for area lights where nobody says: at all of them, or at a sample
+/// where the triangles, or the steps of a point that the method has counted (Visibility::steps), promise minutes.
+[[nodiscard]] std::uint64_t affordable_points(std::uint64_t all, std::size_t triangles, double steps_of_a_point);
+
+/// `wanted`: how many points to judge an area light on; none: `affordable_points`, which depends on the scene and the
+/// picture alone, so that figures come out the same on every machine. The sample is
 /// one pixel, at random but always the same, out of each square tile. Throws UsageError where the reference does not
 /// serve the scene.
 [[nodiscard]] ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,

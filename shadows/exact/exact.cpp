@@ -207,6 +207,7 @@ private:
             });
             const auto see_group = [&](std::size_t i) { see(i, work); };
             area_.for_all(points, std::span(asked).first(count), work, see_group);
+            if (out.steps != nullptr) *out.steps += work.steps;
         };
         for_each_tile(points, see_tile, 1);
     }

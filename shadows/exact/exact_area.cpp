@@ -38,6 +38,9 @@ Answer answer(const VisibleArea& area, bool round) {
     return {visibility, round ? half : 0, irradiance, light_half};
 }
 
+/// Of a point, and how many times as long rationals take.
+constexpr std::uint64_t kStepsOfPoint = 20, kRationalSteps = 300;
+
 }  // namespace
 
 /// For a plane of any roughness: whether the light is wholly visible or hidden, where no edge comes near it.
@@ -127,6 +130,7 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
         // What hid the whole light of the point before often hides it from this one.
         if (work.blocker != kNoTriangle && work.blocker != own && part.is_hidden_by(work.blocker)) return {};
         find_silhouette(viewpoint, space, work);
+        work.steps += kStepsOfPoint + work.silhouette.size() + light_.across().size();
         if (const auto area = part.find(work.silhouette, work.blocker)) return answer(*area, light_.round());
     } else {
         find_silhouette(viewpoint, space, work);
@@ -135,6 +139,7 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
     const RationalSpace exact_space(viewpoint.point(), *plane);
     if (exact_space.orientation() == 0) return {.edge_on = true};
     ++work.rational_points;
+    work.steps += kRationalSteps * (kStepsOfPoint + work.silhouette.size());
     const VisiblePart<RationalSpace> part(sight, exact_space, measure_, work.in_rationals);
     const Filtered<VisibleArea> area = part.find(work.silhouette, work.blocker);
     return area ? answer(*area, light_.round()) : kNothingKnown;
