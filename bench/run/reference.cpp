@@ -41,6 +41,7 @@ double steps_of_a_point(Method& method, const Scene& scene, const SceneFacts& fa
         out.steps      = &steps;
         method.visibility(points, light, out);
     }
+    if (at != nullptr) at->reset();
     return static_cast<double>(steps) / static_cast<double>(points.size());
 }
 
