@@ -29,8 +29,8 @@ public:
     explicit CurveOver(const Box& box)
         : low_u_(box.low_u),
           low_v_(box.low_v),
-          scale_u_(box.high_u > box.low_u ? 65535 / (box.high_u - box.low_u) : 0),
-          scale_v_(box.high_v > box.low_v ? 65535 / (box.high_v - box.low_v) : 0) {}
+          scale_u_(scale(box.high_u - box.low_u)),
+          scale_v_(scale(box.high_v - box.low_v)) {}
 
     /// Below 2^32.
     [[nodiscard]] std::uint32_t at(float u, float v) const {
@@ -39,6 +39,9 @@ public:
     }
 
 private:
+    /// What is smaller has no order that matters, and a scale that may not be finite.
+    static float scale(float side) { return side > 1e-30f ? 65535 / side : 0; }
+
     float low_u_, low_v_, scale_u_, scale_v_;
 };
 

@@ -20,6 +20,13 @@ vec3 integer_offset(vec3 p, vec3 n) {
     return p;
 }
 
+/// A start that was moved by float steps of a scene far from the origin can lie farther from a small scene than Embree
+/// takes numbers for: as far as it takes them is as far off the surface.
+float within_reach(float x) {
+    constexpr float farthest = 1e18f;
+    return std::clamp(x, -farthest, farthest);
+}
+
 }  // namespace
 
 Starts lane_alone(const Starts& starts, int lane) {
@@ -60,9 +67,9 @@ void StartPlaces::load(const PointBatch& points, std::size_t first, std::size_t 
         }
     }
     for (int k = 0; k < 8; ++k) {
-        starts.x[k] = (starts.x[k] - space.centre.x) * space.scale;
-        starts.y[k] = (starts.y[k] - space.centre.y) * space.scale;
-        starts.z[k] = (starts.z[k] - space.centre.z) * space.scale;
+        starts.x[k] = within_reach((starts.x[k] - space.centre.x) * space.scale);
+        starts.y[k] = within_reach((starts.y[k] - space.centre.y) * space.scale);
+        starts.z[k] = within_reach((starts.z[k] - space.centre.z) * space.scale);
     }
     if (offset_ != OffsetPolicy::skip_triangle) return;
     if (space.centre != vec3(0)) {

@@ -1,5 +1,8 @@
 #include <array>
+#include <charconv>
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "umbra/core/io/scene_io.h"
 #include "umbra/tests/fuzz/fuzz_folder.h"
@@ -14,7 +17,27 @@ void load_or_refuse(const fs::path& file) {
     read_or_refuse([&] { (void)load_scene(file); });
 }
 
-void json(Bytes bytes) { load_or_refuse(rewrite("scene.json", bytes)); }
+/// Whether a shape of a native scene is cut finer than any of the seeds: 700 bytes can ask for seven million triangles,
+/// which take as long to make as a hundred thousand other files take to read.
+bool finely_cut(std::string_view text) {
+    constexpr int usual = 128;
+    for (const std::string_view key : {"segments", "divisions", "longitudes", "latitudes", "around", "tube"})
+        for (std::size_t at = text.find(key); at != text.npos; at = text.find(key, at + 1)) {
+            const std::size_t number = text.find_first_not_of("\": \n\t", at + key.size());
+            double value             = 0;
+            if (number == text.npos) break;
+            (void)std::from_chars(text.data() + number, text.data() + text.size(), value);
+            if (value > usual) return true;
+        }
+    return false;
+}
+
+/// Of finely cut scenes one of 64 is read.
+void json(Bytes bytes) {
+    const std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    if (finely_cut(text) && std::hash<std::string_view>{}(text) % 64 != 0) return;
+    load_or_refuse(rewrite("scene.json", bytes));
+}
 void gltf(Bytes bytes) { load_or_refuse(rewrite("scene.gltf", bytes)); }
 void glb(Bytes bytes) { load_or_refuse(rewrite("scene.glb", bytes)); }
 void obj(Bytes bytes) { load_or_refuse(rewrite("scene.obj", bytes)); }
