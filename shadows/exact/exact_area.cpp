@@ -172,7 +172,7 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
     const RationalSpace exact_space(viewpoint.point(), *plane);
     if (exact_space.orientation() == 0) return without;
     const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn};
-    const std::optional<dvec3> passed = light_through_filters(sight, exact_space, work.between);
+    const std::optional<dvec3> passed = light_through_filters(sight, exact_space, work.between, work.steps);
     if (!passed) return std::nullopt;
     return vec3(glm::clamp(*passed, 0.0, 1.0));
 }

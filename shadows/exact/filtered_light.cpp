@@ -1,21 +1,56 @@
 #include "umbra/shadows/exact/filtered_light.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 namespace umbra::exact_detail {
 namespace {
 
-/// A half plane of the light's plane, g . (x, y, 1) > 0, in the coordinates in which the light is |x|, |y| <= 1.
-using HalfPlane = Rational3;
-/// A point of it, (x, y, 1) times a positive number.
-using Corner = Rational3;
+/// What it takes to project a triangle, to cut a cell, and to look at one, in steps of ExactArea::Workspace.
+constexpr std::uint64_t kStepsOfTriangle = 150, kStepsOfCut = 100, kStepsOfLook = 2;
 
 Rational3 scaled(const Rational3& a, const Rational& by) { return {a[0] * by, a[1] * by, a[2] * by}; }
 
+/// A vector, and what doubles make of it.
+struct Rounded {
+    Rational3 exact;
+    dvec3 near{0};        ///< each off by less than two roundings
+    bool is_near = true;  ///< so large, or 0, that products of two neither under- nor overflow
+
+    Rounded(Rational3 of) : exact(std::move(of)) {  // NOLINT(google-explicit-constructor): it is the same vector
+        for (int k = 0; k < 3; ++k) {
+            const Rational& x = exact[static_cast<std::size_t>(k)];
+            near[k]           = CGAL::to_double(x);
+            const double size = std::abs(near[k]);
+            is_near           = is_near && (CGAL::sign(x) == 0 || (size > 1e-140 && size < 1e140));
+        }
+    }
+    Rounded(int x, int y, int z) : Rounded(Rational3{x, y, z}) {}
+};
+
+/// A half plane of the light's plane, g . (x, y, 1) > 0, in the coordinates in which the light is |x|, |y| <= 1.
+using HalfPlane = Rounded;
+/// A point of it, (x, y, 1) times a positive number.
+using Corner = Rounded;
+
+HalfPlane turned_over(const HalfPlane& g) { return scaled(g.exact, Rational(-1)); }
+
+/// 1 where the half plane holds the point, 0 on its border, else -1.
+int side_of(const HalfPlane& g, const Corner& c) {
+    const dvec3 terms  = g.near * c.near;
+    const double value = terms.x + terms.y + terms.z;
+    // Each term is off by five roundings, and the sum by two more.
+    const double bound = 16 * 0x1p-53 * (std::abs(terms.x) + std::abs(terms.y) + std::abs(terms.z));
+    if (g.is_near && c.is_near && value > bound) return 1;
+    if (g.is_near && c.is_near && value < -bound) return -1;
+    return static_cast<int>(CGAL::sign(dot(g.exact, c.exact)));
+}
+
 /// Where the borders of two half planes meet.
 Corner meeting(const HalfPlane& a, const HalfPlane& b) {
-    Corner c = cross(a, b);
+    Rational3 c = cross(a.exact, b.exact);
     if (CGAL::sign(c[2]) < 0) c = scaled(c, Rational(-1));
     return c;
 }
@@ -37,7 +72,7 @@ Cell clipped(const Cell& cell, const HalfPlane& g) {
     std::vector<int> side(n);
     bool any_inside = false, any_outside = false;
     for (std::size_t k = 0; k < n; ++k) {
-        side[k]     = static_cast<int>(CGAL::sign(dot(g, cell.edges[k].end)));
+        side[k]     = side_of(g, cell.edges[k].end);
         any_inside  = any_inside || side[k] > 0;
         any_outside = any_outside || side[k] < 0;
     }
@@ -58,7 +93,8 @@ Cell clipped(const Cell& cell, const HalfPlane& g) {
 /// In a light of area 1. Corners are rounded to double once.
 double area_of(const Cell& cell) {
     const auto place = [](const Corner& c) {
-        return dvec2(CGAL::to_double(Rational(c[0] / c[2])), CGAL::to_double(Rational(c[1] / c[2])));
+        return dvec2(CGAL::to_double(Rational(c.exact[0] / c.exact[2])),
+                     CGAL::to_double(Rational(c.exact[1] / c.exact[2])));
     };
     const dvec2 origin = place(cell.edges[0].end);
     double twice       = 0;
@@ -72,7 +108,10 @@ double area_of(const Cell& cell) {
 /// Of the light's points that a triangle (a, b, c) hides from the viewpoint. The segment to (x, y) passes through it
 /// where det(a, b, (x, y, 1)) and the other two have the sign of det(a, b, c), and meets it there at W = det(a, b, c)
 /// over their sum, which is before the light where it is less than the light's height.
-std::optional<std::array<HalfPlane, 4>> hidden_by(const Scene& scene, const RationalSpace& space, TriangleId t) {
+struct Hidden {
+    std::array<HalfPlane, 4> inside, outside;
+};
+std::optional<Hidden> hidden_by(const Scene& scene, const RationalSpace& space, TriangleId t) {
     std::array<Rational3, 3> corner;
     for (std::size_t k = 0; k < 3; ++k) {
         const Numerators<Rational> q = space.project(scene.vertex(t, static_cast<int>(k)));
@@ -81,11 +120,12 @@ std::optional<std::array<HalfPlane, 4>> hidden_by(const Scene& scene, const Rati
     const Rational volume = dot(corner[0], cross(corner[1], corner[2]));
     const int sign        = static_cast<int>(CGAL::sign(volume));
     if (sign == 0) return std::nullopt;  // seen edge-on
-    std::array<HalfPlane, 4> hidden;
+    std::array<Rational3, 4> hidden;
     for (std::size_t k = 0; k < 3; ++k) hidden[k] = scaled(cross(corner[k], corner[(k + 1) % 3]), Rational(sign));
     hidden[3]    = scaled(hidden[0] + hidden[1] + hidden[2], space.height());
     hidden[3][2] = hidden[3][2] - Rational(sign) * volume;
-    return hidden;
+    return Hidden{{hidden[0], hidden[1], hidden[2], hidden[3]},
+                  {turned_over(hidden[0]), turned_over(hidden[1]), turned_over(hidden[2]), turned_over(hidden[3])}};
 }
 
 /// Of the light's points on the side of the plane of the viewpoint's own triangle that it sees.
@@ -113,13 +153,20 @@ Cell whole_light() {
 }
 
 /// Replaces a cell by its parts: what the triangle hides, dimmed, and the rest.
-void divide(Cell cell, const std::array<HalfPlane, 4>& hidden, dvec3 passes, std::vector<Cell>& into) {
+void divide(Cell cell, const Hidden& hidden, dvec3 passes, std::vector<Cell>& into) {
+    const auto is_outside = [&](const HalfPlane& g) {
+        return std::ranges::all_of(cell.edges, [&](const Cell::Edge& edge) { return side_of(g, edge.end) <= 0; });
+    };
+    if (std::ranges::any_of(hidden.inside, is_outside)) {
+        into.push_back(std::move(cell));
+        return;
+    }
     const std::size_t before = into.size();
     Cell rest                = cell;
-    for (const HalfPlane& g : hidden) {
-        Cell beside = clipped(rest, scaled(g, Rational(-1)));
+    for (std::size_t k = 0; k < hidden.inside.size(); ++k) {
+        Cell beside = clipped(rest, hidden.outside[k]);
         if (!beside.edges.empty()) into.push_back(std::move(beside));
-        rest = clipped(rest, g);
+        rest = clipped(rest, hidden.inside[k]);
         if (rest.edges.empty()) {  // none of it is hidden, and nothing is to be cut
             into.resize(before);
             into.push_back(std::move(cell));
@@ -133,7 +180,7 @@ void divide(Cell cell, const std::array<HalfPlane, 4>& hidden, dvec3 passes, std
 }  // namespace
 
 std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpace& space,
-                                           std::span<const TriangleId> between) {
+                                           std::span<const TriangleId> between, std::uint64_t& steps) {
     const Scene& scene = sight.viewpoint.scene();
     std::vector<Cell> cells{whole_light()}, next;
     if (sight.partly) {
@@ -145,6 +192,8 @@ std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpa
         if (!hidden) continue;
         next.clear();
         for (Cell& cell : cells) divide(std::move(cell), *hidden, dvec3(scene.lets_through(t)), next);
+        steps += kStepsOfTriangle + kStepsOfLook * cells.size();
+        if (next.size() > cells.size()) steps += kStepsOfCut * (next.size() - cells.size());
         if (next.size() > kMostCells) return std::nullopt;
         std::swap(cells, next);
     }

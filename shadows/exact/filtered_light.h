@@ -2,6 +2,7 @@
 // convex cells, each behind the same triangles, in rationals.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,8 +18,8 @@ inline constexpr std::size_t kMostCells = 4096;
 /// The mean over the light of the product, per channel, of what the triangles `between` leave of it (lets_through), and
 /// 0 where the plane of the point's triangle hides it if `sight.partly`. Off by less than 1e-9. Nothing where more than
 /// kMostCells cells are needed. The orientation of `space` is not 0; degenerate triangles and the point's own are not
-/// in `between`.
+/// in `between`. Adds to `steps` what was done, in those of ExactArea::Workspace.
 [[nodiscard]] std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpace& space,
-                                                         std::span<const TriangleId> between);
+                                                         std::span<const TriangleId> between, std::uint64_t& steps);
 
 }  // namespace umbra::exact_detail

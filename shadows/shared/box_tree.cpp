@@ -65,7 +65,8 @@ struct BoxTree::Builder {
     std::uint32_t split(std::uint32_t begin, std::uint32_t end, const Box& centre_box) {
         const vec3 size = centre_box.size();
         const int axis  = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        if (!(size[axis] > 0)) return begin + (end - begin) / 2;  // all centres in one point: any halves do
+        // All centres in one point, or so near that kBins over their distance may not be finite: any halves do.
+        if (!(size[axis] > 1e-30f)) return begin + (end - begin) / 2;
         const float scale = kBins / size[axis];
         const auto bin_of = [&](Item t) {
             return std::clamp(static_cast<int>((centres[t][axis] - centre_box.min[axis]) * scale), 0, kBins - 1);

@@ -41,9 +41,10 @@ public:
     void aim(LightId) override {}
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.asks(light, i)) out.s[i] = 1;
+            if (points.asks(light, i)) out.s[i] = points.px[i] > 0 ? 1.0f : 0.25f;
         if (out.steps != nullptr) *out.steps += steps_of_a_point * points.size();
     }
+    [[nodiscard]] bool multiplies() const override { return true; }
     [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
 };
 
@@ -54,18 +55,20 @@ constexpr const char* kLampOverFloor = R"({
 
 class ReferenceOf : public testing::Test {
 protected:
-    std::uint64_t judged(std::uint64_t steps_of_a_point, bool reference = true) {
+    ReferenceRun run(const PreparedScene& p, std::uint64_t steps_of_a_point, bool reference = true) {
         CountingMethod::steps_of_a_point = steps_of_a_point;
         MethodInfo info;
-        info.name      = "counting";
-        info.title     = "Counting";
-        info.reference = reference;
-        info.create    = create<CountingMethod>;
-        const ReferenceRun ran =
-            run_reference({MethodChoice(info), true, ""}, p_.scene, p_.facts, p_.points, std::nullopt);
-        EXPECT_EQ(ran.of, p_.points.size());
+        info.name        = "counting";
+        info.title       = "Counting";
+        info.reference   = reference;
+        info.create      = create<CountingMethod>;
+        ReferenceRun ran = run_reference({MethodChoice(info), true, ""}, p.scene, p.facts, p.points, std::nullopt);
+        EXPECT_EQ(ran.of, p.points.size());
         EXPECT_EQ(ran.judged == ran.of, ran.stand_in.empty());
-        return ran.judged;
+        return ran;
+    }
+    std::uint64_t judged(std::uint64_t steps_of_a_point, bool reference = true) {
+        return run(p_, steps_of_a_point, reference).judged;
     }
 
     TemporaryFolder folder_;
@@ -77,6 +80,32 @@ TEST_F(ReferenceOf, AScenesAnswersAtEveryPointIsSampledWhereItsStepsAreMany) {
     EXPECT_EQ(judged(12000), 12288u) << "1.47e8 steps";
     EXPECT_EQ(judged(13000), 128u * 96 / 4) << "1.6e8 steps: 3846 points, one of each tile of 2 x 2";
     EXPECT_EQ(judged(13000, false), 12288u) << "no method of the list that may be a reference";
+}
+
+/// No rays stand in where surfaces let light through: the tile's one judged point does.
+TEST_F(ReferenceOf, ASceneThatRaysDoNotServeHasTheAnswersOfTilesElsewhere) {
+    const PreparedScene p  = prepare_scene(folder_.write("glass.json", R"({
+        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]}, "transparent_occluders": "multiply",
+        "materials": {"pane": {"opacity": 0.5}},
+        "lights": [{"type": "disk", "position": [0, 9, 0], "radius": 0.5}],
+        "objects": [{"type": "plane", "size": 40},
+                    {"type": "plane", "material": "pane", "transform": [{"translate": [0, 8, 0]}]}]})"),
+                                           {128, 96});
+    const ReferenceRun ran = run(p, 13000);
+    EXPECT_EQ(ran.judged, 128u * 96 / 4);
+    EXPECT_EQ(ran.stand_in, kNearestPoint);
+    std::size_t other = 0, judged = 0;
+    for (std::size_t i = 0; i < p.points.size(); ++i) {
+        const float own = p.points.px[i] > 0 ? 1.0f : 0.25f, s = ran.run.planes[0].s[i];
+        EXPECT_TRUE(s == 1.0f || s == 0.25f) << i;
+        if (ran.run.judged[0][i] != 0) {
+            ++judged;
+            EXPECT_EQ(s, own) << i;
+        }
+        other += s != own;
+    }
+    EXPECT_EQ(judged, ran.judged);
+    EXPECT_LE(other, 2u * 96) << "in the tiles that x = 0 passes through";
 }
 
 /// A bulb that is as large as the ball in it: the triangles of the ball pass through the plane of the light's disk.
@@ -102,12 +131,25 @@ TEST(StepsOfExact, AreManyInRationalsAndWhereTrianglesPassThroughASphereLight) {
     };
     const double lamp = steps(kLampOverFloor);
     EXPECT_EQ(lamp, 0) << "a light without an area";
-    const char* over_ball = R"({
+    const char* over_ball   = R"({
         "camera": {"eye": [0, 3, 4], "target": [0, 0, 0]},
         "lights": [{"type": "sphere", "position": [0, 3, 0], "radius": 0.5}],
         "objects": [{"type": "plane", "size": 40},
                     {"type": "sphere", "radius": 0.5, "transform": [{"translate": [0, 0.5, 0]}]}]})";
-    const double ball     = steps(over_ball);
+    const char* behind_pane = R"({
+        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]}, "transparent_occluders": "multiply",
+        "materials": {"pane": {"opacity": 0.5}},
+        "lights": [{"type": "rectangle", "position": [0, 9, 0], "edge_u": [1, 0, 0], "edge_v": [0, 0, 1]}],
+        "objects": [{"type": "plane", "size": 40}, {"type": "plane", "size": 30, "divisions": DIVISIONS,
+                     "material": "pane", "transform": [{"translate": [0, 8, 0]}]}]})";
+    const auto panes        = [&](const std::string& divisions) {
+        std::string scene = behind_pane;
+        scene.replace(scene.find("DIVISIONS"), 9, divisions);
+        return steps(scene.c_str());
+    };
+    EXPECT_GT(panes("1"), 150) << "a triangle of the pane is before the light, at least";
+    EXPECT_GT(panes("200"), 10 * panes("1")) << "and there dozens, which cut the light";
+    const double ball = steps(over_ball);
     EXPECT_GT(ball, 10);
     EXPECT_LT(ball, 200);
     EXPECT_GT(steps(over_ball, "exact:arithmetic=rational"), 100 * ball);
