@@ -1,4 +1,5 @@
-// The Morton curve: an order of the cells of a square grid in which neighbours are mostly near each other.
+// The Morton curve: an order of the cells of a grid, of squares or of cubes, in which neighbours are mostly near each
+// other.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,20 @@ namespace umbra {
 /// 2^32. [G. M. Morton, A Computer Oriented Geodetic Data Base and a New Technique in File Sequencing, 1966]
 [[nodiscard]] constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y) {
     return spread_bits(x) | spread_bits(y) << 1;
+}
+
+/// Bit k of x, of the lowest 16, becomes bit 3 k of the result; the bits between are 0.
+[[nodiscard]] constexpr std::uint64_t spread_bits_by_three(std::uint32_t x) {
+    std::uint64_t b = x & 0xffffu;
+    b               = (b | b << 16) & 0x0000ff0000ffu;
+    b               = (b | b << 8) & 0x00f00f00f00fu;
+    b               = (b | b << 4) & 0x0c30c30c30c3u;
+    return (b | b << 2) & 0x249249249249u;
+}
+
+/// The same for cell (x, y, z) of a grid of cubes. Cells below 2^n give less than 2^(3 n), for n up to 16.
+[[nodiscard]] constexpr std::uint64_t morton_code(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+    return spread_bits_by_three(x) | spread_bits_by_three(y) << 1 | spread_bits_by_three(z) << 2;
 }
 
 }  // namespace umbra

@@ -27,6 +27,22 @@ constexpr std::array<Pixel, PointBins::kTile> pixels_of_tile() {
 }
 constexpr auto kPixelsOfTile = pixels_of_tile();
 
+/// Writes the corners of a triangle as those of lane `lane`.
+void load(const Scene& scene, TriangleId t, LightImage::Corners& corners, std::size_t lane) {
+    for (int c = 0; c < 3; ++c) {
+        const vec3 corner = scene.vertex(t, c);
+        for (int axis = 0; axis < 3; ++axis) corners[c][axis][lane] = static_cast<double>(corner[axis]);
+    }
+}
+
+/// As those of all lanes.
+void load_all(const Scene& scene, TriangleId t, LightImage::Corners& corners) {
+    for (int c = 0; c < 3; ++c) {
+        const vec3 corner = scene.vertex(t, c);
+        for (int axis = 0; axis < 3; ++axis) std::fill_n(corners[c][axis], kLanes, static_cast<double>(corner[axis]));
+    }
+}
+
 class Binning {
 public:
     Binning(const Scene& scene, const PointBatch& points, LightId light, const LightImage& image, dvec3 centre)
@@ -102,11 +118,18 @@ private:
             const std::size_t count = std::min(kLanes, which.size() - k);
             LightImage::Corners corners;
             float u[kLanes], v[kLanes];
+            TriangleId of[kLanes];
+            bool is_one = true;  // triangle
             for (std::size_t lane = 0; lane < kLanes; ++lane) {
                 const std::uint32_t i = which[k + std::min(lane, count - 1)];
                 u[lane] = points_.u[i], v[lane] = points_.v[i];
-                load(scene_, points_.triangle[i], corners, lane);
+                of[lane] = points_.triangle[i];
+                is_one   = is_one & (of[lane] == of[0]);
             }
+            if (is_one)
+                load_all(scene_, of[0], corners);
+            else
+                for (std::size_t lane = 0; lane < kLanes; ++lane) load(scene_, of[lane], corners, lane);
             LightImage::Places places;
             image_.places(corners, u, v, places);
             for (std::size_t lane = 0; lane < count; ++lane) {
@@ -159,13 +182,6 @@ BinnedPoints bin_points(const Scene& scene, const PointBatch& points, LightId li
     BinnedPoints binned = binning.in_order_of_places();
     binned.sorted       = true;
     return binned;
-}
-
-void load(const Scene& scene, TriangleId t, LightImage::Corners& corners, std::size_t lane) {
-    for (int c = 0; c < 3; ++c) {
-        const vec3 corner = scene.vertex(t, c);
-        for (int axis = 0; axis < 3; ++axis) corners[c][axis][lane] = static_cast<double>(corner[axis]);
-    }
 }
 
 }  // namespace umbra::binned_shadows_detail

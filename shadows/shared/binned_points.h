@@ -22,7 +22,4 @@ struct BinnedPoints {
 [[nodiscard]] BinnedPoints bin_points(const Scene& scene, const PointBatch& points, LightId light,
                                       const LightImage& image, dvec3 centre);
 
-/// Writes the corners of a triangle.
-void load(const Scene& scene, TriangleId t, LightImage::Corners& corners, std::size_t lane);
-
 }  // namespace umbra::binned_shadows_detail

@@ -11,6 +11,7 @@
 #include "umbra/core/render/facing.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/shared/binned_points.h"
+#include "umbra/shadows/shared/coherent_order.h"
 #include "umbra/shadows/shared/exact_segment.h"
 #include "umbra/shadows/shared/shadow_planes.h"
 
@@ -37,15 +38,6 @@ struct BinnedShadows::Picture {
 
 namespace {
 
-/// `side`: on which side of the triangle the light is, as side_of_light says.
-ShadowPlanes planes_of(const std::array<dvec3, 3>& corners, const LightImage& image, dvec3 reach, dvec3 centre,
-                       int side) {
-    std::array<dvec3, 3> near, travel;
-    for (std::size_t k = 0; k < 3; ++k) near[k] = corners[k] - centre, travel[k] = image.travel(corners[k]);
-    if (side == 0) return ShadowPlanes::of_edge_on(near, reach);
-    return {near, travel, static_cast<double>(-side), reach};
-}
-
 template <class Crossed>
 void test_lanes(const Scene& scene, const Light& light, TriangleId t, const PointBatch& points, const Block& block,
                 int unsure, std::uint8_t inside, Marks& marks, const Crossed& crossed) {
@@ -71,15 +63,23 @@ BinnedShadows::BinnedShadows(const Scene& scene) : scene_(&scene), casts_(scene.
     parallel_ranges(casts_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) casts_[t] = blocks(scene, static_cast<TriangleId>(t)) ? 1 : 0;
     });
-    const Box box = bounds(scene);
     if (scene.triangles.empty()) return;
+    order_ = coherent_order(scene, casts_);
+    eights_.resize((order_.size() + kLanes - 1) / kLanes);
+    parallel_ranges(eights_.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = kLanes * begin; k < std::min(kLanes * end, order_.size()); ++k)
+            for (int c = 0; c < 3; ++c)
+                for (int axis = 0; axis < 3; ++axis)
+                    eights_[k / kLanes].corner[c][axis][k % kLanes] = scene.vertex(order_[k], c)[axis];
+    });
+    const Box box       = bounds(scene);
     centre_             = 0.5 * (dvec3(box.min) + dvec3(box.max));
     const dvec3 corners = glm::max(glm::abs(dvec3(box.min)), glm::abs(dvec3(box.max)));
     reach_              = std::max({corners.x, corners.y, corners.z});
 }
 
 void BinnedShadows::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    const Picture picture = bin(points, light);
+    Picture picture = bin(points, light);
     cast_all(picture, points, [](std::uint32_t, TriangleId) {});
     const PointBins& bins = picture.asking.bins;
     parallel_ranges(bins.blocks(), 1024, [&](std::size_t begin, std::size_t end) {
@@ -103,7 +103,7 @@ void BinnedShadows::visibility(const PointBatch& points, LightId light, Visibili
 void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
     std::vector<std::atomic<TriangleId>> lowest(points.size());
     for (auto& t : lowest) t = kNoTriangle;
-    const Picture picture = bin(points, light);
+    Picture picture = bin(points, light);
     cast_all(
         picture, points,
         [&](std::uint32_t i, TriangleId t) {
@@ -141,46 +141,73 @@ void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch&
 }
 
 /// Tests every triangle against the points that may be behind it. Calls crossed(i, t) where t hides point i.
-/// `once`: points that are hidden already need not be tested again.
+/// `once`: points that are hidden already need not be tested again. Then triangles that face the light go first: what
+/// is behind a closed surface is hidden by them, and the others, which are behind the points that are still lit, find
+/// few.
 template <class Crossed>
-void BinnedShadows::cast_all(const Picture& picture, const PointBatch& points, const Crossed& crossed,
-                             bool once) const {
-    const std::size_t groups = (casts_.size() + kLanes - 1) / kLanes;
+void BinnedShadows::cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once) const {
+    const std::size_t groups = eights_.size();
+    std::vector<std::uint8_t> later(groups);
     parallel_ranges(groups, 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g) cast(g * kLanes, picture, points, crossed, once);
+        for (std::size_t g = begin; g < end; ++g)
+            later[g] = !cast(g, once ? Which::facing_light : Which::all, picture, points, crossed, once);
+    });
+    if (!once) return;
+    picture.asking.bins.drop_hidden();
+    parallel_ranges(groups, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t g = begin; g < end; ++g)
+            if (later[g] != 0) cast(g, Which::all, picture, points, crossed, once);
     });
 }
 
-/// The triangles from `first` on, eight or as many as there are.
+/// The triangles from order_[8 group] on, eight or as many as there are. Does nothing and returns false where `which`
+/// is of those that face the light and most do not.
 template <class Crossed>
-void BinnedShadows::cast(std::size_t first, const Picture& picture, const PointBatch& points, const Crossed& crossed,
-                         bool once) const {
-    LightImage::Corners corners{};
-    unsigned casting = 0;
-    for (std::size_t lane = 0; lane < std::min(kLanes, casts_.size() - first); ++lane) {
-        if (casts_[first + lane] == 0) continue;
-        casting |= 1u << lane;
-        load(*scene_, static_cast<TriangleId>(first + lane), corners, lane);
-    }
-    if (casting == 0) return;
+bool BinnedShadows::cast(std::size_t group, Which which, const Picture& picture, const PointBatch& points,
+                         const Crossed& crossed, bool once) const {
+    const std::size_t first = group * kLanes;
+    const auto own          = std::span(order_).subspan(first, std::min(kLanes, order_.size() - first));
+    const Eight& eight      = eights_[group];
+    LightImage::Corners corners;
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(eight.corner[c][axis], kLanes, corners[c][axis]);
+    const unsigned casting              = (1u << own.size()) - 1;
+    const LightImage::Windings windings = picture.image.windings(corners);
+    if (which == Which::facing_light &&
+        2 * static_cast<std::size_t>(std::popcount(windings.towards & casting)) < own.size())
+        return false;
     const auto corners_of = [&](std::size_t lane) {
-        std::array<dvec3, 3> own;
-        for (std::size_t c = 0; c < 3; ++c) own[c] = {corners[c][0][lane], corners[c][1][lane], corners[c][2][lane]};
-        return own;
+        std::array<dvec3, 3> of;
+        for (std::size_t c = 0; c < 3; ++c) of[c] = {corners[c][0][lane], corners[c][1][lane], corners[c][2][lane]};
+        return of;
     };
-    std::array<std::optional<ShadowPlanes>, kLanes> planes;
+    const auto planes_of_all = [&] {
+        LightImage::Corners near, travel;
+        double turn[kLanes];
+        for (std::size_t c = 0; c < 3; ++c)
+            for (int axis = 0; axis < 3; ++axis)
+                for (std::size_t i = 0; i < kLanes; ++i) near[c][axis][i] = corners[c][axis][i] - centre_[axis];
+        picture.image.travel(corners, travel);
+        for (std::size_t i = 0; i < kLanes; ++i) {
+            const auto vertex = [&](std::size_t c) {
+                return vec3(eight.corner[c][0][i], eight.corner[c][1][i], eight.corner[c][2][i]);
+            };
+            turn[i] = (windings.away >> i & 1u) != 0 ? 1.0
+                      : (windings.towards >> i & 1u) != 0
+                          ? -1.0
+                          : -side_of_light(*picture.light, vertex(0), vertex(1), vertex(2));
+        }
+        return ShadowPlanes(near, travel, turn, picture.asking.reach);
+    };
+    std::optional<ShadowPlanes> planes;
     const auto meet = [&](std::size_t lane, std::size_t b) {
         Marks& marks              = picture.asking.bins.marks(b);
         const std::uint8_t hidden = marks.crossed.load(std::memory_order_relaxed);
         if (once && hidden == 0xff) return;
-        const auto t = static_cast<TriangleId>(first + lane);
-        if (!planes[lane]) {
-            const int side =
-                side_of_light(*picture.light, scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
-            planes[lane] = planes_of(corners_of(lane), picture.image, picture.asking.reach, centre_, side);
-        }
+        const TriangleId t = own[lane];
+        if (!planes) planes = planes_of_all();
         const Block& block          = picture.asking.bins.block(b);
-        const auto [inside, unsure] = planes[lane]->test(block);
+        const auto [inside, unsure] = planes->test(lane, block);
         test_lanes(*scene_, *picture.light, t, points, block, once ? unsure & ~hidden : unsure, inside, marks, crossed);
     };
 
@@ -201,23 +228,24 @@ void BinnedShadows::cast(std::size_t first, const Picture& picture, const PointB
             extents.clear(lane);
             continue;
         }
-        const Extent own = extents.at(lane);
-        all.low_u = std::min(all.low_u, own.low_u), all.high_u = std::max(all.high_u, own.high_u);
-        all.low_v = std::min(all.low_v, own.low_v), all.high_v = std::max(all.high_v, own.high_v);
-        all.depth = std::min(all.depth, own.depth);
-        sum += own.high_u - own.low_u + (own.high_v - own.low_v);
+        const Extent extent = extents.at(lane);
+        all.low_u = std::min(all.low_u, extent.low_u), all.high_u = std::max(all.high_u, extent.high_u);
+        all.low_v = std::min(all.low_v, extent.low_v), all.high_v = std::max(all.high_v, extent.high_v);
+        all.depth = std::min(all.depth, extent.depth);
+        sum += extent.high_u - extent.low_u + (extent.high_v - extent.low_v);
     }
     if (all.high_u - all.low_u + (all.high_v - all.low_v) <= sum) {
         picture.asking.bins.visit(all, [&](std::size_t b, const Extent& box) {
             for (unsigned over = triangles_over(extents, box); over != 0; over &= over - 1)
                 meet(static_cast<std::size_t>(std::countr_zero(over)), b);
         });
-        return;
+        return true;
     }
     for (unsigned rest = within; rest != 0; rest &= rest - 1) {
         const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
         picture.asking.bins.visit(extents.at(lane), [&](std::size_t b, const Extent&) { meet(lane, b); });
     }
+    return true;
 }
 
 }  // namespace umbra

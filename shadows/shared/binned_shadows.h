@@ -33,24 +33,32 @@ public:
     /// Of the triangles that a point's segment crosses, the one of the lowest number; kNoTriangle where there is none.
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const;
 
-    [[nodiscard]] std::size_t memory_bytes() const { return casts_.size(); }
+    [[nodiscard]] std::size_t memory_bytes() const {
+        return casts_.size() + order_.size() * sizeof(TriangleId) + eights_.size() * sizeof(Eight);
+    }
 
 private:
     struct Picture;
+    struct Eight {
+        float corner[3][3][8]{};  ///< [corner][axis][lane], so that they are read in one go
+    };
+    enum class Which : std::uint8_t { all, facing_light };
 
     [[nodiscard]] Picture bin(const PointBatch& points, LightId light) const;
     template <class Met>
     void each_next_to_light(const Picture& picture, const PointBatch& points, const Met& met) const;
     template <class Crossed>
-    void cast_all(const Picture& picture, const PointBatch& points, const Crossed& crossed, bool once = true) const;
+    void cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once = true) const;
     template <class Crossed>
-    void cast(std::size_t first, const Picture& picture, const PointBatch& points, const Crossed& crossed,
+    bool cast(std::size_t group, Which which, const Picture& picture, const PointBatch& points, const Crossed& crossed,
               bool once) const;
 
     const Scene* scene_ = nullptr;
     dvec3 centre_{0};
     double reach_ = 0;                 ///< the largest magnitude of the coordinates of all corners
     std::vector<std::uint8_t> casts_;  ///< one a triangle: it blocks light
+    std::vector<TriangleId> order_;    ///< those that do, each next to those before and after it
+    std::vector<Eight> eights_;        ///< their corners
 };
 
 }  // namespace umbra

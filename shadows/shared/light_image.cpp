@@ -184,6 +184,39 @@ unsigned LightImage::extents(const Corners& corners, Extents& to) const {
     return infinite_ ? infinite_extents(corners, to) : cube_extents(corners, to);
 }
 
+void LightImage::travel(const Corners& corners, Corners& to) const {
+    for (std::size_t c = 0; c < 3; ++c)
+        for (int axis = 0; axis < 3; ++axis)
+            for (std::size_t i = 0; i < kLanes; ++i)
+                to[c][axis][i] = infinite_ ? axes_[2][axis] : corners[c][axis][i] - origin_[axis];
+}
+
+// The sign of a determinant. Its factors are off by at most 4 roundings each (a direction is divided by its length),
+// and 6 more happen to each of its 6 products.
+LightImage::Windings LightImage::windings(const Corners& corners) const {
+    const double from_position = infinite_ ? 0 : 1;
+    const dvec3 along = infinite_ ? axes_[2] : dvec3(0), origin = from_position * origin_;
+    Windings w;
+    double value[kLanes], bound[kLanes];
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const double ax = corners[0][0][i], ay = corners[0][1][i], az = corners[0][2][i];
+        const double bx = corners[1][0][i] - ax, by = corners[1][1][i] - ay, bz = corners[1][2][i] - az;
+        const double cx = corners[2][0][i] - ax, cy = corners[2][1][i] - ay, cz = corners[2][2][i] - az;
+        const double tx = along.x + (from_position * ax - origin.x), ty = along.y + (from_position * ay - origin.y),
+                     tz = along.z + (from_position * az - origin.z);
+        const double yz = by * cz, zy = bz * cy, zx = bz * cx, xz = bx * cz, xy = bx * cy, yx = by * cx;
+        value[i] = (yz - zy) * tx + (zx - xz) * ty + (xy - yx) * tz;
+        bound[i] = 32 * kRounding *
+                   ((std::abs(yz) + std::abs(zy)) * std::abs(tx) + (std::abs(zx) + std::abs(xz)) * std::abs(ty) +
+                    (std::abs(xy) + std::abs(yx)) * std::abs(tz));
+    }
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        w.towards |= static_cast<unsigned>(value[i] < -bound[i]) << i;
+        w.away |= static_cast<unsigned>(value[i] > bound[i]) << i;
+    }
+    return w;
+}
+
 unsigned LightImage::infinite_extents(const Corners& corners, Extents& to) const {
     for (std::size_t i = 0; i < kLanes; ++i) {
         double low[3], high[3];

@@ -78,8 +78,15 @@ public:
     /// extents; the others are empty. Returns one bit for each of these triangles.
     [[nodiscard]] unsigned extents(const Corners& corners, Extents& to) const;
 
-    /// A vector along which light travels to p, of any length.
-    [[nodiscard]] dvec3 travel(dvec3 p) const { return infinite_ ? axes_[2] : p - origin_; }
+    /// Which of eight triangles are wound counterclockwise as the light sees them, and which clockwise: one bit each,
+    /// neither where rounding hides it.
+    struct Windings {
+        unsigned towards = 0, away = 0;
+    };
+    [[nodiscard]] Windings windings(const Corners& corners) const;
+
+    /// Vectors along which light travels to the corners, of any length.
+    void travel(const Corners& corners, Corners& to) const;
     [[nodiscard]] bool infinite() const { return infinite_; }
 
 private:

@@ -40,16 +40,27 @@ void sort(std::vector<std::uint32_t>& order, const PointBins::Box* boxes, const 
     for (std::size_t k = 0; k < keys.size(); ++k) order[k] = static_cast<std::uint32_t>(keys[k]);
 }
 
+/// The half perimeter that a block of `count` points in `box` may have.
+float widest_of(const PointBins::Box& box, std::size_t count) {
+    return kWidest * box.perimeter() / static_cast<float>(std::sqrt(static_cast<double>(count) / kLanes));
+}
+
 }  // namespace
 
 /// Sorts the points of a face along Morton's curve over their box: its cells are 1024 times 1024; points of one cell
-/// stay in their order.
+/// stay in their order. Where most blocks of the order that there is are small enough, it stays as it is.
 class PointBins::Sorter {
 public:
     /// The points of the face, until the next call.
     std::span<const std::uint32_t> order(std::span<const Entry> entries, std::uint32_t face, const Box& box) {
-        const CurveOver curve(box);
         std::size_t n = 0;
+        for (std::uint32_t k = 0; k < entries.size(); ++k) {
+            keys_[n] = k;
+            n += entries[k].face == face ? 1u : 0u;
+        }
+        if (are_blocks(entries, std::span(keys_).first(n), box)) return std::span(keys_).first(n);
+        const CurveOver curve(box);
+        n = 0;
         for (std::uint32_t k = 0; k < entries.size(); ++k)
             if (entries[k].face == face)
                 keys_[n++] = curve.at(entries[k].u, entries[k].v) >> kDropped << kIndexBits | k;
@@ -60,6 +71,21 @@ public:
     }
 
 private:
+    /// Whether most of eight points that follow one another fit in a block, so that they need not be sorted.
+    static bool are_blocks(std::span<const Entry> entries, std::span<const std::uint32_t> order, const Box& box) {
+        const float widest = widest_of(box, order.size());
+        std::size_t wide   = 0;
+        for (std::size_t k = 0; k < order.size(); k += kLanes) {
+            Box of;
+            for (std::size_t i = k; i < std::min(k + kLanes, order.size()); ++i) {
+                const Entry& e = entries[order[i]];
+                of.add(e.u, e.u, e.v, e.v, e.depth);
+            }
+            wide += of.perimeter() > widest ? 1u : 0u;
+        }
+        return wide * kLanes * 16 <= order.size();
+    }
+
     static constexpr int kIndexBits = 12, kDropped = 12;  ///< 10 bits of u and of v are kept
     static_assert(kTile == std::size_t{1} << kIndexBits);
 
@@ -118,8 +144,7 @@ std::size_t PointBins::fill_tile(std::span<const Entry> entries, const std::arra
     for (std::uint32_t face = 0; face < kFaces; ++face) {
         if (boxes[face].empty()) continue;
         const std::span<const std::uint32_t> order = sorter.order(entries, face, boxes[face]);
-        const auto parts   = static_cast<float>(std::sqrt(static_cast<double>(order.size()) / kLanes));
-        const float widest = kWidest * boxes[face].perimeter() / parts;
+        const float widest                         = widest_of(boxes[face], order.size());
         Box box;
         std::size_t lane = 0;
         const auto close = [&] {
@@ -149,6 +174,25 @@ std::size_t PointBins::fill_tile(std::span<const Entry> entries, const std::arra
         if (lane > 0) close();
     }
     return b;
+}
+
+void PointBins::drop_hidden() {
+    for (std::size_t level = 0; level < levels_.size(); ++level) {
+        std::vector<Extents>& nodes = levels_[level];
+        parallel_ranges(nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n)
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    const std::size_t child = n * kLanes + lane;
+                    if (nodes[n].empty(lane)) continue;
+                    if (level == 0) {
+                        if (marks_[child].crossed.load(std::memory_order_relaxed) == 0xff) nodes[n].clear(lane);
+                        continue;
+                    }
+                    const Box box = box_of(levels_[level - 1][child]);
+                    box.empty() ? nodes[n].clear(lane) : box.write(nodes[n], lane);
+                }
+        });
+    }
 }
 
 void PointBins::add_levels(std::vector<Box> boxes) {

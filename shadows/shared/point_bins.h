@@ -99,6 +99,9 @@ public:
     [[nodiscard]] const Block& block(std::size_t b) const { return blocks_[b]; }
     [[nodiscard]] Marks& marks(std::size_t b) const { return marks_[b]; }
 
+    /// Visits no longer come to blocks whose points are all crossed. Not while others read.
+    void drop_hidden();
+
     /// How often the boxes of tiles in the light's image cover the boxes of its faces' points: about once where the
     /// points of a tile are next to one another, as often as there are tiles where points are strewn about.
     [[nodiscard]] double overlap() const { return overlap_; }

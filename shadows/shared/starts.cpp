@@ -50,10 +50,11 @@ vec3 StartPlaces::exact_start(const PointBatch& points, std::size_t i) const {
 void StartPlaces::load(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
     const RaySpace& space = space_;
     const auto load       = [&](const auto& from, auto& to) {
-        if (count == 8)
-            std::copy_n(from.data() + first, 8, to);
+        const auto* source = from.data() + first;
+        if (count == 8)  // not std::copy_n, which becomes a call
+            for (std::size_t k = 0; k < 8; ++k) to[k] = source[k];
         else
-            std::copy_n(from.data() + first, count, to);
+            for (std::size_t k = 0; k < count; ++k) to[k] = source[k];
     };
     load(points.px, starts.x), load(points.py, starts.y), load(points.pz, starts.z);
     load(points.nx, starts.nx), load(points.ny, starts.ny), load(points.nz, starts.nz);

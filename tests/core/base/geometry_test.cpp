@@ -42,6 +42,17 @@ TEST(Morton, FollowsTheCurve) {
     EXPECT_EQ(morton_code(0xffffu, 0xffffu), 0xffffffffu);
 }
 
+TEST(Morton, FollowsTheCurveThroughACube) {
+    for (std::uint32_t k = 0; k < 4096; ++k) {
+        uvec3 cell(0);
+        for (unsigned bit = 0; bit < 12; ++bit) cell[static_cast<int>(bit % 3)] |= (k >> bit & 1u) << (bit / 3);
+        EXPECT_EQ(morton_code(cell.x, cell.y, cell.z), k);
+    }
+    EXPECT_EQ(morton_code(0xffffu, 0, 0), 0x249249249249u);
+    EXPECT_EQ(morton_code(0, 0xffffu, 0), 0x492492492492u);
+    EXPECT_EQ(morton_code(0, 0, 0xffffu), 0x924924924924u);
+}
+
 /// The first numbers that SplitMix64 gives for the seed 0, as published with it.
 TEST(RandomBits, AreThoseOfSplitMix64) {
     EXPECT_EQ(mixed_bits(0), 0xe220a8397b1dcdafu);

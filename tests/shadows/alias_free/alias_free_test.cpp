@@ -9,6 +9,7 @@
 
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/shared/binned_points.h"
+#include "umbra/shadows/shared/coherent_order.h"
 #include "umbra/shadows/shared/light_image.h"
 #include "umbra/shadows/shared/point_bins.h"
 #include "umbra/shadows/shared/shadow_planes.h"
@@ -138,16 +139,32 @@ TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
     using namespace binned_shadows_detail;
     const std::array<dvec3, 3> corners{dvec3(0, 1, 0), dvec3(1, 1, 0), dvec3(0, 1, 1)};  // seen from below: clockwise
     const dvec3 down(0, -1, 0);
-    // The winding's normal is (b - a) x (c - a) = (0, -1, 0): away from a light above.
-    const ShadowPlanes planes(corners, {down, down, down}, 1, dvec3(1));
+    // The winding's normal is (b - a) x (c - a) = (0, -1, 0): away from a light above. The last triangle holds the
+    // light in its plane, the others are the first.
+    LightImage::Corners eight, travel;
+    double turn[kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        turn[k] = k == 7 ? 0 : 1;
+        for (std::size_t c = 0; c < 3; ++c)
+            for (int axis = 0; axis < 3; ++axis) {
+                eight[c][axis][k]  = k == 7 ? corners[c][(axis + 1) % 3] : corners[c][axis];
+                travel[c][axis][k] = down[axis];
+            }
+    }
+    const ShadowPlanes planes(eight, travel, turn, dvec3(1));
     Block block{};
     const vec3 points[kLanes] = {{0.25f, 0, 0.25f}, {0.25f, 2, 0.25f}, {-0.1f, 0, 0.5f},  {0.6f, 0, 0.6f},
                                  {0.5f, 0, 0.5f},   {0, 0.5f, 0.5f},   {0.25f, 1, 0.25f}, {0.3f, 0.999f, 0.3f}};
     for (std::size_t k = 0; k < kLanes; ++k)
         block.x[k] = points[k].x, block.y[k] = points[k].y, block.z[k] = points[k].z;
-    const auto [inside, unsure] = planes.test(block);
-    EXPECT_EQ(inside, 0b10000001);
-    EXPECT_EQ(unsure, 0b01110000);
+    for (const std::size_t triangle : {0u, 6u}) {
+        const auto [inside, unsure] = planes.test(triangle, block);
+        EXPECT_EQ(inside, 0b10000001);
+        EXPECT_EQ(unsure, 0b01110000);
+    }
+    const auto [inside, unsure] = planes.test(7, block);  // of the plane x = 1
+    EXPECT_EQ(inside, 0);
+    EXPECT_EQ(unsure, 0);
 }
 
 /// Eight points in a row from a position, each its own triangle's first corner.
@@ -354,6 +371,135 @@ TEST(PointBins, SortsWhatTilesHaveStrewnAbout) {
     EXPECT_EQ(compared.different, 0u);
     EXPECT_GT(compared.umbra, 1000u);
     EXPECT_GT(compared.lit, 1000u);
+}
+
+/// A ball of 4000 triangles; `strewn`: in an order in which none is next to the one before.
+Scene ball_of_triangles(bool strewn, bool inside_out) {
+    Scene scene = seen_from({3, 3, 4}, {0, 0, 0});
+    Mesh ball   = make_sphere(1, 64, 33);
+    std::mt19937 random(7);
+    if (strewn) std::ranges::shuffle(ball.triangles, random);
+    if (inside_out)
+        for (uvec3& t : ball.triangles) std::swap(t.y, t.z);
+    add_object(scene, "ball", ball.positions, {}, ball.triangles, 0);
+    const Mesh plane        = make_plane(8, 8);
+    std::vector<vec3> below = plane.positions;
+    for (vec3& p : below) p.y -= 1;
+    add_object(scene, "floor", below, {}, plane.triangles, 0);
+    Light sun;
+    sun.kind = LightKind::directional, sun.direction = {-0.4f, -1, 0.1f}, sun.name = "sun";
+    scene.lights = {lamp_at({2, 3, 1}), sun};
+    return scene;
+}
+
+TEST(CoherentOrder, HasEachTriangleThatCastsNextToTheOneBefore) {
+    using namespace binned_shadows_detail;
+    for (const bool strewn : {false, true}) {
+        const Scene scene = ball_of_triangles(strewn, false);
+        std::vector<std::uint8_t> casts(scene.triangles.size(), 1);
+        casts[5] = casts[700]               = 0;
+        const std::vector<TriangleId> order = coherent_order(scene, casts);
+        ASSERT_EQ(order.size(), casts.size() - 2);
+        EXPECT_EQ(std::ranges::is_sorted(order), !strewn);
+        std::vector<int> times(casts.size());
+        double step = 0;
+        for (std::size_t k = 0; k < order.size(); ++k) {
+            ++times[order[k]];
+            if (k > 0) step += glm::distance(scene.vertex(order[k], 0), scene.vertex(order[k - 1], 0));
+        }
+        for (std::size_t t = 0; t < times.size(); ++t) EXPECT_EQ(times[t], casts[t]) << t;
+        EXPECT_LT(step / static_cast<double>(order.size()), 0.15) << "a triangle's side is 0.1, the ball is 2 wide";
+    }
+}
+
+/// Triangles that face the light go first, wherever their windings point; what they hide is not looked at again.
+TEST(AliasFree, IsExactInAnyOrderOfTrianglesAndWithAnyWinding) {
+    for (const bool strewn : {false, true})
+        for (const bool inside_out : {false, true}) {
+            const Compared compared = against_exact(ball_of_triangles(strewn, inside_out));
+            EXPECT_EQ(compared.different, 0u) << strewn << inside_out;
+            EXPECT_GT(compared.umbra, 500u);
+            EXPECT_GT(compared.lit, 500u);
+        }
+}
+
+/// The signs of eight windings; none where the light lies in the triangle's plane, or rounding could have put it there.
+TEST(LightImage, KnowsWindingsThatRoundingDoesNotHide) {
+    using namespace binned_shadows_detail;
+    Light sun;
+    sun.kind = LightKind::directional, sun.direction = {-0.3f, -1, 0.7f};
+    for (const Light& light : {lamp_at({0.1f, 5, 0.7f}), sun}) {
+        const LightImage image(light, dvec3(0), 10);
+        LightImage::Corners corners{};
+        const bool at_once = light.kind == LightKind::directional;
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            // Lanes 0 to 3: a floor's, seen from above anticlockwise or clockwise; 4 to 7: planes that hold the light.
+            const dvec3 to_light = at_once ? -dvec3(light.direction) : dvec3(light.position);
+            dvec3 of[3]{{0, 0, 0}, {0, 0, 0.1 * static_cast<double>(k + 1)}, {0.3, 0, 0}};
+            if (k >= 4) of[1] = to_light * 0.7, of[2] = {0.1 * static_cast<double>(k), 0.2, -0.3};
+            if (k % 2 == 1) std::swap(of[1], of[2]);
+            for (std::size_t c = 0; c < 3; ++c)
+                for (int axis = 0; axis < 3; ++axis) corners[c][axis][k] = of[c][axis];
+        }
+        const LightImage::Windings windings = image.windings(corners);
+        EXPECT_EQ(windings.towards, 0b0101u);
+        EXPECT_EQ(windings.away, 0b1010u);
+    }
+}
+
+/// Blocks whose points are all crossed are found no more, others are, though seven of their points are crossed.
+TEST(PointBins, DropWhatIsHidden) {
+    using namespace binned_shadows_detail;
+    PointBins bins(2, [](std::size_t tile, PointBins::Entry* to) {
+        for (std::uint32_t i = 0; i < PointBins::kTile; ++i) {
+            const auto x = static_cast<float>(i % 64) + 64 * static_cast<float>(tile),
+                       y = std::floor(static_cast<float>(i) / 64);
+            *to++        = {.x = x, .y = y, .z = 0, .u = x, .v = y, .depth = 1, .index = i, .face = 0};
+        }
+        return PointBins::kTile;
+    });
+    std::vector<std::uint8_t> expected(bins.blocks());
+    for (std::size_t b = 0; b < bins.blocks(); ++b) {
+        expected[b]           = b % 3 == 0 || b > 1000 ? 0 : 1;
+        bins.marks(b).crossed = expected[b] == 0 ? 0xff : 0x7f;
+    }
+    bins.drop_hidden();
+    std::vector<std::uint8_t> found(bins.blocks());
+    Extent all;
+    all.low_u = all.low_v = -1, all.high_u = all.high_v = 200;
+    bins.visit(all, [&](std::size_t b, const Extent&) { found[b] = 1; });
+    EXPECT_EQ(found, expected);
+    // What is left has boxes that are no wider than before: a corner of which all is hidden is not looked at.
+    for (std::size_t b = 0; b < bins.blocks(); ++b) bins.marks(b).crossed = 0xff;
+    bins.drop_hidden();
+    bins.visit(all, [&](std::size_t b, const Extent&) { ADD_FAILURE() << b; });
+}
+
+/// Whatever the order in which a tile gives its points, those of a block are next to one another.
+TEST(PointBins, HaveSmallBlocksInAnyOrderOfPoints) {
+    using namespace binned_shadows_detail;
+    for (const bool strewn : {false, true}) {
+        std::vector<std::uint32_t> order(PointBins::kTile);
+        for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
+        std::mt19937 random(3);
+        if (strewn) std::ranges::shuffle(order, random);
+        const PointBins bins(1, [&](std::size_t, PointBins::Entry* to) {
+            for (const std::uint32_t k : order) {
+                std::uint32_t x = 0, y = 0;
+                for (unsigned bit = 0; bit < 6; ++bit)
+                    x |= (k >> 2 * bit & 1u) << bit, y |= (k >> (2 * bit + 1) & 1u) << bit;
+                const auto u = static_cast<float>(x), v = static_cast<float>(y);
+                *to++ = {.x = u, .y = v, .z = 0, .u = u, .v = v, .depth = 1, .index = k, .face = 0};
+            }
+            return PointBins::kTile;
+        });
+        Extent all;
+        all.low_u = all.low_v = -1, all.high_u = all.high_v = 100;
+        double sum = 0;
+        bins.visit(all,
+                   [&](std::size_t, const Extent& box) { sum += box.high_u - box.low_u + (box.high_v - box.low_v); });
+        EXPECT_LT(sum / static_cast<double>(bins.blocks()), 5) << "4 x 2 points: half of the perimeter is 4";
+    }
 }
 
 /// Slivers, contacts, lights on edges, in corners and next to surfaces, far origins: what is said of a point,
