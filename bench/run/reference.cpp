@@ -80,10 +80,9 @@ VisibilityPlane of_tiles(const VisibilityPlane& answers, const std::vector<std::
     return whole;
 }
 
-/// The answers at the sample and those of the stand-in elsewhere, which are never compared.
-void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, const VisibilityPlane& stand_in,
+/// The answers at the sample; `whole` has those of the stand-in, which stay elsewhere and are never compared.
+void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, VisibilityPlane whole,
              const PointBatch& points) {
-    VisibilityPlane whole = stand_in;
     std::vector<std::uint8_t> judged(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) judged[i] = !points.asks(light, i);
     const VisibilityPlane& answers = run.planes[light];
@@ -193,10 +192,10 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
         if (at != nullptr) *at = light;
         run_light(run, area ? sampled : points, light, kOnce);
         if (!area) continue;
-        const VisibilityPlane elsewhere = stand_in.service
-                                              ? stand_in.planes[light]
-                                              : of_tiles(run.planes[light], sample, points, tile_side(points, *wanted));
-        scatter(run, light, sample, elsewhere, points);
+        VisibilityPlane elsewhere = stand_in.service
+                                        ? stand_in.planes[light]
+                                        : of_tiles(run.planes[light], sample, points, tile_side(points, *wanted));
+        scatter(run, light, sample, std::move(elsewhere), points);
     }
     run.memory_bytes = run.method->memory_bytes();
     done.judged      = sample.size();

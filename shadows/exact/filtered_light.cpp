@@ -19,7 +19,7 @@ struct Rounded {
     dvec3 near{0};        ///< each off by less than two roundings
     bool is_near = true;  ///< so large, or 0, that products of two neither under- nor overflow
 
-    Rounded(Rational3 of) : exact(std::move(of)) {  // NOLINT(google-explicit-constructor): it is the same vector
+    explicit Rounded(Rational3 of) : exact(std::move(of)) {
         for (int k = 0; k < 3; ++k) {
             const Rational& x = exact[static_cast<std::size_t>(k)];
             near[k]           = CGAL::to_double(x);
@@ -35,7 +35,7 @@ using HalfPlane = Rounded;
 /// A point of it, (x, y, 1) times a positive number.
 using Corner = Rounded;
 
-HalfPlane turned_over(const HalfPlane& g) { return scaled(g.exact, Rational(-1)); }
+HalfPlane turned_over(const HalfPlane& g) { return HalfPlane(scaled(g.exact, Rational(-1))); }
 
 /// 1 where the half plane holds the point, 0 on its border, else -1.
 int side_of(const HalfPlane& g, const Corner& c) {
@@ -52,7 +52,7 @@ int side_of(const HalfPlane& g, const Corner& c) {
 Corner meeting(const HalfPlane& a, const HalfPlane& b) {
     Rational3 c = cross(a.exact, b.exact);
     if (CGAL::sign(c[2]) < 0) c = scaled(c, Rational(-1));
-    return c;
+    return Corner(c);
 }
 
 /// A convex polygon, anticlockwise: edge k lies on the border of a half plane and ends at its corner. Corners are
@@ -124,8 +124,8 @@ std::optional<Hidden> hidden_by(const Scene& scene, const RationalSpace& space, 
     for (std::size_t k = 0; k < 3; ++k) hidden[k] = scaled(cross(corner[k], corner[(k + 1) % 3]), Rational(sign));
     hidden[3]    = scaled(hidden[0] + hidden[1] + hidden[2], space.height());
     hidden[3][2] = hidden[3][2] - Rational(sign) * volume;
-    return Hidden{{hidden[0], hidden[1], hidden[2], hidden[3]},
-                  {turned_over(hidden[0]), turned_over(hidden[1]), turned_over(hidden[2]), turned_over(hidden[3])}};
+    const HalfPlane a(hidden[0]), b(hidden[1]), c(hidden[2]), d(hidden[3]);
+    return Hidden{{a, b, c, d}, {turned_over(a), turned_over(b), turned_over(c), turned_over(d)}};
 }
 
 /// Of the light's points on the side of the plane of the viewpoint's own triangle that it sees.
@@ -141,7 +141,7 @@ HalfPlane in_front(const Sight& sight) {
                                     ? *p.exact_centre
                                     : rational(sight.viewpoint.point().corner()) + rational(p.centre_from_corner.value);
     const Rational3 to_centre = c - sight.viewpoint.point().exact();
-    return scaled({dot(n, u), dot(n, v), dot(n, to_centre)}, Rational(sight.turn));
+    return HalfPlane(scaled({dot(n, u), dot(n, v), dot(n, to_centre)}, Rational(sight.turn)));
 }
 
 Cell whole_light() {

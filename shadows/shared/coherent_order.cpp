@@ -11,7 +11,7 @@
 namespace umbra::binned_shadows_detail {
 namespace {
 
-constexpr int kIndexBits = 28, kCellBits = 12;
+constexpr int kIndexBits = 28, kCellBits = 12;  // of a key; scenes have 50 million triangles at most
 constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
 
 Box box_of(const Scene& scene, TriangleId t) {

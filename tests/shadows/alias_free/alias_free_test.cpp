@@ -469,7 +469,7 @@ TEST(PointBins, DropWhatIsHidden) {
     all.low_u = all.low_v = -1, all.high_u = all.high_v = 200;
     bins.visit(all, [&](std::size_t b, const Extent&) { found[b] = 1; });
     EXPECT_EQ(found, expected);
-    // What is left has boxes that are no wider than before: a corner of which all is hidden is not looked at.
+    // Where all is hidden, nothing is found.
     for (std::size_t b = 0; b < bins.blocks(); ++b) bins.marks(b).crossed = 0xff;
     bins.drop_hidden();
     bins.visit(all, [&](std::size_t b, const Extent&) { ADD_FAILURE() << b; });
