@@ -56,33 +56,10 @@ std::uint64_t affordable(const Reference& reference, const Scene& scene, const S
     return affordable_points(all, scene.triangles.size(), steps);
 }
 
-/// The side of the tiles of which each gives one point to a sample of about `wanted`, pixels.
-std::size_t tile_side(const PointBatch& points, std::uint64_t wanted) {
-    const double share = static_cast<double>(surface_points(points)) / static_cast<double>(wanted);
-    return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(std::sqrt(share))));
-}
-
-/// At each point the answer at the sampled one of its tile.
-VisibilityPlane of_tiles(const VisibilityPlane& answers, const std::vector<std::uint32_t>& sample,
-                         const PointBatch& points, std::size_t side) {
-    const auto width         = static_cast<std::size_t>(points.raster->width);
-    const std::size_t across = (width + side - 1) / side;
-    const auto tile_of       = [&](std::size_t i) { return i / width / side * across + i % width / side; };
-    std::vector<std::size_t> sampled(across * (points.size() / width / side + 1));
-    for (std::size_t k = 0; k < sample.size(); ++k) sampled[tile_of(sample[k])] = k;
-    VisibilityPlane whole(points.size(), !answers.colour.empty());
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        const std::size_t k = sampled[tile_of(i)];
-        whole.s[i]          = answers.s[k];
-        whole.answer[i]     = answers.answer[k];
-        if (!whole.colour.empty()) whole.colour[i] = answers.colour[k];
-    }
-    return whole;
-}
-
-/// The answers at the sample; `whole` has those of the stand-in, which stay elsewhere and are never compared.
-void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, VisibilityPlane whole,
+/// The answers at the sample and those of the substitute method elsewhere, which are never compared.
+void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sample, const VisibilityPlane& stand_in,
              const PointBatch& points) {
+    VisibilityPlane whole = stand_in;
     std::vector<std::uint8_t> judged(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) judged[i] = !points.asks(light, i);
     const VisibilityPlane& answers = run.planes[light];
@@ -131,9 +108,10 @@ std::uint64_t affordable_points(std::uint64_t all, std::size_t triangles, double
 }
 
 std::vector<std::uint32_t> stratified_sample(const PointBatch& points, std::uint64_t wanted) {
-    const auto width       = static_cast<std::size_t>(points.raster->width),
-               height      = static_cast<std::size_t>(points.raster->height);
-    const std::size_t side = tile_side(points, wanted);
+    const auto width   = static_cast<std::size_t>(points.raster->width),
+               height  = static_cast<std::size_t>(points.raster->height);
+    const double share = static_cast<double>(surface_points(points)) / static_cast<double>(wanted);
+    const auto side    = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(std::sqrt(share))));
     std::vector<std::uint32_t> sample, tile;
     for (std::size_t top = 0; top < height; top += side)
         for (std::size_t left = 0; left < width; left += side) {
@@ -181,9 +159,12 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
 
     const MethodRun stand_in =
         run_method(of_measure(stand_in_for_reference(), run.method->measures()), scene, facts, points, kOnce);
-    run.is_coloured                         = stand_in.service ? stand_in.is_coloured : facts.has_coloured_filters;
-    *wanted                                 = std::max<std::uint64_t>(*wanted, 1);
-    const std::vector<std::uint32_t> sample = stratified_sample(points, *wanted);
+    if (!stand_in.service) {  // then every point is the reference's, however long that takes
+        run = run_method(reference.choice, scene, facts, points, kOnce, at);
+        return done;
+    }
+    run.is_coloured                         = stand_in.is_coloured;
+    const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
     run.build                               = time_runs(kOnce, [&] { run.method->build(scene, facts); });
     run.judged.resize(scene.lights.size());
@@ -191,15 +172,11 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
         const bool area = is_area(scene.lights[light].kind);
         if (at != nullptr) *at = light;
         run_light(run, area ? sampled : points, light, kOnce);
-        if (!area) continue;
-        VisibilityPlane elsewhere = stand_in.service
-                                        ? stand_in.planes[light]
-                                        : of_tiles(run.planes[light], sample, points, tile_side(points, *wanted));
-        scatter(run, light, sample, std::move(elsewhere), points);
+        if (area) scatter(run, light, sample, stand_in.planes[light], points);
     }
     run.memory_bytes = run.method->memory_bytes();
     done.judged      = sample.size();
-    done.stand_in    = stand_in.service ? stand_in.choice.text() : kNearestPoint;
+    done.stand_in    = stand_in.choice.text();
     return done;
 }
 

@@ -21,16 +21,13 @@ struct Reference {
 [[nodiscard]] Reference default_reference(const SceneFacts& facts, Measure measure = Measure::area);
 
 /// The reference's answers: at all points of the picture for lights without an area; for area lights at all points, or
-/// at a stratified sample of them. Elsewhere its planes hold values of another method (MethodInfo::stand_in), or those
-/// of the sampled point of the same tile where that method does not serve the scene; they locate shadow edges and make
-/// the reference's picture, and are never compared (MethodRun::judged).
+/// at a stratified sample of them. Elsewhere its planes hold values of another method (MethodInfo::stand_in), which
+/// locate shadow edges and make the reference's picture, and are never compared (MethodRun::judged).
 struct ReferenceRun {
     MethodRun run;
     std::uint64_t judged = 0, of = 0;  ///< points, of those with a surface; equal where the whole picture is judged
-    /// The other method, as typed, or kNearestPoint; empty where every point is judged.
-    std::string stand_in;
+    std::string stand_in;              ///< the other method, as typed; empty where every point is judged
 };
-inline constexpr const char* kNearestPoint = "the compared point of their tile";
 
 /// At how many of `all` points the reference answers for area lights where nobody says: at all of them, or at a sample
 /// where the triangles, or the steps of a point that the method has counted (Visibility::steps), promise minutes.

@@ -41,10 +41,9 @@ public:
     void aim(LightId) override {}
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.asks(light, i)) out.s[i] = points.px[i] > 0 ? 1.0f : 0.25f;
+            if (points.asks(light, i)) out.s[i] = 1;
         if (out.steps != nullptr) *out.steps += steps_of_a_point * points.size();
     }
-    [[nodiscard]] bool multiplies() const override { return true; }
     [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
 };
 
@@ -80,32 +79,6 @@ TEST_F(ReferenceOf, AScenesAnswersAtEveryPointIsSampledWhereItsStepsAreMany) {
     EXPECT_EQ(judged(12000), 12288u) << "1.47e8 steps";
     EXPECT_EQ(judged(13000), 128u * 96 / 4) << "1.6e8 steps: 3846 points, one of each tile of 2 x 2";
     EXPECT_EQ(judged(13000, false), 12288u) << "no method of the list that may be a reference";
-}
-
-/// No rays stand in where surfaces let light through: the tile's one judged point does.
-TEST_F(ReferenceOf, ASceneThatRaysDoNotServeHasTheAnswersOfTilesElsewhere) {
-    const PreparedScene p  = prepare_scene(folder_.write("glass.json", R"({
-        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]}, "transparent_occluders": "multiply",
-        "materials": {"pane": {"opacity": 0.5}},
-        "lights": [{"type": "disk", "position": [0, 9, 0], "radius": 0.5}],
-        "objects": [{"type": "plane", "size": 40},
-                    {"type": "plane", "material": "pane", "transform": [{"translate": [0, 8, 0]}]}]})"),
-                                           {128, 96});
-    const ReferenceRun ran = run(p, 13000);
-    EXPECT_EQ(ran.judged, 128u * 96 / 4);
-    EXPECT_EQ(ran.stand_in, kNearestPoint);
-    std::size_t other = 0, judged = 0;
-    for (std::size_t i = 0; i < p.points.size(); ++i) {
-        const float own = p.points.px[i] > 0 ? 1.0f : 0.25f, s = ran.run.planes[0].s[i];
-        EXPECT_TRUE(s == 1.0f || s == 0.25f) << i;
-        if (ran.run.judged[0][i] != 0) {
-            ++judged;
-            EXPECT_EQ(s, own) << i;
-        }
-        other += s != own;
-    }
-    EXPECT_EQ(judged, ran.judged);
-    EXPECT_LE(other, 2u * 96) << "in the tiles that x = 0 passes through";
 }
 
 /// A bulb that is as large as the ball in it: the triangles of the ball pass through the plane of the light's disk.

@@ -209,10 +209,9 @@ TEST(TruthFile, KeepsColours) {
                                               {48, 27});
     const Reference reference = default_reference(p.facts);
     EXPECT_EQ(reference.choice.info->name, "exact");
-    // A hundred points are asked for, and no other method serves such a scene: the others are as their tiles' points.
-    const ReferenceRun ran = run_reference(reference, p.scene, p.facts, p.points, std::uint64_t{100});
-    EXPECT_NEAR(static_cast<double>(ran.judged), 100, 50);
-    EXPECT_EQ(ran.stand_in, kNearestPoint);
+    // Ten points are asked for, but no other method serves such a scene: all of them are the reference's.
+    const ReferenceRun ran = run_reference(reference, p.scene, p.facts, p.points, std::uint64_t{10});
+    EXPECT_EQ(ran.judged, ran.of);
     ASSERT_EQ(ran.run.planes.size(), 2u);
     write_truth(folder.path() / "truth.exr", ran, 48, 27);
     ReferenceRun read{MethodRun{reference.choice}, 0, 0, {}};
@@ -220,7 +219,6 @@ TEST(TruthFile, KeepsColours) {
     for (std::size_t j = 0; j < 2; ++j) {
         EXPECT_EQ(read.run.planes[j].s, ran.run.planes[j].s);
         EXPECT_EQ(read.run.planes[j].colour, ran.run.planes[j].colour);
-        EXPECT_EQ(read.run.judged[j], ran.run.judged[j]);
         EXPECT_TRUE(std::ranges::any_of(read.run.planes[j].colour, [](vec3 s) { return s.r > s.b && s.b > 0; }));
     }
 }
