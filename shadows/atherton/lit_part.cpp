@@ -63,8 +63,8 @@ void visit_border(FaceHandle face, const Visit& visit) {
 void count_covers(Arrangement& plane, float u, float v, int covers) {
     for (auto face = plane.faces_begin(); face != plane.faces_end(); ++face) face->set_data(kUnknown);
     const CGAL::Arr_walk_along_line_point_location<Arrangement> location(plane);
-    const auto found  = location.locate(Kernel::Point_2(u, v));
-    const auto* start = boost::get<Arrangement::Face_const_handle>(&found);
+    const CGAL::Object found = location.locate(Kernel::Point_2(u, v));  // of whichever variant this CGAL has
+    const auto* start        = CGAL::object_cast<Arrangement::Face_const_handle>(&found);
     if (start == nullptr) throw std::logic_error("a receiver's point lies on an outline");
     std::vector<FaceHandle> open{plane.non_const_handle(*start)};
     open.back()->set_data(covers);

@@ -86,8 +86,10 @@ public:
     void aim(LightId light) override {
         const LightKind kind = scene_->lights[light].kind;
         light_.emplace(*scene_, *rays_, light, samples_of(light, kind, options.sampler, options.samples, options.seed));
-        edges_.reset();
-        if (is_area(kind)) edges_.emplace(*occluders_, light_->target());
+        if (is_area(kind))
+            edges_.emplace(*occluders_, light_->target());
+        else
+            edges_.reset();
     }
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override;
