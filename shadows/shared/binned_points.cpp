@@ -116,6 +116,13 @@ private:
         std::size_t n = 0;
         for (std::size_t k = 0; k < which.size(); k += kLanes) {
             const std::size_t count = std::min(kLanes, which.size() - k);
+            // Eight of a raster are mostly of two rows, and what follows in memory is of other tiles.
+            if (k + 8 * kLanes + 2 < which.size())
+                for (const std::size_t ahead : {k + 8 * kLanes, k + 8 * kLanes + 2}) {
+                    __builtin_prefetch(&points_.triangle[which[ahead]]);
+                    __builtin_prefetch(&points_.u[which[ahead]]);
+                    __builtin_prefetch(&points_.v[which[ahead]]);
+                }
             LightImage::Corners corners;
             float u[kLanes], v[kLanes];
             TriangleId of[kLanes];

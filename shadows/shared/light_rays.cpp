@@ -35,6 +35,8 @@ void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& po
     Starts starts;
     ShadowRay rays[PointTile::kPoints];
     std::size_t traced = 0;
+    tile.load_next(points.triangle, points.px, points.py, points.pz, points.nx, points.ny, points.nz,
+                   points.facing[light]);
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         if (!any_asks(facing + first, count)) return;
         places.load(points, first, count, starts);
