@@ -165,6 +165,8 @@ void add_stage(Stage& s) {
     see("pcf/nearest", "shadow_zbuffer:filter=pcf", "shadow_zbuffer", 0.05);
     see("depth_fail/depth_pass", "shadow_volumes:counting=depth_fail", "shadow_volumes", 1e-5);
     see("planar/rays", "planar_projection", "ray_traced", 0.002);
+    add("planar/rays/object_moved",
+        [&s](benchmark::State& state) { time_all(state, s, "planar_projection", "ray_traced", 0.002); });
     see("exact/rays", "exact", "ray_traced", 0.002);
     see("alias_free/rays", "alias_free", "ray_traced", 0.002);
     add("alias_free/rays/object_moved",

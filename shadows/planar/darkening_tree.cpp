@@ -13,47 +13,45 @@ namespace umbra::planar {
 
 // ---- building -------------------------------------------------------------------------------------------------------
 
-DarkeningTree::DarkeningTree(std::vector<std::uint32_t> points, std::span<const dvec2> at, bool in_order)
-    : points_(std::move(points)) {
-    x_.resize(leaf_count() * kLeaf, 0);  // filled up, so that leaves are tested whole
+DarkeningTree::DarkeningTree(RawVector<std::uint32_t> points, RawVector<double> x, RawVector<double> y, bool in_order)
+    : points_(std::move(points)), x_(std::move(x)), y_(std::move(y)) {
+    if (!in_order) sort();
+    // Filled up, so that leaves are tested whole.
+    x_.resize(leaf_count() * kLeaf, 0);
     y_.resize(leaf_count() * kLeaf, 0);
-    if (in_order)
-        parallel_ranges(at.size(), 65536, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) x_[i] = at[i].x, y_[i] = at[i].y;
-        });
-    else
-        sort(at);
     build_boxes();
     brighten();
 }
 
-void DarkeningTree::sort(std::span<const dvec2> at) {
+void DarkeningTree::sort() {
+    const std::size_t count = points_.size();
     dvec2 low(+kInfinity), high(-kInfinity);
-    for (const dvec2 p : at) {
-        low  = glm::min(low, p);
-        high = glm::max(high, p);
+    for (std::size_t i = 0; i < count; ++i) {
+        low  = glm::min(low, place(i));
+        high = glm::max(high, place(i));
     }
     const double extent = std::max({high.x - low.x, high.y - low.y, 1e-300});
     struct Keyed {
         std::uint64_t key;
         std::uint32_t place;
     };
-    std::vector<Keyed> order(at.size());
-    parallel_ranges(at.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    std::vector<Keyed> order(count);
+    parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const dvec2 p = (at[i] - low) / extent * 0x1p31;
+            const dvec2 p = (place(i) - low) / extent * 0x1p31;
             order[i]      = {morton_code(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)),
                              static_cast<std::uint32_t>(i)};
         }
     });
     parallel_sort(order.begin(), order.end(),
                   [](const Keyed& l, const Keyed& r) { return l.key != r.key ? l.key < r.key : l.place < r.place; });
-    const std::vector<std::uint32_t> unsorted = points_;
-    parallel_ranges(at.size(), 65536, [&](std::size_t begin, std::size_t end) {
+    const RawVector<std::uint32_t> points = points_;
+    const RawVector<double> x = x_, y = y_;
+    parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            points_[i] = unsorted[order[i].place];
-            x_[i]      = at[order[i].place].x;
-            y_[i]      = at[order[i].place].y;
+            points_[i] = points[order[i].place];
+            x_[i]      = x[order[i].place];
+            y_[i]      = y[order[i].place];
         }
     });
 }
@@ -178,11 +176,16 @@ bool DarkeningTree::darken_leaf(std::size_t leaf, const std::array<Side, 3>& sid
     return all;
 }
 
-/// All points under child `child` of `level` become dark.
-void DarkeningTree::fill(std::size_t level, std::size_t child) {
+DarkeningTree::Range DarkeningTree::points_under(std::size_t level, std::size_t child) const {
     std::size_t width = kLeaf;
     for (std::size_t l = 0; l < level; ++l) width *= kBranches;
-    for (std::size_t i = child * width; i < std::min(points_.size(), (child + 1) * width); ++i)
+    return {child * width, std::min(points_.size(), (child + 1) * width)};
+}
+
+/// All points under child `child` of `level` become dark.
+void DarkeningTree::fill(std::size_t level, std::size_t child) {
+    const Range under = points_under(level, child);
+    for (std::size_t i = under.begin; i < under.end; ++i)
         std::atomic_ref<std::uint8_t>(dark_[i]).store(1, std::memory_order_relaxed);
 }
 

@@ -8,52 +8,55 @@
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/raw_vector.h"
 #include "umbra/core/render/points.h"
 
 namespace umbra::planar {
 
-/// Where the pixels of a square of 64 x 64 lie, in the order of the Morton curve.
+/// Where the pixels of a square lie, in the order of the Morton curve: of 1024, since 8 x 8 x 16 are a node of the next
+/// but one level of darkening_tree.h, and since what is read of so few stays in the cache.
 struct MortonPixel {
     std::uint8_t x = 0, y = 0;
 };
-inline constexpr auto kMortonPixels = [] {
-    std::array<MortonPixel, 4096> pixels;
-    for (std::uint8_t y = 0; y < 64; ++y)
-        for (std::uint8_t x = 0; x < 64; ++x) pixels[morton_code(x, y)] = {x, y};
+inline constexpr std::size_t kSquare = 32;
+inline constexpr auto kMortonPixels  = [] {
+    std::array<MortonPixel, kSquare * kSquare> pixels;
+    for (std::uint8_t y = 0; y < kSquare; ++y)
+        for (std::uint8_t x = 0; x < kSquare; ++x) pixels[morton_code(x, y)] = {x, y};
     return pixels;
 }();
 
-/// Indices of the points i with group_of(i) < groups, by group. With a raster those of 64 x 64 pixels follow one
-/// another, in the order of the Morton curve; without one they stand in their own order. `group_of` is called from many
-/// threads, twice for each point. Parallel; the same for any number of threads.
+/// Indices of the points i with group_of(i) < groups, by group; there may be 65534 groups. With a raster the points of
+/// 32 x 32 pixels follow one another, in the order of the Morton curve; without one they stand in their own order.
+/// `group_of` is called from many threads, once for each point. Parallel; the same for any number of threads.
 template <class GroupOf>
-std::vector<std::vector<std::uint32_t>> grouped(const PointBatch& points, std::size_t groups, const GroupOf& group_of) {
-    constexpr std::size_t side = 64, block = kMortonPixels.size();
-    const bool raster        = points.raster.has_value();
-    const std::size_t width  = raster ? static_cast<std::size_t>(points.raster->width) : block;
-    const std::size_t height = (points.size() + width - 1) / std::max<std::size_t>(width, 1);
-    const std::size_t across = raster ? (width + side - 1) / side : 1;
-    const std::size_t blocks = raster ? across * ((height + side - 1) / side) : height;
-    const auto for_each_in   = [&](std::size_t b, const auto& body) {
-        if (!raster) {
-            for (std::size_t i = b * block; i < std::min((b + 1) * block, points.size()); ++i) body(i);
-            return;
-        }
-        const std::size_t x0 = b % across * side, y0 = b / across * side;
-        for (const MortonPixel& at : kMortonPixels) {
-            const std::size_t x = x0 + at.x, y = y0 + at.y;
-            if (x < width && y < height) body(y * width + x);
-        }
-    };
-    // How many of each group there are before each block, so that all blocks can be written at once.
+std::vector<RawVector<std::uint32_t>> grouped(const PointBatch& points, std::size_t groups, const GroupOf& group_of) {
+    constexpr std::size_t block  = kMortonPixels.size();
+    constexpr std::uint16_t none = 0xffff;
+    const bool raster            = points.raster.has_value();
+    const std::size_t width      = raster ? std::max<std::size_t>(points.raster->width, 1) : block;
+    const std::size_t height     = (points.size() + width - 1) / width;
+    const std::size_t across     = raster ? (width + kSquare - 1) / kSquare : 1;
+    const std::size_t blocks     = raster ? across * ((height + kSquare - 1) / kSquare) : height;
+
+    // The group of each point, and how many of each there are before each square. Read row by row, in the order of
+    // memory: a task has a row of squares.
+    RawVector<std::uint16_t> group(points.size());
     std::vector<std::uint32_t> begin(blocks * groups, 0);
-    parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t b = first; b < last; ++b)
-            for_each_in(b, [&](std::size_t i) {
-                if (const std::size_t g = group_of(i); g < groups) ++begin[b * groups + g];
-            });
+    const std::size_t high = raster ? kSquare : 1, wide = raster ? kSquare : block;  // of a square
+    parallel_ranges(blocks / across, 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t y = first * high; y < std::min(last * high, height); ++y)
+            for (std::size_t x = 0; x < across; ++x) {
+                std::uint32_t* const count = begin.data() + (y / high * across + x) * groups;
+                const std::size_t end      = std::min({y * width + (x + 1) * wide, (y + 1) * width, points.size()});
+                for (std::size_t i = y * width + x * wide; i < end; ++i) {
+                    const std::size_t g = group_of(i);
+                    group[i]            = g < groups ? static_cast<std::uint16_t>(g) : none;
+                    if (g < groups) ++count[g];
+                }
+            }
     });
-    std::vector<std::vector<std::uint32_t>> members(groups);
+    std::vector<RawVector<std::uint32_t>> members(groups);
     for (std::size_t g = 0; g < groups; ++g) {
         std::uint32_t all = 0;
         for (std::size_t b = 0; b < blocks; ++b) {
@@ -63,12 +66,17 @@ std::vector<std::vector<std::uint32_t>> grouped(const PointBatch& points, std::s
         }
         members[g].resize(all);
     }
-    parallel_ranges(blocks, 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t b = first; b < last; ++b)
-            for_each_in(b, [&](std::size_t i) {
-                if (const std::size_t g = group_of(i); g < groups)
+    parallel_ranges(blocks, 8, [&](std::size_t first, std::size_t last) {
+        for (std::size_t b = first; b < last; ++b) {
+            const std::size_t x0 = b % across * kSquare, y0 = b / across * kSquare;
+            for (std::size_t k = 0; k < block; ++k) {
+                const std::size_t x = x0 + kMortonPixels[k].x, y = y0 + kMortonPixels[k].y;
+                const std::size_t i = raster ? y * width + x : b * block + k;
+                if (raster ? x >= width || y >= height : i >= points.size()) continue;
+                if (const std::uint16_t g = group[i]; g != none)
                     members[g][begin[b * groups + g]++] = static_cast<std::uint32_t>(i);
-            });
+            }
+        }
     });
     return members;
 }

@@ -1,12 +1,9 @@
 #include "umbra/shadows/planar/project.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "umbra/core/base/error.h"
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
@@ -18,6 +15,8 @@ namespace {
 
 constexpr std::size_t kRun = 4096;  ///< triangles
 
+constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+
 // ---- floats rounded outwards ----------------------------------------------------------------------------------------
 
 float nearest_float(double x) {
@@ -27,8 +26,14 @@ float nearest_float(double x) {
 
 }  // namespace
 
-float float_below(double x) { return std::nextafter(nearest_float(x), -kInfinity); }
-float float_above(double x) { return std::nextafter(nearest_float(x), +kInfinity); }
+float float_below(double x) {
+    const float f = nearest_float(x);
+    return f - (std::abs(f) * 0x1p-23f + kLeast);
+}
+float float_above(double x) {
+    const float f = nearest_float(x);
+    return f + (std::abs(f) * 0x1p-23f + kLeast);
+}
 
 // ---- receivers and sources ------------------------------------------------------------------------------------------
 
@@ -119,12 +124,8 @@ std::vector<dvec3> clip_at_plane(const Triangle& triangle) {
     return kept;
 }
 
-/// Bounds on the plane.
-struct Reach {
-    dvec2 low{+kInfinity}, high{-kInfinity};
-};
+}  // namespace
 
-/// Where the receiver's points are. They are off the plane by its tolerance, and are moved onto it along their rays.
 Reach reach_of(const Receiver& receiver, const LocalSource& source) {
     const double span  = source.at_infinity ? glm::length(source.at)
                                             : glm::length(source.at - dvec3(receiver.low, 0)) +
@@ -133,6 +134,8 @@ Reach reach_of(const Receiver& receiver, const LocalSource& source) {
     const dvec2 slack(receiver.tolerance * slope);
     return {receiver.low - slack, receiver.high + slack};
 }
+
+namespace {
 
 /// Bounds of the shadow of a triangle over the plane.
 Reach bounds_of_shadow(const LocalSource& source, const Triangle& triangle) {
@@ -195,19 +198,18 @@ void project_triangle(Shadows& run, const Scene& scene, TriangleId t, const Rece
 
 }  // namespace
 
-std::vector<Shadows> project(const Occluders& occluders, const Receiver& receiver, const Source& from) {
+std::vector<Shadows> project(const Occluders& occluders, std::span<const TriangleId> triangles,
+                             const Receiver& receiver, const Source& from) {
     const LocalSource source(receiver, from);
     if (!source.is_above()) return {};
     const Reach reach   = reach_of(receiver, source);
-    const std::size_t n = occluders.triangles.size();
+    const std::size_t n = triangles.size();
     std::vector<Shadows> runs((n + kRun - 1) / kRun);
     parallel_ranges(runs.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t r = first; r < last; ++r) {
-            for (std::size_t i = r * kRun; i < std::min(n, (r + 1) * kRun); ++i) {
-                const TriangleId t = occluders.triangles[i];
+            for (const TriangleId t : triangles.subspan(r * kRun, std::min(kRun, n - r * kRun)))
                 if (occluders.plane_of[t] != receiver.plane)
                     project_triangle(runs[r], *occluders.scene, t, receiver, reach, from, source);
-            }
             runs[r].shadows.shrink_to_fit();
             runs[r].pieces.shrink_to_fit();
             runs[r].piece_of.shrink_to_fit();
@@ -216,44 +218,13 @@ std::vector<Shadows> project(const Occluders& occluders, const Receiver& receive
     return runs;
 }
 
-LightShadows project(const Occluders& occluders, std::span<const Receiver> receivers, std::span<const Source> sources,
-                     double memory_limit) {
-    LightShadows all;
-    double bytes = 0;
-    for (const Source& source : sources) {
-        std::vector<std::vector<Shadows>>& on_receivers = all.emplace_back();
-        for (const Receiver& receiver : receivers) {
-            on_receivers.push_back(project(occluders, receiver, source));
-            for (const Shadows& run : on_receivers.back()) bytes += static_cast<double>(run.memory_bytes());
-        }
-        if (sources.size() == 1 || bytes <= memory_limit) continue;
-        const double a_source = bytes / static_cast<double>(all.size());
-        throw UsageError(
-            fmt::format("planar_projection: the shadows of light_samples={} take about {:.3g} MB, expected at most "
-                        "{:.3g} MB, a quarter of this machine's memory; light_samples={} would fit",
-                        sources.size(), a_source * static_cast<double>(sources.size()) / 1e6, memory_limit / 1e6,
-                        std::max(1.0, std::floor(memory_limit / a_source))));
-    }
-    return all;
-}
-
 std::size_t Shadows::memory_bytes() const {
     return sizeof(Shadows) + shadows.size() * sizeof(Shadow) + pieces.size() * (sizeof(Triangle) + sizeof(TriangleId));
 }
 
-std::size_t memory_bytes(const LightShadows& shadows) {
-    std::size_t bytes = 0;
-    for (const auto& receivers : shadows)
-        for (const auto& runs : receivers)
-            for (const Shadows& run : runs) bytes += run.memory_bytes();
-    return bytes;
-}
-
 // ---- what a shadow holds --------------------------------------------------------------------------------------------
 
-namespace {
-
-/// det(from - source, to - from, p - from). Only differences of near points meet the large ones of a far source.
+/// Only differences of near points meet the large ones of a far source.
 Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) {
     if (before(to, from)) {
         std::swap(from, to);
@@ -262,8 +233,6 @@ Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) 
     const dvec3 n = sign * glm::cross(source.at_infinity ? -source.at : from - source.at, to - from);
     return {n.x, n.y, -glm::dot(n, from)};
 }
-
-}  // namespace
 
 std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
                              const Shadows& run, const Shadow& shadow) {

@@ -38,6 +38,11 @@ struct Receiver {
 /// The side of `plane` that its normal points to (`side` = +1), or the other (-1). `index` becomes Receiver::plane.
 [[nodiscard]] Receiver make_receiver(const Scene& scene, const PlanarReceiver& plane, std::uint32_t index, int side);
 
+/// Bounds on a receiver's plane, in its coordinates.
+struct Reach {
+    dvec2 low{+kInfinity}, high{-kInfinity};
+};
+
 /// One point to project from, world space: a hard light, or one of an area light's samples.
 struct Source {
     bool at_infinity = false;
@@ -99,24 +104,23 @@ struct Shadows {
     [[nodiscard]] std::size_t memory_bytes() const;
 };
 
-/// The shadows on one receiver from one source, in runs; none where the source is not above the receiver.
-[[nodiscard]] std::vector<Shadows> project(const Occluders& occluders, const Receiver& receiver, const Source& source);
+/// Where the receiver's points are: they are off the plane by its tolerance, and are moved onto it along their rays
+/// from the source, which is above it.
+[[nodiscard]] Reach reach_of(const Receiver& receiver, const LocalSource& source);
 
-/// The shadows on all receivers from all sources: [source][receiver][run].
-using LightShadows = std::vector<std::vector<std::vector<Shadows>>>;
-[[nodiscard]] std::size_t memory_bytes(const LightShadows& shadows);
-
-/// Projects from every source onto every receiver. Throws UsageError where several sources' shadows take more than
-/// `memory_limit` bytes: how many would fit. One source is never refused. In use there may be one source's shadows more
-/// than the limit for a moment.
-[[nodiscard]] LightShadows project(const Occluders& occluders, std::span<const Receiver> receivers,
-                                   std::span<const Source> sources, double memory_limit);
+/// The shadows of some triangles on one receiver from one source, in runs; none where the source is not above the
+/// receiver, and none of the receiver's own triangles.
+[[nodiscard]] std::vector<Shadows> project(const Occluders& occluders, std::span<const TriangleId> triangles,
+                                           const Receiver& receiver, const Source& source);
 
 /// Side of a point (x, y) of the plane to the plane through the source and one edge: sign of x * a + y * b + c.
 struct Side {
     double a, b, c;
     [[nodiscard]] double at(double x, double y) const { return a * x + b * y + c; }
 };
+
+/// det(from - source, to - from, p - from) times `sign`. Both triangles of an edge get the same, of opposite signs.
+[[nodiscard]] Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign);
 
 /// The three sides of one of `run`'s shadows, positive inside. `source` is the one that it was projected from.
 [[nodiscard]] std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
@@ -126,7 +130,7 @@ struct Side {
 [[nodiscard]] TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,
                                     std::span<const Shadows> runs, dvec2 at);
 
-/// The next float below, or above, the float nearest to x.
+/// A float below, or above, the float nearest to x: the next, or the one beside that.
 [[nodiscard]] float float_below(double x);
 [[nodiscard]] float float_above(double x);
 

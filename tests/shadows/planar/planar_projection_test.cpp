@@ -9,6 +9,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/planar/outline.h"
 #include "umbra/shadows/planar/project.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"
@@ -330,7 +331,7 @@ TEST(PlanarProjection, RefusesMoreSamplesThanMemoryHolds) {
     const std::vector<planar::Receiver> receivers{planar::make_receiver(scene, facts.planes[0], 0, +1),
                                                   planar::make_receiver(scene, facts.planes[0], 0, -1)};
     const auto project = [&](int samples, double limit) {
-        return planar::project(occluders, receivers, planar::sources_of(scene.lights[0], samples), limit);
+        return planar::project(occluders, nullptr, receivers, planar::sources_of(scene.lights[0], samples), limit);
     };
     const auto limit = static_cast<double>(planar::memory_bytes(project(20, 1e9)));
     try {

@@ -1,0 +1,246 @@
+// Outlines against triangles one by one: any difference is a fault, since both answer to rounding.
+#include "umbra/shadows/planar/outline.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+#include <string>
+
+#include "umbra/core/scene/primitives.h"
+#include "umbra/shadows/planar/darkening_tree.h"
+#include "umbra/tests/support/known_scenes.h"
+#include "umbra/tests/support/method_case.h"
+
+namespace umbra {
+namespace {
+
+void add(Scene& scene, const std::string& name, const Mesh& mesh, const mat4& m = mat4(1)) {
+    if (scene.materials.empty()) scene.materials.emplace_back();
+    const Mesh placed = transformed(mesh, m);
+    add_object(scene, name, placed.positions, {}, placed.triangles, 0);
+}
+
+struct Compared {
+    std::size_t lit = 0, dark = 0, differ = 0;
+};
+
+Compared compare(const Scene& scene, const PointBatch& points, const std::string& more = "") {
+    Compared result;
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        VisibilityPlane plane[2];
+        for (const int k : {0, 1}) {
+            MethodCase run(std::string("planar_projection:edges=") + (k == 0 ? "weighted" : "per_triangle") + more,
+                           scene);
+            run.prepare(light);
+            plane[k] = run.visibility(points, light);
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!is_open(points, light, i) || !plane[1].defined(i)) continue;
+            result.lit += plane[1].s[i] == 1;
+            result.dark += plane[1].s[i] == 0;
+            result.differ += plane[0].s[i] != plane[1].s[i] || plane[0].answer[i] != plane[1].answer[i];
+        }
+    }
+    return result;
+}
+
+class Random {
+public:
+    explicit Random(unsigned seed) : random_(seed) {}
+    float operator()(float low, float high) { return std::uniform_real_distribution<float>(low, high)(random_); }
+    bool chance(float p) { return (*this)(0, 1) < p; }
+    unsigned below(unsigned n) { return static_cast<unsigned>(random_() % n); }
+
+private:
+    std::mt19937 random_;
+};
+
+/// Triangles of any size, wound either way, with shared corners and without, over, under and across the floor, and
+/// about the height of the lamp. `grid`: coordinates are multiples of a half, so that edges lie over one another and
+/// over points.
+Scene soup(unsigned seed, bool grid) {
+    Random random(seed);
+    const auto place = [&] {
+        const vec3 p(random(-4, 4), random(-0.4f, 3.2f), random(-4, 4));
+        return grid ? glm::round(2.0f * p) * 0.5f : p;
+    };
+    Scene scene;
+    mat4 tilt(1);
+    if (!grid) tilt = glm::rotate(glm::translate(mat4(1), vec3(random(-9, 9))), random(0, 3), vec3(0.6f, 0, 0.8f));
+    add(scene, "floor", make_plane(12, 12), tilt);
+    Mesh mesh;
+    for (int i = 0; i < 30; ++i) mesh.positions.push_back(place());
+    const auto corner = [&] { return random.below(static_cast<unsigned>(mesh.positions.size())); };
+    for (int i = 0; i < 40; ++i) mesh.triangles.emplace_back(corner(), corner(), corner());
+    add(scene, "soup", mesh, tilt);
+    add(scene, "box", make_box({1, 1, 1}), glm::translate(tilt, grid ? vec3(1, 1, 1) : vec3(1.3f, 0.9f, 0.7f)));
+    add(scene, "ball", make_sphere(0.6f, 16, 8), glm::translate(tilt, vec3(-2, 1, 1)));
+    Light lamp;
+    lamp.position = vec3(tilt * vec4(grid ? vec3(0, 3, 0) : vec3(random(-2, 2), random(1, 4), random(-2, 2)), 1));
+    scene.lights.push_back(lamp);
+    Light sun;
+    sun.kind      = LightKind::directional;
+    sun.direction = vec3(tilt * vec4(grid ? vec3(0, -1, 0) : vec3(random(-1, 1), -1, random(-1, 1)), 0));
+    scene.lights.push_back(sun);
+    sun.direction = vec3(tilt * vec4(grid ? vec3(1, -1, 0) : vec3(random(-9, 9), -1, random(-9, 9)), 0));
+    scene.lights.push_back(sun);
+    scene.camera.eye    = vec3(tilt * vec4(0.5f, 9, 5, 1));
+    scene.camera.target = vec3(tilt * vec4(0, 0, 0, 1));
+    scene.width = 160, scene.height = 100;
+    return scene;
+}
+
+TEST(Outline, AnswersAsEveryTriangleForItself) {
+    Compared all;
+    for (unsigned seed = 0; seed < 60; ++seed) {
+        const Scene scene       = soup(seed, false);
+        const Compared compared = compare(scene, primary(scene));
+        EXPECT_EQ(compared.differ, 0u) << seed;
+        all.lit += compared.lit, all.dark += compared.dark;
+    }
+    EXPECT_GT(all.lit, 100000u);
+    EXPECT_GT(all.dark, 100000u);
+}
+
+/// Corners, edges and points lie over one another everywhere, walls are seen edge-on: what rounding leaves open is
+/// asked of the triangles.
+TEST(Outline, AnswersAsTrianglesOnAGrid) {
+    Compared all;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        const Scene scene = soup(seed, true);
+        PointBatch points;
+        points.eye = scene.camera.eye;
+        points.resize(2 * 49 * 49);
+        // The floor is two triangles of 12 x 12: points at multiples of a quarter.
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const auto x = static_cast<float>(i / 2 % 49) / 48, y = static_cast<float>(i / 2 / 49) / 48;
+            if (x + y <= 1) set_point(points, i, scene, static_cast<TriangleId>(i % 2), x, y);
+        }
+        face_lights(points, scene);
+        const Compared compared = compare(scene, points);
+        EXPECT_EQ(compared.differ, 0u) << seed;
+        all.lit += compared.lit, all.dark += compared.dark;
+    }
+    EXPECT_GT(all.lit, 10000u);
+    EXPECT_GT(all.dark, 10000u);
+}
+
+TEST(Outline, AnswersAsTrianglesUnderAreaLights) {
+    for (unsigned seed = 0; seed < 8; ++seed) {
+        Scene scene             = soup(seed, false);
+        scene.lights[0].kind    = seed % 2 == 0 ? LightKind::sphere : LightKind::rectangle;
+        scene.lights[0].radius  = 0.4f;
+        scene.lights[0].edge_u  = {0.7f, 0.2f, 0};
+        scene.lights[0].edge_v  = {0, 0.1f, 0.5f};
+        const Compared compared = compare(scene, primary(scene), ",light_samples=9");
+        EXPECT_EQ(compared.differ, 0u) << seed;
+    }
+}
+
+/// At 1e-12, at 1e12 and far from the origin.
+TEST(Outline, AnswersAsTrianglesAtEveryScale) {
+    for (const float scale : {1e-12f, 1e-3f, 1e5f, 1e12f})
+        for (const float offset : {0.0f, 1000.0f}) {
+            Scene scene      = soup(5, false);
+            const auto moved = [&](vec3 p) { return (p + offset) * scale; };
+            for (vec3& p : scene.positions) p = moved(p);
+            scene.lights[0].position = moved(scene.lights[0].position);
+            scene.camera.eye = moved(scene.camera.eye), scene.camera.target = moved(scene.camera.target);
+            const Compared compared = compare(scene, primary(scene));
+            EXPECT_EQ(compared.differ, 0u) << scale << ", " << offset;
+            EXPECT_GT(compared.lit, 500u);
+            EXPECT_GT(compared.dark, 500u);
+        }
+}
+
+/// A box of 2 x 2 x 2 whose lid is at height 3 and whose bottom is at 1, lamp at height 4 over its middle: the shadow
+/// is that of the lid, 8 x 8, which its sides and the bottom, 2.67 wide, do not leave.
+struct BoxOverFloor {
+    Scene scene;
+    planar::Occluders occluders;
+    std::vector<planar::Receiver> receivers;
+
+    BoxOverFloor() {
+        add(scene, "floor", make_plane(20, 20));
+        add(scene, "box", make_box({2, 2, 2}), glm::translate(mat4(1), vec3(0, 2, 0)));
+        const SceneFacts facts = find_facts(scene);
+        for (const PlanarReceiver& plane : facts.planes)
+            if (scene.triangle_object[plane.triangles[0]] == 0)
+                receivers.push_back(planar::make_receiver(scene, plane, 0, +1));
+        occluders = {&scene, {}, std::vector(scene.triangles.size(), planar::Occluders::kNoPlane)};
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+            occluders.triangles.push_back(t);
+            if (scene.triangle_object[t] == 0) occluders.plane_of[t] = 0;
+        }
+    }
+    [[nodiscard]] planar::Outline outline(vec3 lamp) const {
+        return planar::OccluderEdges(occluders).outlines(receivers, {false, lamp})[0];
+    }
+};
+
+TEST(Outline, OfABoxIsItsSilhouette) {
+    const BoxOverFloor box;
+    ASSERT_EQ(box.receivers.size(), 1u);
+    const planar::Outline outline = box.outline({0, 4, 0});
+    EXPECT_TRUE(outline.rest.empty());
+    ASSERT_EQ(outline.edges.size(), 4u);  // all triangles face the lamp or away from it, the lid's border is left
+    for (const planar::OutlineEdge& e : outline.edges) {
+        EXPECT_EQ(std::abs(e.change), 2) << "a triangle of the lid and one of a side";
+        EXPECT_NEAR(glm::length(e.to - e.from), 8, 1e-12);
+    }
+    // Over the middle there are lid and bottom; over a point beside it, within the lid's shadow alone, lid and side.
+    const auto count_at = [&](double x, double z) {
+        const dvec3 at = box.receivers[0].local({x, 0, z});
+        const double to_x[]{at.x}, to_y[]{at.y};
+        double count[]{outline.count}, doubt[]{0};
+        for (const planar::OutlineEdge& e : outline.edges) add_changes(e, outline.reference, to_x, to_y, count, doubt);
+        EXPECT_EQ(doubt[0], 0);
+        return count[0];
+    };
+    EXPECT_EQ(count_at(0.01, 0.02), 2);
+    EXPECT_EQ(count_at(3.9, -3.8), 2);
+    EXPECT_EQ(count_at(4.1, 0.3), 0);
+    EXPECT_EQ(count_at(-3, 4.2), 0);
+}
+
+/// What the floor cuts and what reaches to the lamp's height has no place in an outline.
+TEST(Outline, LeavesOutWhatThePlaneCutsAndWhatReachesTheLamp) {
+    BoxOverFloor box;
+    const auto in_rest = [](const planar::Outline& outline) {
+        std::size_t n = 0;
+        for (const planar::Shadows& run : outline.rest) n += run.shadows.size();
+        return n;
+    };
+    EXPECT_EQ(in_rest(box.outline({5, 4, 0})), 0u);
+    EXPECT_GT(in_rest(box.outline({5, 3, 0})), 0u) << "the lid's height";
+    EXPECT_GT(in_rest(box.outline({5, 2, 0})), 0u) << "below the lid";
+    for (std::size_t i = 0; i < box.scene.positions.size(); ++i)
+        if (box.scene.positions[i].y > 0) box.scene.positions[i].y -= 2;
+    EXPECT_GT(in_rest(box.outline({5, 4, 0})), 0u) << "cut by the floor";
+}
+
+/// A point on an edge is in doubt, one an ulp of a float beside it is not.
+TEST(Outline, NamesPointsOnEdges) {
+    const BoxOverFloor box;
+    const planar::Outline outline = box.outline({0, 4, 0});
+    const auto doubtful           = [&](double x, double z) {
+        RawVector<std::uint32_t> points;
+        RawVector<double> xs, ys;
+        for (std::uint32_t i = 0; i < 20; ++i) {
+            const dvec3 at = box.receivers[0].local({x + (i == 7 ? 0 : 0.1 * i + 1), 0, z});
+            points.push_back(i), xs.push_back(at.x), ys.push_back(at.y);
+        }
+        planar::DarkeningTree tree(std::move(points), std::move(xs), std::move(ys), true);
+        const auto which = tree.darken(outline);
+        EXPECT_LE(which.size(), 1u);
+        return which.size() == 1 && which[0] == 7;
+    };
+    EXPECT_TRUE(doubtful(4, 0.3));
+    EXPECT_FALSE(doubtful(4.000001, 0.3));
+    EXPECT_FALSE(doubtful(3.999999, 0.3));
+}
+
+}  // namespace
+}  // namespace umbra
