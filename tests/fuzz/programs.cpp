@@ -1,8 +1,13 @@
+#include <OpenImageIO/imageio.h>
+
 #include <array>
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "umbra/bench/diff/diff.h"
 #include "umbra/bench/report/report.h"
+#include "umbra/core/image/image_headers.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/fuzz/fuzz_folder.h"
 #include "umbra/tests/fuzz/pipeline.h"
@@ -28,7 +33,16 @@ std::string image_ending(Bytes bytes) {
     return ".png";
 }
 
-/// As `umbra diff` reads it: with itself, and with a picture of 4 x 4.
+/// Whether the header claims more than 65,536 pixels: decoders take and clear memory for them, which takes as long as
+/// hundreds of small files.
+bool is_large(const fs::path& file) {
+    if (!find_false_claim(file).empty()) return false;  // as read_image does, before a decoder sees it
+    const auto in = OIIO::ImageInput::open(file.string());
+    (void)OIIO::geterror();
+    return in && in->spec().image_pixels() > 1 << 16;
+}
+
+/// As `umbra diff` reads it: with itself, and with a picture of 4 x 4. Of large ones, one of 64.
 void image(Bytes bytes) {
     static const fs::path other = [] {
         Image grey(4, 4, {"R", "G", "B"});
@@ -36,6 +50,8 @@ void image(Bytes bytes) {
         return fuzz_folder().path() / "other.exr";
     }();
     const fs::path file = rewrite("image" + image_ending(bytes), bytes);
+    const std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    if (std::hash<std::string_view>{}(text) % 64 != 0 && is_large(file)) return;
     (void)diff(file, file, {});
     (void)diff(file, other, {});
 }
