@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "umbra/core/base/bytes.h"
 
@@ -78,39 +79,95 @@ std::string check_png(HeaderFile& bytes) {
     return {};
 }
 
-/// After the magic number: version and flags, then attributes (name 0, type 0, length, data) up to an empty name.
+/// Bytes of attributes that OpenEXR reads as many of as the type has, whatever length the file states: with another
+/// length it takes bytes of this attribute for the next one's, and what it finds there for a length.
+constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> kSizes{{{"box2f", 16},
+                                                                             {"box2i", 16},
+                                                                             {"chromaticities", 32},
+                                                                             {"compression", 1},
+                                                                             {"deepImageState", 1},
+                                                                             {"double", 8},
+                                                                             {"envmap", 1},
+                                                                             {"float", 4},
+                                                                             {"int", 4},
+                                                                             {"keycode", 28},
+                                                                             {"lineOrder", 1},
+                                                                             {"m33d", 72},
+                                                                             {"m33f", 36},
+                                                                             {"m44d", 128},
+                                                                             {"m44f", 64},
+                                                                             {"rational", 8},
+                                                                             {"tiledesc", 9},
+                                                                             {"timecode", 8},
+                                                                             {"v2d", 16},
+                                                                             {"v2f", 8},
+                                                                             {"v2i", 8},
+                                                                             {"v3d", 24},
+                                                                             {"v3f", 12},
+                                                                             {"v3i", 12}}};
+
+/// What is wrong with the data of an attribute, which takes all of its `length` bytes.
+std::string check_exr_data(HeaderFile& bytes, const std::string& name, std::string_view type, std::uint32_t length) {
+    const std::uint64_t end = bytes.left() - length;  // what is left behind it
+    const auto misfit       = [&] { return fmt::format("attribute {} is no {} of {} bytes", name, type, length); };
+    if (type == "box2i") {
+        std::array<char, 16> box{};
+        if (!bytes.read(box.data(), box.size())) return kEndsInHeader;
+        for (int k = 0; k < 2; ++k) {
+            const auto min = std::int32_t(little_endian(box.data() + 4 * k));
+            const auto max = std::int32_t(little_endian(box.data() + 8 + 4 * k));
+            if (std::int64_t(max) - min >= kMaxFileSide)
+                return fmt::format("{} claims {} pixels along a side (at most {})", name, std::int64_t(max) - min + 1,
+                                   kMaxFileSide);
+        }
+    } else if (type == "tiledesc") {
+        std::array<char, 9> tile{};
+        if (!bytes.read(tile.data(), tile.size())) return kEndsInHeader;
+        const std::uint32_t width = little_endian(tile.data()), height = little_endian(tile.data() + 4);
+        if (std::uint64_t(width) * height > 1u << 24)
+            return fmt::format("claims tiles of {}x{} pixels (at most 16 million)", width, height);
+    } else if (type == "chlist") {
+        // Names, each with 16 bytes, up to an empty one: read to there, whatever the length.
+        for (std::string channel = "-"; !channel.empty();)
+            if (!bytes.read_text(channel) || (!channel.empty() && !bytes.skip(16))) return kEndsInHeader;
+        if (bytes.left() != end) return misfit();
+    } else if (type == "stringvector") {
+        while (bytes.left() > end) {
+            std::array<char, 4> size{};
+            if (bytes.left() - end < size.size() || !bytes.read(size.data(), size.size())) return misfit();
+            if (little_endian(size.data()) > bytes.left() - end) return misfit();
+            if (!bytes.skip(little_endian(size.data()))) return kEndsInHeader;
+        }
+    } else if (type == "preview") {
+        std::array<char, 8> size{};
+        if (length < size.size() || !bytes.read(size.data(), size.size())) return misfit();
+        const double pixels = double(little_endian(size.data())) * double(little_endian(size.data() + 4));
+        if (4 * pixels + 8 != double(length)) return misfit();
+    }
+    return bytes.left() < end || !bytes.skip(bytes.left() - end) ? kEndsInHeader : "";
+}
+
+/// After the magic number: version and flags, then attributes (name 0, type 0, length, data) up to an empty name. Files
+/// of several parts have several such headers, up to an empty one.
 std::string check_exr(HeaderFile& bytes) {
-    if (!bytes.skip(4)) return kEndsInHeader;
+    constexpr std::uint32_t several_parts = 0x1000;
+    std::array<char, 4> word{};
+    if (!bytes.read(word.data(), word.size())) return kEndsInHeader;
+    const bool parts = (little_endian(word.data()) & several_parts) != 0;
     std::string name, type;
-    for (;;) {
+    for (bool begins = true;;) {
         if (!bytes.read_text(name)) return kEndsInHeader;
-        if (name.empty())
-            return {};  // of several parts the first is read, and the library checks that the rest are there
-        std::array<char, 4> word{};
+        if (name.empty() && (begins || !parts)) return {};
+        begins = name.empty();
+        if (begins) continue;
         if (!bytes.read_text(type) || !bytes.read(word.data(), word.size())) return kEndsInHeader;
         const std::uint32_t length = little_endian(word.data());
         if (length > bytes.left())
             return fmt::format("attribute {} claims {} bytes, and {} are left in the file", name, length, bytes.left());
-        if (type == "box2i" && length == 16) {
-            std::array<char, 16> box{};
-            if (!bytes.read(box.data(), box.size())) return kEndsInHeader;
-            for (int k = 0; k < 2; ++k) {
-                const auto min = std::int32_t(little_endian(box.data() + 4 * k));
-                const auto max = std::int32_t(little_endian(box.data() + 8 + 4 * k));
-                if (std::int64_t(max) - min >= kMaxFileSide)
-                    return fmt::format("{} claims {} pixels along a side (at most {})", name,
-                                       std::int64_t(max) - min + 1, kMaxFileSide);
-            }
-        } else if (type == "tiledesc" && length == 9) {
-            std::array<char, 9> tile{};
-            if (!bytes.read(tile.data(), tile.size())) return kEndsInHeader;
-            const std::uint32_t width  = little_endian(tile.data());
-            const std::uint32_t height = little_endian(tile.data() + 4);
-            if (std::uint64_t(width) * height > 1u << 24)
-                return fmt::format("claims tiles of {}x{} pixels (at most 16 million)", width, height);
-        } else if (!bytes.skip(length)) {
-            return kEndsInHeader;
-        }
+        for (const auto& [of, size] : kSizes)
+            if (type == of && length != size)
+                return fmt::format("attribute {} claims {} bytes, and a {} has {}", name, length, type, size);
+        if (const std::string wrong = check_exr_data(bytes, name, type, length); !wrong.empty()) return wrong;
     }
 }
 

@@ -1,4 +1,5 @@
 #include "umbra/core/image/image_io.h"
+#include "umbra/core/image/image_headers.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -257,6 +258,55 @@ TEST_F(ImageIo, RefusesChunksAndAttributesLongerThanTheFile) {
     png[png.find("tEXt") - 4] = 0x55;
     EXPECT_NE(refusal(write("lie.png", png)).find("a chunk claims 14260633"), std::string::npos)
         << refusal(folder / "lie.png");
+}
+
+/// OpenEXR reads some attributes without regard to their length, and then takes what follows for another's: 600 bytes
+/// made it take two gigabytes.
+TEST_F(ImageIo, RefusesAttributesThatAreNoneOfTheirLength) {
+    write_image(folder / "a.exr", noise(8, 8, {"R", "G", "B"}));
+    const std::string exr = bytes_of(folder / "a.exr");
+    // A file with an attribute before all others; a file whose attribute `name` has one byte more, which is 0.
+    const auto with = [&](const std::string& attribute, const std::string& type, const std::string& data) {
+        const auto size = static_cast<std::uint32_t>(data.size());
+        std::string head(reinterpret_cast<const char*>(&size), 4);
+        return exr.substr(0, 8) + attribute + '\0' + type + '\0' + head + data + exr.substr(8);
+    };
+    const auto longer = [&](const std::string& attribute, const std::string& type) {
+        std::string file        = exr;
+        const std::size_t place = file.find(attribute + '\0' + type + '\0') + attribute.size() + type.size() + 2;
+        const auto length       = static_cast<unsigned char>(file[place]);
+        file[place]             = static_cast<char>(length + 1);
+        return file.insert(place + 4 + length, 1, '\0');
+    };
+    const auto answer = [&](const std::string& bytes) { return refusal(write("lie.exr", bytes)); };
+    const std::string word("\xff\xff\xff\x0f", 4), two("\2\0\0\0", 4), one("\1\0\0\0", 4);
+
+    EXPECT_EQ(answer(exr), "(was read)");
+    EXPECT_NE(answer(longer("channels", "chlist")).find("attribute channels is no chlist of"), std::string::npos);
+    EXPECT_NE(answer(longer("lineOrder", "lineOrder")).find("claims 2 bytes, and a lineOrder has 1"),
+              std::string::npos);
+    EXPECT_NE(answer(longer("dataWindow", "box2i")).find("claims 17 bytes, and a box2i has 16"), std::string::npos);
+
+    EXPECT_EQ(find_false_claim(write("true.exr", with("more", "stringvector", two + "ab" + one + "c"))), "");
+    EXPECT_NE(answer(with("more", "stringvector", two + "ab" + word + "c")).find("no stringvector"), std::string::npos);
+    EXPECT_NE(answer(with("more", "stringvector", two + "ab" + "c")).find("no stringvector"), std::string::npos);
+    EXPECT_EQ(find_false_claim(write("true.exr", with("preview", "preview", one + two + "12345678"))), "");
+    EXPECT_NE(answer(with("preview", "preview", two + two + "12345678")).find("no preview"), std::string::npos);
+    EXPECT_NE(answer(with("preview", "preview", one)).find("no preview"), std::string::npos);
+}
+
+/// What the second part's header says is read as the first's is.
+TEST_F(ImageIo, RefusesWhatALaterPartClaims) {
+    write_image(folder / "a.exr", noise(8, 8, {"R", "G", "B"}));
+    std::string exr = bytes_of(folder / "a.exr");
+    exr[5]          = 0x10;  // several parts
+    // The header ends with an empty name, after the last attribute.
+    const std::string last = std::string("screenWindowWidth") + '\0' + "float" + '\0';
+    const std::size_t end  = exr.find(last) + last.size() + 4 + 4;
+    ASSERT_EQ(exr[end], 0);
+    exr.insert(end + 1, std::string("name") + '\0' + "string" + '\0' + "\xff\xff\xff\x0f");
+    EXPECT_NE(refusal(write("parts.exr", exr)).find("attribute name claims 268435455 bytes"), std::string::npos)
+        << refusal(folder / "parts.exr");
 }
 
 TEST_F(ImageIo, SurvivesFlippedBytes) {
