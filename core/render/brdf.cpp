@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/render/lobe_power.h"
+
 namespace umbra {
 namespace {
 
@@ -62,7 +64,7 @@ double lobe_cosine(const Material& material, dvec3 n, dvec3 l, dvec3 v) {
 }
 
 double specular_lobe(const Material& material, dvec3 n, dvec3 l, dvec3 v) {
-    return std::pow(std::clamp(lobe_cosine(material, n, l, v), 0.0, 1.0), double(material.shininess));
+    return lobe_power(std::clamp(lobe_cosine(material, n, l, v), 0.0, 1.0), material.shininess);
 }
 
 dvec3 lafortune_lobes(const Material& material, dvec3 n, dvec3 l, dvec3 v) {

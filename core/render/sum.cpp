@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "umbra/core/render/brdf.h"
+#include "umbra/core/render/lobe_power.h"
 
 namespace umbra {
 namespace {
@@ -123,7 +124,7 @@ dvec3 PhongSum::with_cosines(const PointBatch& points, std::size_t i, std::span<
         const auto add_specular = [&](dvec3& reflected) {
             if (terms.is_specular && light.specular != vec3(0) && cosines[j].lobe > 0)
                 reflected += dvec3(light.specular) * terms.specular *
-                             std::pow(std::min(cosines[j].lobe, 1.0), static_cast<double>(material.shininess));
+                             lobe_power(std::min(cosines[j].lobe, 1.0), material.shininess);
         };
         return unblocked(light, terms, p, cosines[j].diffuse, add_specular, count);
     };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "umbra/core/render/lobe_power.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/render/sum.h"
 
@@ -170,12 +171,22 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
             h.x[k] = l.x[k] + e.v.x[k], h.y[k] = l.y[k] + e.v.y[k], h.z[k] = l.z[k] + e.v.z[k];
         }
         dots(r, e.v, phong), dots(h, h, half), dots(e.n, h, blinn);
+        const Material* first_of = nullptr;  // and of all, mostly
+        bool is_one              = true;
         for (int k = 0; k < kLanes; ++k) {
             if (!(s[k] > 0) || e.is_specular[k] == 0) continue;
             const Material& m   = material(k);
             const double height = std::sqrt(half[k]);
             const double angle  = m.lobe == Lobe::phong ? phong[k] : height > 0 ? blinn[k] / height : 0;
-            lobe[k]             = std::pow(std::clamp(angle, 0.0, 1.0), static_cast<double>(m.shininess));
+            lobe[k]             = std::clamp(angle, 0.0, 1.0);
+            if (first_of == nullptr) first_of = &m;
+            is_one &= &m == first_of;
+        }
+        if (first_of != nullptr && is_one && is_whole_power(first_of->shininess)) {
+            whole_power<kLanes>(std::data(lobe), first_of->shininess);
+        } else {
+            for (int k = 0; k < kLanes; ++k)
+                if (s[k] > 0 && e.is_specular[k] != 0) lobe[k] = lobe_power(lobe[k], material(k).shininess);
         }
     }
     const auto add = [&](Lanes& sum, const Lanes& diffuse, const Lanes& specular, float i_diffuse, float i_specular) {
