@@ -27,9 +27,9 @@
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/planar/darkening_tree.h"
-#include "umbra/shadows/planar/groups.h"
 #include "umbra/shadows/planar/outline.h"
 #include "umbra/shadows/planar/project.h"
+#include "umbra/shadows/shared/point_groups.h"
 
 namespace umbra {
 namespace {
@@ -225,7 +225,7 @@ private:
     /// Calls body(r, points) with the points on receivers_[r] that face the light, where there are any.
     template <class Body>
     void for_each_receiver(const PointBatch& points, LightId light, const Body& body) const {
-        auto groups = planar::grouped(points, receivers_.size(), [&](std::size_t i) -> std::size_t {
+        auto groups = grouped(points, receivers_.size(), [&](std::size_t i) -> std::size_t {
             if (!points.asks(light, i)) return kNoGroup;
             const std::uint32_t side = group_of_[points.triangle[i]];
             return side == kNoGroup ? side : side ^ points.flipped[i];

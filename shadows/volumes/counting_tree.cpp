@@ -7,6 +7,7 @@
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel_sort.h"
+#include "umbra/shadows/shared/point_groups.h"
 
 namespace umbra {
 namespace {
@@ -32,20 +33,35 @@ ViewFrame looking_at(dvec3 target, dvec3 origin) {
 /// comes nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye:
 /// they are looked at from outside their box.
 ViewFrame choose_view(const PointBatch& points, std::span<const std::uint32_t> active) {
+    const bool perspective = points.raster && points.raster->projection == Projection::perspective;
+    struct Extent {
+        Box box;
+        double nearest = std::numeric_limits<double>::infinity();  // to the eye, along the line of sight
+    };
+    constexpr std::size_t run = 16384;
+    std::vector<Extent> extents((active.size() + run - 1) / run);
+    parallel_ranges(extents.size(), 1, [&](std::size_t first, std::size_t last) {
+        for (std::size_t r = first; r < last; ++r)
+            for (const std::uint32_t i : active.subspan(r * run, std::min(run, active.size() - r * run))) {
+                extents[r].box = extend(extents[r].box, points.position(i));
+                if (perspective)
+                    extents[r].nearest =
+                        std::min(extents[r].nearest,
+                                 glm::dot(dvec3(points.position(i)) - points.raster->eye, points.raster->forward));
+            }
+    });
     Box box;
-    for (const std::uint32_t i : active) box = extend(box, points.position(i));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Extent& e : extents) box = extend(box, e.box), nearest = std::min(nearest, e.nearest);
     const dvec3 centre = 0.5 * (dvec3(box.min) + dvec3(box.max));
     double radius      = 0.5 * glm::length(dvec3(box.max) - dvec3(box.min));
     if (radius == 0) radius = std::max(0x1p-10 * glm::length(centre), 0x1p-60);
 
     dvec3 back = kGeneric;
-    if (points.raster && points.raster->projection == Projection::perspective) {
+    if (perspective) {
         const CameraFrame& f = *points.raster;
         const dvec3 to_eye   = f.eye - centre;
         const double away    = glm::length(to_eye);
-        double nearest       = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t i : active)
-            nearest = std::min(nearest, glm::dot(dvec3(points.position(i)) - f.eye, f.forward));
         if (away > 8 * radius) {
             back = to_eye / away;
         } else if (nearest > 0x1p-20 * (radius + away)) {
@@ -60,33 +76,8 @@ ViewFrame choose_view(const PointBatch& points, std::span<const std::uint32_t> a
 
 // ---- the order of points --------------------------------------------------------------------------------------------
 
-bool needs_answer(Facing f) { return f == Facing::front || f == Facing::partly; }
-
-/// Points that need an answer; those of a raster in blocks of 8 x 8 pixels along Morton's curve, so that neighbours in
-/// the list are neighbours in the picture.
-std::vector<std::uint32_t> active_points(const PointBatch& points, std::span<const Facing> facing) {
-    std::vector<std::uint32_t> active;
-    active.reserve(points.size());
-    if (!points.raster) {
-        for (std::uint32_t i = 0; i < points.size(); ++i)
-            if (needs_answer(facing[i])) active.push_back(i);
-        return active;
-    }
-    const auto width  = static_cast<std::uint32_t>(points.raster->width);
-    const auto height = static_cast<std::uint32_t>(points.raster->height);
-    std::vector<std::pair<std::uint64_t, std::pair<std::uint32_t, std::uint32_t>>> blocks;
-    for (std::uint32_t y = 0; y < height; y += 8)
-        for (std::uint32_t x = 0; x < width; x += 8) blocks.push_back({morton_code(x / 8, y / 8), {x, y}});
-    std::sort(blocks.begin(), blocks.end());
-    for (const auto& [key, corner] : blocks)
-        for (std::uint32_t y = corner.second; y < std::min(corner.second + 8, height); ++y)
-            for (std::uint32_t x = corner.first; x < std::min(corner.first + 8, width); ++x)
-                if (needs_answer(facing[y * width + x])) active.push_back(y * width + x);
-    return active;
-}
-
 /// Sorts points without a raster along Morton's curve over their projections.
-void sort_by_projection(std::vector<std::uint32_t>& index, const PointBatch& points, const ViewFrame& view) {
+void sort_by_projection(std::span<std::uint32_t> index, const PointBatch& points, const ViewFrame& view) {
     const auto projected = [&](std::uint32_t i) {
         const dvec3 p = view.seen(dvec3(points.position(i)));
         return dvec2(p.x, p.y) / p.z;
@@ -154,7 +145,8 @@ dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, d
 // ---- the tree -------------------------------------------------------------------------------------------------------
 
 CountingTree::CountingTree(const Scene& scene, const PointBatch& points, LightId light)
-    : index_(active_points(points, points.facing[light])) {
+    // Blocks of 8 x 8 pixels are a leaf, where all of them ask.
+    : index_(std::move(grouped(points, 1, [&](std::size_t i) { return points.asks(light, i) ? 0u : 1u; })[0])) {
     if (index_.empty()) return;
     view_ = choose_view(points, index_);
     if (!points.raster) sort_by_projection(index_, points, view_);
@@ -164,10 +156,20 @@ CountingTree::CountingTree(const Scene& scene, const PointBatch& points, LightId
 
 void CountingTree::project(const Scene& scene, const PointBatch& points) {
     const std::size_t padded = (size() + kLeaf - 1) / kLeaf * kLeaf;
-    for (std::vector<double>* v : {&x_, &y_, &w_}) v->resize(padded, 0);
+    for (RawVector<double>* v : {&x_, &y_, &w_}) {
+        v->resize(padded);
+        std::fill(v->begin() + static_cast<std::ptrdiff_t>(size()), v->end(), 0.0);
+    }
     count_.resize(padded, 0);
     parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
+            // What follows in memory is of other points: of blocks of 4 x 4 pixels, the first of each row.
+            if (k % 16 == 0 && k + 5 * 16 < size())
+                for (const std::size_t ahead : {k + 64, k + 66, k + 72, k + 74}) {
+                    __builtin_prefetch(&points.triangle[index_[ahead]]);
+                    __builtin_prefetch(&points.u[index_[ahead]]);
+                    __builtin_prefetch(&points.v[index_[ahead]]);
+                }
             const dvec3 p = view_.turned(named_point(scene, points, index_[k], view_.origin));
             x_[k] = p.x / p.z, y_[k] = p.y / p.z, w_[k] = 1 / p.z;
         }
@@ -250,18 +252,14 @@ void CountingTree::add_to_leaf(const Region& region, std::int32_t weight, std::s
     }
 }
 
+/// To the leaves.
 void CountingTree::push_down() {
-    for (std::size_t level = levels_.size(); level-- > 0;) {
+    for (std::size_t level = levels_.size(); level-- > 1;) {
         std::vector<Node>& nodes = levels_[level];
         for (std::size_t i = 0; i < nodes.size(); ++i) {
             if (nodes[i].count == 0) continue;
-            if (level > 0) {
-                const std::size_t last = std::min(levels_[level - 1].size(), (i + 1) * kFanOut);
-                for (std::size_t c = i * kFanOut; c < last; ++c) levels_[level - 1][c].count += nodes[i].count;
-            } else {
-                for (std::size_t k = i * kLeaf; k < (i + 1) * kLeaf; ++k) count_[k] += nodes[i].count;
-            }
-            nodes[i].count = 0;
+            const std::size_t last = std::min(levels_[level - 1].size(), (i + 1) * kFanOut);
+            for (std::size_t c = i * kFanOut; c < last; ++c) levels_[level - 1][c].count += nodes[i].count;
         }
     }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/raw_vector.h"
 #include "umbra/core/render/points.h"
 
 namespace umbra {
@@ -58,7 +59,8 @@ public:
     /// same in any order.
     void add(const Region& region, std::int32_t weight);
 
-    /// Calls visit(point of the batch, sum of the weights of the regions that it lies in), in parallel.
+    /// Calls visit(point of the batch, sum of the weights of the regions that it lies in), in parallel. Once, at the
+    /// end.
     template <class Visit>
     void for_each(const Visit& visit);
 
@@ -77,8 +79,8 @@ private:
     void push_down();
 
     ViewFrame view_;
-    std::vector<std::uint32_t> index_;       // point of the batch
-    std::vector<double> x_, y_, w_;          // padded to whole leaves
+    RawVector<std::uint32_t> index_;         // point of the batch
+    RawVector<double> x_, y_, w_;            // padded to whole leaves
     std::vector<std::int32_t> count_;        // padded to whole leaves
     std::vector<std::vector<Node>> levels_;  // leaves first; node i has children [4 i, 4 i + 4)
 };
@@ -93,7 +95,7 @@ template <class Visit>
 void CountingTree::for_each(const Visit& visit) {
     push_down();
     parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) visit(index_[k], count_[k]);
+        for (std::size_t k = begin; k < end; ++k) visit(index_[k], count_[k] + levels_[0][k / kLeaf].count);
     });
 }
 

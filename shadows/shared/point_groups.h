@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "umbra/core/base/morton.h"
@@ -11,27 +12,31 @@
 #include "umbra/core/base/raw_vector.h"
 #include "umbra/core/render/points.h"
 
-namespace umbra::planar {
+namespace umbra {
 
-/// Where the pixels of a square lie, in the order of the Morton curve: of 1024, since 8 x 8 x 16 are a node of the next
-/// but one level of darkening_tree.h, and since what is read of so few stays in the cache.
-struct MortonPixel {
+namespace point_groups_detail {
+
+inline constexpr std::size_t kSquare = 32;  ///< pixels: what is read of so few stays in the cache
+struct Pixel {
     std::uint8_t x = 0, y = 0;
 };
-inline constexpr std::size_t kSquare = 32;
-inline constexpr auto kMortonPixels  = [] {
-    std::array<MortonPixel, kSquare * kSquare> pixels;
+/// The pixels of a square in the order of the Morton curve.
+inline constexpr auto kPixels = [] {
+    std::array<Pixel, kSquare * kSquare> pixels;
     for (std::uint8_t y = 0; y < kSquare; ++y)
         for (std::uint8_t x = 0; x < kSquare; ++x) pixels[morton_code(x, y)] = {x, y};
     return pixels;
 }();
 
-/// Indices of the points i with group_of(i) < groups, by group; there may be 65534 groups. With a raster the points of
-/// 32 x 32 pixels follow one another, in the order of the Morton curve; without one they stand in their own order.
-/// `group_of` is called from many threads, once for each point. Parallel; the same for any number of threads.
+}  // namespace point_groups_detail
+
+/// Indices of the points i with group_of(i) < groups, by group; there may be 65534 groups. With a raster they are in
+/// the order of the Morton curve; without one they stand in their own order. `group_of` is called from many threads,
+/// once for each point. Parallel; the same for any number of threads.
 template <class GroupOf>
 std::vector<RawVector<std::uint32_t>> grouped(const PointBatch& points, std::size_t groups, const GroupOf& group_of) {
-    constexpr std::size_t block  = kMortonPixels.size();
+    using point_groups_detail::kPixels, point_groups_detail::kSquare;
+    constexpr std::size_t block  = kPixels.size();
     constexpr std::uint16_t none = 0xffff;
     const bool raster            = points.raster.has_value();
     const std::size_t width      = raster ? std::max<std::size_t>(points.raster->width, 1) : block;
@@ -39,7 +44,7 @@ std::vector<RawVector<std::uint32_t>> grouped(const PointBatch& points, std::siz
     const std::size_t across     = raster ? (width + kSquare - 1) / kSquare : 1;
     const std::size_t blocks     = raster ? across * ((height + kSquare - 1) / kSquare) : height;
 
-    // The group of each point, and how many of each there are before each square. Read row by row, in the order of
+    // The group of each point, and how many of each there are in each square. Read row by row, in the order of
     // memory: a task has a row of squares.
     RawVector<std::uint16_t> group(points.size());
     std::vector<std::uint32_t> begin(blocks * groups, 0);
@@ -56,10 +61,16 @@ std::vector<RawVector<std::uint32_t>> grouped(const PointBatch& points, std::siz
                 }
             }
     });
+    std::vector<std::uint32_t> curve(blocks);  // squares
+    std::iota(curve.begin(), curve.end(), 0u);
+    if (raster)
+        std::ranges::sort(curve, {}, [&](std::uint32_t b) {
+            return morton_code(static_cast<std::uint32_t>(b % across), static_cast<std::uint32_t>(b / across));
+        });
     std::vector<RawVector<std::uint32_t>> members(groups);
     for (std::size_t g = 0; g < groups; ++g) {
         std::uint32_t all = 0;
-        for (std::size_t b = 0; b < blocks; ++b) {
+        for (const std::uint32_t b : curve) {
             const std::uint32_t here = begin[b * groups + g];
             begin[b * groups + g]    = all;
             all += here;
@@ -70,7 +81,7 @@ std::vector<RawVector<std::uint32_t>> grouped(const PointBatch& points, std::siz
         for (std::size_t b = first; b < last; ++b) {
             const std::size_t x0 = b % across * kSquare, y0 = b / across * kSquare;
             for (std::size_t k = 0; k < block; ++k) {
-                const std::size_t x = x0 + kMortonPixels[k].x, y = y0 + kMortonPixels[k].y;
+                const std::size_t x = x0 + kPixels[k].x, y = y0 + kPixels[k].y;
                 const std::size_t i = raster ? y * width + x : b * block + k;
                 if (raster ? x >= width || y >= height : i >= points.size()) continue;
                 if (const std::uint16_t g = group[i]; g != none)
@@ -81,4 +92,4 @@ std::vector<RawVector<std::uint32_t>> grouped(const PointBatch& points, std::siz
     return members;
 }
 
-}  // namespace umbra::planar
+}  // namespace umbra

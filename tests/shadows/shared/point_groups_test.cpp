@@ -1,4 +1,4 @@
-#include "umbra/shadows/planar/groups.h"
+#include "umbra/shadows/shared/point_groups.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ TEST(Groups, HoldEachPointOnce) {
     for (const bool raster : {true, false})
         for (const auto& [width, height] : {std::pair{1, 1}, {70, 3}, {200, 131}, {64, 64}, {0, 0}}) {
             const PointBatch points = batch(width, height, raster);
-            const auto groups       = planar::grouped(points, 3, [](std::size_t i) { return i % 5; });
+            const auto groups       = grouped(points, 3, [](std::size_t i) { return i % 5; });
             ASSERT_EQ(groups.size(), 3u);
             for (std::size_t g = 0; g < 3; ++g) {
                 std::vector<std::uint32_t> sorted(groups[g].begin(), groups[g].end()), expected;
@@ -36,7 +36,7 @@ TEST(Groups, HoldEachPointOnce) {
 
 TEST(Groups, KeepNeighboursTogether) {
     const PointBatch points = batch(200, 131, true);
-    const auto groups       = planar::grouped(points, 1, [](std::size_t) { return std::size_t{0}; });
+    const auto groups       = grouped(points, 1, [](std::size_t) { return std::size_t{0}; });
     const auto& all         = groups[0];
     // Each 16 that follow one another in a whole square are 4 x 4 pixels.
     for (std::size_t i = 0; i < 1024; i += 16) {
@@ -54,10 +54,10 @@ TEST(Groups, AreTheSameForAnyNumberOfThreads) {
     const PointBatch points = batch(300, 170, true);
     const auto of           = [](std::size_t i) { return i / 7 % 4; };
     const ThreadLimit one(1);
-    const auto expected = planar::grouped(points, 4, of);
+    const auto expected = grouped(points, 4, of);
     {
         const ThreadLimit three(3);
-        EXPECT_EQ(planar::grouped(points, 4, of), expected);
+        EXPECT_EQ(grouped(points, 4, of), expected);
     }
 }
 
