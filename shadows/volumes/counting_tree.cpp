@@ -32,17 +32,18 @@ ViewFrame looking_at(dvec3 target, dvec3 origin) {
 /// edge that contains the eye, as in scenes laid out on a grid, or a light at the eye, is no special case. A far eye
 /// comes nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye:
 /// they are looked at from outside their box.
-ViewFrame choose_view(const PointBatch& points, std::span<const std::uint32_t> active) {
+ViewFrame choose_view(const PointBatch& points, LightId light) {
     const bool perspective = points.raster && points.raster->projection == Projection::perspective;
     struct Extent {
         Box box;
         double nearest = std::numeric_limits<double>::infinity();  // to the eye, along the line of sight
     };
     constexpr std::size_t run = 16384;
-    std::vector<Extent> extents((active.size() + run - 1) / run);
+    std::vector<Extent> extents((points.size() + run - 1) / run);
     parallel_ranges(extents.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t r = first; r < last; ++r)
-            for (const std::uint32_t i : active.subspan(r * run, std::min(run, active.size() - r * run))) {
+            for (std::size_t i = r * run; i < std::min(points.size(), (r + 1) * run); ++i) {
+                if (!points.asks(light, i)) continue;
                 extents[r].box = extend(extents[r].box, points.position(i));
                 if (perspective)
                     extents[r].nearest =
@@ -114,6 +115,9 @@ Cover cover(const HalfSpace& f, dvec3 min, dvec3 max) {
     return high < -rounding ? Cover::none : low > rounding ? Cover::all : Cover::some;
 }
 
+/// Of a triangle's weights: a point with larger ones is not moved (named_point).
+constexpr double kMostShare = 0x1p-26;
+
 }  // namespace
 
 dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin) {
@@ -122,7 +126,7 @@ dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, d
     double weight[3]       = {0, points.u[i], points.v[i]};
     weight[0]              = 1 - weight[1] - weight[2];
     // Most points are far inside: a weight times a height is a distance.
-    constexpr double kClear = 0x1p-44, kMostShare = 0x1p-26;
+    constexpr double kClear = 0x1p-44;
     if (std::min({weight[0], weight[1], weight[2]}) < kMostShare) {
         const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
         double far        = 0;
@@ -148,7 +152,7 @@ CountingTree::CountingTree(const Scene& scene, const PointBatch& points, LightId
     // Blocks of 8 x 8 pixels are a leaf, where all of them ask.
     : index_(std::move(grouped(points, 1, [&](std::size_t i) { return points.asks(light, i) ? 0u : 1u; })[0])) {
     if (index_.empty()) return;
-    view_ = choose_view(points, index_);
+    view_ = choose_view(points, light);
     if (!points.raster) sort_by_projection(index_, points, view_);
     project(scene, points);
     build_nodes();
@@ -162,6 +166,8 @@ void CountingTree::project(const Scene& scene, const PointBatch& points) {
     }
     count_.resize(padded, 0);
     parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
+        TriangleId last = kNoTriangle;  // neighbours are mostly on one triangle
+        dvec3 a{0}, b{0}, c{0};
         for (std::size_t k = begin; k < end; ++k) {
             // What follows in memory is of other points: of blocks of 4 x 4 pixels, the first of each row.
             if (k % 16 == 0 && k + 5 * 16 < size())
@@ -170,7 +176,16 @@ void CountingTree::project(const Scene& scene, const PointBatch& points) {
                     __builtin_prefetch(&points.u[index_[ahead]]);
                     __builtin_prefetch(&points.v[index_[ahead]]);
                 }
-            const dvec3 p = view_.turned(named_point(scene, points, index_[k], view_.origin));
+            const std::uint32_t i = index_[k];
+            if (points.triangle[i] != last) {
+                last = points.triangle[i];
+                a    = dvec3(scene.vertex(last, 0));
+                b = dvec3(scene.vertex(last, 1)) - a, c = dvec3(scene.vertex(last, 2)) - a, a -= view_.origin;
+            }
+            const double u = points.u[i], v = points.v[i];
+            const dvec3 p =
+                view_.turned(std::min({1 - u - v, u, v}) < kMostShare ? named_point(scene, points, i, view_.origin)
+                                                                      : a + u * b + v * c);
             x_[k] = p.x / p.z, y_[k] = p.y / p.z, w_[k] = 1 / p.z;
         }
     });
