@@ -4,17 +4,16 @@
 // This work is based on:
 // James Blinn. Me and My (Fake) Shadow. 1988
 // Paul Heckbert, Michael Herf. Simulating Soft Shadows with Graphics Hardware. 1997 (lights with an area)
+// Philippe Bergeron. A General Version of Crow's Shadow Volumes. 1986 (edges that count)
 //
-// Blinn draws the projected polygons. Here they are not drawn: each surface point of the plane is tested against the
-// projected triangles themselves, so that there is no bitmap whose resolution could err.
+// Blinn draws the projected polygons. Here they are not drawn: each surface point of the plane is asked whether a
+// projected triangle lies over it, so that there is no bitmap whose resolution could err.
 //
 // build finds the receivers, which are both sides of every large plane, and the occluders with their edges. aim picks
 // the light's sources and projects from each of them, onto each receiver, the edges at which the number of shadows
 // changes (outline.h). visibility sorts the points by receiver and, for each source, darkens those over which there is
 // a shadow (darkening_tree.h): S_j is the fraction of the sources from which the point stayed bright. A point where
 // rounding leaves open whether there is one is tested against every triangle.
-//
-// Philippe Bergeron. A General Version of Crow's Shadow Volumes. 1986 (edges that count)
 #include <fmt/format.h>
 
 #include <algorithm>
