@@ -167,7 +167,7 @@ std::string check_exr(HeaderFile& bytes) {
         for (const auto& [of, size] : kSizes)
             if (type == of && length != size)
                 return fmt::format("attribute {} claims {} bytes, and a {} has {}", name, length, type, size);
-        if (const std::string wrong = check_exr_data(bytes, name, type, length); !wrong.empty()) return wrong;
+        if (std::string wrong = check_exr_data(bytes, name, type, length); !wrong.empty()) return wrong;
     }
 }
 

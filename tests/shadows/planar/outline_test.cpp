@@ -115,7 +115,8 @@ TEST(Outline, AnswersAsTrianglesOnAGrid) {
         points.resize(2 * 49 * 49);
         // The floor is two triangles of 12 x 12: points at multiples of a quarter.
         for (std::size_t i = 0; i < points.size(); ++i) {
-            const auto x = static_cast<float>(i / 2 % 49) / 48, y = static_cast<float>(i / 2 / 49) / 48;
+            const std::size_t column = i / 2 % 49, row = i / 2 / 49;
+            const auto x = static_cast<float>(column) / 48, y = static_cast<float>(row) / 48;
             if (x + y <= 1) set_point(points, i, scene, static_cast<TriangleId>(i % 2), x, y);
         }
         face_lights(points, scene);
