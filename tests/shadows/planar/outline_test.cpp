@@ -222,6 +222,71 @@ TEST(Outline, LeavesOutWhatThePlaneCutsAndWhatReachesTheLamp) {
     EXPECT_GT(in_rest(box.outline({5, 4, 0})), 0u) << "cut by the floor";
 }
 
+/// `slack` and `doubt` bound what rounding did to ends and sides, compared with long doubles, and are no larger than a
+/// few hundred roundings.
+TEST(Outline, BoundsItsRounding) {
+    using Long = glm::vec<3, long double>;
+    Random random(7);
+    double most_slack = 0, most_doubt = 0;  // shares of the bounds that were used
+    for (int i = 0; i < 400; ++i) {
+        const mat4 tilt  = glm::rotate(glm::translate(mat4(1), vec3(random(-9, 9))), random(0, 3), vec3(0.6f, 0, 0.8f));
+        const auto place = [&](float low, float high) {
+            return vec3(tilt * vec4(random(-4, 4), random(low, high), random(-4, 4), 1));
+        };
+        Scene scene;
+        add(scene, "floor", make_plane(12, 12), tilt);
+        const Mesh triangle{{place(0.5f, 2), place(0.5f, 2), place(0.5f, 2)}, {}, {{0, 1, 2}}};
+        add(scene, "triangle", triangle);
+        const SceneFacts facts = find_facts(scene);
+        ASSERT_FALSE(facts.planes.empty());
+        const planar::Receiver r = planar::make_receiver(scene, facts.planes[0], 0, +1);
+        planar::Occluders occluders{&scene, {2}, {0, 0, planar::Occluders::kNoPlane}};
+        const planar::Source lamp{false, place(3, 5)};
+        const planar::LocalSource local(r, lamp);
+        if (!local.is_above()) continue;  // the plane's other side is up
+        const planar::Outline outline = planar::OccluderEdges(occluders).outlines(std::vector{r}, lamp)[0];
+
+        const auto in_plane = [&](Long world) {
+            const Long d = world - Long(r.origin);
+            return Long(glm::dot(Long(r.e1), d), glm::dot(Long(r.e2), d), glm::dot(Long(r.normal), d));
+        };
+        const Long light = in_plane(Long(lamp.at));
+        Long corner[3], shadow[3];
+        for (int k = 0; k < 3; ++k) {
+            corner[k] = in_plane(Long(triangle.positions[static_cast<std::size_t>(k)]));
+            shadow[k] = corner[k] + (corner[k] - light) * (corner[k].z / (light.z - corner[k].z));
+        }
+        for (const planar::OutlineEdge& e : outline.edges) {
+            const auto which = [&](dvec2 end) {
+                int nearest = 0;
+                for (int k = 1; k < 3; ++k)
+                    if (glm::length(dvec2(shadow[k]) - end) < glm::length(dvec2(shadow[nearest]) - end)) nearest = k;
+                return nearest;
+            };
+            const int from = which(e.from), to = which(e.to);
+            ASSERT_NE(from, to);
+            const auto off = [&](dvec2 end, Long truth) {
+                return static_cast<double>(std::max(std::abs(truth.x - static_cast<long double>(end.x)),
+                                                    std::abs(truth.y - static_cast<long double>(end.y))));
+            };
+            const double ends = std::max(off(e.from, shadow[from]), off(e.to, shadow[to]));
+            EXPECT_LE(ends, e.slack);
+            most_slack = std::max(most_slack, ends / e.slack);
+            for (int k = 0; k < 20; ++k) {
+                const dvec2 p(random(-8, 8), random(-8, 8));
+                const Long at(p.x, p.y, 0);
+                const long double side =
+                    glm::dot(-glm::cross(corner[from] - light, corner[to] - corner[from]), at - corner[from]);
+                const auto error = static_cast<double>(std::abs(side - static_cast<long double>(e.side.at(p.x, p.y))));
+                EXPECT_LE(error, e.doubt);
+                most_doubt = std::max(most_doubt, error / e.doubt);
+            }
+        }
+    }
+    EXPECT_GT(most_slack, 0.0005);
+    EXPECT_GT(most_doubt, 0.001);
+}
+
 /// A point on an edge is in doubt, one an ulp of a float beside it is not.
 TEST(Outline, NamesPointsOnEdges) {
     const BoxOverFloor box;

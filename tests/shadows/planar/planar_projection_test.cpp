@@ -322,6 +322,26 @@ TEST(PlanarProjection, AimHoldsTheShadowsOfEverySample) {
                 0.2 * 4.0 * static_cast<double>(bytes(16)));
 }
 
+/// Both settings answer alike: what they hold tells them apart. Edges that triangles share are found in build, and of
+/// a ball's shadow only its outline is kept.
+TEST(PlanarProjection, ProjectsTheEdgesThatTheSettingNames) {
+    Scene scene;
+    add(scene, "floor", make_plane(8, 8));
+    add(scene, "ball", make_sphere(0.5f, 64, 32), at({0, 1, 0}));
+    scene.lights.push_back(light_at({0, 4, 0}));
+    const auto bytes = [&](const std::string& edges) {
+        MethodCase run("planar_projection:edges=" + edges, scene);
+        run.method->build(scene, run.facts);
+        const std::size_t built = run.method->memory_bytes();
+        run.method->aim(0);
+        return std::pair(built, run.method->memory_bytes() - built);
+    };
+    const auto [weighted_build, weighted_aim] = bytes("weighted");
+    const auto [single_build, single_aim]     = bytes("per_triangle");
+    EXPECT_GT(weighted_build, 2 * single_build);
+    EXPECT_LT(2 * weighted_aim, single_aim);
+}
+
 /// More samples than memory holds are refused with a number that fits, which then does fit.
 TEST(PlanarProjection, RefusesMoreSamplesThanMemoryHolds) {
     const Scene scene      = known_scene("penumbra_of_half_plane").scene;
