@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "umbra/core/image/image_headers.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/tests/fuzz/fuzz_folder.h"
 #include "umbra/tests/fuzz/targets.h"
@@ -61,10 +62,13 @@ void ies(Bytes bytes) {
     load_or_refuse(scene);
 }
 
+/// What is asked of a picture before a decoder sees it.
+void headers(Bytes bytes) { (void)find_false_claim(rewrite("picture", bytes)); }
+
 constexpr std::array kTargets{FuzzTarget{"json", json, true}, FuzzTarget{"gltf", gltf, true}, FuzzTarget{"glb", glb},
                               FuzzTarget{"obj", obj},         FuzzTarget{"mtl", mtl},         FuzzTarget{"ply", ply},
                               FuzzTarget{"stl", stl},         FuzzTarget{"off", off},         FuzzTarget{"nff", nff},
-                              FuzzTarget{"ies", ies}};
+                              FuzzTarget{"ies", ies},         FuzzTarget{"headers", headers}};
 
 }  // namespace
 
