@@ -79,8 +79,8 @@ std::string check_png(HeaderFile& bytes) {
     return {};
 }
 
-/// Bytes of attributes that OpenEXR reads as many of as the type has, whatever length the file states: with another
-/// length it takes bytes of this attribute for the next one's, and what it finds there for a length.
+/// Sizes of attribute types, bytes. OpenEXR reads that many, whatever length the file states: with another length it
+/// reads on in the middle of an attribute and takes what it finds there for the next one's length.
 constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> kSizes{{{"box2f", 16},
                                                                              {"box2i", 16},
                                                                              {"chromaticities", 32},
@@ -109,7 +109,7 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> kSizes{{{"b
 /// What is wrong with the data of an attribute, which takes all of its `length` bytes.
 std::string check_exr_data(HeaderFile& bytes, const std::string& name, std::string_view type, std::uint32_t length) {
     const std::uint64_t end = bytes.left() - length;  // what is left behind it
-    const auto misfit       = [&] { return fmt::format("attribute {} is no {} of {} bytes", name, type, length); };
+    const auto misfit       = [&] { return fmt::format("attribute {} is not a {} of {} bytes", name, type, length); };
     if (type == "box2i") {
         std::array<char, 16> box{};
         if (!bytes.read(box.data(), box.size())) return kEndsInHeader;

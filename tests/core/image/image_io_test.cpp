@@ -282,17 +282,18 @@ TEST_F(ImageIo, RefusesAttributesThatAreNoneOfTheirLength) {
     const std::string word("\xff\xff\xff\x0f", 4), two("\2\0\0\0", 4), one("\1\0\0\0", 4);
 
     EXPECT_EQ(answer(exr), "(was read)");
-    EXPECT_NE(answer(longer("channels", "chlist")).find("attribute channels is no chlist of"), std::string::npos);
+    EXPECT_NE(answer(longer("channels", "chlist")).find("attribute channels is not a chlist of"), std::string::npos);
     EXPECT_NE(answer(longer("lineOrder", "lineOrder")).find("claims 2 bytes, and a lineOrder has 1"),
               std::string::npos);
     EXPECT_NE(answer(longer("dataWindow", "box2i")).find("claims 17 bytes, and a box2i has 16"), std::string::npos);
 
     EXPECT_EQ(find_false_claim(write("true.exr", with("more", "stringvector", two + "ab" + one + "c"))), "");
-    EXPECT_NE(answer(with("more", "stringvector", two + "ab" + word + "c")).find("no stringvector"), std::string::npos);
-    EXPECT_NE(answer(with("more", "stringvector", two + "ab" + "c")).find("no stringvector"), std::string::npos);
+    EXPECT_NE(answer(with("more", "stringvector", two + "ab" + word + "c")).find("not a stringvector"),
+              std::string::npos);
+    EXPECT_NE(answer(with("more", "stringvector", two + "ab" + "c")).find("not a stringvector"), std::string::npos);
     EXPECT_EQ(find_false_claim(write("true.exr", with("preview", "preview", one + two + "12345678"))), "");
-    EXPECT_NE(answer(with("preview", "preview", two + two + "12345678")).find("no preview"), std::string::npos);
-    EXPECT_NE(answer(with("preview", "preview", one)).find("no preview"), std::string::npos);
+    EXPECT_NE(answer(with("preview", "preview", two + two + "12345678")).find("not a preview"), std::string::npos);
+    EXPECT_NE(answer(with("preview", "preview", one)).find("not a preview"), std::string::npos);
 }
 
 /// What the second part's header says is read as the first's is.

@@ -58,7 +58,7 @@ private:
 };
 
 /// Triangles of any size, wound either way, with shared corners and without, over, under and across the floor, and
-/// about the height of the lamp. `grid`: coordinates are multiples of a half, so that edges lie over one another and
+/// about the height of the light. `grid`: coordinates are multiples of a half, so that edges lie over one another and
 /// over points.
 Scene soup(unsigned seed, bool grid) {
     Random random(seed);
@@ -156,8 +156,8 @@ TEST(Outline, AnswersAsTrianglesAtEveryScale) {
         }
 }
 
-/// A box of 2 x 2 x 2 whose lid is at height 3 and whose bottom is at 1, lamp at height 4 over its middle: the shadow
-/// is that of the lid, 8 x 8, which its sides and the bottom, 2.67 wide, do not leave.
+/// A box of 2 x 2 x 2 whose lid is at height 3 and whose bottom is at 1, a light at height 4 over its middle: the
+/// shadow is that of the lid, 8 x 8, which its sides and the bottom, 2.67 wide, do not leave.
 struct BoxOverFloor {
     Scene scene;
     planar::Occluders occluders;
@@ -186,7 +186,7 @@ TEST(Outline, OfABoxIsItsSilhouette) {
     ASSERT_EQ(box.receivers.size(), 1u);
     const planar::Outline outline = box.outline({0, 4, 0});
     EXPECT_TRUE(outline.rest.empty());
-    ASSERT_EQ(outline.edges.size(), 4u);  // all triangles face the lamp or away from it, the lid's border is left
+    ASSERT_EQ(outline.edges.size(), 4u);  // all triangles face the light or away from it, the lid's border is left
     for (const planar::OutlineEdge& e : outline.edges) {
         EXPECT_EQ(std::abs(e.change), 2) << "a triangle of the lid and one of a side";
         EXPECT_NEAR(glm::length(e.to - e.from), 8, 1e-12);
@@ -206,8 +206,8 @@ TEST(Outline, OfABoxIsItsSilhouette) {
     EXPECT_EQ(count_at(-3, 4.2), 0);
 }
 
-/// What the floor cuts and what reaches to the lamp's height has no place in an outline.
-TEST(Outline, LeavesOutWhatThePlaneCutsAndWhatReachesTheLamp) {
+/// What the floor cuts and what reaches the height of the light has no place in an outline.
+TEST(Outline, LeavesOutWhatThePlaneCutsAndWhatReachesTheLight) {
     BoxOverFloor box;
     const auto in_rest = [](const planar::Outline& outline) {
         std::size_t n = 0;
