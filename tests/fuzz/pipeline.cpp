@@ -24,6 +24,7 @@ constexpr std::size_t kMostTriangles = 1500, kMostLights = 6;
 /// a picture has 96 points.
 constexpr std::array kSettings{
     "planar_projection:light_samples=4"sv,
+    "planar_projection:light_samples=2,edges=per_triangle"sv,
     "scan_line"sv,
     "shadow_volumes"sv,
     "shadow_volumes:edges=silhouette,counting=depth_fail"sv,
