@@ -1,5 +1,6 @@
 #include "umbra/core/render/facing.h"
 
+#include "umbra/core/base/heights.h"
 #include "umbra/core/base/predicates.h"
 
 namespace umbra {
@@ -7,6 +8,30 @@ namespace umbra {
 int side_of_light(const Light& light, vec3 a, vec3 b, vec3 c) {
     return light.kind == LightKind::directional ? side_of_direction(a, b, c, -light.direction)
                                                 : side_of_plane(a, b, c, light.position);
+}
+
+namespace {
+
+/// The side of an area light relative to the plane of triangle (a, b, c), seen from the side `turn` (+1 the winding's,
+/// -1 the other).
+Facing area_facing(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
+    const HeightSigns heights =
+        light.kind == LightKind::rectangle ? heights_of_rectangle(a, b, c, light.position, light.edge_u, light.edge_v)
+        : light.kind == LightKind::disk    ? heights_of_disk(a, b, c, light.position, light.direction, light.radius)
+                                           : heights_of_sphere(a, b, c, light.position, light.radius);
+    const int low  = turn > 0 ? heights.low : -heights.high;
+    const int high = turn > 0 ? heights.high : -heights.low;
+    return high <= 0 ? Facing::away : low >= 0 ? Facing::front : Facing::partly;
+}
+
+}  // namespace
+
+Facing facing_of(const Scene& scene, LightId id, TriangleId t, bool flipped) {
+    const Light& light = scene.lights[id];
+    const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
+    const int turn = flipped ? -1 : 1;
+    if (is_area(light.kind)) return area_facing(light, a, b, c, turn);
+    return turn * side_of_light(light, a, b, c) > 0 ? Facing::front : Facing::away;
 }
 
 bool centre_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {

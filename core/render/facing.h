@@ -1,4 +1,4 @@
-// Which side of a surface point's plane a light's centre is on.
+// On which side of a surface point's plane a light is.
 #pragma once
 
 #include <cstddef>
@@ -10,6 +10,9 @@ namespace umbra {
 /// On which side of the triangle a, b, c a light's centre is, or a directional light's source: +1 where the triangle's
 /// winding faces it, -1 on the other side, 0 in its plane and where the triangle has no area. Exact.
 [[nodiscard]] int side_of_light(const Light& light, vec3 a, vec3 b, vec3 c);
+
+/// Which part of the light a point of triangle t sees, whose normal is `flipped` against the triangle's winding. Exact.
+[[nodiscard]] Facing facing_of(const Scene& scene, LightId light, TriangleId t, bool flipped);
 
 /// Whether the centre of an area light that the plane of point i cuts is behind that plane, or in it: what methods ask
 /// that take an area light as one point, in its centre, whose S_j is then 0 there. False where the plane does not cut

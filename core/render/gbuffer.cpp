@@ -6,21 +6,15 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
 #include "umbra/core/render/embree_api.h"
-#include "umbra/core/render/seen_side.h"
+#include "umbra/core/render/point_writer.h"
+#include "umbra/core/render/tiles.h"
 
 namespace umbra {
 namespace {
 
-constexpr int kTileWidth = 16, kTileHeight = 8;  // whole packets of 4 x 2 pixels
-
-/// What eight eye rays met, as 4 x 2 pixels.
-struct Hits8 {
-    TriangleId triangle[8];
-    float u[8], v[8];                  ///< as Embree has them: their last bits depend on the processor
-    double origin[3][8], along[3][8];  ///< the rays, in world space
-};
+// Tiles are whole packets of 4 x 2 pixels.
+constexpr int kTileWidth = PointTile::kWidth, kTileHeight = PointTile::kHeight;
 
 // In ray space the scene is about 1 wide and lies within kScene of the origin. Eye rays that begin farther than kFar
 // away, where floats are coarse, are moved along themselves to the scene; beyond kFarthest doubles cannot tell any more
@@ -146,163 +140,6 @@ void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, i
     }
 }
 
-/// Where eight rays meet the planes of the triangles that Embree named, in double and so alike on all processors, and
-/// what set_point makes of that, to the same bits: all but the loads are loops over lanes. Leaves to set_point what
-/// needs a second look: barycentrics at or over an edge, slivers, triangles that the eye sees edge-on.
-class PointWriter {
-public:
-    PointWriter(const Scene& scene, PointBatch& batch) : scene_(scene), batch_(batch) {
-        window_ = batch.raster->projection == Projection::orthographic;
-        for (const Material& m : scene.materials) all_two_sided_ &= m.two_sided;
-    }
-
-    /// Pixels (x .. x+3, y .. y+1), those inside the raster.
-    void write(const Hits8& hits, int x, int y) const {
-        const CameraFrame& frame = *batch_.raster;
-        Points8 points;
-        place(hits, points);
-        for (int row = 0; row < std::min(2, frame.height - y); ++row) {
-            const int count     = std::min(4, frame.width - x);
-            const std::size_t i = static_cast<std::size_t>(y + row) * frame.width + x;
-            if (count == 4)
-                store(points, 4 * row, i, 4);
-            else
-                store(points, 4 * row, i, count);
-            for (int k = 4 * row; k < 4 * row + count; ++k)
-                if (hits.triangle[k] != kNoTriangle && !points.done[k]) {
-                    const bool known = std::isfinite(points.u[k]) && std::isfinite(points.v[k]);
-                    set_point(batch_, i + (k & 3), scene_, hits.triangle[k], known ? points.u[k] : hits.u[k],
-                              known ? points.v[k] : hits.v[k]);
-                }
-        }
-    }
-
-private:
-    struct Points8 {
-        TriangleId triangle[8];
-        float u[8], v[8], px[8], py[8], pz[8], nx[8], ny[8], nz[8];
-        std::uint8_t flipped[8], done[8];
-    };
-
-    /// Triangles (a, a + b, a + c) of eight hits, and what follows from them alone.
-    struct Triangles8 {
-        double a[3][8], b[3][8], c[3][8];
-        double n[3][8], length[8];  ///< cross(b, c) and its length
-        double sides[8], reach[8];  ///< see keeps_sign
-        double two_sided[8];
-    };
-
-    void load(const TriangleId* triangles, int count, Triangles8& to) const {
-        const double eye_reach = sum_of_magnitudes(to_eye());
-        for (int k = 0; k < count; ++k) {
-            const TriangleId t = triangles[k];
-            if (t == kNoTriangle) {
-                for (int d = 0; d < 3; ++d) to.a[d][k] = to.b[d][k] = to.c[d][k] = 0;
-                to.two_sided[k] = 1;
-                continue;
-            }
-            const uvec3& corner = scene_.triangles[t];
-            const vec3 &p = scene_.positions[corner.x], &q = scene_.positions[corner.y],
-                       &r = scene_.positions[corner.z];  // references: copies would pass through the stack
-            for (int d = 0; d < 3; ++d) {
-                to.a[d][k] = static_cast<double>(p[d]);
-                to.b[d][k] = static_cast<double>(q[d]), to.c[d][k] = static_cast<double>(r[d]);
-            }
-            const auto both = [&] { return scene_.material(t).two_sided; };
-            to.two_sided[k] = all_two_sided_ || both() ? 1 : 0;
-        }
-        for (int k = 0; k < count; ++k) {
-            for (int d = 0; d < 3; ++d) to.b[d][k] -= to.a[d][k], to.c[d][k] -= to.a[d][k];
-            const double bx = to.b[0][k], by = to.b[1][k], bz = to.b[2][k];
-            const double cx = to.c[0][k], cy = to.c[1][k], cz = to.c[2][k];
-            const double nx = by * cz - cy * bz, ny = bz * cx - cz * bx, nz = bx * cy - cx * by;
-            to.n[0][k] = nx, to.n[1][k] = ny, to.n[2][k] = nz;
-            to.length[k] = std::sqrt(nx * nx + ny * ny + nz * nz);
-            to.sides[k]  = sum_of_magnitudes(bx, by, bz) * sum_of_magnitudes(cx, cy, cz);
-            to.reach[k]  = eye_reach + sum_of_magnitudes(to.a[0][k], to.a[1][k], to.a[2][k]);
-        }
-    }
-
-    /// Neighbouring pixels mostly see the same triangle.
-    void load(const TriangleId (&triangles)[8], Triangles8& to) const {
-        const bool same = std::all_of(triangles, triangles + 8, [&](TriangleId t) { return t == triangles[0]; });
-        load(triangles, same ? 1 : 8, to);
-        if (!same) return;
-        const auto spread = [](double(&lanes)[8]) { std::fill_n(lanes + 1, 7, lanes[0]); };
-        for (auto* vector : {&to.a, &to.b, &to.c, &to.n})
-            for (auto& lanes : *vector) spread(lanes);
-        spread(to.length), spread(to.sides), spread(to.reach), spread(to.two_sided);
-    }
-
-    /// The eye, or against an orthographic view.
-    [[nodiscard]] dvec3 to_eye() const { return window_ ? -batch_.raster->forward : dvec3(batch_.eye); }
-
-    void place(const Hits8& hits, Points8& out) const {
-        std::copy_n(hits.triangle, 8, out.triangle);
-        if (std::all_of(hits.triangle, hits.triangle + 8, [](TriangleId t) { return t == kNoTriangle; })) {
-            for (float* plane : {out.u, out.v, out.px, out.py, out.pz, out.nx, out.ny, out.nz})
-                std::fill_n(plane, 8, 0.0f);
-            std::fill_n(out.flipped, 8, std::uint8_t{0});
-            return;
-        }
-        Triangles8 t;
-        load(hits.triangle, t);
-        const double pull = window_ ? 0 : 1;  // to the eye: eye - p, or against an orthographic view
-        const dvec3 eye   = to_eye();
-        double towards[8];
-        for (int k = 0; k < 8; ++k) {
-            const double ax = t.a[0][k], ay = t.a[1][k], az = t.a[2][k], bx = t.b[0][k], by = t.b[1][k], bz = t.b[2][k],
-                         cx = t.c[0][k], cy = t.c[1][k], cz = t.c[2][k], nx = t.n[0][k], ny = t.n[1][k], nz = t.n[2][k];
-            // The ray o + t d meets a + u b + v c. [Tomas Moeller, Ben Trumbore, 1997]
-            const double dx = hits.along[0][k], dy = hits.along[1][k], dz = hits.along[2][k];
-            const double sx = hits.origin[0][k] - ax, sy = hits.origin[1][k] - ay, sz = hits.origin[2][k] - az;
-            const double mx = sy * dz - dy * sz, my = sz * dx - dz * sx, mz = sx * dy - dx * sy;
-            const double over = -1 / (nx * dx + ny * dy + nz * dz);
-            out.u[k]          = static_cast<float>((mx * cx + my * cy + mz * cz) * over);
-            out.v[k]          = static_cast<float>((mx * bx + my * by + mz * bz) * -over);
-            const double u = static_cast<double>(out.u[k]), v = static_cast<double>(out.v[k]);
-            const double px = ax + u * bx + v * cx, py = ay + u * by + v * cy, pz = az + u * bz + v * cz;
-            const double ex = eye.x - pull * px, ey = eye.y - pull * py, ez = eye.z - pull * pz;
-            towards[k]          = (nx * ex + ny * ey + nz * ez) * t.two_sided[k];
-            const double factor = (towards[k] < 0 ? -1.0 : 1.0) / t.length[k];
-            out.px[k] = static_cast<float>(px), out.py[k] = static_cast<float>(py), out.pz[k] = static_cast<float>(pz);
-            out.nx[k] = static_cast<float>(nx * factor);
-            out.ny[k] = static_cast<float>(ny * factor);
-            out.nz[k] = static_cast<float>(nz * factor);
-        }
-        for (int k = 0; k < 8; ++k) {
-            const double sum = static_cast<double>(out.u[k]) + static_cast<double>(out.v[k]);
-            out.flipped[k]   = towards[k] < 0;
-            const bool sure  = keeps_sign(towards[k], t.sides[k], t.reach[k]) | (t.two_sided[k] == 0);
-            out.done[k] =
-                (out.u[k] >= 0) & (out.v[k] >= 0) & (sum < 1) & keeps_direction(t.length[k], t.sides[k]) & sure;
-        }
-        for (int k = 0; k < 8; ++k) {
-            if (hits.triangle[k] != kNoTriangle) continue;
-            out.u[k] = out.v[k] = out.px[k] = out.py[k] = out.pz[k] = out.nx[k] = out.ny[k] = out.nz[k] = 0;
-            out.flipped[k]                                                                              = 0;
-        }
-    }
-
-    void store(const Points8& points, int lane, std::size_t i, int count) const {
-        std::copy_n(points.triangle + lane, count, batch_.triangle.data() + i);
-        std::copy_n(points.u + lane, count, batch_.u.data() + i);
-        std::copy_n(points.v + lane, count, batch_.v.data() + i);
-        std::copy_n(points.px + lane, count, batch_.px.data() + i);
-        std::copy_n(points.py + lane, count, batch_.py.data() + i);
-        std::copy_n(points.pz + lane, count, batch_.pz.data() + i);
-        std::copy_n(points.nx + lane, count, batch_.nx.data() + i);
-        std::copy_n(points.ny + lane, count, batch_.ny.data() + i);
-        std::copy_n(points.nz + lane, count, batch_.nz.data() + i);
-        std::copy_n(points.flipped + lane, count, batch_.flipped.data() + i);
-    }
-
-    const Scene& scene_;
-    PointBatch& batch_;
-    bool window_        = false;
-    bool all_two_sided_ = true;
-};
-
 double widest(const Box& box) {
     const dvec3 size = dvec3(box.max) - dvec3(box.min);
     return std::max({size.x, size.y, size.z});
@@ -331,20 +168,17 @@ void primary_points(const RayScene& rays, const Scene& scene, const Camera& came
     check_reach(*batch.raster, rays.space(), scene);
     const EyeRays eye(*batch.raster, rays.space());
     const PointWriter writer(scene, batch);
-    const int across = (width + kTileWidth - 1) / kTileWidth, down = (height + kTileHeight - 1) / kTileHeight;
-    const auto tiles = static_cast<std::size_t>(across) * static_cast<std::size_t>(down);
-    parallel_ranges(tiles, 8, [&](std::size_t begin, std::size_t end) {
+    for_each_tile(batch, [&](const PointTile& tile) {
         TileHits hits;
-        for (std::size_t tile = begin; tile < end; ++tile) {
-            const int x0 = static_cast<int>(tile % across) * kTileWidth;
-            const int y0 = static_cast<int>(tile / across) * kTileHeight;
-            trace_tile(rays.impl().scene, eye, x0, y0, width, height, hits);
-            for (int y = y0; y < std::min(y0 + kTileHeight, height); y += 2)
-                for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4)
-                    writer.write(hits[(y - y0) / 2][(x - x0) / 4], x, y);
-        }
+        writer.claim(tile);
+        const int x0 = static_cast<int>(tile.x0), y0 = static_cast<int>(tile.y0);
+        trace_tile(rays.impl().scene, eye, x0, y0, width, height, hits);
+        bool faced = true;
+        for (int y = y0; y < std::min(y0 + kTileHeight, height); y += 2)
+            for (int x = x0; x < std::min(x0 + kTileWidth, width); x += 4)
+                faced &= writer.write(hits[(y - y0) / 2][(x - x0) / 4], x, y);
+        if (!faced) writer.face_open_points(tile);
     });
-    face_lights(batch, scene);
 }
 
 PointBatch primary_points(const RayScene& rays, const Scene& scene, const Camera& camera, int width, int height) {

@@ -100,32 +100,10 @@ PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which) {
     return to;
 }
 
-namespace {
-
-/// The side of an area light relative to the plane of triangle (a, b, c), seen from the side `turn` (+1 the winding's,
-/// -1 the other).
-Facing area_facing(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
-    const HeightSigns heights =
-        light.kind == LightKind::rectangle ? heights_of_rectangle(a, b, c, light.position, light.edge_u, light.edge_v)
-        : light.kind == LightKind::disk    ? heights_of_disk(a, b, c, light.position, light.direction, light.radius)
-                                           : heights_of_sphere(a, b, c, light.position, light.radius);
-    const int low  = turn > 0 ? heights.low : -heights.high;
-    const int high = turn > 0 ? heights.high : -heights.low;
-    return high <= 0 ? Facing::away : low >= 0 ? Facing::front : Facing::partly;
-}
-
-Facing facing_of(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
-    if (is_area(light.kind)) return area_facing(light, a, b, c, turn);
-    return turn * side_of_light(light, a, b, c) > 0 ? Facing::front : Facing::away;
-}
-
-}  // namespace
-
 void face_light(PointBatch& batch, const Scene& scene, LightId id) {
     batch.facing.resize(scene.lights.size());
     std::vector<Facing>& facing = batch.facing[id];
     facing.resize(batch.size());
-    const Light& light = scene.lights[id];
     parallel_ranges(batch.size(), 4096, [&](std::size_t begin, std::size_t end) {
         TriangleId last        = kNoTriangle;  // neighbouring points often lie on the same triangle
         std::uint8_t last_flip = 0;
@@ -137,10 +115,9 @@ void face_light(PointBatch& batch, const Scene& scene, LightId id) {
                 continue;
             }
             if (t != last || batch.flipped[i] != last_flip) {
-                last      = t;
-                last_flip = batch.flipped[i];
-                last_facing =
-                    facing_of(light, scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2), last_flip ? -1 : 1);
+                last        = t;
+                last_flip   = batch.flipped[i];
+                last_facing = facing_of(scene, id, t, last_flip != 0);
             }
             facing[i] = last_facing;
         }

@@ -102,6 +102,8 @@ private:
                  const Count& count) const;
     struct Eight;
     void load_surfaces(const PointBatch& points, std::size_t first, Eight& eight) const;
+    bool load_visibility(std::size_t j, const PointBatch& points, std::size_t first, const VisibilityPlane& visibility,
+                         const Eight& eight, double (&s)[8]) const;
     void add_light(std::size_t j, const PointBatch& points, std::size_t first, const VisibilityPlane& visibility,
                    Eight& eight) const;
     template <class AddSpecular, class Count>

@@ -1,26 +1,66 @@
 // The sum at eight points at a time: the operations of PhongSum::at in their order, in loops over lanes that compilers
 // make vector code of, so that the bits are the same. Exponentials alone are taken one by one.
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "umbra/core/render/lobe_power.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/render/sum.h"
+#include "umbra/core/scene/attenuation.h"
 
 namespace umbra {
 namespace {
 
-constexpr int kLanes = 8;
-using Lanes          = double[kLanes];
+constexpr int kLanes      = 8;
+constexpr unsigned kAll   = (1u << kLanes) - 1;
+constexpr double kLargest = std::numeric_limits<float>::max();
+using Lanes               = double[kLanes];
+
+// Without "unroll 1" g++ unrolls such short loops before it would make vector code of them. Numbers that are stored one
+// by one make a vector load of them wait.
+void fill(Lanes& to, double x) {
+#pragma GCC unroll 1
+    for (int k = 0; k < kLanes; ++k) to[k] = x;
+}
+
+void widen(const std::vector<float>& from, std::size_t first, Lanes& to) {
+    const float* const x = from.data() + first;
+#pragma GCC unroll 1
+    for (int k = 0; k < kLanes; ++k) to[k] = static_cast<double>(x[k]);
+}
+
+void narrow(const Lanes& from, float (&to)[kLanes]) {
+#pragma GCC unroll 1
+    for (int k = 0; k < kLanes; ++k) to[k] = static_cast<float>(std::min(from[k], kLargest));
+}
 
 struct Lanes3 {
     Lanes x, y, z;
     void set(int k, dvec3 v) { x[k] = v.x, y[k] = v.y, z[k] = v.z; }
+    void fill(dvec3 v) { umbra::fill(x, v.x), umbra::fill(y, v.y), umbra::fill(z, v.z); }
 };
 
 void dots(const Lanes3& a, const Lanes3& b, Lanes& to) {
+#pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) to[k] = a.x[k] * b.x[k] + a.y[k] * b.y[k] + a.z[k] * b.z[k];
+}
+
+/// Has the processor load what the points after the eight from `first` on need of their triangles, which may lie
+/// anywhere in a large mesh. Changes no result.
+void load_ahead(const Scene& scene, const PointBatch& points, std::size_t first) {
+    if (first + 3 * kLanes > points.size()) return;
+    const TriangleId* const next = points.triangle.data() + first + kLanes;
+    for (int k = 0; k < kLanes; ++k) {
+        if (const TriangleId t = next[kLanes + k]; t != kNoTriangle) {
+            __builtin_prefetch(&scene.triangles[t]);
+            __builtin_prefetch(&scene.triangle_object[t]);
+        }
+        if (const TriangleId t = next[k]; t != kNoTriangle && !scene.normals.empty())
+            for (int c = 0; c < 3; ++c) __builtin_prefetch(&scene.normals[scene.triangles[t][c]]);
+    }
+    asm volatile("");  // g++ drops calls of functions that only prefetch
 }
 
 }  // namespace
@@ -28,10 +68,13 @@ void dots(const Lanes3& a, const Lanes3& b, Lanes& to) {
 /// Eight points, those without a surface among them with the numbers of another.
 struct PhongSum::Eight {
     unsigned which = 0;  ///< bit k: the sum is asked for, and there is a surface
+    int any        = 0;  ///< one of those
     Lanes3 p, n, v;
     std::uint32_t object[kLanes]{};
     Lanes3 diffuse, specular, sum;
     Lanes is_specular;
+
+    [[nodiscard]] std::size_t lane(int k) const { return static_cast<std::size_t>((which >> k & 1) != 0 ? k : any); }
 };
 
 bool PhongSum::has_lanes(std::span<const VisibilityPlane> visibility) const {
@@ -44,20 +87,42 @@ bool PhongSum::has_lanes(std::span<const VisibilityPlane> visibility) const {
 void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight& e) const {
     Lanes3 face, corner[3];
     Lanes share[3];
-    const bool smooth = !scene_->normals.empty();
-    const int any     = std::countr_zero(e.which);
-    for (int k = 0; k < kLanes; ++k) {
-        const std::size_t i = first + static_cast<std::size_t>((e.which >> k & 1) != 0 ? k : any);
-        e.p.set(k, dvec3(points.position(i)));
-        face.set(k, dvec3(points.normal(i)));
-        share[1][k] = points.u[i], share[2][k] = points.v[i];
-        const TriangleId t = points.triangle[i];
+    if (e.which == kAll) {
+        widen(points.px, first, e.p.x), widen(points.py, first, e.p.y), widen(points.pz, first, e.p.z);
+        widen(points.nx, first, face.x), widen(points.ny, first, face.y), widen(points.nz, first, face.z);
+        widen(points.u, first, share[1]), widen(points.v, first, share[2]);
+    } else {
+        for (int k = 0; k < kLanes; ++k) {
+            const std::size_t i = first + e.lane(k);
+            e.p.set(k, dvec3(points.position(i)));
+            face.set(k, dvec3(points.normal(i)));
+            share[1][k] = points.u[i], share[2][k] = points.v[i];
+        }
+    }
+
+    const bool smooth       = !scene_->normals.empty();
+    const TriangleId common = points.triangle[first + e.lane(0)];
+    bool same               = true;
+    for (int k = 0; k < kLanes; ++k) same &= points.triangle[first + e.lane(k)] == common;
+    if (same) {  // as mostly
+        const std::uint32_t object = scene_->triangle_object[common];
+        const Terms& terms         = terms_[object];
+        std::fill_n(e.object, kLanes, object);
+        e.diffuse.fill(terms.diffuse), e.specular.fill(terms.specular), e.sum.fill(terms.unshadowed);
+        fill(e.is_specular, terms.is_specular ? 1 : 0);
         if (smooth)
-            for (int c = 0; c < 3; ++c) corner[c].set(k, dvec3(scene_->normals[scene_->triangles[t][c]]));
-        e.object[k]        = scene_->triangle_object[t];
-        const Terms& terms = terms_[e.object[k]];
-        e.diffuse.set(k, terms.diffuse), e.specular.set(k, terms.specular), e.sum.set(k, terms.unshadowed);
-        e.is_specular[k] = terms.is_specular ? 1 : 0;
+            for (int c = 0; c < 3; ++c) corner[c].fill(dvec3(scene_->normals[scene_->triangles[common][c]]));
+    } else {
+        load_ahead(*scene_, points, first);
+        for (int k = 0; k < kLanes; ++k) {
+            const TriangleId t = points.triangle[first + e.lane(k)];
+            if (smooth)
+                for (int c = 0; c < 3; ++c) corner[c].set(k, dvec3(scene_->normals[scene_->triangles[t][c]]));
+            e.object[k]        = scene_->triangle_object[t];
+            const Terms& terms = terms_[e.object[k]];
+            e.diffuse.set(k, terms.diffuse), e.specular.set(k, terms.specular), e.sum.set(k, terms.unshadowed);
+            e.is_specular[k] = terms.is_specular ? 1 : 0;
+        }
     }
     if (smooth) {  // see corner_normals
         Lanes agreement{}, one;
@@ -75,6 +140,7 @@ void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight&
     } else {
         for (Lanes3& c : corner) c = face;
     }
+#pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) share[0][k] = 1 - share[1][k] - share[2][k];
     Lanes squares;
     for (int k = 0; k < kLanes; ++k) {
@@ -102,12 +168,23 @@ void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight&
     }
 }
 
-/// S_j f_att,j I_j (k_d O_d (N.L) + k_s O_s (R.V)^n) of light j.
-void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t first, const VisibilityPlane& visibility,
-                         Eight& e) const {
-    const Light& light = scene_->lights[j];
-    Lanes s;  // 0: nothing to add
+/// S_j of light j, 0 where it has nothing to add; false where that is so of all eight.
+bool PhongSum::load_visibility(std::size_t j, const PointBatch& points, std::size_t first,
+                               const VisibilityPlane& visibility, const Eight& e, Lanes& s) const {
+    const Facing* const facing = points.facing[j].data() + first;
+    const Answer* const answer = visibility.answer.data() + first;
+    const auto all             = [](const auto* bytes, auto value) {
+        return std::all_of(bytes, bytes + kLanes, [value](auto byte) { return byte == value; });
+    };
     bool any = false;
+    if (e.which == kAll && left_out_.empty()) {  // as mostly
+        if (all(facing, Facing::away)) return false;
+        if (all(facing, Facing::front) && all(answer, Answer::given)) {
+            widen(visibility.s, first, s);
+            for (const double x : s) any |= x > 0;
+            return any;
+        }
+    }
     for (int k = 0; k < kLanes; ++k) {
         const std::size_t i = first + static_cast<std::size_t>(k);
         s[k]                = 0;
@@ -115,7 +192,15 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
         s[k] = visibility.defined(i) ? visibility.s[i] : 1.0f;
         any |= s[k] > 0;
     }
-    if (!any) return;
+    return any;
+}
+
+/// S_j f_att,j I_j (k_d O_d (N.L) + k_s O_s (R.V)^n) of light j.
+void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t first, const VisibilityPlane& visibility,
+                         Eight& e) const {
+    const Light& light = scene_->lights[j];
+    Lanes s;  // 0: nothing to add
+    if (!load_visibility(j, points, first, visibility, e, s)) return;
 
     // As to_light, whose answers are floats.
     Lanes3 l;
@@ -142,6 +227,7 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
         l.x[k] /= safe, l.y[k] /= safe, l.z[k] /= safe;
     }
     dots(e.n, l, cosine);
+#pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) s[k] = ((length[k] > 0) & (cosine[k] > 0)) ? s[k] : 0;
 
     if (light.kind == LightKind::spot || light.photometry) {
@@ -150,12 +236,14 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
                             ? static_cast<double>(falloff(light, points.position(first + static_cast<std::size_t>(k))))
                             : 0;
     } else {
-        for (int k = 0; k < kLanes; ++k)
-            factor[k] =
-                s[k] > 0 && !(light.range > 0 && distance[k] > static_cast<double>(light.range))
-                    ? static_cast<double>(attenuation_factor(light.attenuation, static_cast<float>(distance[k])))
-                    : 0;
+        const double range = light.range > 0 ? static_cast<double>(light.range) : HUGE_VAL;
+#pragma GCC unroll 1
+        for (int k = 0; k < kLanes; ++k) {
+            const double here = attenuation_at(light.attenuation, distance[k]);
+            factor[k]         = distance[k] <= range ? here : 0;
+        }
     }
+#pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) s[k] = factor[k] > 0 ? s[k] : 0;
 
     Lanes lobe{};
@@ -171,22 +259,26 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
             h.x[k] = l.x[k] + e.v.x[k], h.y[k] = l.y[k] + e.v.y[k], h.z[k] = l.z[k] + e.v.z[k];
         }
         dots(r, e.v, phong), dots(h, h, half), dots(e.n, h, blinn);
-        const Material* first_of = nullptr;  // and of all, mostly
-        bool is_one              = true;
-        for (int k = 0; k < kLanes; ++k) {
-            if (!(s[k] > 0) || e.is_specular[k] == 0) continue;
-            const Material& m   = material(k);
-            const double height = std::sqrt(half[k]);
-            const double angle  = m.lobe == Lobe::phong ? phong[k] : height > 0 ? blinn[k] / height : 0;
-            lobe[k]             = std::clamp(angle, 0.0, 1.0);
-            if (first_of == nullptr) first_of = &m;
-            is_one &= &m == first_of;
-        }
-        if (first_of != nullptr && is_one && is_whole_power(first_of->shininess)) {
-            whole_power<kLanes>(std::data(lobe), first_of->shininess);
+        const bool is_one = std::ranges::all_of(e.object, [&](std::uint32_t o) { return o == e.object[0]; });
+        if (const Material& m = material(0); is_one && is_whole_power(m.shininess)) {  // as mostly
+            if (m.lobe == Lobe::phong) {
+                for (int k = 0; k < kLanes; ++k) lobe[k] = std::min(std::max(phong[k], 0.0), 1.0);
+            } else {
+#pragma GCC unroll 1
+                for (int k = 0; k < kLanes; ++k) {
+                    const double angle = half[k] > 0 ? blinn[k] / std::sqrt(half[k]) : 0;
+                    lobe[k]            = std::min(std::max(angle, 0.0), 1.0);
+                }
+            }
+            whole_power<kLanes>(std::data(lobe), m.shininess);
         } else {
-            for (int k = 0; k < kLanes; ++k)
-                if (s[k] > 0 && e.is_specular[k] != 0) lobe[k] = lobe_power(lobe[k], material(k).shininess);
+            for (int k = 0; k < kLanes; ++k) {
+                if (!(s[k] > 0) || e.is_specular[k] == 0) continue;
+                const Material& own = material(k);
+                const double height = std::sqrt(half[k]);
+                const double angle  = own.lobe == Lobe::phong ? phong[k] : height > 0 ? blinn[k] / height : 0;
+                lobe[k]             = lobe_power(std::clamp(angle, 0.0, 1.0), own.shininess);
+            }
         }
     }
     const auto add = [&](Lanes& sum, const Lanes& diffuse, const Lanes& specular, float i_diffuse, float i_specular) {
@@ -204,12 +296,11 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
 
 void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned which,
                         std::span<const VisibilityPlane> visibility, float* rgb) const {
-    constexpr double kLargest = std::numeric_limits<float>::max();
-    const auto write          = [&](int k, dvec3 light) {
-        for (int c = 0; c < 3; ++c)
-            rgb[3 * (first + static_cast<std::size_t>(k)) + static_cast<std::size_t>(c)] =
-                static_cast<float>(std::min(light[c], kLargest));
+    const auto write = [&](int k, float r, float g, float b) {
+        float* const to = rgb + 3 * (first + static_cast<std::size_t>(k));
+        to[0] = r, to[1] = g, to[2] = b;
     };
+    const vec3 behind = glm::min(scene_->background, vec3(std::numeric_limits<float>::max()));
     Eight e;
     e.which = 0;
     for (int k = 0; k < kLanes; ++k) {
@@ -217,13 +308,16 @@ void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned wh
         if (points.triangle[first + static_cast<std::size_t>(k)] != kNoTriangle)
             e.which |= 1u << k;
         else
-            write(k, scene_->background);
+            write(k, behind.r, behind.g, behind.b);
     }
     if (e.which == 0) return;
+    e.any = std::countr_zero(e.which);
     load_surfaces(points, first, e);
     for (std::size_t j = 0; j < scene_->lights.size(); ++j) add_light(j, points, first, visibility[j], e);
+    float r[kLanes], g[kLanes], b[kLanes];
+    narrow(e.sum.x, r), narrow(e.sum.y, g), narrow(e.sum.z, b);
     for (int k = 0; k < kLanes; ++k)
-        if ((e.which >> k & 1) != 0) write(k, {e.sum.x[k], e.sum.y[k], e.sum.z[k]});
+        if ((e.which >> k & 1) != 0) write(k, r[k], g[k], b[k]);
 }
 
 }  // namespace umbra

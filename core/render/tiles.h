@@ -28,15 +28,47 @@ struct PointTile {
             }
     }
 
-    /// Has the processor load what the tile to the right needs of these arrays of the batch, while this tile is worked
-    /// on: a row of a tile is a line of the cache, and what follows it in memory is of another tile. Changes no result.
+    /// Has the processor load the tile's part of these arrays of the batch: where it is read or written later, it need
+    /// not be waited for. A row of a tile is one or two lines of the cache, and what follows it in memory is of another
+    /// tile. Changes no result.
+    template <class... Array>
+    void load(const Array&... arrays) const {
+        for_each_row([&](std::size_t first, std::size_t last) {
+            (__builtin_prefetch(arrays.data() + first), ...);
+            (__builtin_prefetch(arrays.data() + last), ...);
+            keep_call();
+        });
+    }
+
+    /// The same for memory that is written: it then belongs to this processor alone.
+    template <class... Array>
+    void load_for_writing(Array&... arrays) const {
+        for_each_row([&](std::size_t first, std::size_t last) {
+            (__builtin_prefetch(arrays.data() + first, 1), ...);
+            (__builtin_prefetch(arrays.data() + last, 1), ...);
+            keep_call();
+        });
+    }
+
+    /// What the tile to the right needs, while this one is worked on.
     template <class... Array>
     void load_next(const Array&... arrays) const {
-        const std::size_t x = x0 + kWidth;
-        if (x >= width) return;
+        PointTile next = *this;
+        next.x0 += kWidth;
+        next.load(arrays...);
+    }
+
+private:
+    /// g++ drops calls of functions that only prefetch, as if they did nothing.
+    static void keep_call() { asm volatile(""); }
+
+    /// Calls body(first, last) for the first and the last point of each row.
+    template <class Body>
+    void for_each_row(const Body& body) const {
+        if (x0 >= width) return;
         for (std::size_t y = y0; y < std::min(y0 + kHeight, height); ++y)
-            if (const std::size_t first = y * width + x; first < points)
-                (__builtin_prefetch(arrays.data() + first), ...);
+            if (const std::size_t first = y * width + x0; first < points)
+                body(first, std::min({first + kWidth, (y + 1) * width, points}) - 1);
     }
 };
 

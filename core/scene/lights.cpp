@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/scene/attenuation.h"
 #include "umbra/core/scene/names.h"
 #include "umbra/core/scene/photometry.h"
 
 namespace umbra {
-
-namespace {
-constexpr double kLargestFactor = 1e30;  ///< keeps f_att, and products with it, finite
-}
 
 std::string_view to_string(LightKind kind) { return name_of(kind); }
 
@@ -42,13 +39,7 @@ ToLight to_light(const Light& light, vec3 p) {
 }
 
 float attenuation_factor(const Attenuation& a, float distance) {
-    if (std::isinf(distance)) return 1;  // a light at infinity is not attenuated
-    const double d           = distance;
-    const double denominator = a.c1 + a.c2 * d + a.c3 * d * d;
-    // Positive coefficients make a zero denominator possible only at d = 0 with c1 = 0: the limit is capped, so that
-    // the sum stays finite and still falls monotonically.
-    const double factor = denominator > 0 ? 1 / denominator : static_cast<double>(std::numeric_limits<float>::max());
-    return static_cast<float>(std::min(factor, a.clamp ? 1.0 : kLargestFactor));
+    return static_cast<float>(attenuation_at(a, static_cast<double>(distance)));
 }
 
 namespace {

@@ -37,6 +37,7 @@ void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& po
     std::size_t traced = 0;
     tile.load_next(points.triangle, points.px, points.py, points.pz, points.nx, points.ny, points.nz,
                    points.facing[light]);
+    tile.load_for_writing(s);
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         if (!any_asks(facing + first, count)) return;
         places.load(points, first, count, starts);

@@ -1,0 +1,135 @@
+// Points of a picture, written eight at a time, have the bits of points written one by one.
+#include "umbra/core/render/point_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/scene/primitives.h"
+
+namespace umbra {
+namespace {
+
+Light light_at(LightKind kind, vec3 position) {
+    Light light;
+    light.kind     = kind;
+    light.position = position;
+    return light;
+}
+
+/// A slanted quad of two triangles through the middle, seen from above and, where `below`, from below; two boxes whose
+/// sides meet the eye at many angles; and a soup of triangles, slivers among them.
+Scene slope_and_soup(unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> both(-1, 1);
+    const auto vector = [&] { return vec3(both(random), both(random), both(random)); };
+    Scene scene;
+    scene.materials.resize(2);
+    scene.materials[0].two_sided = true;
+    scene.materials[1].two_sided = false;
+    const vec3 a(-3.125f, 0.25f, 1.75f), u(8.5f, 1, 1.125f), v(3.875f, -1.125f, -6);
+    add_object(scene, "slope", {a, a + u, a + u + v, a + v}, {}, {{0, 1, 2}, {0, 2, 3}}, 0);
+    std::vector<vec3> corners;
+    std::vector<uvec3> triangles;
+    for (std::uint32_t t = 0; t < 400; ++t) {
+        const vec3 p = 2.5f * vector(), side = 0.6f * vector();
+        corners.insert(corners.end(),
+                       {p, p + side, p + (t % 8 == 0 ? 0.5f * side + 1e-5f * vector() : 0.6f * vector())});
+        triangles.emplace_back(3 * t, 3 * t + 1, 3 * t + 2);
+    }
+    add_object(scene, "soup", corners, {}, triangles, 1);
+
+    // Of each kind one at large, one in the plane of the slope, and some next to it.
+    const vec3 on = a + 0.5f * u + 0.25f * v;
+    for (const float lift : {4.0f, 0.0f, 1e-6f, -1e-6f, 0.3f}) {
+        const vec3 at = on + vec3(0, lift, 0);
+        for (const LightKind kind : {LightKind::point, LightKind::spot}) scene.lights.push_back(light_at(kind, at));
+        Light sun     = light_at(LightKind::directional, {});
+        sun.direction = lift == 4 ? vec3(0.3f, -1, 0.2f) : u + vec3(0, lift, 0);
+        scene.lights.push_back(sun);
+        for (const vec3 edge_v : {v, vec3(0, 1, 0)}) {
+            Light rectangle  = light_at(LightKind::rectangle, at);
+            rectangle.edge_u = u, rectangle.edge_v = edge_v;
+            scene.lights.push_back(rectangle);
+        }
+        Light disk     = light_at(LightKind::disk, at);
+        disk.direction = lift > 1 ? vec3(0.2f, -1, 0.1f) : glm::cross(u, v), disk.radius = 0.4f;
+        scene.lights.push_back(disk);
+        Light sphere  = light_at(LightKind::sphere, at);
+        sphere.radius = 0.3f;
+        scene.lights.push_back(sphere);
+    }
+    return scene;
+}
+
+struct Found {
+    std::size_t points = 0, none = 0, away = 0, partly = 0, front = 0;
+};
+
+void expect_one_by_one(const Scene& scene, int width, int height, Found& found) {
+    const PointBatch batch = primary_points(RayScene(scene), scene, scene.camera, width, height);
+    PointBatch one         = batch;
+    for (std::vector<Facing>& plane : one.facing) std::fill(plane.begin(), plane.end(), Facing::none);
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        if (batch.triangle[i] == kNoTriangle) continue;
+        ++found.points;
+        one.px[i] = one.py[i] = one.pz[i] = one.nx[i] = one.ny[i] = one.nz[i] = -1, one.flipped[i] = 2;
+        set_point(one, i, scene, batch.triangle[i], batch.u[i], batch.v[i]);
+    }
+    face_lights(one, scene);
+    EXPECT_EQ(one.triangle, batch.triangle);
+    EXPECT_EQ(one.u, batch.u);
+    EXPECT_EQ(one.v, batch.v);
+    EXPECT_EQ(one.px, batch.px);
+    EXPECT_EQ(one.py, batch.py);
+    EXPECT_EQ(one.pz, batch.pz);
+    EXPECT_EQ(one.nx, batch.nx);
+    EXPECT_EQ(one.ny, batch.ny);
+    EXPECT_EQ(one.nz, batch.nz);
+    EXPECT_EQ(one.flipped, batch.flipped);
+    ASSERT_EQ(batch.facing.size(), scene.lights.size());
+    for (LightId j = 0; j < scene.lights.size(); ++j) {
+        EXPECT_EQ(one.facing[j], batch.facing[j]) << "light " << j << ", " << to_string(scene.lights[j].kind);
+        for (const Facing f : batch.facing[j])
+            ++(f == Facing::none     ? found.none
+               : f == Facing::away   ? found.away
+               : f == Facing::partly ? found.partly
+                                     : found.front);
+    }
+}
+
+TEST(PointWriter, WritesWhatPointsWrittenOneByOneHave) {
+    Found found;
+    for (const Projection projection : {Projection::perspective, Projection::orthographic})
+        for (unsigned seed = 1; seed <= 4; ++seed) {
+            Scene scene             = slope_and_soup(seed);
+            scene.camera.projection = projection;
+            scene.camera.height     = 9;
+            scene.camera.eye        = {2, seed % 2 == 0 ? 6.0f : -6.0f, 9};
+            scene.camera.target     = {0, 0, 0};
+            expect_one_by_one(scene, 163, 91, found);  // no whole tiles, no whole packets
+        }
+    EXPECT_GT(found.points, 30000u);
+    EXPECT_GT(found.none, 10000u);
+    EXPECT_GT(found.away, 100000u);
+    EXPECT_GT(found.partly, 100000u);
+    EXPECT_GT(found.front, 100000u);
+}
+
+/// A scene may have no lights, and a picture fewer pixels than a packet.
+TEST(PointWriter, SmallPicturesAndNoLights) {
+    Scene scene      = slope_and_soup(5);
+    scene.camera.eye = {2, 6, 9};
+    Found found;
+    for (const auto& [width, height] : {std::pair{1, 1}, {3, 2}, {5, 3}, {16, 8}, {17, 9}})
+        expect_one_by_one(scene, width, height, found);
+    scene.lights.clear();
+    expect_one_by_one(scene, 33, 17, found);
+    EXPECT_GT(found.points, 150u);
+}
+
+}  // namespace
+}  // namespace umbra
