@@ -20,8 +20,7 @@ Light light_at(LightKind kind, vec3 position) {
     return light;
 }
 
-/// A slanted quad of two triangles through the middle, seen from above and, where `below`, from below; two boxes whose
-/// sides meet the eye at many angles; and a soup of triangles, slivers among them.
+/// A slanted quad of two triangles with a wall on it, and a soup of triangles, slivers among them.
 Scene slope_and_soup(unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> both(-1, 1);
@@ -32,6 +31,9 @@ Scene slope_and_soup(unsigned seed) {
     scene.materials[1].two_sided = false;
     const vec3 a(-3.125f, 0.25f, 1.75f), u(8.5f, 1, 1.125f), v(3.875f, -1.125f, -6);
     add_object(scene, "slope", {a, a + u, a + u + v, a + v}, {}, {{0, 1, 2}, {0, 2, 3}}, 0);
+    const vec3 on = a + 0.5f * u + 0.25f * v, foot = on + 0.125f * u, up(0, 1, 0);
+    add_object(scene, "wall on the slope", {foot, foot + 0.25f * u, foot + 0.25f * u + up, foot + up}, {},
+               {{0, 1, 2}, {0, 2, 3}}, 0);
     std::vector<vec3> corners;
     std::vector<uvec3> triangles;
     for (std::uint32_t t = 0; t < 400; ++t) {
@@ -43,7 +45,6 @@ Scene slope_and_soup(unsigned seed) {
     add_object(scene, "soup", corners, {}, triangles, 1);
 
     // Of each kind one at large, one in the plane of the slope, and some next to it.
-    const vec3 on = a + 0.5f * u + 0.25f * v;
     for (const float lift : {4.0f, 0.0f, 1e-6f, -1e-6f, 0.3f}) {
         const vec3 at = on + vec3(0, lift, 0);
         for (const LightKind kind : {LightKind::point, LightKind::spot}) scene.lights.push_back(light_at(kind, at));
@@ -62,6 +63,11 @@ Scene slope_and_soup(unsigned seed) {
         sphere.radius = 0.3f;
         scene.lights.push_back(sphere);
     }
+    // All of it over the slope, which its lower edge touches, and in the plane of the wall: in front of one and away
+    // from the other, both too close to tell without rationals.
+    Light upright  = light_at(LightKind::rectangle, on + 0.5f * up);
+    upright.edge_u = u, upright.edge_v = up;
+    scene.lights.push_back(upright);
     return scene;
 }
 
