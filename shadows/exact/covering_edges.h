@@ -93,7 +93,8 @@ bool CoveringEdges<Space>::add_clipped(const Numerators<T>& a, const Numerators<
     if (edge->empty) return true;
     const double px = as_double(edge->from.x), py = as_double(edge->from.y), qx = as_double(edge->to.x),
                  qy = as_double(edge->to.y);
-    displacement.move_edge(edge->off, 2 * projection_.sight().plane.rounding, std::hypot(qx - px, qy - py));
+    const double dx = qx - px, dy = qy - py, length = std::sqrt(dx * dx + dy * dy) * (1 + 0x1p-50);
+    displacement.move_edge(edge->off, 2 * projection_.sight().plane.rounding, length);
     if (projection_.sight().light.round()) caps_.touch(px, py, qx, qy);
     covering_.add(edge->from, edge->to, change, edge->from_left, edge->to_left);
     return true;

@@ -169,14 +169,18 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
     constexpr float kRounding    = 0x1p-19f;
     const BoxTree::Region region = shaft(viewpoint.point(), space, reach);
     struct Plane {
-        float x, y, z, offset, tilt;
+        float x, y, z, offset, tilt, least;  ///< least: see beyond
     };
     std::array<Plane, 5> planes;
     for (std::size_t k = 0; k < planes.size(); ++k) {
         const dvec3 n     = region.planes[k].normal;
         const double size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
-        planes[k] = {float(n.x / size), float(n.y / size), float(n.z / size), float(region.planes[k].offset / size),
-                     kRounding + static_cast<float>(4 * region.tilt / size)};
+        planes[k]         = {float(n.x / size),
+                             float(n.y / size),
+                             float(n.z / size),
+                             float(region.planes[k].offset / size),
+                             kRounding + static_cast<float>(4 * region.tilt / size),
+                             0};
     }
     const dvec3 moved = region.from - group.origin;
     const float dx = float(moved.x), dy = float(moved.y), dz = float(moved.z);
@@ -184,7 +188,8 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
     constexpr float kDenormal = 0x1p-140f;
     const float slack         = static_cast<float>(4 * region.slack) + kDenormal,
                 d             = std::abs(dx) + std::abs(dy) + std::abs(dz);
-    const std::size_t n       = group.edges.size();
+    for (Plane& plane : planes) plane.least = plane.tilt * (d + std::abs(plane.offset)) + slack;
+    const std::size_t n = group.edges.size();
     group.out.resize(n);
     const float *ax = group.a[0].data(), *ay = group.a[1].data(), *az = group.a[2].data();
     const float *bx = group.b[0].data(), *by = group.b[1].data(), *bz = group.b[2].data();
@@ -197,16 +202,20 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
         const float sure = kRounding * (std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + d) + slack;
         out[e]           = (int{one > sure} & int{other < -sure}) | (int{one < -sure} & int{other > sure});
     }
-    for (const Plane plane : planes) {
-        const float least = plane.tilt * (d + std::abs(plane.offset)) + slack;
-        for (std::size_t e = 0; e < n; ++e) {
-            const float p    = plane.x * (ax[e] - dx) + plane.y * (ay[e] - dy) + plane.z * (az[e] - dz) + plane.offset,
-                        q    = plane.x * (bx[e] - dx) + plane.y * (by[e] - dy) + plane.z * (bz[e] - dz) + plane.offset;
-            const float size = std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + std::abs(bx[e]) + std::abs(by[e]) +
-                               std::abs(bz[e]);
-            const float beyond = -(plane.tilt * size + least);
-            out[e] |= int{p < beyond} & int{q < beyond};
+    for (std::size_t e = 0; e < n; ++e) {
+        const float size =
+            std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + std::abs(bx[e]) + std::abs(by[e]) + std::abs(bz[e]);
+        const float px = ax[e] - dx, py = ay[e] - dy, pz = az[e] - dz;
+        const float qx = bx[e] - dx, qy = by[e] - dy, qz = bz[e] - dz;
+        std::int32_t outside = out[e];
+        for (std::size_t k = 0; k < planes.size(); ++k) {
+            const Plane& plane = planes[k];
+            const float p      = plane.x * px + plane.y * py + plane.z * pz + plane.offset,
+                        q      = plane.x * qx + plane.y * qy + plane.z * qz + plane.offset;
+            const float beyond = -(plane.tilt * size + plane.least);
+            outside |= int{p < beyond} & int{q < beyond};
         }
+        out[e] = outside;
     }
     found.clear();
     for (std::size_t e = 0; e < n; ++e) {

@@ -42,6 +42,7 @@ template <class T>
 struct PartialCovering {
     Covering<T> edges;
     DiskCaps caps;
+    typename Covering<T>::Outline cut;  ///< of a light that the plane of the point's triangle cuts
 };
 
 /// Areas in the light's plane, in half axes.
@@ -72,8 +73,8 @@ public:
 private:
     [[nodiscard]] bool is_clear(double x, double y, double widest) const;
     [[nodiscard]] Filtered<int> base_layers(double widest, TriangleId& blocker) const;
-    using Light = std::vector<LightCorner<T>>;
-    [[nodiscard]] Light light_before_horizon(const Horizon<T>& horizon) const;
+    using Light = typename Covering<T>::Outline;
+    [[nodiscard]] const Light& light_before_horizon(const Horizon<T>& horizon) const;
     [[nodiscard]] Filtered<Bracket> irradiance(const ReceivedLight& received, const Light& light, double visible,
                                                double error) const;
     [[nodiscard]] static double whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps);
@@ -98,8 +99,9 @@ bool VisiblePart<Space>::is_clear(double x, double y, double widest) const {
     const double near = 4 * widest + 0x1p-40;  // two coordinates, twice; and the rounding of what follows
     bool clear        = true;
     covering_.edges.each_edge([&](const auto& low, const auto& high) {
-        const double x0 = as_double(low.x), y0 = as_double(low.y), dx = as_double(high.x) - x0,
-                     dy = as_double(high.y) - y0, length = std::hypot(dx, dy);
+        const double x0 = as_double(low.x), y0 = as_double(low.y), x1 = as_double(high.x), y1 = as_double(high.y);
+        if ((y < y0 - near) | (y > y1 + near) | (x < std::min(x0, x1) - near) | (x > std::max(x0, x1) + near)) return;
+        const double dx = x1 - x0, dy = y1 - y0, length = std::hypot(dx, dy);
         const double t = length > 0 ? std::clamp(((x - x0) * dx + (y - y0) * dy) / (length * length), 0.0, 1.0) : 0;
         if (std::hypot(x0 + t * dx - x, y0 + t * dy - y) < near) clear = false;
     });
@@ -122,22 +124,24 @@ Filtered<int> VisiblePart<Space>::base_layers(double widest, TriangleId& blocker
 }
 
 template <class Space>
-typename VisiblePart<Space>::Light VisiblePart<Space>::light_before_horizon(const Horizon<T>& horizon) const {
-    static const Light square{{T(-1), T(-1)}, {T(1), T(-1)}, {T(1), T(1)}, {T(-1), T(1)}};
-    static const Light polygon = DiskCaps::polygon<T>();
-    const Light& whole         = round() ? polygon : square;
-    return sight_.partly ? before_horizon(whole, horizon) : whole;
+const typename VisiblePart<Space>::Light& VisiblePart<Space>::light_before_horizon(const Horizon<T>& horizon) const {
+    static const Light square({{T(-1), T(-1)}, {T(1), T(-1)}, {T(1), T(1)}, {T(-1), T(1)}});
+    static const Light polygon(DiskCaps::polygon<T>());
+    const Light& whole = round() ? polygon : square;
+    if (!sight_.partly) return whole;
+    covering_.cut.assign(before_horizon(whole.corners(), horizon));
+    return covering_.cut;
 }
 
 /// What arrives from the whole polygon before the horizon; `caps` is filled.
 template <class Space>
 double VisiblePart<Space>::whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps) {
     std::vector<LightCorner<double>> corners;
-    for (const LightCorner<T>& c : light) corners.push_back({as_double(c.x), as_double(c.y), c.cap});
+    for (const LightCorner<T>& c : light.corners()) corners.push_back({as_double(c.x), as_double(c.y), c.cap});
     Covering<double> nothing;
-    double sum = 0;
-    const auto area =
-        nothing.uncovered(corners, 0, caps.within_chords(), [&](const Trapezoid& piece) { sum += received.of(piece); });
+    double sum      = 0;
+    const auto area = nothing.uncovered(Covering<double>::Outline(std::move(corners)), 0, caps.within_chords(),
+                                        [&](const Trapezoid& piece) { sum += received.of(piece); });
     return area.first > 0 ? sum : 0;
 }
 
@@ -194,13 +198,13 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
         // On the light no line is longer than 3.
         displacement.move_edge(horizon.off(), 2 * sight_.plane.rounding, 3);
     }
-    const Light light = light_before_horizon(horizon);
-    const auto chords = covering_.caps.within_chords();
+    const Light& light = light_before_horizon(horizon);
+    const auto chords  = covering_.caps.within_chords();
     std::pair<double, double> area_and_rows(0, 0);
     std::optional<ReceivedLight> received;
     double arrives = 0;
     if (weighted) received.emplace(sight_, rounded(horizon));
-    if (light.size() >= 3) {
+    if (!light.empty()) {
         if (weighted)
             area_and_rows = covering_.edges.uncovered(light, *base, chords,
                                                       [&](const Trapezoid& piece) { arrives += received->of(piece); });
