@@ -147,13 +147,11 @@ Json write_files(const fs::path& folder, const std::string& id, const PreparedSc
     return files;
 }
 
-/// The differences of the pictures, and their map in a file.
-Json image_json(const fs::path& folder, const std::string& id, const MethodRun& run, Rendered rendered,
-                const Rendered& reference, Json& files) {
+/// The differences of the pictures; their map goes into a file.
+Json image_json(const fs::path& map, const MethodRun& run, const Rendered& rendered, const Rendered& reference) {
     const int width = rendered.shown.width, height = rendered.shown.height;
-    ImageFigures found = image_figures(run.planes, std::move(rendered), reference);
-    files["flip"]      = id + ".flip.png";
-    write_image(folder / files["flip"], flip_picture(width, height, found.flip.map));
+    ImageFigures found = image_figures(run.planes, rendered, reference);
+    write_image(map, flip_picture(width, height, found.flip.map));
     return std::move(found.figures);
 }
 
@@ -184,9 +182,15 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
     at.reset();
     Json entry = served_json(id, prepared, run, explained, reference.choice.text());
     Rendered rendered;
-    shade_ms       = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
-    Json files     = write_files(folder, id, prepared, run, rendered, reference, known, explained, command);
-    entry["image"] = image_json(folder, id, run, std::move(rendered), reference_rendered, files);
+    shade_ms = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
+    // Each has parts that one thread does alone.
+    Json files, image;
+    const std::string map = id + ".flip.png";
+    parallel_pair(
+        [&] { files = write_files(folder, id, prepared, run, rendered, reference, known, explained, command); },
+        [&] { image = image_json(folder / map, run, rendered, reference_rendered); });
+    files["flip"]  = map;
+    entry["image"] = std::move(image);
     entry["files"] = std::move(files);
     return entry;
 }

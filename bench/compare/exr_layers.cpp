@@ -6,8 +6,20 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "umbra/core/base/parallel.h"
+
 namespace umbra {
 namespace {
+
+constexpr std::size_t kGrain = 16384;  ///< pixels
+
+/// What `value` says of each pixel, which it may be asked from any thread.
+template <class T, class Value>
+void fill(std::vector<T>& plane, const Value& value) {
+    parallel_ranges(plane.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) plane[i] = static_cast<T>(value(i));
+    });
+}
 
 /// Channels of one float a point, interleaved behind those that the image has at the end.
 class FloatChannels {
@@ -18,17 +30,22 @@ public:
     void add(std::string name, const Value& value) {
         names_.push_back(std::move(name));
         auto& plane = planes_.emplace_back(points_);
-        for (std::size_t i = 0; i < points_; ++i) plane[i] = value(i);
+        fill(plane, value);
     }
     [[nodiscard]] Image behind(const Image& image) const {
         const std::size_t before = image.channels.size();
-        Image all                = image;
+        Image all;
+        all.width = image.width, all.height = image.height;
+        all.channels = image.channels;
         all.channels.insert(all.channels.end(), names_.begin(), names_.end());
+        all.metadata = image.metadata, all.integers = image.integers, all.matrices = image.matrices;
         all.data.resize(points_ * all.channels.size());
-        for (std::size_t i = 0; i < points_; ++i) {
-            for (std::size_t c = 0; c < before; ++c) all.at(i, c) = image.at(i, c);
-            for (std::size_t c = 0; c < planes_.size(); ++c) all.at(i, before + c) = planes_[c][i];
-        }
+        parallel_ranges(points_, kGrain, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                for (std::size_t c = 0; c < before; ++c) all.at(i, c) = image.at(i, c);
+                for (std::size_t c = 0; c < planes_.size(); ++c) all.at(i, before + c) = planes_[c][i];
+            }
+        });
         return all;
     }
 
@@ -42,7 +59,7 @@ template <class Value>
 void add_integers(Image& image, const std::string& name, const Value& value) {
     auto& channel = image.integers[name];
     channel.resize(image.pixels());
-    for (std::size_t i = 0; i < channel.size(); ++i) channel[i] = static_cast<std::uint32_t>(value(i));
+    fill(channel, value);
 }
 
 /// [{"name": ..., "first_triangle": ..., "triangles": ...}, ...] in the order of id.object.

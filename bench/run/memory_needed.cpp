@@ -15,7 +15,7 @@ namespace {
 struct Terms {
     double triangle, pixel, pixel_light, sample, sample_light;
 };
-constexpr Terms kPicture{200, 130, 30, 55, 11}, kComparison{300, 200, 50, 70, 20};
+constexpr Terms kPicture{200, 130, 30, 55, 11}, kComparison{300, 260, 55, 70, 20};
 constexpr double kProgram  = 1.5e8;                         ///< libraries and what is always there
 constexpr double kReserved = 4e8, kReservedByThread = 1e8;  ///< address space beyond what is used
 

@@ -8,8 +8,7 @@
 // Pontus Andersson, Jim Nilsson, Tomas Akenine-Moeller, Magnus Oskarsson, Kalle Astroem, Mark Fairchild. FLIP: A
 //   Difference Evaluator for Alternating Images. 2020
 // Pontus Andersson, Jim Nilsson, Peter Shirley, Tomas Akenine-Moeller. Visualizing Errors in Rendered High Dynamic
-// Range
-//   Images. 2021
+//   Range Images. 2021
 // Xuemei Zhang, Brian Wandell. A Spatial Extension of CIELAB for Digital Color Image Reproduction. 1997
 // Saeedeh Abasi, Mohammad Amani Tehran, Mark Fairchild. Distance Metrics for Very Large Color Differences. 2019
 // Krzysztof Narkowicz. ACES Filmic Tone Mapping Curve. 2015
@@ -299,30 +298,44 @@ struct Rectangle {
     [[nodiscard]] int height() const { return bottom - top; }
 };
 
-std::vector<vec3> cut(const std::vector<vec3>& picture, int width, const Rectangle& at) {
+/// Pixel i of each picture as linear RGB in [0, 1], asked for in any order and from any thread.
+template <class Colour>
+std::vector<vec3> cut(const Colour& colour, int width, const Rectangle& at) {
     std::vector<vec3> part;
     part.reserve(std::size_t(at.width()) * std::size_t(at.height()));
-    for (int y = at.top; y < at.bottom; ++y) {
-        const auto row = picture.begin() + std::ptrdiff_t(y) * width;
-        part.insert(part.end(), row + at.left, row + at.right);
-    }
+    for (int y = at.top; y < at.bottom; ++y)
+        for (int x = at.left; x < at.right; ++x)
+            part.push_back(colour(std::size_t(y) * std::size_t(width) + std::size_t(x)));
     return part;
 }
 
-/// FLIP of each pixel, for linear RGB in [0, 1]. Tiles are cut out with all that their pixels' filters reach, so that
-/// the values are those of whole_error_map to the last bit; those without a difference are 0 and not computed.
-std::vector<float> error_map(int width, int height, const std::vector<vec3>& reference, const std::vector<vec3>& test,
+/// Whether `same` holds for all pixels of the rectangle.
+template <class Same>
+bool all_of(const Same& same, int width, const Rectangle& at) {
+    for (int y = at.top; y < at.bottom; ++y)
+        for (int x = at.left; x < at.right; ++x)
+            if (!same(std::size_t(y) * std::size_t(width) + std::size_t(x))) return false;
+    return true;
+}
+
+/// FLIP of each pixel, for pictures whose pixel i is `reference(i)` and `test(i)`, linear RGB in [0, 1]. Tiles are cut
+/// out with all that their pixels' filters reach, so that the values are those of whole_error_map to the last bit;
+/// those without a difference are 0 and not computed, nor are their colours where `same(i)` says that they would be
+/// alike.
+template <class Same, class Reference, class Test>
+std::vector<float> error_map(int width, int height, const Same& same, const Reference& reference, const Test& test,
                              double pixels_per_degree) {
     constexpr int kTile = 96;
     const int reach     = std::max(colour_radius(pixels_per_degree), feature_radius(pixels_per_degree));
     const int across = (width + kTile - 1) / kTile, down = (height + kTile - 1) / kTile;
-    std::vector<float> map(reference.size());
+    std::vector<float> map(std::size_t(width) * std::size_t(height));
     parallel_ranges(std::size_t(across) * std::size_t(down), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t tile = begin; tile < end; ++tile) {
             const int left = int(tile) % across * kTile, top = int(tile) / across * kTile;
             const Rectangle inside{left, top, std::min(left + kTile, width), std::min(top + kTile, height)};
             const Rectangle seen{std::max(left - reach, 0), std::max(top - reach, 0),
                                  std::min(inside.right + reach, width), std::min(inside.bottom + reach, height)};
+            if (all_of(same, width, seen)) continue;
             const std::vector<vec3> a = cut(reference, width, seen), b = cut(test, width, seen);
             if (a == b) continue;
             const std::vector<float> part = whole_error_map(seen.width(), seen.height(), a, b, pixels_per_degree);
@@ -337,18 +350,20 @@ std::vector<float> error_map(int width, int height, const std::vector<vec3>& ref
 
 // -- Pooling
 
-/// The value up to which the errors, in order, add up to `share` of their sum.
+/// The value up to which the errors, in order, add up to `share` of their sum; `sorted` lacks those that are 0.
 double weighted_quantile(const std::vector<float>& sorted, double sum, double share) {
     double below = 0;
     for (const float value : sorted) {
         below += value;
         if (below >= share * sum) return value;
     }
-    return sorted.back();
+    return sorted.empty() ? 0 : sorted.back();
 }
 
 Flip pooled(std::vector<float> map) {
-    std::vector<float> sorted = map;
+    std::vector<float> sorted;  // most errors are 0
+    for (const float value : map)
+        if (value > 0) sorted.push_back(value);
     std::sort(sorted.begin(), sorted.end());
     double sum = 0;
     for (const float value : sorted) sum += value;
@@ -357,8 +372,8 @@ Flip pooled(std::vector<float> map) {
     flip.weighted_median = weighted_quantile(sorted, sum, 0.5);
     flip.first_quartile  = weighted_quantile(sorted, sum, 0.25);
     flip.third_quartile  = weighted_quantile(sorted, sum, 0.75);
-    flip.min             = sorted.front();
-    flip.max             = sorted.back();
+    flip.min             = sorted.size() == map.size() ? sorted.front() : 0;
+    flip.max             = sorted.empty() ? 0 : sorted.back();
     flip.map             = std::move(map);
     return flip;
 }
@@ -387,9 +402,10 @@ struct Exposures {
     int count = 2;
 };
 Exposures find_exposures(const std::vector<vec3>& reference) {
-    std::vector<float> luminance;
-    luminance.reserve(reference.size());
-    for (const vec3& rgb : reference) luminance.push_back((white_from_rgb() * rgb).y);
+    std::vector<float> luminance(reference.size());
+    parallel_ranges(luminance.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) luminance[i] = (white_from_rgb() * reference[i]).y;
+    });
     const auto middle = luminance.begin() + std::ptrdiff_t(luminance.size() / 2);
     std::nth_element(luminance.begin(), middle, luminance.end());
     // Black has no exposure that makes it bright.
@@ -403,13 +419,19 @@ Exposures find_exposures(const std::vector<vec3>& reference) {
 
 // -- Images
 
+/// `value` of each channel of pixel i.
 template <class Value>
-std::vector<vec3> colours(const Image& image, const Value& value) {
-    const auto channels = colour_channels(image);
-    std::vector<vec3> rgb(image.pixels());
-    parallel_ranges(rgb.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            for (int c = 0; c < 3; ++c) rgb[i][c] = value(image.at(i, channels[std::size_t(c)]));
+auto colour_of(const Image& image, const Value& value) {
+    return [&image, channels = colour_channels(image), value](std::size_t i) {
+        return vec3(value(image.at(i, channels[0])), value(image.at(i, channels[1])), value(image.at(i, channels[2])));
+    };
+}
+
+template <class Colour>
+std::vector<vec3> colours(std::size_t pixels, const Colour& colour) {
+    std::vector<vec3> rgb(pixels);
+    parallel_ranges(pixels, 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) rgb[i] = colour(i);
     });
     return rgb;
 }
@@ -418,32 +440,34 @@ std::vector<vec3> colours(const Image& image, const Value& value) {
 
 Flip flip_ldr(const Image& reference, const Image& test, double pixels_per_degree) {
     check_same_size(reference, test, "flip");
-    const auto light = [](float x) { return x > 0 ? linear_from_srgb(std::min(x, 1.0f)) : 0.0f; };  // NaN: 0
-    return pooled(error_map(reference.width, reference.height, colours(reference, light), colours(test, light),
-                            pixels_per_degree));
+    const auto as_it_is = [](float x) { return x; };
+    const auto light    = [](float x) { return x > 0 ? linear_from_srgb(std::min(x, 1.0f)) : 0.0f; };  // NaN: 0
+    const auto a = colour_of(reference, as_it_is), b = colour_of(test, as_it_is);
+    const auto same = [&](std::size_t i) { return a(i) == b(i); };
+    return pooled(error_map(reference.width, reference.height, same, colour_of(reference, light),
+                            colour_of(test, light), pixels_per_degree));
 }
 
 Flip flip_hdr(const Image& reference, const Image& test, double pixels_per_degree) {
     check_same_size(reference, test, "flip");
     const auto light          = [](float x) { return x > 0 ? std::min(x, 1e15f) : 0.0f; };  // NaN: 0
-    const std::vector<vec3> a = colours(reference, light);
-    const std::vector<vec3> b = colours(test, light);
+    const std::vector<vec3> a = colours(reference.pixels(), colour_of(reference, light));
+    const std::vector<vec3> b = colours(test.pixels(), colour_of(test, light));
     const Exposures exposures = find_exposures(a);
+    const auto same           = [&](std::size_t i) { return a[i] == b[i]; };
 
     std::vector<float> worst(a.size());
     for (int k = 0; k < exposures.count; ++k) {
         const double exposure = exposures.start + (exposures.stop - exposures.start) * k / (exposures.count - 1);
         const float factor    = float(std::exp2(exposure));
-        const auto toned      = [&](const std::vector<vec3>& rgb) {
-            std::vector<vec3> result(rgb.size());
-            parallel_ranges(rgb.size(), 4096, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i)
-                    for (int c = 0; c < 3; ++c) result[i][c] = Aces::toned(factor * rgb[i][c]);
-            });
-            return result;
+        const auto toned      = [factor](const std::vector<vec3>& rgb) {
+            return [factor, &rgb](std::size_t i) {
+                return vec3(Aces::toned(factor * rgb[i].x), Aces::toned(factor * rgb[i].y),
+                                 Aces::toned(factor * rgb[i].z));
+            };
         };
         const std::vector<float> map =
-            error_map(reference.width, reference.height, toned(a), toned(b), pixels_per_degree);
+            error_map(reference.width, reference.height, same, toned(a), toned(b), pixels_per_degree);
         for (std::size_t i = 0; i < map.size(); ++i) worst[i] = std::max(worst[i], map[i]);
     }
     Flip flip           = pooled(std::move(worst));

@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
 #include "umbra/core/base/paths.h"
 #include "umbra/core/image/image_headers.h"
 
@@ -174,15 +175,11 @@ private:
 };
 
 std::vector<unsigned char> to_8_bit(const Image& image, std::size_t channels) {
-    std::vector<unsigned char> bytes;
-    bytes.reserve(image.pixels() * channels);
-    for (std::size_t i = 0; i < image.pixels(); ++i) {
-        for (std::size_t c = 0; c < channels; ++c) {
-            const float x = image.at(i, c);
-            bytes.push_back(x > 0 ? static_cast<unsigned char>(std::floor(double(255 * std::min(x, 1.0f)) + 0.5))
-                                  : 0);  // NaN: 0
-        }
-    }
+    std::vector<unsigned char> bytes(image.pixels() * channels);
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+        for (std::size_t c = 0; c < channels; ++c)
+            if (const float x = image.at(i, c); x > 0)  // NaN: 0
+                bytes[i * channels + c] = static_cast<unsigned char>(double(255 * std::min(x, 1.0f)) + 0.5);
     return bytes;
 }
 
@@ -196,13 +193,13 @@ std::size_t png_channels(const Image& image) {
 std::vector<std::uint32_t> interleaved(const Image& image) {
     const std::size_t floats = image.channels.size(), all = floats + image.integers.size();
     std::vector<std::uint32_t> values(image.pixels() * all);
-    for (std::size_t i = 0; i < image.pixels(); ++i)
-        for (std::size_t c = 0; c < floats; ++c) values[i * all + c] = std::bit_cast<std::uint32_t>(image.at(i, c));
-    std::size_t c = floats;
-    for (const auto& [name, channel] : image.integers) {
-        for (std::size_t i = 0; i < image.pixels(); ++i) values[i * all + c] = channel[i];
-        ++c;
-    }
+    parallel_ranges(image.pixels(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint32_t* to = &values[i * all];
+            for (std::size_t c = 0; c < floats; ++c) *to++ = std::bit_cast<std::uint32_t>(image.at(i, c));
+            for (const auto& integer : image.integers) *to++ = integer.second[i];
+        }
+    });
     return values;
 }
 
@@ -219,7 +216,7 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
         spec.attribute("oiio:ColorSpace", "sRGB");
         spec.attribute("oiio:UnassociatedAlpha", 1);
     } else {
-        spec.attribute("compression", "zip");
+        spec.attribute("compression", "piz");
         for (const auto& [name, matrix] : image.matrices) spec.attribute(name, OIIO::TypeMatrix, matrix.data());
         if (!image.integers.empty()) spec.channelformats.assign(channels, OIIO::TypeDesc::FLOAT);
         for (const auto& integer : image.integers) {
