@@ -179,7 +179,7 @@ std::vector<unsigned char> to_8_bit(const Image& image, std::size_t channels) {
     for (std::size_t i = 0; i < image.pixels(); ++i)
         for (std::size_t c = 0; c < channels; ++c)
             if (const float x = image.at(i, c); x > 0)  // NaN: 0
-                bytes[i * channels + c] = static_cast<unsigned char>(double(255 * std::min(x, 1.0f)) + 0.5);
+                bytes[i * channels + c] = static_cast<unsigned char>(std::floor(double(255 * std::min(x, 1.0f)) + 0.5));
     return bytes;
 }
 

@@ -113,6 +113,21 @@ TEST(Flip, OnePixelSpreadsByTheFiltersRadiusAndNoFurther) {
     EXPECT_LT(flip_ldr(a, b, 134).max, flip.max);
 }
 
+/// Also where what lies around the pixel is the same in both pictures but for this one.
+TEST(Flip, OnePixelSpreadsAlikeToBothSidesWhereverItLies) {
+    const Image a = constant(200, 41, vec3(0.5f));
+    for (std::size_t x = 60; x < 140; ++x) {
+        Image b              = a;
+        const std::size_t at = 20 * 200 + x;
+        for (std::size_t c = 0; c < 3; ++c) b.at(at, c) = 1;
+        const Flip flip = flip_ldr(a, b);
+        for (std::size_t d = 1; d < 5; ++d) {
+            ASSERT_GT(flip.map[at + d], 1e-3f) << x << ' ' << d;
+            ASSERT_NEAR(flip.map[at + d], flip.map[at - d], 1e-6f) << x << ' ' << d;
+        }
+    }
+}
+
 TEST(Flip, HdrFindsTheSameErrorsAtAnyScale) {
     const double one = flip_hdr(scene(64, 48, 1), scene(64, 48, 1.3f)).mean;
     EXPECT_NEAR(flip_hdr(scene(64, 48, 1000), scene(64, 48, 1300)).mean, one, 1e-4);
