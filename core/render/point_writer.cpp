@@ -221,6 +221,14 @@ void PointWriter::store(const Hits8& hits, const Points8& points, int lane, std:
     std::copy_n(points.flags + lane, count, batch_.flipped.data() + i);
 }
 
+/// What a point has that is none.
+void PointWriter::clear(std::size_t i) const {
+    for (std::vector<float>* plane :
+         {&batch_.u, &batch_.v, &batch_.px, &batch_.py, &batch_.pz, &batch_.nx, &batch_.ny, &batch_.nz})
+        (*plane)[i] = 0;
+    batch_.flipped[i] = 0;
+}
+
 bool PointWriter::write(const Hits8& hits, int x, int y) const {
     const CameraFrame& frame = *batch_.raster;
     const int count          = std::min(4, frame.width - x);
@@ -239,8 +247,10 @@ bool PointWriter::write(const Hits8& hits, int x, int y) const {
             store(hits, points, lane, i, count);
         for (int k = lane; k < lane + count; ++k)
             if (hits.triangle[k] != kNoTriangle && points.done[k] == 0) {
-                const bool known = std::isfinite(points.u[k]) && std::isfinite(points.v[k]);
-                set_point(batch_, i + (k & 3), scene_, hits.triangle[k], known ? points.u[k] : hits.u[k],
+                const bool known       = std::isfinite(points.u[k]) && std::isfinite(points.v[k]);
+                const std::size_t here = i + (k & 3);
+                clear(here);
+                set_point(batch_, here, scene_, hits.triangle[k], known ? points.u[k] : hits.u[k],
                           known ? points.v[k] : hits.v[k]);
             }
     });
@@ -268,6 +278,10 @@ void PointWriter::face_open_points(const PointTile& tile) const {
             for (std::size_t i = first; i < first + count; ++i) {
                 if (facing[i] != kOpen) continue;
                 const TriangleId t = batch_.triangle[i];
+                if (t == kNoTriangle) {  // set_point found no area
+                    facing[i] = Facing::none;
+                    continue;
+                }
                 const bool same = last < i && batch_.triangle[last] == t && batch_.flipped[last] == batch_.flipped[i];
                 facing[i]       = same ? facing[last] : facing_of(scene_, j, t, batch_.flipped[i] != 0);
                 last            = i;

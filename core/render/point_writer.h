@@ -48,6 +48,8 @@ private:
     template <class Count>
     void store(const Hits8& hits, const Points8& points, int lane, std::size_t i, Count count) const;
 
+    void clear(std::size_t i) const;
+
     const Scene& scene_;
     PointBatch& batch_;
     bool window_        = false;

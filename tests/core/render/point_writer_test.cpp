@@ -137,5 +137,28 @@ TEST(PointWriter, SmallPicturesAndNoLights) {
     EXPECT_GT(found.points, 150u);
 }
 
+/// Embree's floats may give an area to a triangle that has none.
+TEST(PointWriter, ATriangleWithoutAreaIsNoSurface) {
+    Scene scene;
+    scene.materials.emplace_back();
+    add_object(scene, "line", {{-1, 0, 0}, {0, 0, 0}, {2, 0, 0}}, {}, {{0, 1, 2}}, 0);
+    scene.lights = {light_at(LightKind::point, {0, 5, 0}), light_at(LightKind::sphere, {0, 5, 1})};
+    PointBatch batch;
+    batch.raster = frame(scene.camera, 4, 2);
+    batch.eye    = scene.camera.eye;
+    batch.resize(8);
+    const PointWriter writer(scene, batch);
+    const PointTile tile{0, 0, 4, 2, 8};
+    writer.claim(tile);
+    Hits8 hits{};  // all of triangle 0
+    std::fill_n(hits.along[2], 8, -1.0);
+    EXPECT_FALSE(writer.write(hits, 0, 0));
+    writer.face_open_points(tile);
+    EXPECT_EQ(batch.triangle, std::vector<TriangleId>(8, kNoTriangle));
+    for (const std::vector<Facing>& plane : batch.facing) EXPECT_EQ(plane, std::vector<Facing>(8, Facing::none));
+    for (const std::vector<float>* plane : {&batch.u, &batch.v, &batch.px, &batch.py, &batch.pz, &batch.nx, &batch.nz})
+        EXPECT_EQ(*plane, std::vector<float>(8, 0.0f));
+}
+
 }  // namespace
 }  // namespace umbra
