@@ -100,7 +100,7 @@ bool VisiblePart<Space>::is_clear(double x, double y, double widest) const {
     bool clear        = true;
     covering_.edges.each_edge([&](const auto& low, const auto& high) {
         const double x0 = as_double(low.x), y0 = as_double(low.y), x1 = as_double(high.x), y1 = as_double(high.y);
-        if ((y < y0 - near) | (y > y1 + near) | (x < std::min(x0, x1) - near) | (x > std::max(x0, x1) + near)) return;
+        if (y < y0 - near || y > y1 + near || x < std::min(x0, x1) - near || x > std::max(x0, x1) + near) return;
         const double dx = x1 - x0, dy = y1 - y0, length = std::hypot(dx, dy);
         const double t = length > 0 ? std::clamp(((x - x0) * dx + (y - y0) * dy) / (length * length), 0.0, 1.0) : 0;
         if (std::hypot(x0 + t * dx - x, y0 + t * dy - y) < near) clear = false;
