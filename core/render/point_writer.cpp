@@ -158,11 +158,12 @@ void PointWriter::load(const TriangleId (&triangles)[8], Triangles8& to) const {
 /// The eye, or against an orthographic view.
 dvec3 PointWriter::to_eye() const { return window_ ? -batch_.raster->forward : dvec3(batch_.eye); }
 
-void PointWriter::place(const Hits8& hits, Triangles8& t, Points8& out) const {
+/// False where no ray met anything; the triangles then mean nothing.
+bool PointWriter::place(const Hits8& hits, Triangles8& t, Points8& out) const {
     if (std::all_of(hits.triangle, hits.triangle + 8, [](TriangleId id) { return id == kNoTriangle; })) {
         for (float* plane : {out.u, out.v, out.px, out.py, out.pz, out.nx, out.ny, out.nz}) std::fill_n(plane, 8, 0.0f);
         std::fill_n(out.flags, 8, std::uint8_t{0});
-        return;
+        return false;
     }
     load(hits.triangle, t);
     const double pull      = window_ ? 0 : 1;  // to the eye: eye - p, or against an orthographic view
@@ -199,12 +200,13 @@ void PointWriter::place(const Hits8& hits, Triangles8& t, Points8& out) const {
         out.flipped[k]      = towards[k] < 0 ? 1.0 : 0.0;
     }
     for (int k = 0; k < 8; ++k) out.flags[k] = static_cast<std::uint8_t>(out.flipped[k]);
-    if (std::none_of(hits.triangle, hits.triangle + 8, [](TriangleId id) { return id == kNoTriangle; })) return;
+    if (std::none_of(hits.triangle, hits.triangle + 8, [](TriangleId id) { return id == kNoTriangle; })) return true;
     for (int k = 0; k < 8; ++k) {
         if (hits.triangle[k] != kNoTriangle) continue;
         out.u[k] = out.v[k] = out.px[k] = out.py[k] = out.pz[k] = out.nx[k] = out.ny[k] = out.nz[k] = 0;
         out.flags[k]                                                                                = 0;
     }
+    return true;
 }
 
 template <class Count>
@@ -235,7 +237,7 @@ bool PointWriter::write(const Hits8& hits, int x, int y) const {
     const std::size_t first  = static_cast<std::size_t>(y) * frame.width + x;
     Triangles8 triangles;
     Points8 points;
-    place(hits, triangles, points);
+    const bool nothing      = !place(hits, triangles, points);
     const auto for_each_row = [&](const auto& body) {
         for (int row = 0; row < std::min(2, frame.height - y); ++row)
             body(4 * row, first + static_cast<std::size_t>(row) * frame.width);
@@ -254,8 +256,7 @@ bool PointWriter::write(const Hits8& hits, int x, int y) const {
                           known ? points.v[k] : hits.v[k]);
             }
     });
-    const bool nothing = std::all_of(hits.triangle, hits.triangle + 8, [](TriangleId t) { return t == kNoTriangle; });
-    bool all_known     = true;
+    bool all_known = true;
     for (LightId j = 0; j < scene_.lights.size(); ++j) {
         int facing[8]{};
         if (!nothing) face_eight(scene_.lights[j], triangles, points.flipped, points.done, facing);

@@ -44,7 +44,7 @@ private:
     void load_corners(const TriangleId* triangles, int count, Triangles8& to) const;
     void load(const TriangleId (&triangles)[8], Triangles8& to) const;
     [[nodiscard]] dvec3 to_eye() const;
-    void place(const Hits8& hits, Triangles8& triangles, Points8& out) const;
+    bool place(const Hits8& hits, Triangles8& triangles, Points8& out) const;
     template <class Count>
     void store(const Hits8& hits, const Points8& points, int lane, std::size_t i, Count count) const;
 

@@ -68,13 +68,15 @@ void load_ahead(const Scene& scene, const PointBatch& points, std::size_t first)
 /// Eight points, those without a surface among them with the numbers of another.
 struct PhongSum::Eight {
     unsigned which = 0;  ///< bit k: the sum is asked for, and there is a surface
-    int any        = 0;  ///< one of those
     Lanes3 p, n, v;
     std::uint32_t object[kLanes]{};
     Lanes3 diffuse, specular, sum;
     Lanes is_specular;
 
-    [[nodiscard]] std::size_t lane(int k) const { return static_cast<std::size_t>((which >> k & 1) != 0 ? k : any); }
+    /// k, or where that is none of them, the first that is one.
+    [[nodiscard]] std::size_t lane(int k) const {
+        return static_cast<std::size_t>((which >> k & 1) != 0 ? k : std::countr_zero(which));
+    }
 };
 
 bool PhongSum::has_lanes(std::span<const VisibilityPlane> visibility) const {
@@ -311,7 +313,6 @@ void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned wh
             write(k, behind.r, behind.g, behind.b);
     }
     if (e.which == 0) return;
-    e.any = std::countr_zero(e.which);
     load_surfaces(points, first, e);
     for (std::size_t j = 0; j < scene_->lights.size(); ++j) add_light(j, points, first, visibility[j], e);
     float r[kLanes], g[kLanes], b[kLanes];

@@ -109,8 +109,8 @@ template <class Body>
 void for_each_side(const Topology& topology, std::size_t first, std::size_t last, const Body& body) {
     const auto count = static_cast<std::uint32_t>(topology.triangles.size());
     for (std::uint32_t t = 0; t < count; ++t) {
+        if (topology.repeats_a_corner(t)) continue;
         const uvec3 v = topology.triangles[t];
-        if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
         for (int k = 0; k < 3; ++k) {
             const std::uint32_t from = v[k], to = v[(k + 1) % 3], a = std::min(from, to);
             if (a - first < last - first)

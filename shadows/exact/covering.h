@@ -250,6 +250,17 @@ void insertion_sort(Range& range, const Less& less, const Swapped& swapped) {
         }
 }
 
+/// The same, where swaps are of no interest.
+template <class Range, class Less>
+void insertion_sort(Range& range, const Less& less) {
+    const auto begin = range.begin();
+    for (auto i = begin; i != range.end(); ++i) {
+        auto to = i;
+        while (to != begin && less(*i, *(to - 1))) --to;
+        if (to != i) std::rotate(to, i, i + 1);
+    }
+}
+
 /// Edges by the heights of their lower ends; of one height in the order in which they came.
 template <class T>
 void Covering<T>::sort_starts(const std::vector<Edge>& edges, std::vector<Start>& starts) {
@@ -288,17 +299,6 @@ void Covering<T>::find_rows(const Outline& light) {
     both_.clear();
     join(begins_, ends_, both_);
     join(both_, light.heights_, rows_);
-}
-
-/// The same, where swaps are of no interest.
-template <class Range, class Less>
-void insertion_sort(Range& range, const Less& less) {
-    const auto begin = range.begin();
-    for (auto i = begin; i != range.end(); ++i) {
-        auto to = i;
-        while (to != begin && less(*i, *(to - 1))) --to;
-        if (to != i) std::rotate(to, i, i + 1);
-    }
 }
 
 /// Where edges that are in order at the bottom of the row are not at its top. False where all are. A crossing may be

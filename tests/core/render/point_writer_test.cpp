@@ -9,6 +9,7 @@
 
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/primitives.h"
+#include "umbra/tests/support/same_points.h"
 
 namespace umbra {
 namespace {
@@ -86,25 +87,14 @@ void expect_one_by_one(const Scene& scene, int width, int height, Found& found) 
         set_point(one, i, scene, batch.triangle[i], batch.u[i], batch.v[i]);
     }
     face_lights(one, scene);
-    EXPECT_EQ(one.triangle, batch.triangle);
-    EXPECT_EQ(one.u, batch.u);
-    EXPECT_EQ(one.v, batch.v);
-    EXPECT_EQ(one.px, batch.px);
-    EXPECT_EQ(one.py, batch.py);
-    EXPECT_EQ(one.pz, batch.pz);
-    EXPECT_EQ(one.nx, batch.nx);
-    EXPECT_EQ(one.ny, batch.ny);
-    EXPECT_EQ(one.nz, batch.nz);
-    EXPECT_EQ(one.flipped, batch.flipped);
     ASSERT_EQ(batch.facing.size(), scene.lights.size());
-    for (LightId j = 0; j < scene.lights.size(); ++j) {
-        EXPECT_EQ(one.facing[j], batch.facing[j]) << "light " << j << ", " << to_string(scene.lights[j].kind);
+    expect_same(one, batch);
+    for (LightId j = 0; j < scene.lights.size(); ++j)
         for (const Facing f : batch.facing[j])
             ++(f == Facing::none     ? found.none
                : f == Facing::away   ? found.away
                : f == Facing::partly ? found.partly
                                      : found.front);
-    }
 }
 
 TEST(PointWriter, WritesWhatPointsWrittenOneByOneHave) {

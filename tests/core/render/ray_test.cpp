@@ -6,6 +6,7 @@
 #include <random>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/tests/support/same_points.h"
 
 namespace umbra {
 namespace {
@@ -80,15 +81,6 @@ Camera camera_at(vec3 eye, vec3 target) {
     camera.eye    = eye;
     camera.target = target;
     return camera;
-}
-
-void expect_same(const PointBatch& a, const PointBatch& b) {
-    ASSERT_EQ(a.size(), b.size());
-    EXPECT_EQ(a.triangle, b.triangle);
-    EXPECT_EQ(a.u, b.u);
-    EXPECT_EQ(a.v, b.v);
-    EXPECT_EQ(a.px, b.px);
-    EXPECT_EQ(a.nz, b.nz);
 }
 
 class Projections : public testing::TestWithParam<Projection> {};
