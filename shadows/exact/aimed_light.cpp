@@ -1,6 +1,7 @@
 #include "umbra/shadows/exact/aimed_light.h"
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/shadows/exact/light_space.h"
 
 namespace umbra::exact_detail {
 namespace {
@@ -17,6 +18,19 @@ constexpr double kBoxRounding = 1e-12;  ///< relative: more than the rounding of
 std::optional<LightPlane> AimedLight::plane_from(const ExactPoint& p) const {
     return light_.kind == LightKind::sphere ? sphere_light_plane(light_, p)
                                             : flat_light_plane(light_, half_, exact_half_, p);
+}
+
+std::optional<BoxTree::Region> AimedLight::region_from(const ExactPoint& p, double reach) const {
+    if (light_.kind == LightKind::sphere) {
+        // The tangent disk with its rim lies within the sphere, and the square about it in sqrt(2) times that.
+        const dvec3 centre = dvec3(light_.position) - dvec3(p.corner());
+        const Entries to   = p.to(Entries{centre, kUnit * largest(centre)});
+        return shaft_to_ball(p, to, 1.5 * reach * static_cast<double>(light_.radius));
+    }
+    const std::optional<LightPlane> plane = plane_from(p);
+    const FloatSpace space(p, *plane);
+    if (!space.orientation()) return std::nullopt;
+    return shaft(p, space, reach);
 }
 
 void AimedLight::find_sides(const Occluders& occluders) {

@@ -14,9 +14,6 @@ public:
 
     [[nodiscard]] bool round() const { return light_.kind != LightKind::rectangle; }
 
-    /// Whether all points see it in one plane, up to rounding.
-    [[nodiscard]] bool flat() const { return light_.kind != LightKind::sphere; }
-
     /// The light's plane as p sees it. Nothing where p is within a sphere light.
     [[nodiscard]] std::optional<LightPlane> plane_from(const ExactPoint& p) const;
 
@@ -26,6 +23,10 @@ public:
         if (side_.empty()) return std::nullopt;
         return side_[vertex];
     }
+
+    /// The region between p and all that points about p see of the light, and of the square about it scaled by `reach`:
+    /// points that may be off from p are seen to by its user. Nothing where p is too close for that.
+    [[nodiscard]] std::optional<BoxTree::Region> region_from(const ExactPoint& p, double reach) const;
 
     /// The triangles that may pass through the light.
     [[nodiscard]] const std::vector<TriangleId>& across() const { return across_; }

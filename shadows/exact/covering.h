@@ -20,11 +20,16 @@
 #include <boost/sort/pdqsort/pdqsort.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "umbra/shadows/exact/active_edges.h"
+#include "umbra/shadows/exact/whole_light.h"
 
 namespace umbra::exact_detail {
 
@@ -79,10 +84,7 @@ inline double as_double(const CGAL::Gmpq& x) { return CGAL::to_double(x); }
 template <class T>
 class Covering {
 public:
-    struct Point {
-        T x, y;
-    };
-
+    using Point = PlanePoint<T>;
     class Outline;
 
     void clear() {
@@ -130,54 +132,42 @@ public:
     [[nodiscard]] std::pair<double, double> uncovered(const Outline& light, int layers, std::span<ChordState> chords,
                                                       const Piece& piece);
 
+    /// The same of a light that is seen whole, to its rim. May be asked once, and nothing after it: the edges are cut.
+    template <class Shape>
+    [[nodiscard]] std::pair<double, double> uncovered_of(int layers);
+
 private:
-    struct Edge {
-        Point low, high;
-        int step      = 0;  ///< D right of the edge less D left of it
-        bool of_light = false;
-        int cap       = -1;
-        [[nodiscard]] T at(const T& y) const {
-            if (y == low.y) return low.x;
-            if (y == high.y) return high.x;
-            return low.x + (high.x - low.x) * ((y - low.y) / (high.y - low.y));
-        }
-    };
+    using Edge = SweptEdge<T>;
+    using Slot = typename ActiveEdges<T>::Slot;
     struct Entry {
         T y;
         int change;
     };
-    struct Active {
-        const Edge* edge;
-        T bottom, top, middle;    ///< x in this row
-        T width, height;          ///< of the edge
-        std::uint32_t place = 0;  ///< in active_, see find_crossings
 
-        explicit Active(const Edge& e)
-            : edge(&e), bottom(e.low.x), top(0), middle(0), width(e.high.x - e.low.x), height(e.high.y - e.low.y) {}
-        /// The edge's x at y, its lower end being below.
-        [[nodiscard]] T above(const T& y) const {
-            const T x = edge->low.x + width * ((y - edge->low.y) / height);
-            return y == edge->high.y ? edge->high.x : x;
-        }
-    };
-
-    [[nodiscard]] bool find_crossings(const T& lo, const T& hi, int layers, std::size_t& all);
+    [[nodiscard]] bool find_crossings(const T& lo, const T& hi, std::size_t& all);
     template <class Keep>
-    void keep_what_shows(int layers, const Keep& keep);
+    void keep_what_shows(LeftOfEdge left, const Keep& keep);
     template <class X, class Gap>
-    T open_width(int layers, const X& x, std::span<ChordState> chords, const Gap& gap) const;
+    T open_width(const X& x, const Gap& gap) const;
+    /// Of the row that is swept.
+    struct Row {
+        const T &lo, &hi;
+    };
+    [[nodiscard]] T x_at(const Row& row, Slot s, const T& y) const {
+        if (y == row.lo) return active_.bottom(s);
+        return y == row.hi ? active_.top(s) : active_.between(s, (y - row.lo) / (row.hi - row.lo));
+    }
+    template <class Add>
+    double sweep(const std::vector<Edge>& edges, const Outline* light, LeftOfEdge at_left, const T& lowest,
+                 const T& highest, const Add& add);
+    template <class Shape>
+    void cut_at_rim(const Edge& edge);
+    void mark_chords(std::span<ChordState> chords) const;
 
-    /// Two edges, by their places in active_: the left one comes to be the right one.
+    /// The left one comes to be the right one.
     struct Crossing {
         T y;
-        std::uint32_t left, right;
-    };
-    /// What is left of an edge.
-    struct Left {
-        int layers;
-        bool inside;  ///< the light
-        [[nodiscard]] Left past(const Edge& e) const { return {layers + e.step, inside != e.of_light}; }
-        [[nodiscard]] bool shows() const { return inside && layers == 0; }
+        Slot left, right;
     };
 
     /// The lower end of an edge, by its number. Doubles are copied, so that they are sorted fast.
@@ -192,18 +182,19 @@ private:
         }
     };
     static void sort_starts(const std::vector<Edge>& edges, std::vector<Start>& starts);
-    static void sort_heights(std::vector<T>& heights);
-    void find_rows(const Outline& light);
+    static void sort_many_starts(const std::vector<Edge>& edges, std::vector<Start>& starts);
+    static constexpr std::size_t kManyStarts = 48;
 
     std::vector<Edge> edges_;
+    std::vector<Edge> inside_;  ///< a light that is seen whole
     std::vector<Start> starts_;
     std::vector<Entry> entries_;
-    std::vector<T> begins_, ends_, both_, rows_;  ///< heights
-    std::vector<T> crossings_;
-    std::vector<Active> active_, by_top_;
+    ActiveEdges<T> active_;
     std::vector<Crossing> pairs_;
-    std::vector<std::uint32_t> order_, place_of_;
-    std::vector<Left> left_of_;
+    std::vector<T> crossings_;             ///< heights
+    std::vector<Slot> at_bottom_, order_;  ///< from left to right
+    std::vector<std::uint32_t> place_of_;
+    std::vector<LeftOfEdge> left_of_;
 };
 
 /// A convex light that is swept, perhaps many times.
@@ -222,49 +213,33 @@ private:
     std::vector<LightCorner<T>> corners_;
     std::vector<Edge> edges_;
     std::vector<Start> starts_;
-    std::vector<T> heights_;
+    T lowest_{}, highest_{};
 };
 
 template <class T>
 void Covering<T>::Outline::assign(std::vector<LightCorner<T>> corners) {
     corners_ = std::move(corners);
     edges_.clear();
-    heights_.clear();
     for (std::size_t k = 0; k < corners_.size(); ++k) {
         const LightCorner<T>&a = corners_[k], &b = corners_[(k + 1) % corners_.size()];
         if (a.y < b.y) edges_.push_back({{a.x, a.y}, {b.x, b.y}, 0, true, a.cap});
         if (b.y < a.y) edges_.push_back({{b.x, b.y}, {a.x, a.y}, 0, true, a.cap});
-        heights_.push_back(a.y);
+        if (k == 0 || a.y < lowest_) lowest_ = a.y;
+        if (k == 0 || highest_ < a.y) highest_ = a.y;
     }
     sort_starts(edges_, starts_);
-    sort_heights(heights_);
-}
-
-/// Sorts by insertion: rows differ little from the one below. Calls swapped(left, right) for each swapped pair.
-template <class Range, class Less, class Swapped>
-void insertion_sort(Range& range, const Less& less, const Swapped& swapped) {
-    for (std::size_t i = 1; i < range.size(); ++i)
-        for (std::size_t k = i; k > 0 && less(range[k], range[k - 1]); --k) {
-            swapped(range[k - 1], range[k]);
-            std::swap(range[k - 1], range[k]);
-        }
-}
-
-/// The same, where swaps are of no interest.
-template <class Range, class Less>
-void insertion_sort(Range& range, const Less& less) {
-    const auto begin = range.begin();
-    for (auto i = begin; i != range.end(); ++i) {
-        auto to = i;
-        while (to != begin && less(*i, *(to - 1))) --to;
-        if (to != i) std::rotate(to, i, i + 1);
-    }
 }
 
 /// Edges by the heights of their lower ends; of one height in the order in which they came.
 template <class T>
 void Covering<T>::sort_starts(const std::vector<Edge>& edges, std::vector<Start>& starts) {
     starts.clear();
+    if constexpr (std::is_same_v<T, double>) {
+        if (edges.size() > kManyStarts) {
+            sort_many_starts(edges, starts);
+            return;
+        }
+    }
     for (std::uint32_t k = 0; k < edges.size(); ++k) {
         if constexpr (std::is_same_v<T, double>)
             starts.push_back({edges[k].low.y, k});
@@ -274,52 +249,54 @@ void Covering<T>::sort_starts(const std::vector<Edge>& edges, std::vector<Start>
     boost::sort::pdqsort_branchless(starts.begin(), starts.end());
 }
 
-/// Each is left once.
+/// The same: into drawers by height first, which leaves little to be put in order.
 template <class T>
-void Covering<T>::sort_heights(std::vector<T>& heights) {
-    if constexpr (std::is_same_v<T, double>)
-        boost::sort::pdqsort_branchless(heights.begin(), heights.end());
-    else
-        std::sort(heights.begin(), heights.end());
-    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
-}
-
-/// All heights at which something begins or ends; the starts are sorted.
-template <class T>
-void Covering<T>::find_rows(const Outline& light) {
-    begins_.clear(), ends_.clear(), rows_.clear();
-    for (const Edge& e : edges_) ends_.push_back(e.high.y);
-    for (const Entry& e : entries_) ends_.push_back(e.y);
-    sort_heights(ends_);
-    for (const Start& start : starts_)
-        if (const T& y = edges_[start.edge].low.y; begins_.empty() || begins_.back() < y) begins_.push_back(y);
-    const auto join = [](const std::vector<T>& a, const std::vector<T>& b, std::vector<T>& to) {
-        std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(to));
+void Covering<T>::sort_many_starts(const std::vector<Edge>& edges, std::vector<Start>& starts) {
+    constexpr std::size_t kDrawers = 256;
+    const auto drawer              = [](const Edge& edge) {
+        return static_cast<std::size_t>(std::clamp((edge.low.y + 1.125) * (kDrawers / 2.25), 0.0, kDrawers - 1.0));
     };
-    both_.clear();
-    join(begins_, ends_, both_);
-    join(both_, light.heights_, rows_);
+    std::array<std::uint32_t, kDrawers + 1> begin{};
+    for (const Edge& edge : edges) ++begin[drawer(edge) + 1];
+    for (std::size_t k = 0; k < kDrawers; ++k) begin[k + 1] += begin[k];
+    starts.resize(edges.size());
+    for (std::uint32_t k = 0; k < edges.size(); ++k) starts[begin[drawer(edges[k])]++] = {edges[k].low.y, k};
+    for (std::size_t i = 1, moves = 0; i < starts.size(); ++i) {
+        const Start moved = starts[i];
+        std::size_t to    = i;
+        for (; to > 0 && moved < starts[to - 1]; --to) starts[to] = starts[to - 1];
+        starts[to] = moved;
+        moves += i - to;
+        if (moves > 16 * starts.size()) {  // too many in one drawer
+            boost::sort::pdqsort_branchless(starts.begin(), starts.end());
+            return;
+        }
+    }
 }
 
-/// Where edges that are in order at the bottom of the row are not at its top. False where all are. A crossing may be
-/// too close to the bottom or the top to have a height of its own; the order then still changes there. `layers` is D at
-/// the far left; `all` grows by the number of crossings.
+/// Where edges that are in order at the bottom of the row are not at its top, and it shows. False where it does
+/// nowhere. A crossing may be too close to the bottom or the top to have a height of its own; the order then still
+/// changes there. `all` grows by the number of crossings.
 template <class T>
-bool Covering<T>::find_crossings(const T& lo, const T& hi, int layers, std::size_t& all) {
+bool Covering<T>::find_crossings(const T& lo, const T& hi, std::size_t& all) {
+    if (active_.sorted_at_top()) return false;
+    if (const std::size_t unseen = active_.cross_unseen(); unseen > 0) {
+        all += unseen;
+        return false;
+    }
+    const LeftOfEdge at_left = active_.left().front();
+    at_bottom_.assign(active_.order().begin(), active_.order().end());
     crossings_.clear();
-    const auto by_top = [](const Active& a, const Active& b) { return a.top < b.top; };
-    if (std::is_sorted(active_.begin(), active_.end(), by_top)) return false;
-    for (std::uint32_t k = 0; k < active_.size(); ++k) active_[k].place = k;
-    by_top_ = active_;
     pairs_.clear();
-    insertion_sort(by_top_, by_top, [&](const Active& a, const Active& b) {
-        const T below = b.bottom - a.bottom, above = a.top - b.top;
-        pairs_.push_back({lo + (hi - lo) * (below / (below + above)), a.place, b.place});
+    active_.sort_at_top([&](Slot a, Slot b) {
+        const T below = active_.bottom(b) - active_.bottom(a), above = active_.top(a) - active_.top(b);
+        pairs_.push_back({lo + (hi - lo) * (below / (below + above)), a, b});
     });
     all += pairs_.size();
     std::sort(pairs_.begin(), pairs_.end(), [](const Crossing& a, const Crossing& b) { return a.y < b.y; });
+    active_.restore(at_bottom_);
     bool any = false;
-    keep_what_shows(layers, [&](const Crossing& crossing) {
+    keep_what_shows(at_left, [&](const Crossing& crossing) {
         any = true;
         if (lo < crossing.y && crossing.y < hi && (crossings_.empty() || crossings_.back() < crossing.y))
             crossings_.push_back(crossing.y);
@@ -333,12 +310,14 @@ bool Covering<T>::find_crossings(const T& lo, const T& hi, int layers, std::size
 /// all from there on are kept.
 template <class T>
 template <class Keep>
-void Covering<T>::keep_what_shows(int layers, const Keep& keep) {
-    order_.clear(), place_of_.clear(), left_of_.clear();
-    Left left{layers, false};
-    for (std::uint32_t k = 0; k < active_.size(); ++k) {
-        order_.push_back(k), place_of_.push_back(k), left_of_.push_back(left);
-        left = left.past(*active_[k].edge);
+void Covering<T>::keep_what_shows(LeftOfEdge left, const Keep& keep) {
+    order_ = at_bottom_;
+    place_of_.resize(order_.size());
+    left_of_.clear();
+    for (std::uint32_t k = 0; k < order_.size(); ++k) {
+        place_of_[order_[k]] = k;
+        left_of_.push_back(left);
+        left = left.past(active_.edge(order_[k]));
     }
     left_of_.push_back(left);
     bool in_order = true;
@@ -352,34 +331,94 @@ void Covering<T>::keep_what_shows(int layers, const Keep& keep) {
         bool shows = left_of_[k].shows() || left_of_[k + 1].shows() || left_of_[k + 2].shows();
         std::swap(order_[k], order_[k + 1]);
         place_of_[crossing.left] = k + 1, place_of_[crossing.right] = k;
-        left_of_[k + 1] = left_of_[k].past(*active_[order_[k]].edge);
+        left_of_[k + 1] = left_of_[k].past(active_.edge(order_[k]));
         shows           = shows || left_of_[k + 1].shows();
         if (shows) keep(crossing);
     }
 }
 
-/// Width of the light in a row where D is 0. `x` gives the position of an edge; edges are in order. Calls gap(left,
-/// right) for each pair of edges between which that is.
+/// What the light within a chord is, where one of the active edges is one.
+template <class T>
+void Covering<T>::mark_chords(std::span<ChordState> chords) const {
+    for (const std::uint32_t k : active_.of_light())
+        if (const int cap = active_.edge(active_.order()[k]).cap; cap >= 0)
+            chords[static_cast<std::size_t>(cap)] =
+                active_.left()[k].layers == 0 ? ChordState::visible : ChordState::hidden;
+}
+
+/// Width of the light in a row where D is 0. `x` gives the position of an edge. Calls gap(left, right) for each pair of
+/// edges between which that is.
 template <class T>
 template <class X, class Gap>
-T Covering<T>::open_width(int layers, const X& x, std::span<ChordState> chords, const Gap& gap) const {
-    T width     = 0;
-    bool inside = false;
-    for (std::size_t k = 0; k < active_.size(); ++k) {
-        const Edge& edge = *active_[k].edge;
-        if (inside && layers == 0) {
-            width += x(active_[k]) - x(active_[k - 1]);
-            gap(active_[k - 1], active_[k]);
-        }
-        if (edge.of_light) {
-            inside = !inside;
-            if (edge.cap >= 0)
-                chords[static_cast<std::size_t>(edge.cap)] = layers == 0 ? ChordState::visible : ChordState::hidden;
-        } else {
-            layers += edge.step;
-        }
+T Covering<T>::open_width(const X& x, const Gap& gap) const {
+    T width = 0;
+    for (const std::uint32_t k : active_.open()) {
+        const Slot left = active_.order()[k - 1], right = active_.order()[k];
+        width += x(right) - x(left);
+        gap(left, right);
     }
     return width;
+}
+
+/// Sweeps `edges` between the heights `lowest` and `highest`, with the edges of a light, if any. `at_left`: at the far
+/// left of the lowest row. For each row, or for each part of one between crossings that show, active_ is sorted and
+/// counted, and add(row, from, to, middle) is called; `middle` is where between the bottom and the top of the row, or
+/// nothing for a whole row. The sum of the rows' heights times the edges and crossings in each.
+template <class T>
+template <class Add>
+double Covering<T>::sweep(const std::vector<Edge>& edges, const Outline* light, LeftOfEdge at_left, const T& lowest,
+                          const T& highest, const Add& add) {
+    sort_starts(edges, starts_);
+    std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.y < b.y; });
+
+    std::size_t next = 0, next_of_light = 0, entry = 0;
+    double rounded = 0;
+    active_.clear();
+    const auto begin = [](const std::vector<Edge>& from, const std::vector<Start>& starts, std::size_t k) {
+        return k < starts.size() ? &from[starts[k].edge] : nullptr;
+    };
+    const auto next_edge   = [&] { return begin(edges, starts_, next); };
+    const auto next_of_rim = [&] { return light ? begin(light->edges_, light->starts_, next_of_light) : nullptr; };
+    // Where something begins or ends next, above the height y.
+    const auto height_above = [&](const T& y) {
+        T least         = y < lowest ? lowest : highest;
+        const auto take = [&](const T& other) {
+            if (other < least) least = other;
+        };
+        if (active_.size() > 0) take(active_.next_end());
+        if (const Edge* edge = next_edge()) take(edge->low.y);
+        if (const Edge* edge = next_of_rim()) take(edge->low.y);
+        if (entry < entries_.size()) take(entries_[entry].y);
+        return least;
+    };
+    const T below = lowest - T(1);
+    for (T lo = height_above(below), hi; lo < highest; lo = hi) {
+        for (; entry < entries_.size() && entries_[entry].y <= lo; ++entry) at_left.layers += entries_[entry].change;
+        active_.begin_row(lo);
+        for (const Edge* edge; (edge = next_edge()) && edge->low.y <= lo; ++next) active_.begin(*edge);
+        for (const Edge* edge; (edge = next_of_rim()) && edge->low.y <= lo; ++next_of_light) active_.begin(*edge);
+        active_.remove_ended();
+        hi = height_above(lo);
+        active_.end_row(hi, at_left);
+        if (lo < lowest) continue;
+
+        std::size_t edges_and_crossings = active_.size();
+        const bool crossed              = find_crossings(lo, hi, edges_and_crossings);
+        rounded += as_double(T(hi - lo)) * static_cast<double>(edges_and_crossings);
+        if (!crossed) {
+            add(Row{lo, hi}, lo, hi, nullptr);
+            continue;
+        }
+        crossings_.push_back(hi);
+        T from = lo;
+        for (const T& to : crossings_) {
+            const T middle = ((from + to) / T(2) - lo) / (hi - lo);
+            active_.sort_between(middle, at_left);
+            add(Row{lo, hi}, from, to, &middle);
+            from = to;
+        }
+    }
+    return rounded;
 }
 
 template <class T>
@@ -387,67 +426,80 @@ template <class Piece>
 std::pair<double, double> Covering<T>::uncovered(const Outline& light, int layers, std::span<ChordState> chords,
                                                  const Piece& piece) {
     if (light.empty()) return {0, 0};
-    sort_starts(edges_, starts_);
-    std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) { return a.y < b.y; });
-    find_rows(light);
-    const T &lowest = light.heights_.front(), &highest = light.heights_.back();
-
     AreaSum<T> area;
-    std::size_t next = 0, next_of_light = 0, entry = 0;
-    double rounded = 0;
-    active_.clear();
-    for (std::size_t row = 0; row + 1 < rows_.size(); ++row) {
-        const T &lo = rows_[row], &hi = rows_[row + 1];
-        if (!(lo < highest)) break;
-        for (; entry < entries_.size() && entries_[entry].y <= lo; ++entry) layers += entries_[entry].change;
-        std::erase_if(active_, [&](const Active& a) { return a.edge->high.y <= lo; });
-        for (Active& a : active_) a.bottom = a.top;
-        const auto begin = [&](const std::vector<Edge>& edges, const std::vector<Start>& starts, std::size_t& k) {
-            for (; k < starts.size() && edges[starts[k].edge].low.y <= lo; ++k)
-                active_.emplace_back(edges[starts[k].edge]);
+    const auto add = [&](const Row& row, const T& from, const T& to, const T* middle) {
+        mark_chords(chords);
+        const auto gap = [&](Slot left, Slot right) {
+            if constexpr (!std::is_same_v<Piece, NoPieces>) {
+                const auto x = [&](Slot s, const T& y) { return as_double(x_at(row, s, y)); };
+                piece(Trapezoid{as_double(from), as_double(to), x(left, from), x(right, from), x(left, to),
+                                x(right, to)});
+            }
         };
-        begin(edges_, starts_, next);
-        begin(light.edges_, light.starts_, next_of_light);
-        for (Active& a : active_) a.top = a.above(hi);
-        insertion_sort(active_, [](const Active& a, const Active& b) {
-            return a.bottom < b.bottom || (a.bottom == b.bottom && a.top < b.top);
-        });
-        if (lo < lowest) continue;
-
-        std::size_t edges_and_crossings = active_.size();
-        const bool crossed              = find_crossings(lo, hi, layers, edges_and_crossings);
-        rounded += as_double(T(hi - lo)) * static_cast<double>(edges_and_crossings);
-        if (!crossed) {
-            const T twice = open_width(
-                layers, [](const Active& a) { return T(a.bottom + a.top); }, chords,
-                [&](const Active& left, const Active& right) {
-                    if constexpr (!std::is_same_v<Piece, NoPieces>)
-                        piece(Trapezoid{as_double(lo), as_double(hi), as_double(left.bottom), as_double(right.bottom),
-                                        as_double(left.top), as_double(right.top)});
-                });
-            area.add(T((hi - lo) * twice / T(2)));
-            continue;
-        }
-        crossings_.push_back(hi);
-        T from = lo;
-        for (const T& to : crossings_) {
-            const T middle = ((from + to) / T(2) - lo) / (hi - lo);
-            for (Active& a : active_) a.middle = a.bottom + (a.top - a.bottom) * middle;
-            insertion_sort(active_, [](const Active& a, const Active& b) { return a.middle < b.middle; });
-            const auto x_at = [&](const Active& a, const T& y) {
-                return as_double(T(a.bottom + (a.top - a.bottom) * ((y - lo) / (hi - lo))));
-            };
-            area.add(T((to - from) * open_width(
-                                         layers, [](const Active& a) { return a.middle; }, chords,
-                                         [&](const Active& left, const Active& right) {
-                                             if constexpr (!std::is_same_v<Piece, NoPieces>)
-                                                 piece(Trapezoid{as_double(from), as_double(to), x_at(left, from),
-                                                                 x_at(right, from), x_at(left, to), x_at(right, to)});
-                                         })));
-            from = to;
-        }
-    }
+        if (middle)
+            area.add(T((to - from) * open_width([&](Slot s) { return active_.between(s, *middle); }, gap)));
+        else
+            area.add(T((to - from) * open_width([this](Slot s) { return T(active_.bottom(s) + active_.top(s)); }, gap) /
+                       T(2)));
+    };
+    const double rounded = sweep(edges_, &light, {layers, false}, light.lowest_, light.highest_, add);
     return {area.value(), rounded};
+}
+
+/// Cuts an edge at the rim of the light: what is within goes to inside_, what is left of the light to entries_.
+template <class T>
+template <class Shape>
+void Covering<T>::cut_at_rim(const Edge& edge) {
+    const PartWithin part = Shape::within(edge.low, edge.high);
+    const auto at         = [&](double t) -> Point {
+        if (t <= 0) return edge.low;
+        if (t >= 1) return edge.high;
+        return {edge.low.x + t * (edge.high.x - edge.low.x), edge.low.y + t * (edge.high.y - edge.low.y)};
+    };
+    const auto beside = [&](const Point& low, const Point& high) {
+        const double from = std::max(low.y, -1.0), to = std::min(high.y, 1.0);
+        if (!(from < to)) return;
+        const double middle = low.x + (high.x - low.x) * (((from + to) / 2 - low.y) / (high.y - low.y));
+        if (middle < 0) entries_.push_back({low.y, edge.step}), entries_.push_back({high.y, -edge.step});
+    };
+    if (part.empty()) {
+        beside(edge.low, edge.high);
+        return;
+    }
+    const Point low = at(part.from), high = at(part.to);
+    beside(edge.low, low);
+    beside(high, edge.high);
+    if (low.y < high.y) inside_.push_back({low, high, edge.step});
+}
+
+template <class T>
+template <class Shape>
+std::pair<double, double> Covering<T>::uncovered_of(int layers) {
+    inside_.clear();
+    for (const Edge& edge : edges_) cut_at_rim<Shape>(edge);
+    double area      = 0;
+    std::size_t rows = 0;
+    const auto add   = [&](const Row& /*row*/, double from, double to, const double* middle) {
+        const auto order = active_.order();
+        const auto twice = [&](std::size_t k) {
+            return middle ? 2 * active_.between(order[k], *middle) : active_.bottom(order[k]) + active_.top(order[k]);
+        };
+        ++rows;
+        double width = 0, rims = 0;  // twice the width between x = 0 and edges, and half areas
+        for (const std::uint32_t k : active_.open()) {
+            width += twice(k);
+            (k > 0 ? width : rims) += k > 0 ? -twice(k - 1) : 1;
+        }
+        if (active_.left().back().shows()) {
+            if (!order.empty()) width -= twice(order.size() - 1);
+            rims += 1;
+        }
+        if (order.empty()) rims *= 2;
+        area += (to - from) * width / 2;
+        if (rims > 0) area += rims * Shape::half_area(from, to);
+    };
+    const double rounded = sweep(inside_, nullptr, {layers, true}, -1, 1, add);
+    return {area, rounded + static_cast<double>(rows)};
 }
 
 }  // namespace umbra::exact_detail

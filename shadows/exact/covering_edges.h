@@ -13,8 +13,8 @@ class CoveringEdges {
 public:
     using T = typename Space::Number;
 
-    /// All must outlive this object. `covering` is emptied.
-    CoveringEdges(const Projection<Space>& projection, Covering<T>& covering, DiskCaps& caps)
+    /// All must outlive this object. `covering` is emptied; `caps` may be null.
+    CoveringEdges(const Projection<Space>& projection, Covering<T>& covering, DiskCaps* caps)
         : projection_(projection), covering_(covering), caps_(caps) {
         covering_.clear();
     }
@@ -30,7 +30,7 @@ private:
 
     const Projection<Space>& projection_;
     Covering<T>& covering_;
-    DiskCaps& caps_;
+    DiskCaps* caps_;
 };
 
 template <class Space>
@@ -95,7 +95,7 @@ bool CoveringEdges<Space>::add_clipped(const Numerators<T>& a, const Numerators<
                  qy = as_double(edge->to.y);
     const double dx = qx - px, dy = qy - py, length = std::sqrt(dx * dx + dy * dy) * (1 + 0x1p-50);
     displacement.move_edge(edge->off, 2 * projection_.sight().plane.rounding, length);
-    if (projection_.sight().light.round()) caps_.touch(px, py, qx, qy);
+    if (caps_) caps_->touch(px, py, qx, qy);
     covering_.add(edge->from, edge->to, change, edge->from_left, edge->to_left);
     return true;
 }

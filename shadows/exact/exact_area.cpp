@@ -91,9 +91,9 @@ void ExactArea::halve(const PointBatch& points, std::span<std::uint32_t> which) 
     });
 }
 
-/// Finds the candidates of all these points. False where they are too many for that, or the light is in no one plane.
+/// Finds the candidates of all these points. False where they are too many for that, or the light is too close.
 bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint32_t> which, Workspace& work) const {
-    if (which.size() < kFewest || !light_.flat()) return false;
+    if (which.size() < kFewest) return false;
     constexpr double kApart = 1.0 / 8;  // of the distance to the light: they do not lie together
     const auto at           = [&](std::uint32_t i) {
         return ExactPoint(*occluders_.scene, points.triangle[i], points.u[i], points.v[i]);
@@ -103,25 +103,30 @@ bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint3
                               work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
     if (!plane || !(plane->rounding <= kRoughest)) return false;
-    const FloatSpace space(viewpoint.point(), *plane);
-    if (!space.orientation()) return false;
     double around = 0;
     for (const std::uint32_t i : which) {
         const ExactPoint p = at(i);
         around             = std::max(around, largest(p.rounded() - viewpoint.point().rounded()) + p.slack());
     }
-    if (around > kApart * largest(space.to_centre().value)) return false;
-    const std::size_t most = std::max(kFew, edges_.candidates() / kPart);
+    const Entries to_centre = viewpoint.point().to(plane->centre_from_corner);
+    if (around > kApart * largest(to_centre.value)) return false;
     // The planes of two points differ by twice what each may be off.
-    return edges_.gather_around(viewpoint, space, kGatherReach + 4 * kRoughest,
-                                (1 + 4 * kUnit) * (around + viewpoint.point().slack()), most, work.group);
+    const std::optional<BoxTree::Region> region = light_.region_from(viewpoint.point(), kGatherReach + 4 * kRoughest);
+    if (!region) return false;
+    const std::size_t most = std::max(kFew, edges_.candidates() / kPart);
+    around                 = (1 + 4 * kUnit) * (around + viewpoint.point().slack());
+    if (!edges_.gather_around(viewpoint, *region, around, most, work.group)) return false;
+    const dvec2 place = counting_place(0);
+    work.over.gather(occluders_, viewpoint.point(), to_centre.value + place.x * plane->u + place.y * plane->v, place.x,
+                     place.y, around);
+    return true;
 }
 
 ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const {
     const Viewpoint viewpoint(*occluders_.scene, own, u, v, work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
     if (!plane) return kAllVisible;
-    const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn};
+    const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn, work.over};
     if (!(plane->rounding <= kRoughest)) return seen_in_rough_plane(sight, work);
 
     const FloatSpace space(viewpoint.point(), *plane);
@@ -171,7 +176,7 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
     if (!any_filter) return without;
     const RationalSpace exact_space(viewpoint.point(), *plane);
     if (exact_space.orientation() == 0) return without;
-    const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn};
+    const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn, work.over};
     const std::optional<dvec3> passed = light_through_filters(sight, exact_space, work.between, work.steps);
     if (!passed) return std::nullopt;
     return vec3(glm::clamp(*passed, 0.0, 1.0));

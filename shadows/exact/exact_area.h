@@ -30,7 +30,8 @@ public:
     struct Workspace {
         CoplanarTriangles coplanar;
         std::vector<SilhouetteEdge> silhouette;
-        EdgeGroup group;  ///< edges for all points of a group
+        EdgeGroup group;     ///< edges for all points of a group
+        TrianglesOver over;  ///< triangles for all of them
         bool in_group = false;
         std::vector<TriangleId> between;
         PartialCovering<double> in_double;
@@ -52,9 +53,10 @@ public:
     template <class See>
     void for_all(const PointBatch& points, std::span<std::uint32_t> which, Workspace& work, const See& see) const {
         work.in_group = look_around(points, which, work);
-        if (work.in_group || which.size() < 2 * kFewest || !light_.flat()) {
+        if (work.in_group || which.size() < 2 * kFewest) {
             for (const std::uint32_t i : which) see(i);
             work.in_group = false;
+            work.over.clear();
             return;
         }
         halve(points, which);

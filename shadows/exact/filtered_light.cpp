@@ -137,8 +137,8 @@ HalfPlane in_front(const Sight& sight) {
     const LightPlane& p       = sight.plane;
     const Rational3 u         = p.exact_axes != nullptr ? p.exact_axes->u : rational(p.u),
                     v         = p.exact_axes != nullptr ? p.exact_axes->v : rational(p.v);
-    const Rational3 c         = p.exact_centre
-                                    ? *p.exact_centre
+    const Rational3 c         = p.exact_axes != nullptr
+                                    ? p.exact_axes->centre
                                     : rational(sight.viewpoint.point().corner()) + rational(p.centre_from_corner.value);
     const Rational3 to_centre = c - sight.viewpoint.point().exact();
     return HalfPlane(scaled({dot(n, u), dot(n, v), dot(n, to_centre)}, Rational(sight.turn)));

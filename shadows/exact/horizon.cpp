@@ -24,7 +24,7 @@ Horizon<Rational> horizon_of(const Sight& sight) {
     const TriangleId own = sight.viewpoint.own();
     const Rational3 a    = rational(scene.vertex(own, 0));
     const Rational3 centre =
-        sight.plane.exact_centre ? *sight.plane.exact_centre - a : rational(sight.plane.centre_from_corner.value);
+        sight.plane.exact_axes ? sight.plane.exact_axes->centre - a : rational(sight.plane.centre_from_corner.value);
     const Rational3 m = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
     const Rational turn(sight.turn);
     const Rational3 u   = sight.plane.exact_axes ? sight.plane.exact_axes->u : rational(sight.plane.u);

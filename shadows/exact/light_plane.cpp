@@ -34,7 +34,7 @@ ExactAxes exact_axes(const Light& light, const DiskAxes& half) {
         put_into_it(u);
         put_into_it(v);
     }
-    return {std::move(u), std::move(v)};
+    return {std::move(u), std::move(v), rational(light.position)};
 }
 
 LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactAxes& exact, const ExactPoint& p) {
@@ -42,8 +42,7 @@ LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const Exac
                      .v                  = half.v,
                      .exact_axes         = &exact,
                      .axis_error         = axis_error(light),
-                     .centre_from_corner = centre_from_corner(light, p),
-                     .exact_centre       = rational(light.position)};
+                     .centre_from_corner = centre_from_corner(light, p)};
     if (light.kind == LightKind::disk) plane.rounding = 16 * kUnit;
     return plane;
 }

@@ -15,22 +15,21 @@ namespace umbra::exact_detail {
 /// By how much each component of them may be off from the light's plane, and from their length.
 [[nodiscard]] double axis_error(const Light& light);
 
-/// Half axes in rationals: of a disk, whose axes in double leave its plane by a rounding, in the plane itself. From a
-/// point in that plane, or next to it, no rounding of the plane is small.
+/// Half axes and centre in rationals: of a disk, whose axes in double leave its plane by a rounding, in the plane
+/// itself. From a point in that plane, or next to it, no rounding of the plane is small.
 struct ExactAxes {
-    Rational3 u, v;
+    Rational3 u, v, centre;
 };
 [[nodiscard]] ExactAxes exact_axes(const Light& light, const DiskAxes& half);
 
 /// Centre and half axes. For a sphere they are rounded to double once.
 struct LightPlane {
     dvec3 u{1, 0, 0}, v{0, 0, 1};
-    const ExactAxes* exact_axes = nullptr;    ///< null: u and v are exact
-    double axis_error           = 0;          ///< of each component of u and v
-    Entries centre_from_corner{};             ///< centre less the first corner of the point's triangle
-    std::optional<Rational3> exact_centre{};  ///< in rationals; if absent, corner + centre_from_corner
-    double rounding = 0;     ///< how far the light's rim may lie from where it is meant to be, in units
-                             ///< of the half axes
+    const ExactAxes* exact_axes = nullptr;  ///< null: u and v are exact, and so is corner + centre_from_corner
+    double axis_error           = 0;        ///< of each component of u and v
+    Entries centre_from_corner{};           ///< centre less the first corner of the point's triangle
+    double rounding = 0;                    ///< how far the light's rim may lie from where it is meant to be, in units
+                                            ///< of the half axes
     double depth_error = 0;  ///< how far the plane may lie from there along its normal, in units of length
 };
 

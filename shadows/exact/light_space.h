@@ -97,6 +97,26 @@ private:
     return region;
 }
 
+/// The region between p and a ball, and that ball: nothing where p is in it or close to it.
+[[nodiscard]] inline std::optional<BoxTree::Region> shaft_to_ball(const ExactPoint& p, const Entries& to_centre,
+                                                                  double radius) {
+    constexpr double kWidest = 0.9;  // sine of the angle between the axis and a plane
+    const dvec3& w           = to_centre.value;
+    const double distance = glm::length(w), sine = radius / distance;
+    if (!(sine < kWidest)) return std::nullopt;
+    const dvec3 axis = w / distance;
+    const dvec3 across =
+        glm::normalize(std::abs(axis.x) < 0.5 ? glm::cross(axis, dvec3(1, 0, 0)) : glm::cross(axis, dvec3(0, 1, 0)));
+    const dvec3 in = sine * axis, a = std::sqrt(1 - sine * sine) * across,
+                b = std::sqrt(1 - sine * sine) * glm::cross(axis, across);
+    BoxTree::Region region;
+    region.planes = {{{in + a, 0}, {in - a, 0}, {in + b, 0}, {in - b, 0}, {-axis, distance + radius}}};
+    region.from   = p.rounded();
+    region.slack  = 2 * p.slack() + to_centre.error + 16 * kUnit * (distance + radius);
+    region.tilt   = 16 * kUnit;
+    return region;
+}
+
 class RationalSpace {
 public:
     using Number = Rational;
@@ -104,8 +124,8 @@ public:
     RationalSpace(const ExactPoint& p, const LightPlane& frame) : p_(p.exact()) {
         const Rational3 u = frame.exact_axes ? frame.exact_axes->u : rational(frame.u);
         const Rational3 v = frame.exact_axes ? frame.exact_axes->v : rational(frame.v);
-        const Rational3 c =
-            frame.exact_centre ? *frame.exact_centre : rational(p.corner()) + rational(frame.centre_from_corner.value);
+        const Rational3 c = frame.exact_axes ? frame.exact_axes->centre
+                                             : rational(p.corner()) + rational(frame.centre_from_corner.value);
         const Rational3 r = c - p_;
         gx_               = cross(v, r);
         gy_               = cross(r, u);

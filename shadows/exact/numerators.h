@@ -22,6 +22,18 @@ inline Filtered<int> sign_of(const Numerators<Rational>& a, const Numerators<Rat
     return sign_of_determinant(Rational3{a.x, a.y, a.w}, Rational3{b.x, b.y, b.w}, Rational3{c.x, c.y, c.w});
 }
 
+/// The sign that the determinant of a point of the light, (x, y, 1) with |x|, |y| <= 1, and of b and c has for all such
+/// points; kUnsure where it has more than one. The bound is that of sign_of_determinant.
+inline Filtered<int> sign_over_light(const Numerators<double>& b, const Numerators<double>& c) {
+    const dvec3 normal(b.y * c.w - b.w * c.y, b.w * c.x - b.x * c.w, b.x * c.y - b.y * c.x);
+    const double q = largest(dvec3(b.x, b.y, b.w)), r = largest(dvec3(c.x, c.y, c.w));
+    const double from_entries = b.error * (r + c.error) + q * c.error;
+    const double bound        = 6.01 * (from_entries + 8 * kUnit * (q + b.error) * (r + c.error));
+    const double least        = std::abs(normal.z) - std::abs(normal.x) - std::abs(normal.y);
+    if (least > bound && bound > 1e-290) return normal.z > 0 ? 1 : -1;
+    return kUnsure;
+}
+
 inline Numerators<double> operator-(const Numerators<double>& a, const Numerators<double>& b) {
     const Numerators<double> d{a.x - b.x, a.y - b.y, a.w - b.w, 0};
     return {d.x, d.y, d.w, a.error + b.error + kUnit * largest(dvec3(d.x, d.y, d.w))};

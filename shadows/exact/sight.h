@@ -3,6 +3,7 @@
 
 #include "umbra/shadows/exact/aimed_light.h"
 #include "umbra/shadows/exact/silhouette_edges.h"
+#include "umbra/shadows/exact/triangles_over.h"
 
 namespace umbra::exact_detail {
 
@@ -12,8 +13,9 @@ struct Sight {
     const AimedLight& light;
     const LightPlane& plane;  ///< of the light as the point sees it
     const Viewpoint& viewpoint;
-    bool partly;  ///< the plane of the point's triangle cuts the light
-    int turn;     ///< -1 where the side that sees is against the triangle's winding, else 1
+    bool partly;          ///< the plane of the point's triangle cuts the light
+    int turn;             ///< -1 where the side that sees is against the triangle's winding, else 1
+    TrianglesOver& over;  ///< of a group of points that this one may be one of
 };
 
 /// The scene's vertices, projected onto the light's plane in one arithmetic.

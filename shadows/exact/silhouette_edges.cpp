@@ -126,12 +126,11 @@ bool SilhouetteEdges::cancels_around(const Viewpoint& viewpoint, const Candidate
     return change == 0;
 }
 
-bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, const FloatSpace& space, double reach, double around,
-                                    std::size_t most, EdgeGroup& group) const {
+bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, BoxTree::Region region, double around, std::size_t most,
+                                    EdgeGroup& group) const {
     group.origin = viewpoint.point().rounded();
     group.edges.clear();
     // From a point p + d the light lies in p's region moved by at most d.
-    BoxTree::Region region = shaft(viewpoint.point(), space, reach);
     region.slack += around;
     const double far = 1.75 * around;  // more than the root of three
     const auto enter = [&](std::uint32_t node, const Box& box) {
@@ -143,15 +142,17 @@ bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, const FloatSpace
     });
     const std::size_t n = group.edges.size();
     if (n > most) return false;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k)
         for (auto* list : {&group.a, &group.b, &group.first, &group.second}) (*list)[k].resize(n);
-        for (std::size_t e = 0; e < n; ++e) {
-            const CandidateEdge& edge = edges_[group.edges[e]];
-            group.a[k][e] = static_cast<float>(static_cast<double>(occluders_->position(edge.a)[k]) - group.origin[k]);
-            group.b[k][e] = static_cast<float>(static_cast<double>(occluders_->position(edge.b)[k]) - group.origin[k]);
-            group.first[k][e]  = turned(edge, 0)[k];
-            group.second[k][e] = turned(edge, 1)[k];
-        }
+    const auto put = [&](std::array<std::vector<float>, 3>& list, std::size_t e, vec3 v) {
+        for (int k = 0; k < 3; ++k) list[k][e] = v[k];
+    };
+    for (std::size_t e = 0; e < n; ++e) {
+        const CandidateEdge& edge = edges_[group.edges[e]];
+        put(group.a, e, vec3(dvec3(occluders_->position(edge.a)) - group.origin));
+        put(group.b, e, vec3(dvec3(occluders_->position(edge.b)) - group.origin));
+        put(group.first, e, turned(edge, 0));
+        put(group.second, e, turned(edge, 1));
     }
     return true;
 }
@@ -202,12 +203,27 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
         const float sure = kRounding * (std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + d) + slack;
         out[e]           = (int{one > sure} & int{other < -sure}) | (int{one < -sure} & int{other > sure});
     }
-    for (std::size_t e = 0; e < n; ++e) {
+    // Most go with that, and so the ends of the others are laid side by side before they are tried with five planes.
+    std::vector<std::uint32_t>& left = group.left;
+    left.resize(n);
+    std::size_t rest = 0;
+    for (std::uint32_t e = 0; e < n; ++e) {  // no jumps: which of them it is has no pattern
+        left[rest] = e;
+        rest += out[e] == 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        group.left_a[k].resize(rest), group.left_b[k].resize(rest);
+        const float *a = group.a[k].data(), *b = group.b[k].data();
+        for (std::size_t i = 0; i < rest; ++i) group.left_a[k][i] = a[left[i]], group.left_b[k][i] = b[left[i]];
+    }
+    ax = group.left_a[0].data(), ay = group.left_a[1].data(), az = group.left_a[2].data();
+    bx = group.left_b[0].data(), by = group.left_b[1].data(), bz = group.left_b[2].data();
+    for (std::size_t e = 0; e < rest; ++e) {
         const float size =
             std::abs(ax[e]) + std::abs(ay[e]) + std::abs(az[e]) + std::abs(bx[e]) + std::abs(by[e]) + std::abs(bz[e]);
         const float px = ax[e] - dx, py = ay[e] - dy, pz = az[e] - dz;
         const float qx = bx[e] - dx, qy = by[e] - dy, qz = bz[e] - dz;
-        std::int32_t outside = out[e];
+        std::int32_t outside = 0;
         for (std::size_t k = 0; k < planes.size(); ++k) {
             const Plane& plane = planes[k];
             const float p      = plane.x * px + plane.y * py + plane.z * pz + plane.offset,
@@ -218,10 +234,11 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
         out[e] = outside;
     }
     found.clear();
-    for (std::size_t e = 0; e < n; ++e) {
+    for (std::size_t e = 0; e < rest; ++e) {
         if (out[e] != 0) continue;
-        const int change = change_at(viewpoint, edges_[group.edges[e]]);
-        if (change != 0) found.push_back({group.edges[e], change});
+        const std::uint32_t edge = group.edges[left[e]];
+        const int change         = change_at(viewpoint, edges_[edge]);
+        if (change != 0) found.push_back({edge, change});
     }
 }
 

@@ -40,7 +40,11 @@ struct EdgeGroup {
     std::array<std::vector<float>, 3> a{}, b{};           ///< both ends
     std::array<std::vector<float>, 3> first{}, second{};  ///< normals of the two triangles, turned by their use of the
                                                           ///< edge; 0 where they are not two, or thin
-    std::vector<std::int32_t> out{};                      ///< for one point: surely no silhouette edge before the light
+
+    // For one point.
+    std::vector<std::int32_t> out{};                       ///< surely no silhouette edge, or not before the light
+    std::vector<std::uint32_t> left{};                     ///< those that may be a silhouette edge,
+    std::array<std::vector<float>, 3> left_a{}, left_b{};  ///< and their ends
 };
 
 class SilhouetteEdges {
@@ -52,10 +56,10 @@ public:
     void gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
                 std::vector<SilhouetteEdge>& found) const;
 
-    /// Candidates for several points that lie together, of a light in one plane: for the point of `viewpoint` and for
-    /// all that lie at most `around` from it in every coordinate. The orientation of `space` is known.
-    /// False where there are more than `most`.
-    [[nodiscard]] bool gather_around(const Viewpoint& viewpoint, const FloatSpace& space, double reach, double around,
+    /// Candidates for several points that lie together: for the point of `viewpoint` and for all that lie at most
+    /// `around` from it in every coordinate. `region` lies between the first one and all that any of them sees of the
+    /// light and of what is cut off around it. False where there are more than `most`.
+    [[nodiscard]] bool gather_around(const Viewpoint& viewpoint, BoxTree::Region region, double around,
                                      std::size_t most, EdgeGroup& group) const;
     /// As `gather`, among the candidates of a group, for one of its points.
     void pick(const Viewpoint& viewpoint, const FloatSpace& space, double reach, EdgeGroup& group,

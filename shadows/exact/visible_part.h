@@ -12,7 +12,8 @@
 //    row =   | visible \  /         \ | 1    3. SWEEP. Row by row, from the base layers on, edges change the number;
 //        |   '----------\/-----------\'         the trapezoids of the light over which it is 0 are visible.
 //      base    0        /\    2       \      4. CAPS. To the sweep a round light is a polygon; what lies between it and
-//     layers           /  \            \        the circle follows its chord, or is left open (disk_caps.h).
+//     layers           /  \            \        the circle follows its chord, or is left open (disk_caps.h). In doubles
+//                                              the area of a light that is seen whole needs no polygon (whole_light.h).
 //        +-------------------------------> x
 //
 // The signs of triangles and the count are exact. In between is a chain of edges that closes whatever the rounding of
@@ -79,6 +80,10 @@ private:
                                                double error) const;
     [[nodiscard]] static double whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps);
     [[nodiscard]] bool round() const { return sight_.light.round(); }
+    /// Whether the light is swept to its rim, and not as a polygon.
+    [[nodiscard]] bool to_rim() const {
+        return std::is_same_v<T, double> && measure_ == Measure::area && !sight_.partly;
+    }
 
     const Sight& sight_;
     Projection<Space> projection_;
@@ -172,10 +177,10 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
                                                TriangleId& blocker) const {
     VisibleArea result{.whole = round() ? kPi : 4};
     blocker = kNoTriangle;
-    covering_.caps.reset();
     Displacement displacement;
-    if (!CoveringEdges<Space>(projection_, covering_.edges, covering_.caps).add(silhouette, displacement))
-        return kUnsure;
+    DiskCaps* const caps = round() && !to_rim() ? &covering_.caps : nullptr;
+    if (caps) caps->reset();
+    if (!CoveringEdges<Space>(projection_, covering_.edges, caps).add(silhouette, displacement)) return kUnsure;
 
     const Filtered<int> base = base_layers(displacement.widest, blocker);
     if (!base) return kUnsure;
@@ -194,36 +199,38 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     Horizon<T> horizon{};
     if (sight_.partly || weighted) horizon = horizon_of<T>(sight_);
     if (sight_.partly) {
-        if (round()) touch_caps(horizon, covering_.caps);
+        if (caps) touch_caps(horizon, *caps);
         // On the light no line is longer than 3.
         displacement.move_edge(horizon.off(), 2 * sight_.plane.rounding, 3);
     }
-    const Light& light = light_before_horizon(horizon);
-    const auto chords  = covering_.caps.within_chords();
-    std::pair<double, double> area_and_rows(0, 0);
     std::optional<ReceivedLight> received;
-    double arrives = 0;
     if (weighted) received.emplace(sight_, rounded(horizon));
-    if (!light.empty()) {
-        if (weighted)
-            area_and_rows = covering_.edges.uncovered(light, *base, chords,
-                                                      [&](const Trapezoid& piece) { arrives += received->of(piece); });
-        else
-            area_and_rows = covering_.edges.uncovered(light, *base, chords, NoPieces{});
-    }
+    double arrives           = 0;
+    const auto area_and_rows = [&]() -> std::pair<double, double> {
+        if constexpr (std::is_same_v<T, double>) {
+            if (to_rim())
+                return round() ? covering_.edges.template uncovered_of<WholeDisk>(*base)
+                               : covering_.edges.template uncovered_of<WholeSquare>(*base);
+        }
+        const Light& light = light_before_horizon(horizon);
+        const auto chords  = caps ? caps->within_chords() : std::span<ChordState>();
+        if (!weighted) return covering_.edges.uncovered(light, *base, chords, NoPieces{});
+        return covering_.edges.uncovered(light, *base, chords,
+                                         [&](const Trapezoid& piece) { arrives += received->of(piece); });
+    }();
     const auto [area, rows] = area_and_rows;
     result.visible          = area;
     result.error            = in_doubt + displacement.swept + 16 * kUnit * (rows + 4);
     // What rationals are not free of. They are worth their time where they more than halve the bound.
     const double of_frame = in_doubt + displacement.by_frame;
     if (std::is_same_v<T, double> && !(result.error - of_frame <= std::max(kTrusted, of_frame))) return kUnsure;
-    if (round()) {
-        const DiskCaps::Area with_caps = covering_.caps.with_caps(area);
+    if (caps) {
+        const DiskCaps::Area with_caps = caps->with_caps(area);
         result.visible                 = with_caps.visible;
         result.open                    = with_caps.open;
     }
     if (weighted) {
-        const Filtered<Bracket> bracket = irradiance(*received, light, arrives, result.error);
+        const Filtered<Bracket> bracket = irradiance(*received, light_before_horizon(horizon), arrives, result.error);
         if (!bracket) return kUnsure;
         result.irradiance = *bracket;
     }

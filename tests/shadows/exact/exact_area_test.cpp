@@ -342,7 +342,7 @@ TEST(ExactArea, BracketsTheClosedFormOfAHalfPlaneOverADisk) {
             const double t     = std::clamp(-x / 0.75, -1.0, 1.0);
             const double right = 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / kPi;
             EXPECT_NEAR(got.s[i], right, double(half[i]) + 1e-9) << choice << " x " << x;
-            EXPECT_LE(half[i], 1e-4f);
+            EXPECT_LE(half[i], choice == std::string_view("exact") ? 0x1p-24f : 1e-4f);
             penumbra += right > 0 && right < 1;
         }
         EXPECT_GT(penumbra, 100u);
@@ -375,8 +375,9 @@ TEST(ExactArea, ItsTwoArithmeticsAgree) {
         face_lights(chosen, scene);
         const VisibilityPlane right = slow.visibility(chosen, 0);
         double worst                = 0;
+        // Rationals leave open a part of what an edge cuts off a round light, doubles do not.
         for (std::size_t k = 0; k < from.size(); ++k)
-            worst = std::max(worst, std::abs(double(right.s[k]) - double(quick.s[from[k]])));
+            worst = std::max(worst, std::abs(double(right.s[k]) - double(quick.s[from[k]])) - right.half_width[k]);
         EXPECT_LE(worst, 0x1p-24 + 4e-9);
         RecordProperty(std::string(to_string(kind)), fmt::format("{}", worst));
     }

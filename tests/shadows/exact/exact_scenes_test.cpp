@@ -119,7 +119,10 @@ TEST_P(AreaLights, FloatingPointAgreesWithRationals) {
                 EXPECT_EQ(f.edge_on, r.edge_on);
                 // Of a round light that one triangle hides, floating point says 0 and rationals a bracket above it.
                 if (k >= in_penumbra) continue;
-                EXPECT_LE(difference, kAgree) << "point " << k << ": " << f.visibility << " and " << r.visibility;
+                // Of a round light rationals leave open what an edge cuts off beyond a polygon.
+                EXPECT_LE(difference, kAgree + double(r.half_width))
+                    << "point " << k << ": " << f.visibility << " and " << r.visibility;
+                EXPECT_LE(r.half_width, 1e-4f);
                 worst = std::max(worst, difference);
             }
             compared += in_penumbra;
