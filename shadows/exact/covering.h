@@ -81,6 +81,11 @@ private:
 inline double as_double(double x) { return x; }
 inline double as_double(const CGAL::Gmpq& x) { return CGAL::to_double(x); }
 
+/// The points with x times their x, y times their y and `least` together above 0.
+struct HalfPlane {
+    double x, y, least;
+};
+
 template <class T>
 class Covering {
 public:
@@ -132,9 +137,11 @@ public:
     [[nodiscard]] std::pair<double, double> uncovered(const Outline& light, int layers, std::span<ChordState> chords,
                                                       const Piece& piece);
 
-    /// The same of a light that is seen whole, to its rim. May be asked once, and nothing after it: the edges are cut.
+    /// The same of a square or a disk, to its rim, or of its part before a line. May be asked once, and nothing after
+    /// it: the edges are cut.
     template <class Shape>
-    [[nodiscard]] std::pair<double, double> uncovered_of(int layers);
+    [[nodiscard]] std::pair<double, double> uncovered_of(int layers,
+                                                         const std::optional<HalfPlane>& before = std::nullopt);
 
 private:
     using Edge = SweptEdge<T>;
@@ -160,8 +167,11 @@ private:
     template <class Add>
     double sweep(const std::vector<Edge>& edges, const Outline* light, LeftOfEdge at_left, const T& lowest,
                  const T& highest, const Add& add);
+    /// Of an edge that is part of a line, say, both ends go on.
     template <class Shape>
-    void cut_at_rim(const Edge& edge);
+    void cut_at_rim(const Edge& edge, bool goes_on = false);
+    template <class Shape>
+    [[nodiscard]] int cover_behind(const HalfPlane& before);
     void mark_chords(std::span<ChordState> chords) const;
 
     /// The left one comes to be the right one.
@@ -449,34 +459,62 @@ std::pair<double, double> Covering<T>::uncovered(const Outline& light, int layer
 /// Cuts an edge at the rim of the light: what is within goes to inside_, what is left of the light to entries_.
 template <class T>
 template <class Shape>
-void Covering<T>::cut_at_rim(const Edge& edge) {
+void Covering<T>::cut_at_rim(const Edge& edge, bool goes_on) {
     const PartWithin part = Shape::within(edge.low, edge.high);
     const auto at         = [&](double t) -> Point {
         if (t <= 0) return edge.low;
         if (t >= 1) return edge.high;
         return {edge.low.x + t * (edge.high.x - edge.low.x), edge.low.y + t * (edge.high.y - edge.low.y)};
     };
-    const auto beside = [&](const Point& low, const Point& high) {
+    const auto beside = [&](double from_t, double to_t) {
+        const Point low = at(from_t), high = at(to_t);
         const double from = std::max(low.y, -1.0), to = std::min(high.y, 1.0);
-        if (!(from < to)) return;
-        const double middle = low.x + (high.x - low.x) * (((from + to) / 2 - low.y) / (high.y - low.y));
-        if (middle < 0) entries_.push_back({low.y, edge.step}), entries_.push_back({high.y, -edge.step});
+        if (!(from < to) && !goes_on) return;
+        const double middle = from < to ? low.x + (high.x - low.x) * (((from + to) / 2 - low.y) / (high.y - low.y))
+                                        : (low.x + high.x) / 2;
+        if (!(middle < 0)) return;
+        entries_.push_back({goes_on && from_t <= 0 ? -2 : low.y, edge.step});
+        entries_.push_back({goes_on && to_t >= 1 ? 2 : high.y, -edge.step});
     };
     if (part.empty()) {
-        beside(edge.low, edge.high);
+        beside(0, 1);
         return;
     }
+    if (part.from > 0) beside(0, part.from);
+    if (part.to < 1) beside(part.to, 1);
     const Point low = at(part.from), high = at(part.to);
-    beside(edge.low, low);
-    beside(high, edge.high);
     if (low.y < high.y) inside_.push_back({low, high, edge.step});
+}
+
+/// Covers all that is not before a line once more; by how much D grows at the far left of the lowest row.
+template <class T>
+template <class Shape>
+int Covering<T>::cover_behind(const HalfPlane& before) {
+    const double slope = std::hypot(before.x, before.y), distance = -before.least / slope;
+    constexpr double kBeyond = 1.5;  // of all shapes
+    if (!(slope > 0) || std::abs(distance) > kBeyond) return before.least < 0 ? 1 : 0;
+    const double nx = before.x / slope, ny = before.y / slope;
+    // The foot of the centre on the line, and so far along it that it passes all shapes.
+    const Point foot{distance * nx, distance * ny};
+    const Point one{foot.x + 4 * ny, foot.y - 4 * nx}, other{foot.x - 4 * ny, foot.y + 4 * nx};
+    if (one.y == other.y) {
+        entries_.push_back({foot.y, ny > 0 ? -1 : 1});
+        return ny > 0 ? 1 : 0;
+    }
+    // Covered where nx x + ny y < distance: to the left where nx > 0.
+    if (nx > 0)
+        cut_at_rim<Shape>({one, other, -1}, true);
+    else
+        cut_at_rim<Shape>({other, one, 1}, true);
+    return nx > 0 ? 1 : 0;
 }
 
 template <class T>
 template <class Shape>
-std::pair<double, double> Covering<T>::uncovered_of(int layers) {
+std::pair<double, double> Covering<T>::uncovered_of(int layers, const std::optional<HalfPlane>& before) {
     inside_.clear();
     for (const Edge& edge : edges_) cut_at_rim<Shape>(edge);
+    if (before) layers += cover_behind<Shape>(*before);
     double area      = 0;
     std::size_t rows = 0;
     const auto add   = [&](const Row& /*row*/, double from, double to, const double* middle) {
@@ -488,7 +526,10 @@ std::pair<double, double> Covering<T>::uncovered_of(int layers) {
         double width = 0, rims = 0;  // twice the width between x = 0 and edges, and half areas
         for (const std::uint32_t k : active_.open()) {
             width += twice(k);
-            (k > 0 ? width : rims) += k > 0 ? -twice(k - 1) : 1;
+            if (k > 0)
+                width -= twice(k - 1);
+            else
+                rims += 1;
         }
         if (active_.left().back().shows()) {
             if (!order.empty()) width -= twice(order.size() - 1);

@@ -93,8 +93,10 @@ public:
         if (!round)
             return {How::exactly,
                     "All geometric predicates are exact; visible areas are off by less than 1e-9 of the light."};
-        return {How::exactly,
-                "All geometric predicates are exact; round lights have a proven bracket around the visible area."};
+        return {
+            How::exactly,
+            "All geometric predicates are exact; visible areas are off by less than 1e-9 of the light, and where that "
+            "cannot be told of a round light, have a proven bracket."};
     }
 
     void build(const Scene& scene, const SceneFacts& facts) override {

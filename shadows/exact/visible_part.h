@@ -13,7 +13,7 @@
 //        |   '----------\/-----------\'         the trapezoids of the light over which it is 0 are visible.
 //      base    0        /\    2       \      4. CAPS. To the sweep a round light is a polygon; what lies between it and
 //     layers           /  \            \        the circle follows its chord, or is left open (disk_caps.h). In doubles
-//                                              the area of a light that is seen whole needs no polygon (whole_light.h).
+//                                              the area needs no polygon (whole_light.h).
 //        +-------------------------------> x
 //
 // The signs of triangles and the count are exact. In between is a chain of edges that closes whatever the rounding of
@@ -81,9 +81,7 @@ private:
     [[nodiscard]] static double whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps);
     [[nodiscard]] bool round() const { return sight_.light.round(); }
     /// Whether the light is swept to its rim, and not as a polygon.
-    [[nodiscard]] bool to_rim() const {
-        return std::is_same_v<T, double> && measure_ == Measure::area && !sight_.partly;
-    }
+    [[nodiscard]] bool to_rim() const { return std::is_same_v<T, double> && measure_ == Measure::area; }
 
     const Sight& sight_;
     Projection<Space> projection_;
@@ -208,9 +206,12 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     double arrives           = 0;
     const auto area_and_rows = [&]() -> std::pair<double, double> {
         if constexpr (std::is_same_v<T, double>) {
-            if (to_rim())
-                return round() ? covering_.edges.template uncovered_of<WholeDisk>(*base)
-                               : covering_.edges.template uncovered_of<WholeSquare>(*base);
+            if (to_rim()) {
+                std::optional<HalfPlane> before;
+                if (sight_.partly) before = HalfPlane{horizon.lx, horizon.ly, horizon.l};
+                return round() ? covering_.edges.template uncovered_of<WholeDisk>(*base, before)
+                               : covering_.edges.template uncovered_of<WholeSquare>(*base, before);
+            }
         }
         const Light& light = light_before_horizon(horizon);
         const auto chords  = caps ? caps->within_chords() : std::span<ChordState>();

@@ -1,10 +1,9 @@
-// A light that is seen whole, a square or a disk, as the sweep over the edges needs it (covering.h): what is within it
-// of each edge, and areas up to its rim, which is no polygon.
+// A square or a disk as the sweep over the edges needs it (covering.h): what is within it of each edge, and areas up to
+// its rim, which is no polygon.
 //
-//            _.--"""--._              Only what lies within the light is swept (=). What lies to its left (:) says how
-//            the
-//      :   .'   /=      '.  /         number of layers changes along the rim, what lies to its right, above and below
-//      :  /    /=  light  \/          changes nothing.
+//            _.--"""--._          Only what lies within the light is swept (=). What lies to its left (:) says how the
+//      :   .'   /=      '.  /     number of layers changes along the rim; what lies to its right, above and below
+//      :  /    /=  light  \/      changes nothing.
 //       : |   /=          /|
 #pragma once
 

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "umbra/shadows/exact/disk_caps.h"
+#include "umbra/shadows/exact/horizon.h"
 
 namespace umbra::exact_detail {
 namespace {
@@ -53,12 +53,14 @@ std::vector<Triangle> random_triangles(std::mt19937& random, Places places, int 
     return triangles;
 }
 
-double area_over_polygon(const std::vector<Triangle>& triangles, int corners, double radius) {
+double area_over_polygon(const std::vector<Triangle>& triangles, int corners, double radius,
+                         const std::optional<HalfPlane>& before = std::nullopt) {
     Corners<double> polygon;
     for (int k = 0; k < corners; ++k) {
         const double angle = 2 * kPi * k / corners;
         polygon.push_back({radius * std::cos(angle), radius * std::sin(angle)});
     }
+    if (before) polygon = before_horizon(polygon, Horizon<double>{before->x, before->y, before->least});
     Covering<double> covering = covering_of<double>(triangles);
     return covering.uncovered(Covering<double>::Outline(std::move(polygon)), 0, {}, NoPieces{}).first;
 }
@@ -109,6 +111,33 @@ TEST(Covering, ADiskLiesBetweenItsPolygons) {
         partly += visible > 0 && visible < kPi;
     }
     EXPECT_GT(partly, 1000u);
+}
+
+/// Lines in all directions, along the axes and nearly so, through the light and past it.
+TEST(Covering, BehindALineNothingIsVisible) {
+    constexpr int kCorners = 1024;
+    const Corners<CGAL::Gmpq> square{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    std::mt19937 random(10);
+    std::uniform_real_distribution<double> anywhere(-1, 1);
+    std::size_t partly = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double tilt = std::array{0.0, 1e-17, -1e-9, 0.0625, anywhere(random)}[static_cast<std::size_t>(i % 5)];
+        const double sign = i % 2 == 0 ? 1 : -1, least = (i % 3 == 0 ? 0.25 : 2.2) * anywhere(random);
+        const HalfPlane before = i % 4 < 2 ? HalfPlane{sign, tilt, least} : HalfPlane{tilt, sign, least};
+        const auto triangles   = random_triangles(random, i % 3 == 0 ? Places::on_circle : Places::anywhere, 4);
+        const Horizon<CGAL::Gmpq> line{before.x, before.y, before.least};
+        const double right =
+            covering_of<CGAL::Gmpq>(triangles)
+                .uncovered(Covering<CGAL::Gmpq>::Outline(before_horizon(square, line)), 0, {}, NoPieces{})
+                .first;
+        EXPECT_NEAR(covering_of<double>(triangles).uncovered_of<WholeSquare>(0, before).first, right, 1e-12)
+            << i << ": " << before.x << " " << before.y << " " << before.least;
+        const double of_disk = covering_of<double>(triangles).uncovered_of<WholeDisk>(0, before).first;
+        EXPECT_GE(of_disk, area_over_polygon(triangles, kCorners, 1, before) - 1e-12) << i;
+        EXPECT_LE(of_disk, area_over_polygon(triangles, kCorners, 1 / std::cos(kPi / kCorners), before) + 1e-12) << i;
+        partly += right > 0 && right < 4;
+    }
+    EXPECT_GT(partly, 700u);
 }
 
 TEST(Covering, ASegmentOfADiskHasItsClosedForm) {
