@@ -105,6 +105,7 @@ Filtered<int> LayerCount<Space>::at(double x, double y, TriangleId& blocker) con
     Filtered<int> layers  = 0;
     const auto count      = [&](TriangleId t) {
         if (t == sight.viewpoint.own() || sight.occluders.casts_nothing[t]) return true;
+        if (sight.viewpoint.surely_coplanar(t)) return true;
         const Projected seen      = projected(t);
         const Filtered<bool> over = lies_over(seen, x, y);
         if (!over) {

@@ -42,9 +42,9 @@ void SilhouetteEdges::add(const Edge& e) {
         if (!occluders_->casts_nothing[topology.uses[k].triangle]) uses_.push_back(topology.uses[k]);
     edge.count = static_cast<std::uint32_t>(uses_.size()) - edge.first;
     bool flat  = false;
-    if (edge.count == 2) {
-        dvec3 normal[2];
-        for (std::size_t k = 0; k < 2; ++k) {
+    if (edge.count == 1 || edge.count == 2) {
+        dvec3 normal[2]{};
+        for (std::size_t k = 0; k < edge.count; ++k) {
             const TriangleId t = uses_[edge.first + k].triangle;
             const dvec3 x = corner(t, 1) - corner(t, 0), y = corner(t, 2) - corner(t, 0);
             normal[k]         = glm::cross(x, y);
@@ -52,7 +52,7 @@ void SilhouetteEdges::add(const Edge& e) {
             if (size > kThin * glm::length(x) * glm::length(y) && size > kUnderflow)
                 edge.normal[k] = vec3(normal[k] / size);
         }
-        flat = continue_each_other(edge, normal);
+        flat = edge.count == 2 && continue_each_other(edge, normal);
     }
     if (edge.count == 0 || flat)
         uses_.resize(edge.first);
@@ -85,7 +85,7 @@ int SilhouetteEdges::change_at(const Viewpoint& viewpoint, const CandidateEdge& 
     const double sure = kNormalError * largest(d.value) + 4 * d.error;
     for (std::uint32_t k = 0; k < edge.count; ++k) {
         const EdgeUse& use = uses_[edge.first + k];
-        const double over  = edge.count == 2 ? glm::dot(d.value, dvec3(edge.normal[k])) : 0;
+        const double over  = edge.count <= 2 ? glm::dot(d.value, dvec3(edge.normal[k])) : 0;
         const int side     = use.triangle == viewpoint.own() ? 0
                              : std::abs(over) > sure         ? (over > 0 ? 1 : -1)
                                                              : viewpoint.side_of(use.triangle);

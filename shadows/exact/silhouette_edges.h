@@ -22,7 +22,7 @@ namespace umbra::exact_detail {
 struct CandidateEdge {
     std::uint32_t a = 0, b = 0;          ///< welded vertices, a < b
     std::uint32_t first = 0, count = 0;  ///< its triangles: a run of uses
-    vec3 normal[2]{vec3(0), vec3(0)};    ///< where it has two: their unit normals, rounded; 0 where they are thin
+    vec3 normal[2]{vec3(0), vec3(0)};  ///< where it has one or two: their unit normals, rounded; 0 where they are thin
 };
 
 /// By how much more triangles lie to the left of the edge from a to b than to its right, as the point sees it with the

@@ -36,19 +36,21 @@ const std::vector<TriangleId>* TrianglesOver::pick(const ExactPoint& p, dvec3 to
     if (!known_ || x != x_ || y != y_) return nullptr;
     const dvec3 moved = p.rounded() - origin_;
     if (!(largest(moved) <= around_) || !(largest(moved + to_place - place_) <= around_)) return nullptr;
-    // Two planes through the segment, of normals no longer than 2 that have no component along two other axes: a
-    // triangle that lies on one side of either is out. Floats, bounded as in SilhouetteEdges::pick.
+    // A triangle is out that lies on one side of either of two planes through the segment, or past one of its ends
+    // along its longest axis. Floats, bounded as in SilhouetteEdges::pick.
     constexpr float kRounding = 0x1p-19f, kDenormal = 0x1p-140f;
     const dvec3 size = glm::abs(to_place);
     const int axis   = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const int one = (axis + 1) % 3, other = (axis + 2) % 3;
     const double length = size[axis];
+    const float forward = to_place[axis] > 0 ? 1.0f : -1.0f, end = static_cast<float>(length);
     if (!(length > 0)) return nullptr;
-    const auto one_slope   = static_cast<float>(to_place[one] / to_place[axis]),
-               other_slope = static_cast<float>(to_place[other] / to_place[axis]);
+    const auto one_slope   = static_cast<float>(to_place[one] / length),
+               other_slope = static_cast<float>(to_place[other] / length);
     const float tilt       = kRounding + static_cast<float>(4 * off / length);
     const float dx = float(moved[one]), dy = float(moved[other]), dz = float(moved[axis]);
-    const float least   = static_cast<float>(4 * off) + kDenormal + tilt * (std::abs(dx) + std::abs(dy) + std::abs(dz));
+    const float least =
+        static_cast<float>(4 * off) + kDenormal + tilt * (std::abs(dx) + std::abs(dy) + std::abs(dz) + end);
     const std::size_t n = triangles_.size();
     out_.resize(n);
     const float *ax = corners_[0][one].data(), *ay = corners_[0][other].data(), *az = corners_[0][axis].data();
@@ -59,12 +61,14 @@ const std::vector<TriangleId>* TrianglesOver::pick(const ExactPoint& p, dvec3 to
         const float extent = std::abs(ax[i]) + std::abs(ay[i]) + std::abs(az[i]) + std::abs(bx[i]) + std::abs(by[i]) +
                              std::abs(bz[i]) + std::abs(cx[i]) + std::abs(cy[i]) + std::abs(cz[i]);
         const float sure = tilt * extent + least;
-        const float za = az[i] - dz, zb = bz[i] - dz, zc = cz[i] - dz;
+        const float za = forward * (az[i] - dz), zb = forward * (bz[i] - dz), zc = forward * (cz[i] - dz);
         const float a = ax[i] - dx - one_slope * za, b = bx[i] - dx - one_slope * zb, c = cx[i] - dx - one_slope * zc;
         const float d = ay[i] - dy - other_slope * za, e = by[i] - dy - other_slope * zb,
                     f = cy[i] - dy - other_slope * zc;
         out[i] = (int{a > sure} & int{b > sure} & int{c > sure}) | (int{a < -sure} & int{b < -sure} & int{c < -sure}) |
-                 (int{d > sure} & int{e > sure} & int{f > sure}) | (int{d < -sure} & int{e < -sure} & int{f < -sure});
+                 (int{d > sure} & int{e > sure} & int{f > sure}) | (int{d < -sure} & int{e < -sure} & int{f < -sure}) |
+                 (int{za < -sure} & int{zb < -sure} & int{zc < -sure}) |
+                 (int{za - end > sure} & int{zb - end > sure} & int{zc - end > sure});
     }
     picked_.clear();
     for (std::size_t i = 0; i < n; ++i)

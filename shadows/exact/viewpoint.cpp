@@ -1,8 +1,15 @@
 #include "umbra/shadows/exact/viewpoint.h"
 
+#include <algorithm>
+
 #include "umbra/core/base/predicates.h"
 
 namespace umbra::exact_detail {
+
+bool Viewpoint::surely_coplanar(TriangleId t) const {
+    return coplanar_.own == own_ && std::any_of(coplanar_.known.begin(), coplanar_.known.end(),
+                                                [&](const auto& other) { return other == std::pair(t, true); });
+}
 
 int Viewpoint::side_of(TriangleId t) const {
     if (t == own_) return 0;

@@ -24,6 +24,9 @@ public:
     [[nodiscard]] TriangleId own() const { return own_; }
     [[nodiscard]] const Scene& scene() const { return scene_; }
 
+    /// Whether t is known to lie in the plane of the point's own triangle: no is no answer.
+    [[nodiscard]] bool surely_coplanar(TriangleId t) const;
+
     /// Sign of det(a - p, b - p, c - p) of triangle t = (a, b, c); 0 of the point's own. Exact.
     [[nodiscard]] int side_of(TriangleId t) const;
 
