@@ -116,7 +116,6 @@ private:
     std::vector<Slot> order_, ended_, before_;
     std::vector<LeftOfEdge> left_;
     std::vector<std::uint32_t> open_, of_light_;
-    int layers_    = 0;      ///< at the far left, when left_ was found
     bool counted_  = false;  ///< left_, open_ and of_light_ are those of order_
     bool strictly_ = false;  ///< order_ was that at the top of the row before, no two at one place
 };

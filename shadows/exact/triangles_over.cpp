@@ -35,7 +35,7 @@ const std::vector<TriangleId>* TrianglesOver::pick(const ExactPoint& p, dvec3 to
                                                    double y) {
     if (!known_ || x != x_ || y != y_) return nullptr;
     const dvec3 moved = p.rounded() - origin_;
-    if (!(largest(moved) <= around_) || !(largest(moved + to_place - place_) <= around_)) return nullptr;
+    if (!(largest(moved) <= around_) || !(largest(moved + to_place - place_) + off <= around_)) return nullptr;
     // A triangle is out that lies on one side of either of two planes through the segment, or past one of its ends
     // along its longest axis. Floats, bounded as in SilhouetteEdges::pick.
     constexpr float kRounding = 0x1p-19f, kDenormal = 0x1p-140f;
