@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <memory>
 #include <span>
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
 
+// Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
 namespace umbra::binned_shadows_detail {
 namespace {
 
@@ -39,7 +42,21 @@ void load(const Scene& scene, TriangleId t, LightImage::Corners& corners, std::s
 void load_all(const Scene& scene, TriangleId t, LightImage::Corners& corners) {
     for (int c = 0; c < 3; ++c) {
         const vec3 corner = scene.vertex(t, c);
-        for (int axis = 0; axis < 3; ++axis) std::fill_n(corners[c][axis], kLanes, static_cast<double>(corner[axis]));
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto at = static_cast<double>(corner[axis]);
+#pragma GCC unroll 1
+            for (std::size_t lane = 0; lane < kLanes; ++lane) corners[c][axis][lane] = at;
+        }
+    }
+}
+
+/// Writes eight coordinates less the centre's; `reach`: the largest magnitudes so far.
+void less(const double* __restrict at, double centre, float* __restrict near, float* __restrict reach) {
+#pragma GCC unroll 1
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        near[lane]       = static_cast<float>(at[lane] - centre);
+        const float size = std::abs(near[lane]);
+        reach[lane]      = reach[lane] > size ? reach[lane] : size;
     }
 }
 
@@ -53,7 +70,7 @@ public:
                    height        = static_cast<std::size_t>(points_.raster->height);
         const std::size_t across = (width + kTileSide - 1) / kTileSide, down = (height + kTileSide - 1) / kTileSide;
         parts_.assign(across * down, {});
-        return with_parts(PointBins(across * down, [&](std::size_t tile, PointBins::Entry* to) {
+        return with_parts(PointBins(across * down, [&](std::size_t tile, PointBins::Tile& to) {
             const std::size_t left = tile % across * kTileSide, top = tile / across * kTileSide;
             std::array<std::uint32_t, PointBins::kTile> asking;
             std::size_t n = 0;
@@ -62,7 +79,7 @@ public:
                 if (x < width && y < height && points_.asks(light_, y * width + x))
                     asking[n++] = static_cast<std::uint32_t>(y * width + x);
             }
-            return enter(std::span(asking).first(n), to, parts_[tile]);
+            enter(std::span(asking).first(n), to, parts_[tile]);
         }));
     }
 
@@ -76,9 +93,13 @@ public:
         std::vector<PointBins::Entry> entries(asking.size());
         std::vector<std::size_t> placed(tiles);
         parallel_ranges(tiles, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t tile = begin; tile < end; ++tile)
-                placed[tile] =
-                    enter(of_tile<const std::uint32_t>(asking, tile), &entries[tile * PointBins::kTile], parts_[tile]);
+            const auto own = std::make_unique_for_overwrite<PointBins::Tile>();
+            for (std::size_t tile = begin; tile < end; ++tile) {
+                own->count = 0;
+                enter(of_tile<const std::uint32_t>(asking, tile), *own, parts_[tile]);
+                placed[tile] = own->count;
+                for (std::size_t k = 0; k < own->count; ++k) entries[tile * PointBins::kTile + k] = own->at(k);
+            }
         });
         PointBins::Box all;
         for (std::size_t tile = 0; tile < tiles; ++tile)
@@ -91,10 +112,9 @@ public:
                 keys.push_back(std::uint64_t{curve.at(entries[k].u, entries[k].v)} << 32 | k);
         parallel_sort(keys.begin(), keys.end());
         return with_parts(PointBins((keys.size() + PointBins::kTile - 1) / PointBins::kTile,
-                                    [&](std::size_t tile, PointBins::Entry* to) {
-                                        const auto own = of_tile<const std::uint64_t>(keys, tile);
-                                        for (const std::uint64_t key : own) *to++ = entries[key & 0xffffffffu];
-                                        return own.size();
+                                    [&](std::size_t tile, PointBins::Tile& to) {
+                                        for (const std::uint64_t key : of_tile<const std::uint64_t>(keys, tile))
+                                            to.add(entries[key & 0xffffffffu]);
                                     }));
     }
 
@@ -111,9 +131,9 @@ private:
         return std::span<Item>(items).subspan(first, std::min(PointBins::kTile, items.size() - first));
     }
 
-    /// Writes the points that have a place. Returns how many.
-    std::size_t enter(std::span<const std::uint32_t> which, PointBins::Entry* to, Part& part) const {
-        std::size_t n = 0;
+    /// Adds the points that have a place.
+    void enter(std::span<const std::uint32_t> which, PointBins::Tile& to, Part& part) const {
+        float reach[3][kLanes] = {};
         for (std::size_t k = 0; k < which.size(); k += kLanes) {
             const std::size_t count = std::min(kLanes, which.size() - k);
             // Eight of a raster are mostly of two rows, and what follows in memory is of other tiles.
@@ -139,25 +159,41 @@ private:
                 for (std::size_t lane = 0; lane < kLanes; ++lane) load(scene_, of[lane], corners, lane);
             LightImage::Places places;
             image_.places(corners, u, v, places);
+            float near[3][kLanes];
+            less(places.x, centre_.x, near[0], reach[0]);
+            less(places.y, centre_.y, near[1], reach[1]);
+            less(places.z, centre_.z, near[2], reach[2]);
+            std::int32_t lowest = 0;  // face
+            for (std::size_t lane = 0; lane < kLanes; ++lane) lowest |= places.face[lane];
+            if (count == kLanes && lowest >= 0) {
+                to.add_eight({.x        = near[0],
+                              .y        = near[1],
+                              .z        = near[2],
+                              .u        = places.u,
+                              .v        = places.v,
+                              .depth    = places.depth,
+                              .index    = &which[k],
+                              .triangle = of,
+                              .face     = places.face});
+                continue;
+            }
             for (std::size_t lane = 0; lane < count; ++lane) {
-                const std::uint32_t i = which[k + lane];
-                const vec3 near(dvec3(places.x[lane], places.y[lane], places.z[lane]) - centre_);
-                part.reach = glm::max(part.reach, glm::abs(near));
                 if (places.face[lane] < 0) {
-                    part.without.push_back(i);
+                    part.without.push_back(which[k + lane]);
                     continue;
                 }
-                to[n++] = {.x     = near.x,
-                           .y     = near.y,
-                           .z     = near.z,
-                           .u     = places.u[lane],
-                           .v     = places.v[lane],
-                           .depth = places.depth[lane],
-                           .index = i,
-                           .face  = static_cast<std::uint32_t>(places.face[lane])};
+                to.add({.x        = near[0][lane],
+                        .y        = near[1][lane],
+                        .z        = near[2][lane],
+                        .u        = places.u[lane],
+                        .v        = places.v[lane],
+                        .depth    = places.depth[lane],
+                        .index    = which[k + lane],
+                        .triangle = of[lane],
+                        .face     = places.face[lane]});
             }
         }
-        return n;
+        for (int axis = 0; axis < 3; ++axis) part.reach[axis] = *std::ranges::max_element(reach[axis]);
     }
 
     [[nodiscard]] BinnedPoints with_parts(PointBins bins) const {

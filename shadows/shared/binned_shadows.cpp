@@ -22,12 +22,36 @@ using namespace binned_shadows_detail;
 using exact_detail::ExactPoint;
 using exact_detail::Segment;
 
+/// Blocks are requested from memory this many before they are tested.
+constexpr std::size_t kAhead = 4;
+
 /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
 bool blocks(const Scene& scene, TriangleId t) {
     return scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
 }
 
 }  // namespace
+
+/// Eight triangles that follow one another in order_, or as many as there are.
+struct BinnedShadows::Group {
+    std::span<const TriangleId> triangles{};
+    LightImage::Corners corners;
+    LightImage::Windings windings{};
+    Extents extents;
+    unsigned within = 0;  ///< those that have an extent, because they lie in one face
+
+    [[nodiscard]] unsigned all() const { return (1u << triangles.size()) - 1; }
+    /// At least half of them do.
+    [[nodiscard]] bool faces_light() const {
+        return 2 * static_cast<std::size_t>(std::popcount(windings.towards & all())) >= triangles.size();
+    }
+};
+
+/// What is found, and kept for its memory.
+struct BinnedShadows::Search {
+    PointBins::Start start{};
+    std::vector<PointBins::Found> found{};
+};
 
 /// The points that ask, in the light's image.
 struct BinnedShadows::Picture {
@@ -38,23 +62,29 @@ struct BinnedShadows::Picture {
 
 namespace {
 
-template <class Crossed>
-void test_lanes(const Scene& scene, const Light& light, TriangleId t, const PointBatch& points, const Block& block,
-                int unsure, std::uint8_t inside, Marks& marks, const Crossed& crossed) {
-    std::uint8_t hit = inside, touched = 0;
-    for (auto rest = static_cast<unsigned>(unsure); rest != 0; rest &= rest - 1) {
+/// Which of the lanes in `unsure` triangle t hides, and which segments touch it.
+struct Met {
+    unsigned crossed = 0, touched = 0;
+};
+Met meet_exactly(const Scene& scene, const Light& light, TriangleId t, const PointBatch& points, const Block& block,
+                 unsigned unsure) {
+    Met met;
+    for (unsigned rest = unsure; rest != 0; rest &= rest - 1) {
         const auto lane       = static_cast<std::size_t>(std::countr_zero(rest));
         const std::uint32_t i = block.index[lane];
-        if (points.triangle[i] == t) continue;
         const ExactPoint point(scene, points.triangle[i], points.u[i], points.v[i]);
         const auto meeting = Segment(point, light).meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
-        if (meeting == Segment::Meeting::crosses) hit |= static_cast<std::uint8_t>(1u << lane);
-        if (meeting == Segment::Meeting::touches) touched |= static_cast<std::uint8_t>(1u << lane);
+        if (meeting == Segment::Meeting::crosses) met.crossed |= 1u << lane;
+        if (meeting == Segment::Meeting::touches) met.touched |= 1u << lane;
     }
-    if (hit != 0) marks.crossed.fetch_or(hit, std::memory_order_relaxed);
-    if (touched != 0) marks.touched.fetch_or(touched, std::memory_order_relaxed);
-    for (unsigned rest = hit; rest != 0; rest &= rest - 1)
-        crossed(block.index[static_cast<std::size_t>(std::countr_zero(rest))], t);
+    return met;
+}
+
+/// The lanes of points that lie on the triangle.
+unsigned lanes_on(const Block& block, TriangleId t) {
+    unsigned lanes = 0;
+    for (std::size_t i = 0; i < kLanes; ++i) lanes |= static_cast<unsigned>(block.triangle[i] == t) << i;
+    return lanes;
 }
 
 }  // namespace
@@ -82,15 +112,16 @@ void BinnedShadows::visibility(const PointBatch& points, LightId light, Visibili
     Picture picture = bin(points, light);
     cast_all(picture, points, [](std::uint32_t, TriangleId) {});
     const PointBins& bins = picture.asking.bins;
-    parallel_ranges(bins.blocks(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t b = begin; b < end; ++b) {
-            const unsigned crossed = bins.marks(b).crossed, touched = bins.marks(b).touched;
-            for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                const std::uint32_t i = bins.block(b).index[lane];
-                out.s[i]              = (crossed >> lane & 1u) != 0 ? 0.0f : 1.0f;
-                if ((touched & ~crossed) >> lane & 1u) out.answer[i] = Answer::on_boundary;
+    parallel_ranges(bins.tiles(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t tile = begin; tile < end; ++tile)
+            for (std::size_t b = bins.first(tile); b < bins.last(tile); ++b) {
+                const unsigned crossed = bins.marks(b).crossed, touched = bins.marks(b).touched;
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    const std::uint32_t i = bins.block(b).index[lane];
+                    out.s[i]              = (crossed >> lane & 1u) != 0 ? 0.0f : 1.0f;
+                    if ((touched & ~crossed) >> lane & 1u) out.answer[i] = Answer::on_boundary;
+                }
             }
-        }
     });
     for (const std::uint32_t i : picture.asking.next_to_light) out.s[i] = 1;
     each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId, Segment::Meeting meeting) {
@@ -146,106 +177,128 @@ void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch&
 /// few.
 template <class Crossed>
 void BinnedShadows::cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once) const {
-    const std::size_t groups = eights_.size();
-    std::vector<std::uint8_t> later(groups);
-    parallel_ranges(groups, 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g)
-            later[g] = !cast(g, once ? Which::facing_light : Which::all, picture, points, crossed, once);
-    });
+    std::vector<std::uint8_t> later(eights_.size());
+    const auto cast = [&](Which which) {
+        parallel_ranges(eights_.size(), 64, [&](std::size_t begin, std::size_t end) {
+            std::vector<Group> groups;
+            Search search;
+            for (std::size_t first = begin; first < end; first += kLanes) {
+                groups.clear();
+                for (std::size_t g = first; g < std::min(first + kLanes, end); ++g) {
+                    if (which == Which::later && later[g] == 0) continue;
+                    groups.push_back(group(g, picture));
+                    if (which != Which::facing_light) continue;
+                    later[g] = groups.back().faces_light() ? 0 : 1;
+                    if (later[g] != 0) groups.pop_back();
+                }
+                if (!groups.empty()) cast_groups(groups, picture, points, crossed, once, search);
+            }
+        });
+    };
+    cast(once ? Which::facing_light : Which::all);
     if (!once) return;
     picture.asking.bins.drop_hidden();
-    parallel_ranges(groups, 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t g = begin; g < end; ++g)
-            if (later[g] != 0) cast(g, Which::all, picture, points, crossed, once);
-    });
+    cast(Which::later);
 }
 
-/// The triangles from order_[8 group] on, eight or as many as there are. Does nothing and returns false where `which`
-/// is of those that face the light and most do not.
-template <class Crossed>
-bool BinnedShadows::cast(std::size_t group, Which which, const Picture& picture, const PointBatch& points,
-                         const Crossed& crossed, bool once) const {
-    const std::size_t first = group * kLanes;
-    const auto own          = std::span(order_).subspan(first, std::min(kLanes, order_.size() - first));
-    const Eight& eight      = eights_[group];
-    LightImage::Corners corners;
+BinnedShadows::Group BinnedShadows::group(std::size_t g, const Picture& picture) const {
+    const std::size_t first = g * kLanes;
+    Group made;
+    made.triangles = std::span(order_).subspan(first, std::min(kLanes, order_.size() - first));
     for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t axis = 0; axis < 3; ++axis) std::copy_n(eight.corner[c][axis], kLanes, corners[c][axis]);
-    const unsigned casting              = (1u << own.size()) - 1;
-    const LightImage::Windings windings = picture.image.windings(corners);
-    if (which == Which::facing_light &&
-        2 * static_cast<std::size_t>(std::popcount(windings.towards & casting)) < own.size())
-        return false;
-    const auto corners_of = [&](std::size_t lane) {
-        std::array<dvec3, 3> of;
-        for (std::size_t c = 0; c < 3; ++c) of[c] = {corners[c][0][lane], corners[c][1][lane], corners[c][2][lane]};
-        return of;
-    };
-    const auto planes_of_all = [&] {
-        LightImage::Corners near, travel;
-        double turn[kLanes];
-        for (std::size_t c = 0; c < 3; ++c)
-            for (int axis = 0; axis < 3; ++axis)
-                for (std::size_t i = 0; i < kLanes; ++i) near[c][axis][i] = corners[c][axis][i] - centre_[axis];
-        picture.image.travel(corners, travel);
-        for (std::size_t i = 0; i < kLanes; ++i) {
-            const auto vertex = [&](std::size_t c) {
-                return vec3(eight.corner[c][0][i], eight.corner[c][1][i], eight.corner[c][2][i]);
-            };
-            turn[i] = (windings.away >> i & 1u) != 0 ? 1.0
-                      : (windings.towards >> i & 1u) != 0
-                          ? -1.0
-                          : -side_of_light(*picture.light, vertex(0), vertex(1), vertex(2));
-        }
-        return ShadowPlanes(near, travel, turn, picture.asking.reach);
-    };
-    std::optional<ShadowPlanes> planes;
-    const auto meet = [&](std::size_t lane, std::size_t b) {
-        Marks& marks              = picture.asking.bins.marks(b);
-        const std::uint8_t hidden = marks.crossed.load(std::memory_order_relaxed);
-        if (once && hidden == 0xff) return;
-        const TriangleId t = own[lane];
-        if (!planes) planes = planes_of_all();
-        const Block& block          = picture.asking.bins.block(b);
-        const auto [inside, unsure] = planes->test(lane, block);
-        test_lanes(*scene_, *picture.light, t, points, block, once ? unsure & ~hidden : unsure, inside, marks, crossed);
-    };
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            std::copy_n(eights_[g].corner[c][axis], kLanes, made.corners[c][axis]);
+    made.windings = picture.image.windings(made.corners);
+    made.within   = picture.image.extents(made.corners, made.extents) & made.all();
+    return made;
+}
 
-    Extents extents;
-    const unsigned within = picture.image.extents(corners, extents) & casting;
-    for (unsigned rest = casting & ~within; rest != 0; rest &= rest - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-        for (int f = 0; f < picture.image.faces(); ++f)
-            if (const auto extent = picture.image.extent(f, corners_of(lane)))
-                picture.asking.bins.visit(*extent, [&](std::size_t b, const Extent&) { meet(lane, b); });
+/// Of groups that follow one another: their searches begin together.
+template <class Crossed>
+void BinnedShadows::cast_groups(std::span<const Group> groups, const Picture& picture, const PointBatch& points,
+                                const Crossed& crossed, bool once, Search& search) const {
+    Extent around = Extent::nothing();
+    for (const Group& group : groups)
+        for (unsigned rest = group.within; rest != 0; rest &= rest - 1)
+            around.add(group.extents.at(static_cast<std::size_t>(std::countr_zero(rest))));
+    picture.asking.bins.start(around, search.start);
+    for (const Group& group : groups) {
+        find(group, picture, search);
+        if (!search.found.empty()) test(group, picture, points, crossed, once, search);
     }
-    // Triangles that are next to one another look for points together.
-    Extent all;
-    all.low_u = all.low_v = all.depth = Extents::kFar, all.high_u = all.high_v = -Extents::kFar;
-    float sum = 0;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        if ((within >> lane & 1u) == 0) {
-            extents.clear(lane);
-            continue;
+}
+
+void BinnedShadows::find(const Group& group, const Picture& picture, Search& search) const {
+    const PointBins& bins = picture.asking.bins;
+    search.found.clear();
+    bins.find(group.extents, group.within, search.start, search.found);
+    for (unsigned rest = group.all() & ~group.within; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+        std::array<dvec3, 3> corners;
+        for (std::size_t c = 0; c < 3; ++c)
+            corners[c] = {group.corners[c][0][lane], group.corners[c][1][lane], group.corners[c][2][lane]};
+        for (int f = 0; f < picture.image.faces(); ++f) {
+            const auto extent = picture.image.extent(f, corners);
+            if (!extent) continue;
+            Extents one;
+            for (std::size_t k = 0; k < kLanes; ++k) one.clear(k);
+            one.set(lane, *extent);
+            bins.find(one, 1u << lane, search.found);
         }
-        const Extent extent = extents.at(lane);
-        all.low_u = std::min(all.low_u, extent.low_u), all.high_u = std::max(all.high_u, extent.high_u);
-        all.low_v = std::min(all.low_v, extent.low_v), all.high_v = std::max(all.high_v, extent.high_v);
-        all.depth = std::min(all.depth, extent.depth);
-        sum += extent.high_u - extent.low_u + (extent.high_v - extent.low_v);
     }
-    if (all.high_u - all.low_u + (all.high_v - all.low_v) <= sum) {
-        picture.asking.bins.visit(all, [&](std::size_t b, const Extent& box) {
-            for (unsigned over = triangles_over(extents, box); over != 0; over &= over - 1)
-                meet(static_cast<std::size_t>(std::countr_zero(over)), b);
-        });
-        return true;
+}
+
+ShadowPlanes BinnedShadows::planes(const Group& group, const Picture& picture) const {
+    LightImage::Corners near, travel;
+    double turn[kLanes];
+    for (std::size_t c = 0; c < 3; ++c)
+        for (int axis = 0; axis < 3; ++axis)
+            for (std::size_t i = 0; i < kLanes; ++i) near[c][axis][i] = group.corners[c][axis][i] - centre_[axis];
+    picture.image.travel(group.corners, travel);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const auto vertex = [&](std::size_t c) {
+            return vec3(dvec3(group.corners[c][0][i], group.corners[c][1][i], group.corners[c][2][i]));
+        };
+        turn[i] = (group.windings.away >> i & 1u) != 0 ? 1.0
+                  : (group.windings.towards >> i & 1u) != 0
+                      ? -1.0
+                      : -side_of_light(*picture.light, vertex(0), vertex(1), vertex(2));
     }
-    for (unsigned rest = within; rest != 0; rest &= rest - 1) {
-        const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
-        picture.asking.bins.visit(extents.at(lane), [&](std::size_t b, const Extent&) { meet(lane, b); });
+    return {near, travel, turn, picture.asking.reach};
+}
+
+/// Tests the triangles against the blocks that were found.
+template <class Crossed>
+void BinnedShadows::test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed,
+                         bool once, const Search& search) const {
+    const PointBins& bins = picture.asking.bins;
+    std::optional<ShadowPlanes> shadows;
+    for (std::size_t f = 0; f < search.found.size(); ++f) {
+        const PointBins::Found found = search.found[f];
+        if (f + kAhead < search.found.size()) bins.prefetch(search.found[f + kAhead].block);
+        Marks& marks          = bins.marks(found.block);
+        const unsigned hidden = once ? marks.crossed.load(std::memory_order_relaxed) : 0u;
+        if (hidden == 0xff) continue;
+        if (!shadows) shadows.emplace(planes(group, picture));
+        const Block& block = bins.block(found.block);
+        ShadowPlanes::Lanes lanes[kLanes];
+        Met all;
+        for (unsigned rest = shadows->test(found.triangles, block, lanes); rest != 0; rest &= rest - 1) {
+            const auto k       = static_cast<std::size_t>(std::countr_zero(rest));
+            const TriangleId t = group.triangles[k];
+            Met met;
+            if (lanes[k].unsure != 0)
+                met = meet_exactly(*scene_, *picture.light, t, points, block,
+                                   lanes[k].unsure & ~hidden & ~lanes_on(block, t));
+            met.crossed |= lanes[k].inside;
+            all.crossed |= met.crossed, all.touched |= met.touched;
+            for (unsigned hit = met.crossed; hit != 0; hit &= hit - 1)
+                crossed(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
+        }
+        if ((all.crossed & ~hidden) != 0)
+            marks.crossed.fetch_or(static_cast<std::uint8_t>(all.crossed), std::memory_order_relaxed);
+        if (all.touched != 0) marks.touched.fetch_or(static_cast<std::uint8_t>(all.touched), std::memory_order_relaxed);
     }
-    return true;
 }
 
 }  // namespace umbra

@@ -17,6 +17,9 @@
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
+namespace binned_shadows_detail {
+class ShadowPlanes;
+}
 
 /// Its time grows with the triangles and with the points, and not with their product, but for points next to the light.
 /// Nothing is kept between calls.
@@ -39,19 +42,27 @@ public:
 
 private:
     struct Picture;
+    struct Group;
+    struct Search;
     struct Eight {
         float corner[3][3][8]{};  ///< [corner][axis][lane], so that they are read in one go
     };
-    enum class Which : std::uint8_t { all, facing_light };
+    enum class Which : std::uint8_t { all, facing_light, later };
 
     [[nodiscard]] Picture bin(const PointBatch& points, LightId light) const;
     template <class Met>
     void each_next_to_light(const Picture& picture, const PointBatch& points, const Met& met) const;
     template <class Crossed>
     void cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once = true) const;
+    [[nodiscard]] Group group(std::size_t g, const Picture& picture) const;
     template <class Crossed>
-    bool cast(std::size_t group, Which which, const Picture& picture, const PointBatch& points, const Crossed& crossed,
-              bool once) const;
+    void cast_groups(std::span<const Group> groups, const Picture& picture, const PointBatch& points,
+                     const Crossed& crossed, bool once, Search& search) const;
+    void find(const Group& group, const Picture& picture, Search& search) const;
+    [[nodiscard]] binned_shadows_detail::ShadowPlanes planes(const Group& group, const Picture& picture) const;
+    template <class Crossed>
+    void test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed, bool once,
+              const Search& search) const;
 
     const Scene* scene_ = nullptr;
     dvec3 centre_{0};

@@ -268,28 +268,4 @@ unsigned LightImage::cube_extents(const Corners& corners, Extents& to) const {
     return ones;
 }
 
-namespace {
-
-/// Of which of eight rectangles, whose depth is as `deep` says, an extent shares a part.
-template <class Deep>
-unsigned sharing(const Extents& all, const Extent& one, const Deep& deep) {
-    unsigned bits = 0;
-    for (std::size_t i = 0; i < kLanes; ++i)
-        bits |= static_cast<unsigned>((all.low_u[i] <= one.high_u) & (all.high_u[i] >= one.low_u) &
-                                      (all.low_v[i] <= one.high_v) & (all.high_v[i] >= one.low_v) &
-                                      static_cast<int>(deep(all.depth[i])))
-                << i;
-    return bits;
-}
-
-}  // namespace
-
-unsigned points_in(const Extents& boxes, const Extent& triangle) {
-    return sharing(boxes, triangle, [&](float depth) { return depth >= triangle.depth; });
-}
-
-unsigned triangles_over(const Extents& triangles, const Extent& box) {
-    return sharing(triangles, box, [&](float depth) { return depth <= box.depth; });
-}
-
 }  // namespace umbra::binned_shadows_detail

@@ -2,6 +2,7 @@
 // position six faces of a cube around it, which lie beside one another in one plane.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -24,6 +25,21 @@ struct Extent {
           low_v(static_cast<float>(low.y)),
           high_v(static_cast<float>(high.y)),
           depth(static_cast<float>(at)) {}
+
+    /// Of triangles: what adds nothing.
+    [[nodiscard]] static Extent nothing() {
+        constexpr float far = std::numeric_limits<float>::max();
+        Extent e;
+        e.low_u = e.low_v = e.depth = far, e.high_u = e.high_v = -far;
+        return e;
+    }
+    /// Of triangles: becomes that around both.
+    void add(const Extent& e) {
+        low_u = std::min(low_u, e.low_u), high_u = std::max(high_u, e.high_u);
+        low_v = std::min(low_v, e.low_v), high_v = std::max(high_v, e.high_v);
+        depth = std::min(depth, e.depth);
+    }
+    [[nodiscard]] float perimeter() const { return high_u - low_u + (high_v - low_v); }  ///< half of it
 };
 
 /// Eight extents; one that is empty meets nothing.
@@ -35,6 +51,10 @@ struct alignas(32) Extents {
         low_u[lane] = low_v[lane] = kFar, high_u[lane] = high_v[lane] = -kFar;
         depth[lane] = 0;
     }
+    void set(std::size_t lane, const Extent& e) {
+        low_u[lane] = e.low_u, high_u[lane] = e.high_u, low_v[lane] = e.low_v, high_v[lane] = e.high_v;
+        depth[lane] = e.depth;
+    }
     [[nodiscard]] bool empty(std::size_t lane) const { return low_u[lane] > high_u[lane]; }
     [[nodiscard]] Extent at(std::size_t lane) const {
         Extent e;
@@ -43,11 +63,6 @@ struct alignas(32) Extents {
         return e;
     }
 };
-
-/// Which of eight boxes of points lie partly in a triangle's extent and not all nearer than its depth: one bit a box.
-[[nodiscard]] unsigned points_in(const Extents& boxes, const Extent& triangle);
-/// Of which of eight triangles a box of points lies partly in the extent, and not all nearer than its depth.
-[[nodiscard]] unsigned triangles_over(const Extents& triangles, const Extent& box);
 
 class LightImage {
 public:

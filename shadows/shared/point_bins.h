@@ -8,13 +8,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <atomic>
-#include <bit>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "umbra/core/base/morton.h"
@@ -49,6 +46,7 @@ private:
 struct alignas(32) Block {
     float x[kLanes], y[kLanes], z[kLanes];
     std::uint32_t index[kLanes];  ///< in the batch
+    TriangleId triangle[kLanes];  ///< on which the point lies
 };
 
 /// What triangles that were tested so far do to the points of a block: one bit a lane. Bits are only set.
@@ -59,14 +57,50 @@ struct Marks {
 /// The points that ask a light for S_j.
 class PointBins {
 public:
+    static constexpr std::size_t kTile = 4096;  ///< points
+
     /// A place rounded to float. Rounding keeps an order, so that what lies in an extent lies in the rounded extent.
     struct Entry {
         float x, y, z;  ///< less the centre
         float u, v, depth;
         std::uint32_t index;
-        std::uint32_t face;
+        TriangleId triangle;
+        std::int32_t face;
     };
-    static constexpr std::size_t kTile = 4096;  ///< points
+
+    /// Up to kTile points, an array for each quantity, as in Entry.
+    struct Tile {
+        alignas(32) float x[kTile], y[kTile], z[kTile], u[kTile], v[kTile], depth[kTile];
+        alignas(32) std::uint32_t index[kTile];
+        alignas(32) std::int32_t face[kTile];
+        alignas(32) TriangleId triangle[kTile];
+        std::size_t count = 0;
+
+        void add(const Entry& e) {
+            x[count] = e.x, y[count] = e.y, z[count] = e.z;
+            u[count] = e.u, v[count] = e.v, depth[count] = e.depth;
+            index[count] = e.index, face[count] = e.face, triangle[count] = e.triangle;
+            ++count;
+        }
+        /// Eight entries, an array for each quantity.
+        struct Eight {
+            const float *x, *y, *z, *u, *v, *depth;
+            const std::uint32_t* index;
+            const TriangleId* triangle;
+            const std::int32_t* face;
+        };
+        void add_eight(const Eight& e) {
+            std::copy_n(e.x, kLanes, x + count), std::copy_n(e.y, kLanes, y + count);
+            std::copy_n(e.z, kLanes, z + count), std::copy_n(e.u, kLanes, u + count);
+            std::copy_n(e.v, kLanes, v + count), std::copy_n(e.depth, kLanes, depth + count);
+            std::copy_n(e.index, kLanes, index + count), std::copy_n(e.triangle, kLanes, triangle + count);
+            std::copy_n(e.face, kLanes, face + count);
+            count += kLanes;
+        }
+        [[nodiscard]] Entry at(std::size_t k) const {
+            return {x[k], y[k], z[k], u[k], v[k], depth[k], index[k], triangle[k], face[k]};
+        }
+    };
 
     /// Around points, or around boxes.
     struct Box {
@@ -91,54 +125,71 @@ public:
     };
 
     PointBins() = default;
-    /// Bins the points of tiles 0 to `tiles` - 1, those of one after those of another. `points` writes at most kTile of
-    /// a tile to what it gets and returns how many; it is called once for each, from any thread.
-    PointBins(std::size_t tiles, const std::function<std::size_t(std::size_t tile, Entry* to)>& points);
+    /// Bins the points of tiles 0 to `tiles` - 1. `points` adds those of a tile to what it gets, which is empty; it is
+    /// called once for each, from any thread.
+    PointBins(std::size_t tiles, const std::function<void(std::size_t tile, Tile& to)>& points);
 
-    [[nodiscard]] std::size_t blocks() const { return count_; }
+    /// Blocks have numbers; those of tile t are first(t) to last(t) - 1.
+    [[nodiscard]] std::size_t tiles() const { return filled_.size(); }
+    [[nodiscard]] std::size_t first(std::size_t tile) const { return tile * kTileBlocks; }
+    [[nodiscard]] std::size_t last(std::size_t tile) const { return first(tile) + filled_[tile]; }
+    [[nodiscard]] std::size_t blocks() const { return order_.size(); }  ///< how many
     [[nodiscard]] const Block& block(std::size_t b) const { return blocks_[b]; }
     [[nodiscard]] Marks& marks(std::size_t b) const { return marks_[b]; }
+    /// Requests positions and marks from memory.
+    void prefetch(std::size_t b) const {
+        __builtin_prefetch(blocks_[b].x);
+        __builtin_prefetch(blocks_[b].z);
+        __builtin_prefetch(&marks_[b]);
+    }
 
-    /// Visits no longer come to blocks whose points are all crossed. Not while others read.
+    /// Blocks whose points are all crossed are found no more. Not while others read.
     void drop_hidden();
 
     /// How often the boxes of tiles in the light's image cover the boxes of its faces' points: about once where the
     /// points of a tile are next to one another, as often as there are tiles where points are strewn about.
     [[nodiscard]] double overlap() const { return overlap_; }
 
-    /// Calls visit(b, box) for every block that may hold a point in the extent, farther from the light than its depth.
-    template <class Visit>
-    void visit(const Extent& extent, const Visit& visit) const {
-        if (!levels_.empty()) visit_level(levels_.size() - 1, 0, extent, visit);
-    }
+    /// A block that may hold points in the extents of some of eight triangles, farther from the light than their
+    /// depths: one bit for each of these triangles.
+    struct Found {
+        std::uint32_t block, triangles;
+    };
+    /// Where searches for what is near some place begin: at nodes of the tree that are next to it.
+    class Start {
+        friend class PointBins;
+        std::size_t level = 0;
+        std::vector<std::uint32_t> nodes{};
+        std::vector<Extents> boxes{};  ///< of eight nodes each
+    };
+    /// Where searches in the extent of triangles, or in parts of it, begin.
+    void start(const Extent& around, Start& to) const;
+
+    /// Appends what is behind those of eight triangles whose bits are in `which`. A block may come more than once, each
+    /// time for other triangles.
+    void find(const Extents& triangles, unsigned which, const Start& start, std::vector<Found>& to) const;
+    void find(const Extents& triangles, unsigned which, std::vector<Found>& to) const;
 
 private:
     static constexpr std::size_t kFaces      = 6;
     static constexpr std::size_t kTileBlocks = kTile / kLanes + 64;  ///< a few more than full ones
 
     class Sorter;
-    static std::size_t fill_tile(std::span<const Entry> entries, const std::array<Box, kFaces>& boxes, Sorter& sorter,
-                                 Block* blocks, Box* of_blocks);
+    class Filler;
     void add_levels(std::vector<Box> boxes);
+    void start_at_root(Start& to) const;
+    bool add_nodes(std::size_t level, std::size_t node, const Extent& around, Start& to) const;
+    void find(const Extents& triangles, unsigned which, std::size_t first, std::size_t count, const Start& start,
+              std::vector<Found>& to) const;
+    void find_in(std::size_t level, std::size_t node, const Extents& triangles, unsigned which, const Extent& all,
+                 std::vector<Found>& to) const;
 
-    template <class Visit>
-    void visit_level(std::size_t level, std::size_t node, const Extent& extent, const Visit& visit) const {
-        const Extents& boxes = levels_[level][node];
-        for (unsigned rest = points_in(boxes, extent); rest != 0; rest &= rest - 1) {
-            const auto lane         = static_cast<std::size_t>(std::countr_zero(rest));
-            const std::size_t child = node * kLanes + lane;
-            if (level > 0)
-                visit_level(level - 1, child, extent, visit);
-            else
-                visit(child, boxes.at(lane));
-        }
-    }
-
-    double overlap_    = 1;
-    std::size_t count_ = 0;
-    std::unique_ptr<Block[]> blocks_;           ///< those next to one another in the light's image together
-    std::vector<std::vector<Extents>> levels_;  ///< boxes of eight blocks, of eight of these, up to one
-    std::unique_ptr<Marks[]> marks_;
+    double overlap_ = 1;
+    std::unique_ptr<Block[]> blocks_;           ///< by tiles, each with room for kTileBlocks
+    std::unique_ptr<Marks[]> marks_;            ///< of each block
+    std::vector<std::size_t> filled_;           ///< blocks of each tile
+    std::vector<std::uint32_t> order_;          ///< blocks, those next to one another in the light's image together
+    std::vector<std::vector<Extents>> levels_;  ///< boxes of eight blocks of order_, of eight of these, up to one
 };
 
 }  // namespace umbra::binned_shadows_detail

@@ -1,6 +1,7 @@
 #include "umbra/shadows/shared/shadow_planes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 // Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
@@ -70,11 +71,12 @@ void ShadowPlanes::set(std::size_t plane, const Eight& first, const Eight& secon
     }
 }
 
-ShadowPlanes::Lanes ShadowPlanes::test(std::size_t triangle, const Block& block) const {
+/// Which lanes are in the shadow of triangle t, and eight bits above these, which are outside.
+unsigned ShadowPlanes::lanes_of(std::size_t t, const Block& block) const {
     float x[4], y[4], z[4], offset[4];
-    for (std::size_t k = 0; k < 4; ++k)
-        x[k] = x_[k][triangle], y[k] = y_[k][triangle], z[k] = z_[k][triangle], offset[k] = offset_[k][triangle];
+    for (std::size_t k = 0; k < 4; ++k) x[k] = x_[k][t], y[k] = y_[k][t], z[k] = z_[k][t], offset[k] = offset_[k][t];
     float least[kLanes];
+#pragma GCC unroll 1
     for (std::size_t i = 0; i < kLanes; ++i) {
         const float a  = x[0] * block.x[i] + y[0] * block.y[i] + z[0] * block.z[i] + offset[0],
                     b  = x[1] * block.x[i] + y[1] * block.y[i] + z[1] * block.z[i] + offset[1],
@@ -83,12 +85,22 @@ ShadowPlanes::Lanes ShadowPlanes::test(std::size_t triangle, const Block& block)
         const float ab = a < b ? a : b, cd = c < d ? c : d;
         least[i] = ab < cd ? ab : cd;
     }
-    unsigned inside = 0, outside = 0;
-    for (std::size_t i = 0; i < kLanes; ++i) {
-        inside |= static_cast<unsigned>(least[i] > 1) << i;
-        outside |= static_cast<unsigned>(least[i] < -1) << i;
+    unsigned bits = 0;
+#pragma GCC unroll 1
+    for (std::size_t i = 0; i < kLanes; ++i)
+        bits |= (static_cast<unsigned>(least[i] > 1) << i) | (static_cast<unsigned>(least[i] < -1) << (kLanes + i));
+    return bits;
+}
+
+unsigned ShadowPlanes::test(unsigned which, const Block& block, Lanes (&lanes)[kLanes]) const {
+    unsigned some = 0;
+    for (unsigned rest = which; rest != 0; rest &= rest - 1) {
+        const auto t        = static_cast<std::size_t>(std::countr_zero(rest));
+        const unsigned bits = lanes_of(t, block), inside = bits & 0xffu, unsure = ~(bits | bits >> kLanes) & 0xffu;
+        lanes[t] = {static_cast<std::uint8_t>(inside), static_cast<std::uint8_t>(unsure)};
+        some |= static_cast<unsigned>((inside | unsure) != 0) << t;
     }
-    return {static_cast<std::uint8_t>(inside), static_cast<std::uint8_t>(~(inside | outside))};
+    return some;
 }
 
 }  // namespace umbra::binned_shadows_detail

@@ -19,15 +19,18 @@ public:
     ShadowPlanes(const LightImage::Corners& corners, const LightImage::Corners& travel, const double (&turn)[kLanes],
                  dvec3 reach);
 
-    /// Which lanes of a block are in the shadow, and of which that is not known.
+    /// Which lanes of a block are in a shadow, and of which that is not known.
     struct Lanes {
         std::uint8_t inside, unsure;
     };
-    [[nodiscard]] Lanes test(std::size_t triangle, const Block& block) const;
+    /// Tests the triangles whose bits are set in `which`; of those to which any lane is inside or unsure writes the
+    /// lanes, and returns their bits.
+    unsigned test(unsigned which, const Block& block, Lanes (&lanes)[kLanes]) const;
 
 private:
     using Eight = double[3][kLanes];
 
+    [[nodiscard]] unsigned lanes_of(std::size_t t, const Block& block) const;
     void set(std::size_t plane, const Eight& first, const Eight& second, const Eight& through,
              const double (&turn)[kLanes], dvec3 reach);
 

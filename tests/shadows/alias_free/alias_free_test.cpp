@@ -157,14 +157,14 @@ TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
                                  {0.5f, 0, 0.5f},   {0, 0.5f, 0.5f},   {0.25f, 1, 0.25f}, {0.3f, 0.999f, 0.3f}};
     for (std::size_t k = 0; k < kLanes; ++k)
         block.x[k] = points[k].x, block.y[k] = points[k].y, block.z[k] = points[k].z;
+    ShadowPlanes::Lanes lanes[kLanes]{};
+    EXPECT_EQ(planes.test(0b11000001, block, lanes), 0b01000001u) << "of the last, whose plane is x = 1, no lane";
     for (const std::size_t triangle : {0u, 6u}) {
-        const auto [inside, unsure] = planes.test(triangle, block);
-        EXPECT_EQ(inside, 0b10000001);
-        EXPECT_EQ(unsure, 0b01110000);
+        EXPECT_EQ(lanes[triangle].inside, 0b10000001);
+        EXPECT_EQ(lanes[triangle].unsure, 0b01110000);
     }
-    const auto [inside, unsure] = planes.test(7, block);  // of the plane x = 1
-    EXPECT_EQ(inside, 0);
-    EXPECT_EQ(unsure, 0);
+    EXPECT_EQ(lanes[7].inside | lanes[7].unsure, 0);
+    EXPECT_EQ(lanes[1].inside | lanes[1].unsure, 0) << "was not asked";
 }
 
 /// Eight points in a row from a position, each its own triangle's first corner.
@@ -268,6 +268,31 @@ TEST(LightImage, ExtentsOfEightHoldTheirTriangles) {
     EXPECT_GT(over_a_border, 300u);
 }
 
+/// Calls visit(b) for what is found behind one triangle.
+template <class Visit>
+void visit(const binned_shadows_detail::PointBins& bins, const binned_shadows_detail::Extent& extent,
+           const Visit& visit) {
+    using namespace binned_shadows_detail;
+    Extents triangles;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) triangles.clear(lane);
+    triangles.set(3, extent);
+    std::vector<PointBins::Found> found;
+    bins.find(triangles, 1u << 3, found);
+    for (const PointBins::Found& f : found) {
+        EXPECT_EQ(f.triangles, 1u << 3);
+        visit(f.block);
+    }
+}
+
+/// Calls visit(b) for every block.
+template <class Visit>
+void each_block(const binned_shadows_detail::PointBins& bins, const Visit& visit) {
+    std::size_t blocks = 0;
+    for (std::size_t tile = 0; tile < bins.tiles(); ++tile)
+        for (std::size_t b = bins.first(tile); b < bins.last(tile); ++b, ++blocks) visit(b);
+    EXPECT_EQ(blocks, bins.blocks());
+}
+
 /// Whatever an extent covers is visited, however points are spread; what it does not, mostly not.
 TEST(PointBins, FindEveryPointOfAnExtent) {
     using namespace binned_shadows_detail;
@@ -276,17 +301,18 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
     std::vector<PointBins::Entry> places;
     for (std::uint32_t i = 0; i < 100000; ++i) {
         double x = crowded(random), y = crowded(random);
-        if (i % 2 == 0) x *= 1e-4, y *= 1e-4;  // half of them in a far corner of it
-        if (i % 100 == 0) x = y = 0.5;         // and some in one place
-        const std::uint32_t face = i % 3;      // beside one another
-        places.push_back({.x     = static_cast<float>(x),
-                          .y     = static_cast<float>(y),
-                          .z     = 0,
-                          .u     = static_cast<float>(x) + 4.0f * static_cast<float>(face),
-                          .v     = static_cast<float>(y),
-                          .depth = static_cast<float>(x + y),
-                          .index = i,
-                          .face  = face});
+        if (i % 2 == 0) x *= 1e-4, y *= 1e-4;                // half of them in a far corner of it
+        if (i % 100 == 0) x = y = 0.5;                       // and some in one place
+        const auto face = static_cast<std::int32_t>(i % 3);  // beside one another
+        places.push_back({.x        = static_cast<float>(x),
+                          .y        = static_cast<float>(y),
+                          .z        = 0,
+                          .u        = static_cast<float>(x) + 4.0f * static_cast<float>(face),
+                          .v        = static_cast<float>(y),
+                          .depth    = static_cast<float>(x + y),
+                          .index    = i,
+                          .triangle = 7 * i,
+                          .face     = face});
     }
     PointBins::Box all;
     for (const PointBins::Entry& e : places) all.add(e.u, e.u, e.v, e.v, e.depth);
@@ -294,22 +320,21 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
     std::ranges::sort(places, {}, [&](const PointBins::Entry& e) { return curve.at(e.u, e.v); });
     for (std::uint32_t i = 0; i < places.size(); ++i) places[i].index = i;
     const std::size_t tiles = (places.size() + PointBins::kTile - 1) / PointBins::kTile + 1;  // the last one is empty
-    const PointBins bins(tiles, [&](std::size_t tile, PointBins::Entry* to) {
+    const PointBins bins(tiles, [&](std::size_t tile, PointBins::Tile& to) {
         const std::size_t first = std::min(places.size(), tile * PointBins::kTile),
                           last  = std::min(places.size(), first + PointBins::kTile);
-        std::copy(places.begin() + static_cast<std::ptrdiff_t>(first),
-                  places.begin() + static_cast<std::ptrdiff_t>(last), to);
-        return last - first;
+        for (std::size_t k = first; k < last; ++k) to.add(places[k]);
     });
     std::vector<int> binned(places.size());
-    for (std::size_t b = 0; b < bins.blocks(); ++b)
+    each_block(bins, [&](std::size_t b) {
         for (std::size_t lane = 0; lane < kLanes; ++lane) {
             const Block& block          = bins.block(b);
             const PointBins::Entry& own = places[block.index[lane]];
             binned[block.index[lane]] += lane == 0 || block.index[lane] != block.index[lane - 1] ? 1 : 0;
-            EXPECT_TRUE(block.x[lane] == own.x && block.y[lane] == own.y);
+            EXPECT_TRUE(block.x[lane] == own.x && block.y[lane] == own.y && block.triangle[lane] == own.triangle);
             EXPECT_EQ(own.face, places[block.index[0]].face);
         }
+    });
     EXPECT_EQ(std::ranges::count(binned, 1), 100000) << "each once";
     EXPECT_LT(bins.blocks(), 100000u / kLanes + 64 * tiles);
     for (int trial = 0; trial < 300; ++trial) {
@@ -318,8 +343,7 @@ TEST(PointBins, FindEveryPointOfAnExtent) {
             dvec2(trial % 3 * 4, 0) + (trial % 2 == 0 ? dvec2(crowded(random), crowded(random)) * size : dvec2(0.4));
         const Extent extent(low, low + dvec2(crowded(random), crowded(random)) * size, crowded(random) * size);
         std::vector<bool> found(places.size());
-        bins.visit(extent, [&](std::size_t b, const Extent& box) {
-            EXPECT_TRUE(box.low_u <= box.high_u && box.depth >= extent.depth);
+        visit(bins, extent, [&](std::size_t b) {
             for (const std::uint32_t i : bins.block(b).index) found[i] = true;
         });
         std::size_t wanted = 0;
@@ -447,32 +471,79 @@ TEST(LightImage, KnowsWindingsThatRoundingDoesNotHide) {
     }
 }
 
+/// 64 x 64 points, the first at (from, 0), row by row.
+void add_square(float from, binned_shadows_detail::PointBins::Tile& to) {
+    for (std::uint32_t i = 0; i < binned_shadows_detail::PointBins::kTile; ++i) {
+        const auto x = static_cast<float>(i % 64) + from, y = std::floor(static_cast<float>(i) / 64);
+        to.add({.x = x, .y = y, .z = 0, .u = x, .v = y, .depth = 1, .index = i, .triangle = i, .face = 0});
+    }
+}
+
+/// Eight triangles that look for points together, wherever they are and wherever their search begins, find what each
+/// of them finds alone, and each block once for each triangle.
+TEST(PointBins, FindForEightTrianglesWhatEachFinds) {
+    using namespace binned_shadows_detail;
+    constexpr std::size_t across = 8;  // tiles: so many that searches need not begin at the root
+    const PointBins bins(across,
+                         [](std::size_t t, PointBins::Tile& to) { add_square(static_cast<float>(64 * t), to); });
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> uniform(0, 1);
+    std::size_t together = 0, alone = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        const float spread = trial % 3 == 0 ? 400.0f : trial % 3 == 1 ? 40.0f : 2.0f;  // near one another, or not
+        const vec2 place(uniform(random) * 450, uniform(random) * 60);
+        Extents triangles;
+        const unsigned which = trial % 5 == 0 ? 0b10010110u : 0xffu;
+        Extent around        = Extent::nothing();
+        for (std::size_t lane = 0; lane < kLanes; ++lane) {
+            const vec2 low = place + spread * vec2(uniform(random), uniform(random) / 8);
+            const Extent e(dvec2(low), dvec2(low + 3.0f * vec2(uniform(random), uniform(random))),
+                           lane == 4 ? 2.0 : 0.5);  // one of them is behind all points
+            triangles.set(lane, e);
+            if ((which >> lane & 1u) != 0) around.add(e);
+        }
+        const auto sorted = [&](std::vector<PointBins::Found> found) {
+            std::vector<std::pair<std::uint32_t, unsigned>> pairs;
+            for (const PointBins::Found& f : found)
+                for (unsigned rest = f.triangles; rest != 0; rest &= rest - 1)
+                    pairs.emplace_back(f.block, static_cast<unsigned>(std::countr_zero(rest)));
+            std::ranges::sort(pairs);
+            return pairs;
+        };
+        std::vector<PointBins::Found> each, from_root, from_start;
+        for (unsigned rest = which; rest != 0; rest &= rest - 1) bins.find(triangles, rest & -rest, each);
+        bins.find(triangles, which, from_root);
+        PointBins::Start start;
+        bins.start(around, start);
+        bins.find(triangles, which, start, from_start);
+        EXPECT_EQ(sorted(from_root), sorted(each));
+        EXPECT_EQ(sorted(from_start), sorted(each));
+        for (const PointBins::Found& f : each) EXPECT_EQ(f.triangles & 1u << 4, 0u);
+        together += from_root.size(), alone += each.size();
+    }
+    EXPECT_GT(alone, 2000u);
+    EXPECT_LT(together, alone - 100) << "blocks that several triangles find come once";
+}
+
 /// Blocks whose points are all crossed are found no more, others are, though seven of their points are crossed.
 TEST(PointBins, DropWhatIsHidden) {
     using namespace binned_shadows_detail;
-    PointBins bins(2, [](std::size_t tile, PointBins::Entry* to) {
-        for (std::uint32_t i = 0; i < PointBins::kTile; ++i) {
-            const auto x = static_cast<float>(i % 64) + 64 * static_cast<float>(tile),
-                       y = std::floor(static_cast<float>(i) / 64);
-            *to++        = {.x = x, .y = y, .z = 0, .u = x, .v = y, .depth = 1, .index = i, .face = 0};
-        }
-        return PointBins::kTile;
-    });
-    std::vector<std::uint8_t> expected(bins.blocks());
-    for (std::size_t b = 0; b < bins.blocks(); ++b) {
+    PointBins bins(2, [](std::size_t tile, PointBins::Tile& to) { add_square(static_cast<float>(64 * tile), to); });
+    std::vector<std::uint8_t> expected(bins.last(1));
+    each_block(bins, [&](std::size_t b) {
         expected[b]           = b % 3 == 0 || b > 1000 ? 0 : 1;
         bins.marks(b).crossed = expected[b] == 0 ? 0xff : 0x7f;
-    }
+    });
     bins.drop_hidden();
-    std::vector<std::uint8_t> found(bins.blocks());
+    std::vector<std::uint8_t> found(bins.last(1));
     Extent all;
     all.low_u = all.low_v = -1, all.high_u = all.high_v = 200;
-    bins.visit(all, [&](std::size_t b, const Extent&) { found[b] = 1; });
+    visit(bins, all, [&](std::size_t b) { found[b] = 1; });
     EXPECT_EQ(found, expected);
     // Where all is hidden, nothing is found.
-    for (std::size_t b = 0; b < bins.blocks(); ++b) bins.marks(b).crossed = 0xff;
+    each_block(bins, [&](std::size_t b) { bins.marks(b).crossed = 0xff; });
     bins.drop_hidden();
-    bins.visit(all, [&](std::size_t b, const Extent&) { ADD_FAILURE() << b; });
+    visit(bins, all, [&](std::size_t b) { ADD_FAILURE() << b; });
 }
 
 /// Whatever the order in which a tile gives its points, those of a block are next to one another.
@@ -483,21 +554,23 @@ TEST(PointBins, HaveSmallBlocksInAnyOrderOfPoints) {
         for (std::uint32_t k = 0; k < order.size(); ++k) order[k] = k;
         std::mt19937 random(3);
         if (strewn) std::ranges::shuffle(order, random);
-        const PointBins bins(1, [&](std::size_t, PointBins::Entry* to) {
+        const PointBins bins(1, [&](std::size_t, PointBins::Tile& to) {
             for (const std::uint32_t k : order) {
                 std::uint32_t x = 0, y = 0;
                 for (unsigned bit = 0; bit < 6; ++bit)
                     x |= (k >> 2 * bit & 1u) << bit, y |= (k >> (2 * bit + 1) & 1u) << bit;
                 const auto u = static_cast<float>(x), v = static_cast<float>(y);
-                *to++ = {.x = u, .y = v, .z = 0, .u = u, .v = v, .depth = 1, .index = k, .face = 0};
+                to.add({.x = u, .y = v, .z = 0, .u = u, .v = v, .depth = 1, .index = k, .triangle = k, .face = 0});
             }
-            return PointBins::kTile;
         });
         Extent all;
         all.low_u = all.low_v = -1, all.high_u = all.high_v = 100;
         double sum = 0;
-        bins.visit(all,
-                   [&](std::size_t, const Extent& box) { sum += box.high_u - box.low_u + (box.high_v - box.low_v); });
+        visit(bins, all, [&](std::size_t b) {
+            const auto [low_x, high_x] = std::ranges::minmax(bins.block(b).x);
+            const auto [low_y, high_y] = std::ranges::minmax(bins.block(b).y);
+            sum += static_cast<double>(high_x - low_x + (high_y - low_y));
+        });
         EXPECT_LT(sum / static_cast<double>(bins.blocks()), 5) << "4 x 2 points: half of the perimeter is 4";
     }
 }
