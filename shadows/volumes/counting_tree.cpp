@@ -9,6 +9,7 @@
 #include "umbra/core/base/parallel_sort.h"
 #include "umbra/shadows/shared/point_groups.h"
 
+// Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
 namespace umbra {
 namespace {
 
@@ -99,22 +100,6 @@ void sort_by_projection(std::span<std::uint32_t> index, const PointBatch& points
     for (std::size_t k = 0; k < index.size(); ++k) index[k] = keys[k].second;
 }
 
-// ---- half-spaces over boxes -----------------------------------------------------------------------------------------
-
-enum class Cover : std::uint8_t { none, some, all };
-
-/// Certain answers only: what lies nearer to the plane than the rounding of f, at any point of the box, is `some`, so
-/// that a point gets the same answer whether a box or the point itself is asked.
-Cover cover(const HalfSpace& f, dvec3 min, dvec3 max) {
-    const double x0 = f.nx * min.x, x1 = f.nx * max.x, y0 = f.ny * min.y, y1 = f.ny * max.y, w0 = f.nw * min.z,
-                 w1       = f.nw * max.z;
-    const double low      = std::min(x0, x1) + std::min(y0, y1) + f.nz + std::min(w0, w1);
-    const double high     = std::max(x0, x1) + std::max(y0, y1) + f.nz + std::max(w0, w1);
-    const double rounding = 0x1p-49 * (std::max(std::abs(x0), std::abs(x1)) + std::max(std::abs(y0), std::abs(y1)) +
-                                       std::abs(f.nz) + std::max(std::abs(w0), std::abs(w1)));
-    return high < -rounding ? Cover::none : low > rounding ? Cover::all : Cover::some;
-}
-
 /// Of a triangle's weights: a point with larger ones is not moved (named_point).
 constexpr double kMostShare = 0x1p-26;
 
@@ -149,7 +134,7 @@ dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, d
 // ---- the tree -------------------------------------------------------------------------------------------------------
 
 CountingTree::CountingTree(const Scene& scene, const PointBatch& points, LightId light)
-    // Blocks of 8 x 8 pixels are a leaf, where all of them ask.
+    // Blocks of 4 x 4 pixels are a leaf, where all of them ask.
     : index_(std::move(grouped(points, 1, [&](std::size_t i) { return points.asks(light, i) ? 0u : 1u; })[0])) {
     if (index_.empty()) return;
     view_ = choose_view(points, light);
@@ -192,27 +177,39 @@ void CountingTree::project(const Scene& scene, const PointBatch& points) {
 }
 
 void CountingTree::build_nodes() {
-    levels_.emplace_back((size() + kLeaf - 1) / kLeaf);
-    parallel_ranges(levels_[0].size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t leaf = begin; leaf < end; ++leaf) {
-            Node& n = levels_[0][leaf];
-            n.min = n.max = dvec3(x_[leaf * kLeaf], y_[leaf * kLeaf], w_[leaf * kLeaf]);
-            for (std::size_t k = leaf * kLeaf; k < std::min(size(), (leaf + 1) * kLeaf); ++k) {
-                n.min = glm::min(n.min, dvec3(x_[k], y_[k], w_[k]));
-                n.max = glm::max(n.max, dvec3(x_[k], y_[k], w_[k]));
+    constexpr double far = std::numeric_limits<double>::infinity();
+    std::size_t size     = (this->size() + kLeaf - 1) / kLeaf;  // nodes of the level
+    const auto add_level = [&](const auto& box_of) {
+        Level level((size + kFanOut - 1) / kFanOut);
+        parallel_ranges(level.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t parent = begin; parent < end; ++parent) {
+                Siblings& nodes = level[parent];
+                nodes.size      = static_cast<std::uint32_t>(std::min(kFanOut, size - parent * kFanOut));
+                for (std::size_t k = 0; k < kFanOut; ++k) {
+                    dvec3 min(far), max(-far);
+                    if (k < nodes.size) box_of(parent * kFanOut + k, min, max);
+                    for (int axis = 0; axis < 3; ++axis) nodes.min[axis][k] = min[axis], nodes.max[axis][k] = max[axis];
+                    nodes.count[k] = 0;
+                }
             }
+        });
+        levels_.push_back(std::move(level));
+    };
+    add_level([&](std::size_t leaf, dvec3& min, dvec3& max) {
+        for (std::size_t k = leaf * kLeaf; k < std::min(this->size(), (leaf + 1) * kLeaf); ++k) {
+            const dvec3 at(x_[k], y_[k], w_[k]);
+            min = glm::min(min, at), max = glm::max(max, at);
         }
     });
     while (levels_.back().size() > 1) {
-        const std::vector<Node>& below = levels_.back();
-        std::vector<Node> level((below.size() + kFanOut - 1) / kFanOut);
-        for (std::size_t i = 0; i < level.size(); ++i) {
-            level[i] = below[i * kFanOut];
-            for (std::size_t c = i * kFanOut; c < std::min(below.size(), (i + 1) * kFanOut); ++c)
-                level[i].min = glm::min(level[i].min, below[c].min),
-                level[i].max = glm::max(level[i].max, below[c].max);
-        }
-        levels_.push_back(std::move(level));
+        size = levels_.back().size();
+        add_level([&](std::size_t node, dvec3& min, dvec3& max) {
+            const Siblings& children = levels_.back()[node];
+            for (int axis = 0; axis < 3; ++axis)
+                for (std::size_t k = 0; k < children.size; ++k)
+                    min[axis] = std::min(min[axis], children.min[axis][k]),
+                    max[axis] = std::max(max[axis], children.max[axis][k]);
+        });
     }
 }
 
@@ -220,29 +217,87 @@ void CountingTree::add(const Region& region, std::int32_t weight) {
     if (!levels_.empty()) descend(region, weight, levels_.size() - 1, 0, (1u << region.count) - 1);
 }
 
-/// `open` has a bit for each face that does not yet hold the whole node.
-void CountingTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t node,
-                           unsigned open) {
-    Node& n = levels_[level][node];
-    if (glm::any(glm::lessThan(n.max, region.box_min)) || glm::any(glm::greaterThan(n.min, region.box_max))) return;
-    // The box alone rules small regions out of large nodes; their faces are asked where they can tell more.
-    const dvec3 region_size = region.box_max - region.box_min, node_size = n.max - n.min;
-    const bool small = level > 0 && 2 * region_size.x < node_size.x && 2 * region_size.y < node_size.y;
-    for (unsigned rest = small ? 0 : open; rest != 0; rest &= rest - 1) {
-        const auto face = static_cast<unsigned>(std::countr_zero(rest));
-        switch (cover(region.faces[face], n.min, n.max)) {
-            case Cover::none: return;
-            case Cover::all: open &= ~(1u << face); break;
-            case Cover::some: break;
-        }
+/// Clears the bits of nodes that lie beside the region's box; false where that are all.
+bool CountingTree::is_within(const Siblings& nodes, const Region& region, unsigned& which) {
+    std::uint64_t within = 0;
+#pragma GCC unroll 1
+    for (std::size_t k = 0; k < kFanOut; ++k)
+        within |=
+            static_cast<std::uint64_t>((nodes.max[0][k] >= region.box_min.x) & (nodes.min[0][k] <= region.box_max.x) &
+                                       (nodes.max[1][k] >= region.box_min.y) & (nodes.min[1][k] <= region.box_max.y) &
+                                       (nodes.max[2][k] >= region.box_min.z) & (nodes.min[2][k] <= region.box_max.z))
+            << k;
+    which &= static_cast<unsigned>(within);
+    return which != 0;
+}
+
+/// Whether all are so much larger than the region that its box alone rules out more than its faces do.
+bool CountingTree::are_large(const Siblings& nodes, const Region& region, unsigned which) {
+    const dvec3 size    = 2.0 * (region.box_max - region.box_min);
+    std::uint64_t large = 0;
+#pragma GCC unroll 1
+    for (std::size_t k = 0; k < kFanOut; ++k)
+        large |= static_cast<std::uint64_t>((nodes.max[0][k] - nodes.min[0][k] > size.x) &
+                                            (nodes.max[1][k] - nodes.min[1][k] > size.y))
+                 << k;
+    return (which & ~large) == 0;
+}
+
+/// Which nodes lie within no part of the half-space, and, four bits above these, which wholly. Certain answers only:
+/// what lies nearer to the plane than the rounding of f, at any point of the box, is neither, so that a point gets the
+/// same answer whether a box or the point itself is asked.
+unsigned CountingTree::cover(const HalfSpace& f, const Siblings& nodes) {
+    // The corners of boxes at which f is least, and those at which it is most.
+    const auto corners = [&](double n, int axis) {
+        return n < 0 ? std::pair(nodes.max[axis], nodes.min[axis]) : std::pair(nodes.min[axis], nodes.max[axis]);
+    };
+    const auto [low_x, high_x] = corners(f.nx, 0);
+    const auto [low_y, high_y] = corners(f.ny, 1);
+    const auto [low_w, high_w] = corners(f.nw, 2);
+    return cover(f, low_x, high_x, low_y, high_y, low_w, high_w);
+}
+
+unsigned CountingTree::cover(const HalfSpace& f, const double* __restrict low_x, const double* __restrict high_x,
+                             const double* __restrict low_y, const double* __restrict high_y,
+                             const double* __restrict low_w, const double* __restrict high_w) {
+    const double nx = f.nx, ny = f.ny, nz = f.nz, nw = f.nw, size_z = std::abs(nz);
+    std::uint64_t bits = 0;
+#pragma GCC unroll 1
+    for (std::size_t k = 0; k < kFanOut; ++k) {
+        const double x0 = nx * low_x[k], x1 = nx * high_x[k], y0 = ny * low_y[k], y1 = ny * high_y[k],
+                     w0 = nw * low_w[k], w1 = nw * high_w[k];
+        const double low      = x0 + y0 + nz + w0;
+        const double high     = x1 + y1 + nz + w1;
+        const double rounding = 0x1p-49 * (std::abs(x0) + std::abs(x1) + std::abs(y0) + std::abs(y1) + size_z +
+                                           std::abs(w0) + std::abs(w1));
+        bits |= (std::uint64_t{high < -rounding} | std::uint64_t{low > rounding} << kFanOut) << k;
     }
-    if (open == 0) {
-        std::atomic_ref(n.count).fetch_add(weight, std::memory_order_relaxed);
-    } else if (level == 0) {
-        add_to_leaf(region, weight, node, open);
-    } else {
-        const std::size_t last = std::min(levels_[level - 1].size(), (node + 1) * kFanOut);
-        for (std::size_t child = node * kFanOut; child < last; ++child) descend(region, weight, level - 1, child, open);
+    return static_cast<unsigned>(bits);
+}
+
+/// The four nodes below `parent`. `open` has a bit for each face that does not yet hold all of them.
+void CountingTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent,
+                           unsigned open) {
+    Siblings& nodes = levels_[level][parent];
+    unsigned which  = (1u << nodes.size) - 1;
+    if (!is_within(nodes, region, which)) return;
+    std::array<unsigned, kFanOut> still{open, open, open, open};  // of each node
+    for (unsigned rest = level > 0 && are_large(nodes, region, which) ? 0 : open; rest != 0; rest &= rest - 1) {
+        const auto face        = static_cast<unsigned>(std::countr_zero(rest));
+        const unsigned covered = cover(region.faces[face], nodes);
+        which &= ~covered;
+        if (which == 0) return;
+        for (std::size_t k = 0; k < kFanOut; ++k) still[k] &= ~((covered >> (kFanOut + k) & 1u) << face);
+    }
+    for (; which != 0; which &= which - 1) {
+        const auto k           = static_cast<std::size_t>(std::countr_zero(which));
+        const std::size_t node = parent * kFanOut + k;
+        if (still[k] == 0)
+            std::atomic_ref(nodes.count[k]).fetch_add(weight, std::memory_order_relaxed);
+        else if (level == 0)
+            add_to_leaf(region, weight, node, still[k]);
+        else
+            descend(region, weight, level - 1, node, still[k]);
     }
 }
 
@@ -254,13 +309,15 @@ void CountingTree::add_to_leaf(const Region& region, std::int32_t weight, std::s
     least.fill(std::numeric_limits<double>::infinity());
     for (; open != 0; open &= open - 1) {
         const HalfSpace f = region.faces[static_cast<std::size_t>(std::countr_zero(open))];
+#pragma GCC unroll 1
         for (std::size_t k = 0; k < kLeaf; ++k) {
             const double value = (f.nx * x[k] + f.ny * y[k]) + (f.nz + f.nw * w[k]) + f.tie;
             least[k]           = value < least[k] ? value : least[k];
         }
     }
-    std::uint64_t within = 0;
-    for (std::size_t k = 0; k < kLeaf; ++k) within |= std::uint64_t(least[k] > 0) << k;
+    unsigned within = 0;
+#pragma GCC unroll 1
+    for (std::size_t k = 0; k < kLeaf; ++k) within |= static_cast<unsigned>(least[k] > 0) << k;
     for (; within != 0; within &= within - 1) {
         std::int32_t& count = count_[leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(within))];
         std::atomic_ref(count).fetch_add(weight, std::memory_order_relaxed);
@@ -269,14 +326,14 @@ void CountingTree::add_to_leaf(const Region& region, std::int32_t weight, std::s
 
 /// To the leaves.
 void CountingTree::push_down() {
-    for (std::size_t level = levels_.size(); level-- > 1;) {
-        std::vector<Node>& nodes = levels_[level];
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            if (nodes[i].count == 0) continue;
-            const std::size_t last = std::min(levels_[level - 1].size(), (i + 1) * kFanOut);
-            for (std::size_t c = i * kFanOut; c < last; ++c) levels_[level - 1][c].count += nodes[i].count;
-        }
-    }
+    for (std::size_t level = levels_.size(); level-- > 1;)
+        parallel_ranges(levels_[level].size(), 256, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t parent = begin; parent < end; ++parent)
+                for (std::size_t k = 0; k < levels_[level][parent].size; ++k) {
+                    const std::int32_t count = levels_[level][parent].count[k];
+                    for (std::int32_t& below : levels_[level - 1][parent * kFanOut + k].count) below += count;
+                }
+        });
 }
 
 }  // namespace umbra

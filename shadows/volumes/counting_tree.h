@@ -65,24 +65,32 @@ public:
     void for_each(const Visit& visit);
 
 private:
-    static constexpr std::size_t kLeaf   = 64;  // points in a leaf
+    static constexpr std::size_t kLeaf   = 16;  // points in a leaf
     static constexpr std::size_t kFanOut = 4;   // children of a node
-    struct Node {
-        dvec3 min, max;  // box of (x, y, w)
-        std::int32_t count = 0;
+    /// Four nodes that have one parent; each at its place in every array. Nodes beyond `size` hold nothing.
+    struct alignas(32) Siblings {
+        double min[3][kFanOut], max[3][kFanOut];  // boxes of (x, y, w)
+        std::int32_t count[kFanOut];
+        std::uint32_t size = 0;
     };
+    using Level = std::vector<Siblings>;
 
     void project(const Scene& scene, const PointBatch& points);
     void build_nodes();
-    void descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t node, unsigned open);
+    void descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent, unsigned open);
     void add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open);
     void push_down();
+    static bool is_within(const Siblings& nodes, const Region& region, unsigned& which);
+    static bool are_large(const Siblings& nodes, const Region& region, unsigned which);
+    static unsigned cover(const HalfSpace& f, const Siblings& nodes);
+    static unsigned cover(const HalfSpace& f, const double* low_x, const double* high_x, const double* low_y,
+                          const double* high_y, const double* low_w, const double* high_w);
 
     ViewFrame view_;
-    RawVector<std::uint32_t> index_;         // point of the batch
-    RawVector<double> x_, y_, w_;            // padded to whole leaves
-    std::vector<std::int32_t> count_;        // padded to whole leaves
-    std::vector<std::vector<Node>> levels_;  // leaves first; node i has children [4 i, 4 i + 4)
+    RawVector<std::uint32_t> index_;   // point of the batch
+    RawVector<double> x_, y_, w_;      // padded to whole leaves
+    std::vector<std::int32_t> count_;  // padded to whole leaves
+    std::vector<Level> levels_;        // leaves first; the children of node i are those at i, one level below
 };
 
 /// The point as it is named, less `origin`, in double: but where it is closer to its triangle's border than 2^-44 of
@@ -95,7 +103,8 @@ template <class Visit>
 void CountingTree::for_each(const Visit& visit) {
     push_down();
     parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) visit(index_[k], count_[k] + levels_[0][k / kLeaf].count);
+        for (std::size_t k = begin; k < end; ++k)
+            visit(index_[k], count_[k] + levels_[0][k / kLeaf / kFanOut].count[k / kLeaf % kFanOut]);
     });
 }
 
