@@ -32,15 +32,18 @@ NormalCone NormalCone::joined(const NormalCone& a, const NormalCone& b) {
 bool NormalCone::one_sided(const Box& box, dvec3 p, double around) const {
     if (half_angle > kWidest) return false;
     const dvec3 lo(box.min), hi(box.max);
-    const dvec3 to_box    = 0.5 * (lo + hi) - p;
-    const double distance = glm::length(to_box), radius = 0.5 * glm::length(hi - lo) + around;
+    const dvec3 to_box  = 0.5 * (lo + hi) - p;
+    const double square = glm::dot(to_box, to_box), across = std::abs(glm::dot(dvec3(axis), to_box));
+    // What follows asks for more than this, without a root.
+    if (!(across * across > static_cast<double>(sine) * static_cast<double>(sine) * square * (1 - kDoubt)))
+        return false;
+    const double distance = std::sqrt(square), radius = 0.5 * glm::length(hi - lo) + around;
     if (!(distance > radius)) return false;
     // The angle between the axis and a segment to any point of the box differs from that of the segment to its centre,
     // and the normal's from the axis: together by at most half_angle + asin(radius / distance).
-    const double box_sine = radius / distance, box_cosine = std::sqrt(1 - box_sine * box_sine);
-    if (!(box_cosine > sine)) return false;  // together a right angle or more
-    const double sine_of_both = sine * box_cosine + cosine * box_sine;
-    return std::abs(glm::dot(dvec3(axis), to_box)) > (sine_of_both + kDoubt) * distance;
+    const double rest = std::sqrt(square - radius * radius);  // the cosine of the latter times the distance
+    if (!(rest > sine * distance)) return false;              // together a right angle or more
+    return across > sine * rest + cosine * radius + kDoubt * distance;
 }
 
 }  // namespace umbra::exact_detail

@@ -24,6 +24,8 @@ public:
                                                       double y);
 
 private:
+    [[nodiscard]] bool find_out(dvec3 moved, dvec3 to_place, double off, double beside);
+
     bool known_ = false;
     dvec3 origin_{0}, place_{0};  ///< the latter from the former
     double x_ = 0, y_ = 0, around_ = 0;

@@ -68,13 +68,14 @@ public:
     template <class Enter, class Visit>
     void visit(const Region& region, const Enter& enter, const Visit& visit) const {
         if (nodes_.empty()) return;
+        const WidePlanes planes = widened(region);
         std::uint32_t stack[64];
         int depth      = 0;
         stack[depth++] = 0;
         while (depth > 0) {
             const std::uint32_t index = stack[--depth];
             const Node& node          = nodes_[index];
-            if (!meets(node, region) || !enter(index, Box{node.min, node.max})) continue;
+            if (!meets(node, region.from, planes) || !enter(index, Box{node.min, node.max})) continue;
             if (node.count > 0) {
                 for (std::uint32_t k = 0; k < node.count; ++k)
                     if (!visit(order_[node.first + k])) return;
@@ -147,18 +148,36 @@ private:
         return enter <= leave + 1e-14 * std::abs(leave);
     }
 
-    /// Of each plane, the corner that lies farthest on its inner side. What rounding does to the sum is below 1e-14 of
-    /// its terms' magnitudes.
-    static bool meets(const Node& node, const Region& region) {
-        const dvec3 lo = dvec3(node.min) - region.from, hi = dvec3(node.max) - region.from;
-        for (const Region::Plane& plane : region.planes) {
-            double value = plane.offset, wide = 1e-14 * std::abs(plane.offset);
-            for (int k = 0; k < 3; ++k) {
-                const double n = plane.normal[k], q = n > 0 ? hi[k] : lo[k];
-                value += n * q;
-                wide += std::abs(n) * (region.slack + 1e-14 * std::abs(q)) + region.tilt * (std::abs(q) + region.slack);
-            }
-            if (value < -wide) return false;
+    /// A region's plane, and by how much what is outside may be off: weight . |q| for a corner q less `from`. What
+    /// rounding does to the sum is below 1e-14 of its terms' magnitudes; the rest of that is in the offset.
+    struct WidePlane {
+        dvec3 normal{0}, weight{0};
+        double offset = 0;
+    };
+    using WidePlanes = std::array<WidePlane, 5>;
+
+    static WidePlanes widened(const Region& region) {
+        WidePlanes wide;
+        for (std::size_t k = 0; k < wide.size(); ++k) {
+            const Region::Plane& plane = region.planes[k];
+            const dvec3 size           = glm::abs(plane.normal);
+            wide[k]                    = {plane.normal, 1e-14 * size + region.tilt,
+                                          plane.offset + 1e-14 * std::abs(plane.offset) +
+                                              (size.x + size.y + size.z + 3 * region.tilt) * region.slack};
+        }
+        return wide;
+    }
+
+    /// Of each plane, the corner that lies farthest on its inner side.
+    static bool meets(const Node& node, dvec3 from, const WidePlanes& planes) {
+        const dvec3 lo = dvec3(node.min) - from, hi = dvec3(node.max) - from;
+        for (const WidePlane& plane : planes) {
+            const dvec3 q(plane.normal.x > 0 ? hi.x : lo.x, plane.normal.y > 0 ? hi.y : lo.y,
+                          plane.normal.z > 0 ? hi.z : lo.z);
+            const double value = plane.normal.x * q.x + plane.normal.y * q.y + plane.normal.z * q.z;
+            const double wide =
+                plane.weight.x * std::abs(q.x) + plane.weight.y * std::abs(q.y) + plane.weight.z * std::abs(q.z);
+            if (value + plane.offset < -wide) return false;
         }
         return true;
     }
