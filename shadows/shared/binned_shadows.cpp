@@ -25,6 +25,9 @@ using exact_detail::Segment;
 /// Blocks are requested from memory this many before they are tested.
 constexpr std::size_t kAhead = 4;
 
+/// Blocks that are enough for several threads.
+constexpr std::size_t kMany = 8192;
+
 /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
 bool blocks(const Scene& scene, TriangleId t) {
     return scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
@@ -267,38 +270,44 @@ ShadowPlanes BinnedShadows::planes(const Group& group, const Picture& picture) c
     return {near, travel, turn, picture.asking.reach};
 }
 
-/// Tests the triangles against the blocks that were found.
+/// Tests the triangles against the blocks that were found; where these are many, as behind a wall, from all threads.
 template <class Crossed>
 void BinnedShadows::test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed,
                          bool once, const Search& search) const {
     const PointBins& bins = picture.asking.bins;
     std::optional<ShadowPlanes> shadows;
-    for (std::size_t f = 0; f < search.found.size(); ++f) {
-        const PointBins::Found found = search.found[f];
-        if (f + kAhead < search.found.size()) bins.prefetch(search.found[f + kAhead].block);
-        Marks& marks          = bins.marks(found.block);
-        const unsigned hidden = once ? marks.crossed.load(std::memory_order_relaxed) : 0u;
-        if (hidden == 0xff) continue;
-        if (!shadows) shadows.emplace(planes(group, picture));
-        const Block& block = bins.block(found.block);
-        ShadowPlanes::Lanes lanes[kLanes];
-        Met all;
-        for (unsigned rest = shadows->test(found.triangles, block, lanes); rest != 0; rest &= rest - 1) {
-            const auto k       = static_cast<std::size_t>(std::countr_zero(rest));
-            const TriangleId t = group.triangles[k];
-            Met met;
-            if (lanes[k].unsure != 0)
-                met = meet_exactly(*scene_, *picture.light, t, points, block,
-                                   lanes[k].unsure & ~hidden & ~lanes_on(block, t));
-            met.crossed |= lanes[k].inside;
-            all.crossed |= met.crossed, all.touched |= met.touched;
-            for (unsigned hit = met.crossed; hit != 0; hit &= hit - 1)
-                crossed(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
+    const auto test_found = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const PointBins::Found found = search.found[f];
+            if (f + kAhead < search.found.size()) bins.prefetch(search.found[f + kAhead].block);
+            Marks& marks          = bins.marks(found.block);
+            const unsigned hidden = once ? marks.crossed.load(std::memory_order_relaxed) : 0u;
+            if (hidden == 0xff) continue;
+            if (!shadows) shadows.emplace(planes(group, picture));
+            const Block& block = bins.block(found.block);
+            ShadowPlanes::Lanes lanes[kLanes];
+            Met all;
+            for (unsigned rest = shadows->test(found.triangles, block, lanes); rest != 0; rest &= rest - 1) {
+                const auto k       = static_cast<std::size_t>(std::countr_zero(rest));
+                const TriangleId t = group.triangles[k];
+                Met met;
+                if (lanes[k].unsure != 0)
+                    met = meet_exactly(*scene_, *picture.light, t, points, block,
+                                       lanes[k].unsure & ~hidden & ~lanes_on(block, t));
+                met.crossed |= lanes[k].inside;
+                all.crossed |= met.crossed, all.touched |= met.touched;
+                for (unsigned hit = met.crossed; hit != 0; hit &= hit - 1)
+                    crossed(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
+            }
+            if ((all.crossed & ~hidden) != 0)
+                marks.crossed.fetch_or(static_cast<std::uint8_t>(all.crossed), std::memory_order_relaxed);
+            if (all.touched != 0)
+                marks.touched.fetch_or(static_cast<std::uint8_t>(all.touched), std::memory_order_relaxed);
         }
-        if ((all.crossed & ~hidden) != 0)
-            marks.crossed.fetch_or(static_cast<std::uint8_t>(all.crossed), std::memory_order_relaxed);
-        if (all.touched != 0) marks.touched.fetch_or(static_cast<std::uint8_t>(all.touched), std::memory_order_relaxed);
-    }
+    };
+    if (search.found.size() < kMany) return test_found(0, search.found.size());
+    shadows.emplace(planes(group, picture));
+    parallel_ranges(search.found.size(), kMany / 4, test_found);
 }
 
 }  // namespace umbra

@@ -22,7 +22,7 @@ constexpr float kWidest = 2;
 constexpr std::size_t kStartLevel = 1, kMostStarts = 64;
 
 /// Around eight others.
-PointBins::Box box_of(const Extents& children) {
+PointBins::Box box_around(const Extents& children) {
     PointBins::Box box;
     for (std::size_t lane = 0; lane < kLanes; ++lane)
         if (!children.empty(lane))
@@ -32,9 +32,9 @@ PointBins::Box box_of(const Extents& children) {
 }
 
 /// Sorts blocks along Morton's curve over the box of all.
-void sort(std::vector<std::uint32_t>& order, const PointBins::Box* boxes, const PointBins::Box& all) {
+void sort(RawVector<std::uint32_t>& order, const PointBins::Box* boxes, const PointBins::Box& all) {
     const CurveOver curve(all);
-    std::vector<std::uint64_t> keys(order.size());
+    RawVector<std::uint64_t> keys(order.size());
     parallel_ranges(order.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const PointBins::Box& box = boxes[order[k]];
@@ -43,7 +43,9 @@ void sort(std::vector<std::uint32_t>& order, const PointBins::Box* boxes, const 
         }
     });
     parallel_sort(keys.begin(), keys.end());
-    for (std::size_t k = 0; k < keys.size(); ++k) order[k] = static_cast<std::uint32_t>(keys[k]);
+    parallel_ranges(order.size(), 16384, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) order[k] = static_cast<std::uint32_t>(keys[k]);
+    });
 }
 
 /// The half perimeter that a block of `count` points in `box` may have.
@@ -203,8 +205,14 @@ PointBins::PointBins(std::size_t tiles, const std::function<void(std::size_t, Ti
             filled_[t] = filler.fill(*tile, of_faces[t], blocks_.get() + first(t), boxes.get() + first(t));
         }
     });
-    for (std::size_t t = 0; t < tiles; ++t)
-        for (std::size_t b = first(t); b < last(t); ++b) order_.push_back(static_cast<std::uint32_t>(b));
+    std::vector<std::size_t> before(tiles + 1);
+    for (std::size_t t = 0; t < tiles; ++t) before[t + 1] = before[t] + filled_[t];
+    order_.resize(before[tiles]);
+    parallel_ranges(tiles, 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            for (std::size_t k = 0; k < filled_[t]; ++k)
+                order_[before[t] + k] = static_cast<std::uint32_t>(first(t) + k);
+    });
     double whole = 0, of_tiles = 0;
     Box everything;
     for (std::size_t face = 0; face < kFaces; ++face) {
@@ -219,11 +227,7 @@ PointBins::PointBins(std::size_t tiles, const std::function<void(std::size_t, Ti
     }
     overlap_ = whole > 0 ? of_tiles / whole : 1;
     sort(order_, boxes.get(), everything);
-    std::vector<Box> sorted(order_.size());
-    parallel_ranges(order_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) sorted[k] = boxes[order_[k]];
-    });
-    add_levels(std::move(sorted));
+    add_levels(order_.size(), [&](std::size_t k) { return boxes[order_[k]]; });
 }
 
 namespace {
@@ -339,7 +343,7 @@ void PointBins::find_in(std::size_t level, std::size_t node, const Extents& tria
 
 void PointBins::drop_hidden() {
     for (std::size_t level = 0; level < levels_.size(); ++level) {
-        std::vector<Extents>& nodes = levels_[level];
+        RawVector<Extents>& nodes = levels_[level];
         parallel_ranges(nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
             for (std::size_t n = begin; n < end; ++n)
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -349,29 +353,31 @@ void PointBins::drop_hidden() {
                         if (marks_[order_[child]].crossed.load(std::memory_order_relaxed) == 0xff) nodes[n].clear(lane);
                         continue;
                     }
-                    const Box box = box_of(levels_[level - 1][child]);
+                    const Box box = box_around(levels_[level - 1][child]);
                     box.empty() ? nodes[n].clear(lane) : box.write(nodes[n], lane);
                 }
         });
     }
 }
 
-void PointBins::add_levels(std::vector<Box> boxes) {
-    while (!boxes.empty() && (levels_.empty() || boxes.size() > 1)) {
-        std::vector<Extents> nodes((boxes.size() + kLanes - 1) / kLanes);
-        std::vector<Box> around(nodes.size());
-        parallel_ranges(nodes.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t n = begin; n < end; ++n) {
+/// `box_of`: of blocks in their order.
+template <class BoxOf>
+void PointBins::add_levels(std::size_t count, const BoxOf& box_of) {
+    const auto add_level = [&](std::size_t below, const auto& box_of_child) {
+        RawVector<Extents> nodes((below + kLanes - 1) / kLanes);
+        parallel_ranges(nodes.size(), 512, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n)
                 for (std::size_t lane = 0; lane < kLanes; ++lane) {
                     const std::size_t k = n * kLanes + lane;
-                    k < boxes.size() ? boxes[k].write(nodes[n], lane) : nodes[n].clear(lane);
+                    k < below ? box_of_child(k).write(nodes[n], lane) : nodes[n].clear(lane);
                 }
-                around[n] = box_of(nodes[n]);
-            }
         });
-        boxes = std::move(around);
         levels_.push_back(std::move(nodes));
-    }
+    };
+    if (count == 0) return;
+    add_level(count, box_of);
+    while (levels_.back().size() > 1)
+        add_level(levels_.back().size(), [&](std::size_t k) { return box_around(levels_.back()[k]); });
 }
 
 }  // namespace umbra::binned_shadows_detail

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "umbra/core/base/morton.h"
+#include "umbra/core/base/raw_vector.h"
 #include "umbra/shadows/shared/light_image.h"
 
 namespace umbra::binned_shadows_detail {
@@ -176,7 +177,8 @@ private:
 
     class Sorter;
     class Filler;
-    void add_levels(std::vector<Box> boxes);
+    template <class BoxOf>
+    void add_levels(std::size_t count, const BoxOf& box_of);
     void start_at_root(Start& to) const;
     bool add_nodes(std::size_t level, std::size_t node, const Extent& around, Start& to) const;
     void find(const Extents& triangles, unsigned which, std::size_t first, std::size_t count, const Start& start,
@@ -185,11 +187,11 @@ private:
                  std::vector<Found>& to) const;
 
     double overlap_ = 1;
-    std::unique_ptr<Block[]> blocks_;           ///< by tiles, each with room for kTileBlocks
-    std::unique_ptr<Marks[]> marks_;            ///< of each block
-    std::vector<std::size_t> filled_;           ///< blocks of each tile
-    std::vector<std::uint32_t> order_;          ///< blocks, those next to one another in the light's image together
-    std::vector<std::vector<Extents>> levels_;  ///< boxes of eight blocks of order_, of eight of these, up to one
+    std::unique_ptr<Block[]> blocks_;         ///< by tiles, each with room for kTileBlocks
+    std::unique_ptr<Marks[]> marks_;          ///< of each block
+    std::vector<std::size_t> filled_;         ///< blocks of each tile
+    RawVector<std::uint32_t> order_;          ///< blocks, those next to one another in the light's image together
+    std::vector<RawVector<Extents>> levels_;  ///< boxes of eight blocks of order_, of eight of these, up to one
 };
 
 }  // namespace umbra::binned_shadows_detail
