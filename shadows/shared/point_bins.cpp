@@ -62,17 +62,17 @@ public:
     /// Writes the blocks of a tile and their boxes, adds to the boxes of the faces, and returns how many blocks.
     std::size_t fill(const Tile& tile, std::array<Box, kFaces>& faces, Block* blocks, Box* boxes) {
         Writer to{.tile = tile, .block = blocks, .box = boxes};
-        if (fill_in_order(tile, faces, to)) return to.filled();
+        if (fill_in_order(tile, faces, to)) return to.number;
         for (std::size_t k = 0; k < tile.count; ++k) add(tile, k, faces[static_cast<std::size_t>(tile.face[k])]);
         for (std::int32_t f = 0; f < static_cast<std::int32_t>(kFaces); ++f) {
             const Box& face = faces[static_cast<std::size_t>(f)];
             if (face.empty()) continue;
-            const std::span<const std::uint32_t> order = order_of(tile, f, face);
+            const std::span<const std::uint32_t> order = sorted(tile, f, face);
             to.widest                                  = widest_of(face, order.size());
             for (const std::uint32_t k : order) to.add(k);
             to.close();
         }
-        return to.filled();
+        return to.number;
     }
 
 private:
@@ -86,11 +86,10 @@ private:
         Block* block;  ///< the one that is being filled
         Box* box;
         float widest       = 0;
-        std::size_t number = 0, lane = 0;
+        std::size_t number = 0;  ///< of blocks that are full
+        std::size_t lane   = 0;
         Box around{};
         std::size_t spare = kTileBlocks - kTile / kLanes - kFaces;  ///< besides full blocks and the last of each face
-
-        [[nodiscard]] std::size_t filled() const { return number; }
 
         void add(std::size_t k) {
             Box with = around;
@@ -125,7 +124,7 @@ private:
         }
     };
 
-    /// Does nothing and returns false where points are in several faces or too far apart.
+    /// Does nothing and returns false where points are in several faces, or more than a few blocks would be too wide.
     bool fill_in_order(const Tile& tile, std::array<Box, kFaces>& faces, Writer& to) {
         const std::size_t eights = (tile.count + kLanes - 1) / kLanes;
         std::int32_t other       = 0;
@@ -141,7 +140,7 @@ private:
         to.widest        = widest_of(all, tile.count);
         std::size_t wide = 0;
         for (std::size_t e = 0; e < eights; ++e) wide += of_eights_[e].perimeter() > to.widest ? 1u : 0u;
-        if (!are_blocks(wide, tile.count)) return false;
+        if (wide * kLanes * 16 > tile.count) return false;
         faces[static_cast<std::size_t>(tile.face[0])].add(all);
         for (std::size_t e = 0; e < eights; ++e) {
             const std::size_t first = e * kLanes, last = std::min(first + kLanes, tile.count);
@@ -155,29 +154,14 @@ private:
         return true;
     }
 
-    /// Whether so few blocks of eight points that follow one another are too wide that the points need not be sorted.
-    static bool are_blocks(std::size_t wide, std::size_t points) { return wide * kLanes * 16 <= points; }
-
-    /// The points of the face, until the next call: where most blocks of the order that there is are small enough, in
-    /// this order, else along Morton's curve over their box: its cells are 1024 times 1024; points of one cell stay in
-    /// their order.
-    std::span<const std::uint32_t> order_of(const Tile& tile, std::int32_t face, const Box& box) {
-        std::size_t n = 0;
-        for (std::uint32_t k = 0; k < tile.count; ++k) {
-            keys_[n] = k;
-            n += tile.face[k] == face ? 1u : 0u;
-        }
-        const std::span<std::uint32_t> keys(keys_.data(), n);
-        const float widest = widest_of(box, n);
-        std::size_t wide   = 0;
-        for (std::size_t first = 0; first < n; first += kLanes) {
-            Box of;
-            for (const std::uint32_t k : keys.subspan(first, std::min(kLanes, n - first))) add(tile, k, of);
-            wide += of.perimeter() > widest ? 1u : 0u;
-        }
-        if (are_blocks(wide, n)) return keys;
+    /// The points of the face along Morton's curve over their box, until the next call: its cells are 1024 times 1024;
+    /// points of one cell stay in their order.
+    std::span<const std::uint32_t> sorted(const Tile& tile, std::int32_t face, const Box& box) {
         const CurveOver curve(box);
-        for (std::uint32_t& key : keys) key = curve.at(tile.u[key], tile.v[key]) >> kDropped << kIndexBits | key;
+        std::size_t n = 0;
+        for (std::uint32_t k = 0; k < tile.count; ++k)
+            if (tile.face[k] == face) keys_[n++] = curve.at(tile.u[k], tile.v[k]) >> kDropped << kIndexBits | k;
+        const std::span<std::uint32_t> keys(keys_.data(), n);
         boost::sort::spreadsort::integer_sort(keys.begin(), keys.end());
         for (std::uint32_t& key : keys) key &= kTile - 1;
         return keys;

@@ -217,18 +217,17 @@ void CountingTree::add(const Region& region, std::int32_t weight) {
     if (!levels_.empty()) descend(region, weight, levels_.size() - 1, 0, (1u << region.count) - 1);
 }
 
-/// Clears the bits of nodes that lie beside the region's box; false where that are all.
-bool CountingTree::is_within(const Siblings& nodes, const Region& region, unsigned& which) {
-    std::uint64_t within = 0;
+/// Those that do not lie beside the region's box: one bit each.
+unsigned CountingTree::within(const Siblings& nodes, const Region& region) {
+    std::uint64_t bits = 0;
 #pragma GCC unroll 1
     for (std::size_t k = 0; k < kFanOut; ++k)
-        within |=
+        bits |=
             static_cast<std::uint64_t>((nodes.max[0][k] >= region.box_min.x) & (nodes.min[0][k] <= region.box_max.x) &
                                        (nodes.max[1][k] >= region.box_min.y) & (nodes.min[1][k] <= region.box_max.y) &
                                        (nodes.max[2][k] >= region.box_min.z) & (nodes.min[2][k] <= region.box_max.z))
             << k;
-    which &= static_cast<unsigned>(within);
-    return which != 0;
+    return static_cast<unsigned>(bits);
 }
 
 /// Whether all are so much larger than the region that its box alone rules out more than its faces do.
@@ -279,8 +278,8 @@ unsigned CountingTree::cover(const HalfSpace& f, const double* __restrict low_x,
 void CountingTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent,
                            unsigned open) {
     Siblings& nodes = levels_[level][parent];
-    unsigned which  = (1u << nodes.size) - 1;
-    if (!is_within(nodes, region, which)) return;
+    unsigned which  = within(nodes, region) & ((1u << nodes.size) - 1);
+    if (which == 0) return;
     std::array<unsigned, kFanOut> still{open, open, open, open};  // of each node
     for (unsigned rest = level > 0 && are_large(nodes, region, which) ? 0 : open; rest != 0; rest &= rest - 1) {
         const auto face        = static_cast<unsigned>(std::countr_zero(rest));

@@ -80,7 +80,7 @@ private:
     void descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent, unsigned open);
     void add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open);
     void push_down();
-    static bool is_within(const Siblings& nodes, const Region& region, unsigned& which);
+    static unsigned within(const Siblings& nodes, const Region& region);
     static bool are_large(const Siblings& nodes, const Region& region, unsigned which);
     static unsigned cover(const HalfSpace& f, const Siblings& nodes);
     static unsigned cover(const HalfSpace& f, const double* low_x, const double* high_x, const double* low_y,
