@@ -83,7 +83,8 @@ Met meet_exactly(const Scene& scene, const Light& light, TriangleId t, const Poi
     return met;
 }
 
-/// The lanes of points that lie on the triangle.
+/// The lanes of points that lie on the triangle, whose segments start there: floats are unsure of each of them, and
+/// exact predicates would only say that they do not meet it.
 unsigned lanes_on(const Block& block, TriangleId t) {
     unsigned lanes = 0;
     for (std::size_t i = 0; i < kLanes; ++i) lanes |= static_cast<unsigned>(block.triangle[i] == t) << i;
