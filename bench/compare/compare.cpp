@@ -9,151 +9,26 @@
 #include <utility>
 
 #include "umbra/bench/compare/exr_layers.h"
+#include "umbra/bench/compare/fine_picture.h"
 #include "umbra/bench/compare/image_figures.h"
+#include "umbra/bench/compare/method_files.h"
 #include "umbra/bench/compare/method_times.h"
-#include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/out/staged_folder.h"
-#include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/shade.h"
 
 namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
 constexpr Repeats kOnce{1, 0};
-
-/// S_j of an area light at subpixels, aimed at: interpolated between pixel centres where that shows no difference,
-/// since a reference takes long at every point.
-VisibilityPlane smoothed_plane(const PreparedScene& prepared, const MethodRun& run, LightId light) {
-    std::vector<std::uint32_t> ask;
-    VisibilityPlane plane  = between_centres(prepared.scene, prepared.points, run.planes[light], prepared.subpixels,
-                                             prepared.pixel_side, light, ask);
-    const PointBatch asked = pick(prepared.subpixels, ask);
-    VisibilityPlane answers(asked.size(), run.is_coloured);
-    run.method->visibility(asked, light, answers.out());
-    for (std::size_t k = 0; k < ask.size(); ++k) {
-        plane.s[ask[k]] = answers.s[k], plane.answer[ask[k]] = answers.answer[k];
-        if (run.is_coloured) plane.colour[ask[k]] = answers.colour[k];
-    }
-    return plane;
-}
-
-/// S_j and the sum at the subpixels of a picture.
-struct FinePicture {
-    std::string of;  ///< the method and its settings; empty: there is none
-    std::vector<VisibilityPlane> planes;
-    Image linear;
-};
-
-std::vector<VisibilityPlane> fine_planes(const PreparedScene& prepared, const MethodRun& run) {
-    std::vector<VisibilityPlane> planes;
-    for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
-        run.method->aim(j);
-        if (run.choice.info->reference && is_area(prepared.scene.lights[j].kind)) {
-            planes.push_back(smoothed_plane(prepared, run, j));
-            continue;
-        }
-        planes.emplace_back(prepared.subpixels.size(), run.is_coloured);
-        run.method->visibility(prepared.subpixels, j, planes.back().out());
-    }
-    return planes;
-}
-
-/// Whether a picture may have several points a pixel: they are prepared, and the method has answered the picture whole.
-bool is_fine(const PreparedScene& prepared, const MethodRun& run) {
-    return prepared.pixel_side > 1 && run.judged.empty();
-}
-
-FinePicture fine_picture(const PreparedScene& prepared, const MethodRun& run) {
-    if (!is_fine(prepared, run)) return {};
-    FinePicture fine{run.choice.text(), fine_planes(prepared, run), {}};
-    fine.linear = shade(prepared.scene, prepared.subpixels, fine.planes);
-    return fine;
-}
-
-/// What people look at: `rendered` with several points a pixel where there may be. The sum is evaluated only where S_j
-/// is not that of `known`.
-Image picture_of(const PreparedScene& prepared, const MethodRun& run, const Rendered& rendered,
-                 const FinePicture& known) {
-    if (!is_fine(prepared, run)) return rendered.shown;
-    const auto seen = [&](const Image& fine) {
-        return displayed(box_filtered(fine, prepared.pixel_side), prepared.scene.tone, prepared.scene.exposure);
-    };
-    if (known.of == run.choice.text()) return seen(known.linear);
-    const std::vector<VisibilityPlane> planes = fine_planes(prepared, run);
-    return seen(known.of.empty() ? shade(prepared.scene, prepared.subpixels, planes)
-                                 : shade(prepared.scene, prepared.subpixels, planes, known.planes, known.linear));
-}
-
-std::map<std::string, std::string> metadata(const Scene& scene, const MethodChoice& choice,
-                                            const std::string& command) {
-    return {{"umbra:scene", scene.source},
-            {"umbra:method", std::string(choice.info->name)},
-            {"umbra:parameters", choice.text()},
-            {"umbra:version", std::string(version())},
-            {"umbra:command", command}};
-}
-
-/// Writes one method's files into `folder` and returns their names. `explained` is one a light, or empty where there is
-/// nothing to differ from.
-Json write_files(const fs::path& folder, const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                 const Rendered& rendered, const MethodRun& reference, const FinePicture& known,
-                 std::span<const Explained> explained, const std::string& command) {
-    const Scene& scene       = prepared.scene;
-    const PointBatch& points = prepared.points;
-    Json files               = {{"exr", id + ".exr"}, {"png", id + ".png"}, {"lights", Json::object()}};
-
-    const bool is_reference = explained.empty();
-    Image full              = exr_image(rendered.linear, scene, points, run,
-                                        {.geometry = is_reference, .reference = is_reference, .explained = explained});
-    full.metadata.merge(metadata(scene, run.choice, command));
-    const Image shown = picture_of(prepared, run, rendered, known);
-    // Packing them takes longer than making them: several at a time.
-    std::vector<std::pair<std::string, std::function<Image()>>> pictures;
-    for (LightId j = 0; j < scene.lights.size(); ++j) {
-        const std::string& light = scene.lights[j].name;
-        Json entry               = {{"visibility", fmt::format("{}.S.{}.png", id, light)}};
-        pictures.emplace_back(entry["visibility"], [&, j] { return visibility_picture(points, run.planes[j]); });
-        if (!explained.empty()) {
-            entry["difference"] = fmt::format("{}.diff.{}.png", id, light);
-            pictures.emplace_back(entry["difference"],
-                                  [&, j] { return difference_picture(points, j, run.planes[j], reference.planes[j]); });
-            entry["classes"] = fmt::format("{}.classes.{}.png", id, light);
-            pictures.emplace_back(entry["classes"],
-                                  [&, j] { return class_picture(points, explained[j].classes, reference.planes[j]); });
-        }
-        files["lights"][light] = std::move(entry);
-    }
-    parallel_ranges(pictures.size() + 2, 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            if (k == 0)
-                write_image(folder / (id + ".exr"), full);
-            else if (k == 1)
-                write_image(folder / (id + ".png"), shown);
-            else
-                write_image(folder / pictures[k - 2].first, pictures[k - 2].second());
-        }
-    });
-    return files;
-}
-
-/// The differences of the pictures; their map goes into a file.
-Json image_json(const fs::path& map, const MethodRun& run, const Rendered& rendered, const Rendered& reference) {
-    const int width = rendered.shown.width, height = rendered.shown.height;
-    ImageFigures found = image_figures(run.planes, rendered, reference);
-    write_image(map, flip_picture(width, height, found.flip.map));
-    return std::move(found.figures);
-}
 
 void warn(const Scene& scene, const std::function<void(const std::string&)>& receive) {
     if (!receive) return;
@@ -168,9 +43,9 @@ std::string unique_id(std::string_view name, std::set<std::string>& used) {
 }
 
 /// What a method answered, differences, times and files. `at` is the light that is being worked on.
-Json method_entry(const fs::path& folder, const std::string& id, const PreparedScene& prepared, const MethodRun& run,
+Json method_entry(const FilePlace& place, const PreparedScene& prepared, const MethodRun& run,
                   const MethodRun& reference, const Rendered& reference_rendered, const FinePicture& known,
-                  const std::string& command, double& shade_ms, std::optional<LightId>& at) {
+                  double& shade_ms, std::optional<LightId>& at) {
     const Scene& scene = prepared.scene;
     std::vector<Explained> explained;
     at.reset();
@@ -180,18 +55,13 @@ Json method_entry(const fs::path& folder, const std::string& id, const PreparedS
         explained.push_back(explain(scene, prepared.points, j, run, reference, noise[j] ? &*noise[j] : nullptr));
     }
     at.reset();
-    Json entry = served_json(id, prepared, run, explained, reference.choice.text());
+    Json entry = served_json(place.id, prepared, run, explained, reference.choice.text());
     Rendered rendered;
-    shade_ms = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
-    // Each has parts that one thread does alone.
-    Json files, image;
-    const std::string map = id + ".flip.png";
-    parallel_pair(
-        [&] { files = write_files(folder, id, prepared, run, rendered, reference, known, explained, command); },
-        [&] { image = image_json(folder / map, run, rendered, reference_rendered); });
-    files["flip"]  = map;
-    entry["image"] = std::move(image);
-    entry["files"] = std::move(files);
+    shade_ms              = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
+    ComparedFiles written = write_compared_files(place, prepared, {run, rendered, known},
+                                                 {reference, reference_rendered, known}, explained);
+    entry["image"]        = std::move(written.image);
+    entry["files"]        = std::move(written.files);
     return entry;
 }
 
@@ -278,8 +148,8 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                     {"reference", reference_json(reference, reference_ran, scene, truth_ran.failed)},
                                     {"methods", Json::array()}};
     const FinePicture fine       = fine_picture(prepared, reference_run);
-    record["reference"]["files"] = write_files(staging, "reference", prepared, reference_run, reference_rendered,
-                                               reference_run, fine, {}, options.command);
+    record["reference"]["files"] = write_reference_files({staging, "reference", options.command}, prepared,
+                                                         {reference_run, reference_rendered, fine});
 
     // Methods that measure what the reference does not measure are compared with a truth of their own.
     struct Truth {
@@ -320,8 +190,8 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                                                  ? reference_run
                                                  : run_method(choice, scene, prepared.facts, prepared.points, kOnce, &at);
             if (run.service)
-                answered.push_back({method_entry(staging, id, prepared, run, truth, truth_rendered, fine,
-                                                 options.command, shade_ms, at),
+                answered.push_back({method_entry({staging, id, options.command}, prepared, run, truth, truth_rendered,
+                                                 fine, shade_ms, at),
                                     times_of(run)});
             else
                 answered.push_back({unserved_json(id, choice, run.service)});
@@ -400,7 +270,7 @@ Service render_scene(const fs::path& file, const RenderOptions& options) {
     Image image =
         png ? picture_of(prepared, run, rendered, {})
             : exr_image(rendered.linear, prepared.scene, prepared.points, run, {.geometry = options.with_geometry});
-    image.metadata.merge(metadata(prepared.scene, choice, options.command));
+    image.metadata.merge(run_metadata(prepared.scene, choice, options.command));
     write_image(options.out, image);
     return run.service;
 }

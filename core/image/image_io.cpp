@@ -176,12 +176,17 @@ private:
 
 std::vector<unsigned char> to_8_bit(const Image& image, std::size_t channels) {
     std::vector<unsigned char> bytes(image.pixels() * channels);
+    const std::size_t all = image.channels.size();
     for (std::size_t i = 0; i < image.pixels(); ++i)
-        for (std::size_t c = 0; c < channels; ++c)
-            if (const float x = image.at(i, c); x > 0)  // NaN: 0
-                bytes[i * channels + c] = static_cast<unsigned char>(std::floor(double(255 * std::min(x, 1.0f)) + 0.5));
+        for (std::size_t c = 0; c < channels; ++c) {
+            const float x           = image.data[i * all + c];
+            const float bounded     = x > 0 ? std::min(x, 1.0f) : 0.0f;  // NaN: 0
+            bytes[i * channels + c] = static_cast<unsigned char>(std::floor(double(255 * bounded) + 0.5));
+        }
     return bytes;
 }
+
+constexpr int kPngFilterNone = 0x08;  // PNG_FILTER_NONE of png.h
 
 std::size_t png_channels(const Image& image) {
     const std::size_t n = image.channels.size();
@@ -193,11 +198,13 @@ std::size_t png_channels(const Image& image) {
 std::vector<std::uint32_t> interleaved(const Image& image) {
     const std::size_t floats = image.channels.size(), all = floats + image.integers.size();
     std::vector<std::uint32_t> values(image.pixels() * all);
+    std::vector<const std::uint32_t*> integers;
+    for (const auto& channel : image.integers) integers.push_back(channel.second.data());
     parallel_ranges(image.pixels(), 16384, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             std::uint32_t* to = &values[i * all];
             for (std::size_t c = 0; c < floats; ++c) *to++ = std::bit_cast<std::uint32_t>(image.at(i, c));
-            for (const auto& integer : image.integers) *to++ = integer.second[i];
+            for (const std::uint32_t* integer : integers) *to++ = integer[i];
         }
     });
     return values;
@@ -215,6 +222,9 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
     if (is_png) {
         spec.attribute("oiio:ColorSpace", "sRGB");
         spec.attribute("oiio:UnassociatedAlpha", 1);
+        // Rows as they are: large areas of one colour pack smaller than with libpng's choice of filters, in half the
+        // time.
+        spec.attribute("png:filter", kPngFilterNone);
     } else {
         spec.attribute("compression", "piz");
         for (const auto& [name, matrix] : image.matrices) spec.attribute(name, OIIO::TypeMatrix, matrix.data());

@@ -1,0 +1,93 @@
+#include "umbra/bench/compare/method_files.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <utility>
+
+#include "umbra/bench/compare/exr_layers.h"
+#include "umbra/bench/compare/pictures.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/image/image_io.h"
+
+namespace umbra {
+namespace {
+
+/// All but the map of FLIP. `explained` is empty for the reference, which has nothing to differ from.
+Json write_files(const FilePlace& place, const PreparedScene& prepared, const Answers& method,
+                 const MethodRun& reference, std::span<const Explained> explained) {
+    const Scene& scene       = prepared.scene;
+    const PointBatch& points = prepared.points;
+    const MethodRun& run     = method.run;
+    Json files               = {{"exr", place.id + ".exr"}, {"png", place.id + ".png"}, {"lights", Json::object()}};
+
+    const bool is_reference = explained.empty();
+    Image full              = exr_image(method.rendered.linear, scene, points, run,
+                                        {.geometry = is_reference, .reference = is_reference, .explained = explained});
+    full.metadata.merge(run_metadata(scene, run.choice, place.command));
+    const Image shown = picture_of(prepared, run, method.rendered, method.fine);
+    // Packing them takes longer than making them: several at a time.
+    std::vector<std::pair<std::string, std::function<Image()>>> pictures;
+    for (LightId j = 0; j < scene.lights.size(); ++j) {
+        const std::string& light = scene.lights[j].name;
+        Json entry               = {{"visibility", fmt::format("{}.S.{}.png", place.id, light)}};
+        pictures.emplace_back(entry["visibility"], [&, j] { return visibility_picture(points, run.planes[j]); });
+        if (!is_reference) {
+            entry["difference"] = fmt::format("{}.diff.{}.png", place.id, light);
+            pictures.emplace_back(entry["difference"],
+                                  [&, j] { return difference_picture(points, j, run.planes[j], reference.planes[j]); });
+            entry["classes"] = fmt::format("{}.classes.{}.png", place.id, light);
+            pictures.emplace_back(entry["classes"],
+                                  [&, j] { return class_picture(points, explained[j].classes, reference.planes[j]); });
+        }
+        files["lights"][light] = std::move(entry);
+    }
+    parallel_ranges(pictures.size() + 2, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            if (k == 0)
+                write_image(place.folder / (place.id + ".exr"), full);
+            else if (k == 1)
+                write_image(place.folder / (place.id + ".png"), shown);
+            else
+                write_image(place.folder / pictures[k - 2].first, pictures[k - 2].second());
+        }
+    });
+    return files;
+}
+
+/// The differences of the pictures; their map goes into a file.
+Json image_json(const std::filesystem::path& map, const Answers& method, const Rendered& reference) {
+    const int width = reference.shown.width, height = reference.shown.height;
+    ImageFigures found = image_figures(method.run.planes, method.rendered, reference);
+    write_image(map, flip_picture(width, height, found.flip.map));
+    return std::move(found.figures);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> run_metadata(const Scene& scene, const MethodChoice& choice,
+                                                const std::string& command) {
+    return {{"umbra:scene", scene.source},
+            {"umbra:method", std::string(choice.info->name)},
+            {"umbra:parameters", choice.text()},
+            {"umbra:version", std::string(version())},
+            {"umbra:command", command}};
+}
+
+Json write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference) {
+    return write_files(place, prepared, reference, reference.run, {});
+}
+
+ComparedFiles write_compared_files(const FilePlace& place, const PreparedScene& prepared, const Answers& method,
+                                   const Answers& reference, std::span<const Explained> explained) {
+    const std::string map = place.id + ".flip.png";
+    ComparedFiles written;
+    // Each has parts that one thread does alone.
+    parallel_pair([&] { written.files = write_files(place, prepared, method, reference.run, explained); },
+                  [&] { written.image = image_json(place.folder / map, method, reference.rendered); });
+    written.files["flip"] = map;
+    return written;
+}
+
+}  // namespace umbra
