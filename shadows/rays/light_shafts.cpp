@@ -1,6 +1,7 @@
 #include "umbra/shadows/rays/light_shafts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "umbra/core/base/parallel.h"
@@ -18,6 +19,11 @@ constexpr double kInside   = 1e-4;    ///< how far inside a triangle all rays ha
 
 // How many triangles may reach into a shaft before it is given up, and a smaller one is not tried.
 constexpr std::size_t kFew = 32, kMany = ~std::size_t{0};
+
+// Up to how many triangles a tree takes less time than the rays that it saves, whatever their number, and from how many
+// rays a point on for any number of triangles.
+constexpr std::size_t kFewTriangles = 300000;
+constexpr int kManySamples          = 16;
 
 struct DBox {
     dvec3 low{+HUGE_VAL}, high{-HUGE_VAL};
@@ -84,23 +90,14 @@ public:
                 add_side(ni * axes_[i] + nj * axes_[j], std::max(ni * ai + nj * aj, ni * bi + nj * bj));
             }
         }
-        // Behind a flat light.
+        // Below the points' plane, and behind a flat light.
+        planes_.add(-floor_.normal, -floor_.offset);
         if (light_.high[2] >= points_.high[2]) add_side(axes_[2], light_.high[2]);
         if (light_.low[2] <= points_.low[2]) add_side(-axes_[2], -light_.low[2]);
     }
 
-    /// False only where no ray of the shaft meets what is in the box, which is along the axes of ray space.
-    [[nodiscard]] bool may_meet(const Box& box) const {
-        const dvec3 low(box.min), high(box.max);
-        for (int k = 0; k < 3; ++k)
-            if (low[k] > all_.high[k] || high[k] < all_.low[k]) return false;
-        const auto corner = [&](dvec3 n) {  // that is the farthest along n
-            return dvec3(n.x > 0 ? high.x : low.x, n.y > 0 ? high.y : low.y, n.z > 0 ? high.z : low.z);
-        };
-        for (std::size_t s = 0; s < side_count_; ++s)
-            if (sides_[s].above(corner(-sides_[s].normal)) > 0) return false;
-        return floor_.above(corner(floor_.normal)) > kInPlane;
-    }
+    /// Around all rays.
+    [[nodiscard]] const ShaftPlanes& planes() const { return planes_; }
 
     /// False only where no ray of the shaft meets the triangle.
     [[nodiscard]] bool may_meet(const std::array<dvec3, 3>& v) const {
@@ -142,7 +139,10 @@ public:
     }
 
 private:
-    void add_side(dvec3 normal, double offset) { sides_[side_count_++] = {normal, offset}; }
+    void add_side(dvec3 normal, double offset) {
+        sides_[side_count_++] = {normal, offset};
+        planes_.add(normal, offset);
+    }
 
     [[nodiscard]] bool is_beside_plane_of(const std::array<dvec3, 3>& v) const {
         const dvec3 n   = glm::cross(v[1] - v[0], v[2] - v[0]);
@@ -162,6 +162,7 @@ private:
     double rise_ = HUGE_VAL;                      ///< of the light above it, at least
     std::array<Plane, 14> sides_;
     std::size_t side_count_ = 0;
+    ShaftPlanes planes_;  ///< the same, and the floor
 };
 
 std::array<dvec3, 3> LightShafts::corners(TriangleId t) const {
@@ -169,68 +170,11 @@ std::array<dvec3, 3> LightShafts::corners(TriangleId t) const {
     return {at(0), at(1), at(2)};
 }
 
-// ---- bounds --------------------------------------------------------------------------------------------------------
-
-// Of runs of triangles as they are stored, so that a tree is small and soon built: neighbours in a file are mostly
-// neighbours on a surface. A run ends where the next triangle would make its box much larger than its triangles. Where
-// many runs are left, as in a large mesh stored in no order, a tree takes longer than the rays that it saves: on such
-// meshes most of the rays' time goes into those that shafts know nothing of.
-LightShafts::LightShafts(const Scene& scene, const RaySpace& space) : scene_(&scene), space_(space) {
-    constexpr std::size_t chunk  = 4096;
-    constexpr std::uint32_t most = 32;
-    constexpr float growth       = 8;
-    constexpr std::size_t many   = 10000;
-    struct Part {
-        std::vector<Cluster> clusters;
-        std::vector<Box> boxes;
-    };
-    const std::size_t triangles = scene.triangles.size();
-    std::vector<Part> parts((triangles + chunk - 1) / chunk);
-    const auto half_area = [](const Box& b) {
-        const vec3 s = b.size();
-        return s.x * s.y + s.y * s.z + s.z * s.x;
-    };
-    parallel_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t p = begin; p < end; ++p) {
-            Part& part = parts[p];
-            float area = 0;  // of the boxes in the last cluster
-            for (std::size_t t = p * chunk; t < std::min((p + 1) * chunk, triangles); ++t) {
-                const auto id = static_cast<TriangleId>(t);
-                if (!scene.blocks(id)) continue;
-                Box box;
-                for (int k = 0; k < 3; ++k) box = extend(box, space_.point(scene.vertex(id, k)));
-                const float own = half_area(box);
-                if (!part.clusters.empty()) {
-                    Cluster& last   = part.clusters.back();
-                    const Box joint = extend(part.boxes.back(), box);
-                    if (last.first + last.count == id && last.count < most &&
-                        half_area(joint) <= growth * (area + own)) {
-                        ++last.count;
-                        part.boxes.back() = joint;
-                        area += own;
-                        continue;
-                    }
-                }
-                part.clusters.push_back({id, 1});
-                part.boxes.push_back(box);
-                area = own;
-            }
-        }
-    });
-    std::vector<Box> boxes;
-    for (const Part& part : parts) {
-        clusters_.insert(clusters_.end(), part.clusters.begin(), part.clusters.end());
-        boxes.insert(boxes.end(), part.boxes.begin(), part.boxes.end());
-    }
-    if (boxes.size() <= many)
-        tree_.emplace(std::move(boxes));
-    else
-        clusters_ = {};
+LightShafts::LightShafts(const Scene& scene, const RaySpace& space, int samples) : scene_(&scene), space_(space) {
+    if (samples >= kManySamples || scene.triangles.size() <= kFewTriangles) tree_.emplace(scene, space);
 }
 
-std::size_t LightShafts::memory_bytes() const {
-    return clusters_.size() * sizeof(Cluster) + (tree_ ? tree_->memory_bytes() : 0);
-}
+std::size_t LightShafts::memory_bytes() const { return tree_ ? tree_->memory_bytes() : 0; }
 
 void LightShafts::aim(const Target& target) {
     usable_ = tree_ && is_area(target.kind) && target.unit == 1;
@@ -328,11 +272,10 @@ Known LightShafts::resolve(const Run& run, const Few* among, Few& few) const {
     if (among != nullptr) {
         for (std::size_t k = 0; k < among->count && !decided(); ++k) ask(among->ids[k]);
     } else {
-        tree_->visit_entered([&](const Box& box) { return !decided() && shaft->may_meet(box); },
-                             [&](BoxTree::Item c) {
-                                 const Cluster& cluster = clusters_[c];
-                                 for (std::uint32_t k = 0; k < cluster.count && !decided(); ++k) ask(cluster.first + k);
-                             });
+        tree_->visit(shaft->planes(), [&](const EightTriangles& eight, unsigned which) {
+            for (; which != 0 && !decided(); which &= which - 1) ask(eight.id[std::countr_zero(which)]);
+            return !decided();
+        });
     }
     if (covered) return Known::umbra;
     return few.count == 0 ? Known::lit : Known::nothing;

@@ -17,7 +17,7 @@
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/tiles.h"
-#include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/rays/shaft_tree.h"
 #include "umbra/shadows/shared/starts.h"
 #include "umbra/shadows/shared/target.h"
 
@@ -37,9 +37,9 @@ using TileKnown                           = std::array<Known, kRunsPerTile>;
 /// Const members may be called from many threads.
 class LightShafts {
 public:
-    /// Finds the bounds of all triangles that block light, in ray space. `scene` must outlive this object. Where a tree
-    /// of them would take longer than the rays that it saves there is none, and nothing is ever known.
-    LightShafts(const Scene& scene, const RaySpace& space);
+    /// For `samples` rays a point. `scene` must outlive this object. Where the tree of its triangles would take longer
+    /// than the rays that it saves there is none, and nothing is ever known: for few rays in a large scene.
+    LightShafts(const Scene& scene, const RaySpace& space, int samples);
 
     /// For rays to this light. Of lights without an area, and of those that are a million times as far away as the
     /// scene is wide, nothing is known: a ray that meets nothing takes less time than a shaft.
@@ -57,11 +57,6 @@ private:
     struct Run;
     struct Few;
     class Shaft;
-    struct Cluster {
-        TriangleId first    = 0;
-        std::uint32_t count = 0;
-    };
-
     [[nodiscard]] std::array<dvec3, 3> corners(TriangleId t) const;
     [[nodiscard]] bool in_one_plane(TriangleId t, TriangleId with) const;
     [[nodiscard]] Run look_at(const PointBatch& points, LightId light, std::size_t first, std::size_t count,
@@ -72,11 +67,10 @@ private:
 
     const Scene* scene_;
     RaySpace space_;
-    std::vector<Cluster> clusters_;
-    std::optional<BoxTree> tree_;  ///< of the clusters' boxes; none: nothing is known
-    bool usable_ = false;          ///< for this light
-    dmat3 axes_{1};                ///< of boxes, columns in ray space: those of the light, so that it fills its own
-    dvec3 low_{0}, high_{0};       ///< box around the light, along these axes
+    std::optional<ShaftTree> tree_;  ///< none: nothing is known
+    bool usable_ = false;            ///< for this light
+    dmat3 axes_{1};                  ///< of boxes, columns in ray space: those of the light, so that it fills its own
+    dvec3 low_{0}, high_{0};         ///< box around the light, along these axes
 };
 
 }  // namespace umbra::rays

@@ -98,7 +98,8 @@ public:
         diagonal_ = bounds(scene).diagonal();
         rays_.emplace(scene, Met::blocking);
         shafts_.reset();
-        if (options.cull == Cull::shafts && !facts.hard_lights_only) shafts_.emplace(scene, rays_->space());
+        if (options.cull == Cull::shafts && !facts.hard_lights_only)
+            shafts_.emplace(scene, rays_->space(), options.samples);
     }
 
     void aim(LightId light) override {

@@ -67,10 +67,11 @@ struct Count {
 };
 void PrintTo(const Count& c, std::ostream* out) { *out << c.lit << " lit, " << c.umbra << " umbra, " << c.nothing; }
 
-Count ask(const Scene& scene, const PointBatch& points, LightId light = 0) {
+Count ask(const Scene& scene, const PointBatch& points, int samples = 1) {
+    constexpr LightId light = 0;
     const RayScene rays(scene, Met::blocking);
     const StartPlaces places(scene, rays.space(), OffsetPolicy::skip_triangle, 0);
-    LightShafts shafts(scene, rays.space());
+    LightShafts shafts(scene, rays.space(), samples);
     shafts.aim(make_target(scene.lights[light], rays.space()));
     const PointTile tile{0, 0, PointTile::kWidth, PointTile::kHeight, points.size()};
     TileStarts starts;
@@ -177,26 +178,34 @@ TEST(LightShafts, KnowNothingOfPointsInSeveralPlanes) {
     EXPECT_EQ(found.umbra, 0u);
 }
 
-TEST(LightShafts, GiveUpLargeMeshesInNoOrder) {
-    constexpr std::uint32_t side = 150;
+/// A sheet of 2 side^2 triangles at height 1.
+Scene fine_sheet_scene(std::uint32_t side) {
     std::vector<vec3> positions;
     std::vector<uvec3> triangles;
     for (std::uint32_t i = 0; i <= side; ++i)
-        for (std::uint32_t j = 0; j <= side; ++j) positions.emplace_back(float(i) / side, 1, float(j) / side);
+        for (std::uint32_t j = 0; j <= side; ++j)
+            positions.emplace_back(float(i) / float(side), 1, float(j) / float(side));
     for (std::uint32_t i = 0; i < side; ++i)
         for (std::uint32_t j = 0; j < side; ++j) {
             const std::uint32_t a = i * (side + 1) + j, b = a + side + 1;
             triangles.emplace_back(a, a + 1, b), triangles.emplace_back(b, a + 1, b + 1);
         }
-    for (const bool in_order : {true, false}) {
-        if (!in_order) std::shuffle(triangles.begin(), triangles.end(), std::mt19937(1));
-        Scene scene;
-        add_sheet(scene, 8, 0);
-        add(scene, positions, triangles);
-        scene.lights = {area_light(LightKind::rectangle, {0, 4, 0})};
-        EXPECT_EQ(ask(scene, tile_at(scene, 8, -5, 0)), in_order ? kLit : kNothing);
+    std::shuffle(triangles.begin(), triangles.end(), std::mt19937(1));
+    Scene scene;
+    add_sheet(scene, 8, 0);
+    add(scene, positions, triangles);
+    scene.lights = {area_light(LightKind::rectangle, {0, 4, 0})};
+    return scene;
+}
+
+TEST(LightShafts, KnowLargeMeshesInAnyOrderButForFewRaysNoLargeOnes) {
+    for (const std::uint32_t side : {150u, 400u}) {
+        const Scene scene       = fine_sheet_scene(side);
+        const PointBatch points = tile_at(scene, 8, -5, 0);
+        EXPECT_EQ(ask(scene, points, 16), kLit) << side;
+        EXPECT_EQ(ask(scene, points, 1), side == 150 ? kLit : kNothing) << side;
         const RayScene rays(scene);
-        EXPECT_EQ(LightShafts(scene, rays.space()).memory_bytes() > 0, in_order);
+        EXPECT_EQ(LightShafts(scene, rays.space(), 1).memory_bytes() > 0, side == 150);
     }
 }
 

@@ -1,0 +1,156 @@
+#include "umbra/shadows/rays/shaft_tree.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "umbra/core/base/morton.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/base/parallel_sort.h"
+
+namespace umbra::rays {
+namespace {
+
+/// Of a height above a plane, in float and ray space, where coordinates are about 1. Shafts are wider by much more.
+constexpr float kRounding = 4e-6f;
+
+using Lanes = float __attribute__((vector_size(32)));
+using Masks = std::int32_t __attribute__((vector_size(32)));
+
+Lanes load(const float (&from)[8]) {
+    Lanes lanes;
+    std::memcpy(&lanes, from, sizeof lanes);
+    return lanes;
+}
+
+/// Bit k: lane k is 0.
+unsigned zeros(Masks masks) {
+    const Masks bits{1, 2, 4, 8, 16, 32, 64, 128};
+    masks        = ~masks & bits;
+    unsigned all = 0;
+    for (int k = 0; k < 8; ++k) all |= static_cast<unsigned>(masks[k]);
+    return all;
+}
+
+constexpr int kIndexBits = 28, kCellBits = 11;  // of a key; scenes have 50 million triangles at most
+constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
+
+/// Triangles of one size follow one another along Morton's curve: one large triangle in a box of small ones would make
+/// all boxes around it large.
+std::vector<std::uint64_t> ordered(const Scene& scene) {
+    std::vector<std::uint64_t> keys;
+    keys.reserve(scene.triangles.size());
+    for (TriangleId t = 0; t < scene.triangles.size(); ++t)
+        if (scene.blocks(t)) keys.push_back(t);
+    const Box all = bounds(scene);
+    const dvec3 low(all.min), span = dvec3(all.max) - low;
+    const double cells = (1 << kCellBits) - 1, longest = std::max({span.x, span.y, span.z});
+    const double scale = longest > 0 ? cells / longest : 0;
+    parallel_ranges(keys.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto t  = static_cast<TriangleId>(keys[k]);
+            const dvec3 a = dvec3(scene.vertex(t, 0)), b = dvec3(scene.vertex(t, 1)), c = dvec3(scene.vertex(t, 2));
+            const dvec3 least = glm::min(glm::min(a, b), c), most = glm::max(glm::max(a, b), c), size = most - least;
+            const double extent      = std::max({size.x, size.y, size.z}) / (longest > 0 ? longest : 1);
+            const std::uint64_t rank = extent < 1.0 / 256 ? 0 : extent < 1.0 / 32 ? 1 : extent < 1.0 / 4 ? 2 : 3;
+            const dvec3 cell         = scale * (0.5 * (least + most) - low);
+            const auto at            = [&](int axis) { return static_cast<std::uint32_t>(cell[axis]); };
+            keys[k]                  = (rank << (3 * kCellBits) | morton_code(at(0), at(1), at(2))) << kIndexBits | t;
+        }
+    });
+    parallel_sort(keys.begin(), keys.end());
+    return keys;
+}
+
+/// Boxes of `count` things, eight a node; of(k) is the box of thing k.
+template <class Of>
+std::vector<EightBoxes> boxes_of(std::size_t count, const Of& of) {
+    std::vector<EightBoxes> nodes((count + 7) / 8);
+    parallel_ranges(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            for (std::size_t lane = 0; lane < 8; ++lane) {
+                const Box box = of(std::min(8 * n + lane, count - 1));
+                for (int axis = 0; axis < 3; ++axis)
+                    nodes[n].low[axis][lane] = box.min[axis], nodes[n].high[axis][lane] = box.max[axis];
+            }
+    });
+    return nodes;
+}
+
+Box around(const EightTriangles& t) {
+    Box box;
+    for (int lane = 0; lane < 8; ++lane)
+        for (int k = 0; k < 3; ++k) box = extend(box, vec3(t.x[k][lane], t.y[k][lane], t.z[k][lane]));
+    return box;
+}
+
+Box around(const EightBoxes& b) {
+    Box box;
+    for (int lane = 0; lane < 8; ++lane) {
+        box = extend(box, vec3(b.low[0][lane], b.low[1][lane], b.low[2][lane]));
+        box = extend(box, vec3(b.high[0][lane], b.high[1][lane], b.high[2][lane]));
+    }
+    return box;
+}
+
+}  // namespace
+
+void ShaftPlanes::add(dvec3 normal, double offset) {
+    nx_[count_] = static_cast<float>(normal.x), ny_[count_] = static_cast<float>(normal.y);
+    nz_[count_] = static_cast<float>(normal.z), beyond_[count_] = static_cast<float>(offset) + kRounding;
+    ++count_;
+}
+
+unsigned ShaftPlanes::may_meet(const EightBoxes& boxes) const {
+    Masks outside{};
+    for (std::size_t s = 0; s < count_; ++s) {
+        // The corner that is lowest above the plane.
+        const float nx = nx_[s], ny = ny_[s], nz = nz_[s];
+        const Lanes x = load(nx > 0 ? boxes.low[0] : boxes.high[0]), y = load(ny > 0 ? boxes.low[1] : boxes.high[1]),
+                    z = load(nz > 0 ? boxes.low[2] : boxes.high[2]);
+        outside |= nx * x + ny * y + nz * z > beyond_[s];
+    }
+    return zeros(outside);
+}
+
+unsigned ShaftPlanes::may_meet(const EightTriangles& t) const {
+    Masks outside{};
+    for (std::size_t s = 0; s < count_; ++s) {
+        const float nx = nx_[s], ny = ny_[s], nz = nz_[s], beyond = beyond_[s];
+        Masks above = ~Masks{};
+        for (int k = 0; k < 3; ++k) above &= nx * load(t.x[k]) + ny * load(t.y[k]) + nz * load(t.z[k]) > beyond;
+        outside |= above;
+    }
+    return zeros(outside);
+}
+
+ShaftTree::ShaftTree(const Scene& scene, const RaySpace& space) {
+    const std::vector<std::uint64_t> order = ordered(scene);
+    if (order.empty()) return;
+    count_ = order.size();
+    leaves_.resize((order.size() + 7) / 8);
+    parallel_ranges(leaves_.size(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            for (std::size_t lane = 0; lane < 8; ++lane) {
+                const auto t = static_cast<TriangleId>(order[std::min(8 * n + lane, order.size() - 1)] & kIndexMask);
+                EightTriangles& eight = leaves_[n];
+                eight.id[lane]        = t;
+                for (int k = 0; k < 3; ++k) {
+                    const vec3 p     = space.point(scene.vertex(t, k));
+                    eight.x[k][lane] = p.x, eight.y[k][lane] = p.y, eight.z[k][lane] = p.z;
+                }
+            }
+    });
+    levels_.push_back(boxes_of(leaves_.size(), [&](std::size_t k) { return around(leaves_[k]); }));
+    while (levels_.back().size() > 1) {
+        const std::vector<EightBoxes>& below = levels_.back();
+        levels_.push_back(boxes_of(below.size(), [&](std::size_t k) { return around(below[k]); }));
+    }
+}
+
+std::size_t ShaftTree::memory_bytes() const {
+    std::size_t bytes = leaves_.capacity() * sizeof(EightTriangles);
+    for (const auto& level : levels_) bytes += level.capacity() * sizeof(EightBoxes);
+    return bytes;
+}
+
+}  // namespace umbra::rays
