@@ -88,6 +88,11 @@ TEST(Mutants, EachChangesExactlyOnePlace) {
     }
 }
 
+TEST(Mutants, AreAsManyAsTheReadmeSays) {
+    const std::string said = "changes the program in one of " + std::to_string(all_mutants().size()) + " places";
+    EXPECT_EQ(times(said, text_of(fs::path(UMBRA_TOP) / "README.md")), 1u) << said;
+}
+
 TEST(Mutants, EachSaysWhatItBreaksAndWhichTestsNotice) {
     std::set<std::string> programs, ids;
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(UMBRA_TOP) / "tests"))

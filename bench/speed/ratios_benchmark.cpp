@@ -135,6 +135,32 @@ void time_sum(benchmark::State& state, Stage& stage) {
                }}});
 }
 
+/// The sum over a loop that reads the same planes and writes the same picture, and computes nothing.
+void time_sum_of_memory(benchmark::State& state, Stage& stage) {
+    stage.prepare();
+    Ready rays(stage, "ray_traced");
+    rays.see();
+    const PointBatch& p = stage.points;
+    const auto touch    = [&] {
+        Image picture(stage.width, stage.height, {"R", "G", "B"});
+        float* const to = picture.data.data();
+        parallel_ranges(p.size(), 16384, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const float read = p.px[i] + p.py[i] + p.pz[i] + p.nx[i] + p.ny[i] + p.nz[i] + p.u[i] + p.v[i] +
+                                   rays.plane.s[i] + static_cast<float>(p.triangle[i]);
+                to[3 * i] = read, to[3 * i + 1] = read, to[3 * i + 2] = read;
+            }
+        });
+        benchmark::DoNotOptimize(picture.data.data());
+    };
+    in_turns(state, stage.name + ": the sum, over its memory",
+             [&] {
+                 const Image picture = shade(stage.scene, p, {&rays.plane, 1});
+                 benchmark::DoNotOptimize(picture.data.data());
+             },
+             {{"reading and writing", touch}});
+}
+
 /// One thread over two.
 void time_threads(benchmark::State& state, Stage& stage, std::string_view settings) {
     stage.prepare();
@@ -162,6 +188,7 @@ void add_stage(Stage& s) {
         add(pass, [&s, one, other, allowed](benchmark::State& state) { time_see(state, s, one, other, allowed); });
     };
     add("sum/gbuffer", [&s](benchmark::State& state) { time_sum(state, s); });
+    add("sum/memory", [&s](benchmark::State& state) { time_sum_of_memory(state, s); });
     see("pcf/nearest", "shadow_zbuffer:filter=pcf", "shadow_zbuffer", 0.05);
     see("depth_fail/depth_pass", "shadow_volumes:counting=depth_fail", "shadow_volumes", 1e-5);
     see("planar/rays", "planar_projection", "ray_traced", 0.002);
