@@ -45,11 +45,12 @@ void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& po
     });
     if (traced == 0) return;
     rays_->occluded(std::span(rays, traced));
-    std::size_t next = 0;
+    std::size_t next    = 0;
+    const bool has_near = !near_light_.empty();
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         for (std::size_t i = first; i < first + count; ++i) {
             if (!points.asks(light, i)) continue;
-            const bool blocked = rays[next++].tfar < 0 || near_light_.blocker(points, i) != kNoTriangle;
+            const bool blocked = rays[next++].tfar < 0 || (has_near && near_light_.blocker(points, i) != kNoTriangle);
             s[i]               = blocked ? 0.0f : 1.0f;
         }
     });

@@ -25,6 +25,8 @@ public:
     /// The scene must outlive this object.
     NearLight(const Scene& scene, const RayScene& rays, LightId light);
 
+    [[nodiscard]] bool empty() const { return near_.empty(); }
+
     /// Which of them hides the light from point i; kNoTriangle where none does.
     [[nodiscard]] TriangleId blocker(const PointBatch& points, std::size_t i) const;
 
