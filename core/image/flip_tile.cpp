@@ -77,18 +77,19 @@ constexpr int kLanes = 8;
 
 std::size_t whole_blocks(int width) { return static_cast<std::size_t>((width + kBlock - 1) / kBlock * kBlock); }
 
-Lanes load(const float* from) {
+/// Adds weight * from[0 .. 7]. By reference: processors differ in how they return eight floats.
+void add_weighted(Lanes& sum, float weight, const float* from) {
     Lanes lanes;
     std::memcpy(&lanes, from, sizeof lanes);
-    return lanes;
+    sum += weight * lanes;
 }
 
 /// A block of sums of kernel[k] * in[k * step]; `in` is where the kernel's first weight goes.
 void filter(const float* in, std::size_t step, const Kernel& kernel, float* out) {
     Lanes a{}, b{}, c{}, d{};
     for (const float weight : kernel) {
-        a += weight * load(in), b += weight * load(in + kLanes);
-        c += weight * load(in + 2 * kLanes), d += weight * load(in + 3 * kLanes);
+        add_weighted(a, weight, in), add_weighted(b, weight, in + kLanes);
+        add_weighted(c, weight, in + 2 * kLanes), add_weighted(d, weight, in + 3 * kLanes);
         in += step;
     }
     std::memcpy(out, &a, sizeof a), std::memcpy(out + kLanes, &b, sizeof b);

@@ -16,18 +16,23 @@ constexpr float kRounding = 4e-6f;
 using Lanes = float __attribute__((vector_size(32)));
 using Masks = std::int32_t __attribute__((vector_size(32)));
 
-Lanes load(const float (&from)[8]) {
-    Lanes lanes;
-    std::memcpy(&lanes, from, sizeof lanes);
-    return lanes;
+// By reference: processors differ in how they pass and return eight numbers.
+
+void load(const float (&from)[8], Lanes& to) { std::memcpy(&to, from, sizeof to); }
+
+/// Sets the bits of the lanes that are above the plane.
+void mark_above(Masks& above, float nx, float ny, float nz, float beyond, const float (&x)[8], const float (&y)[8],
+                const float (&z)[8]) {
+    Lanes px, py, pz;
+    load(x, px), load(y, py), load(z, pz);
+    above = nx * px + ny * py + nz * pz > beyond;
 }
 
 /// Bit k: lane k is 0.
-unsigned zeros(Masks masks) {
-    const Masks bits{1, 2, 4, 8, 16, 32, 64, 128};
-    masks        = ~masks & bits;
-    unsigned all = 0;
-    for (int k = 0; k < 8; ++k) all |= static_cast<unsigned>(masks[k]);
+unsigned zeros(const Masks& masks) {
+    const Masks bits = ~masks & Masks{1, 2, 4, 8, 16, 32, 64, 128};
+    unsigned all     = 0;
+    for (int k = 0; k < 8; ++k) all |= static_cast<unsigned>(bits[k]);
     return all;
 }
 
@@ -101,24 +106,25 @@ void ShaftPlanes::add(dvec3 normal, double offset) {
 }
 
 unsigned ShaftPlanes::may_meet(const EightBoxes& boxes) const {
-    Masks outside{};
+    Masks outside{}, above{};
     for (std::size_t s = 0; s < count_; ++s) {
         // The corner that is lowest above the plane.
         const float nx = nx_[s], ny = ny_[s], nz = nz_[s];
-        const Lanes x = load(nx > 0 ? boxes.low[0] : boxes.high[0]), y = load(ny > 0 ? boxes.low[1] : boxes.high[1]),
-                    z = load(nz > 0 ? boxes.low[2] : boxes.high[2]);
-        outside |= nx * x + ny * y + nz * z > beyond_[s];
+        mark_above(above, nx, ny, nz, beyond_[s], nx > 0 ? boxes.low[0] : boxes.high[0],
+                   ny > 0 ? boxes.low[1] : boxes.high[1], nz > 0 ? boxes.low[2] : boxes.high[2]);
+        outside |= above;
     }
     return zeros(outside);
 }
 
 unsigned ShaftPlanes::may_meet(const EightTriangles& t) const {
-    Masks outside{};
+    Masks outside{}, a{}, b{}, c{};
     for (std::size_t s = 0; s < count_; ++s) {
         const float nx = nx_[s], ny = ny_[s], nz = nz_[s], beyond = beyond_[s];
-        Masks above = ~Masks{};
-        for (int k = 0; k < 3; ++k) above &= nx * load(t.x[k]) + ny * load(t.y[k]) + nz * load(t.z[k]) > beyond;
-        outside |= above;
+        mark_above(a, nx, ny, nz, beyond, t.x[0], t.y[0], t.z[0]);
+        mark_above(b, nx, ny, nz, beyond, t.x[1], t.y[1], t.z[1]);
+        mark_above(c, nx, ny, nz, beyond, t.x[2], t.y[2], t.z[2]);
+        outside |= a & b & c;
     }
     return zeros(outside);
 }
