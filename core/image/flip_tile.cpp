@@ -197,9 +197,9 @@ struct Lab {
 
 /// The largest colour difference that a display can show, green against blue, lies at 1. Most of [0, 1] is given to the
 /// differences below the knee, since those above it are large in any case.
-struct Pooled {
+struct ErrorScale {
     float largest, knee;
-    Pooled() {
+    ErrorScale() {
         const mat3& m   = white_from_rgb();
         const Lab green = hunt_lab(m, 0, 1, 0), blue = hunt_lab(m, 0, 0, 1);
         largest = float(power(hyab(green.l - blue.l, green.a - blue.a, green.b - blue.b), kColourExponent));
@@ -323,8 +323,8 @@ void see(const Filters& filters, const Part& part, Workspace& workspace, Seen& s
 }
 
 void row_errors(const Seen& reference, const Seen& test, int y, std::span<float> errors) {
-    static const Pooled pooled;
-    const float largest = pooled.largest, knee = pooled.knee;
+    static const ErrorScale scale;
+    const float largest = scale.largest, knee = scale.knee;
     const std::size_t at  = static_cast<std::size_t>(y) * reference.stride;
     const float *const l0 = &reference.lightness[at], *const l1 = &test.lightness[at];
     const float *const a0 = &reference.a[at], *const a1 = &test.a[at];

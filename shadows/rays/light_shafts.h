@@ -13,7 +13,6 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/tiles.h"
@@ -57,6 +56,7 @@ private:
     struct Run;
     struct Few;
     class Shaft;
+
     [[nodiscard]] std::array<dvec3, 3> corners(TriangleId t) const;
     [[nodiscard]] bool in_one_plane(TriangleId t, TriangleId with) const;
     [[nodiscard]] Run look_at(const PointBatch& points, LightId light, std::size_t first, std::size_t count,

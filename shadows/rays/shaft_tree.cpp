@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/base/parallel_sort.h"
+#include "umbra/shadows/shared/coherent_order.h"
 
 namespace umbra::rays {
 namespace {
@@ -36,34 +35,10 @@ unsigned zeros(const Masks& masks) {
     return all;
 }
 
-constexpr int kIndexBits = 28, kCellBits = 11;  // of a key; scenes have 50 million triangles at most
-constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
-
-/// Triangles of one size follow one another along Morton's curve: one large triangle in a box of small ones would make
-/// all boxes around it large.
-std::vector<std::uint64_t> ordered(const Scene& scene) {
-    std::vector<std::uint64_t> keys;
-    keys.reserve(scene.triangles.size());
-    for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-        if (scene.blocks(t)) keys.push_back(t);
-    const Box all = bounds(scene);
-    const dvec3 low(all.min), span = dvec3(all.max) - low;
-    const double cells = (1 << kCellBits) - 1, longest = std::max({span.x, span.y, span.z});
-    const double scale = longest > 0 ? cells / longest : 0;
-    parallel_ranges(keys.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) {
-            const auto t  = static_cast<TriangleId>(keys[k]);
-            const dvec3 a = dvec3(scene.vertex(t, 0)), b = dvec3(scene.vertex(t, 1)), c = dvec3(scene.vertex(t, 2));
-            const dvec3 least = glm::min(glm::min(a, b), c), most = glm::max(glm::max(a, b), c), size = most - least;
-            const double extent      = std::max({size.x, size.y, size.z}) / (longest > 0 ? longest : 1);
-            const std::uint64_t rank = extent < 1.0 / 256 ? 0 : extent < 1.0 / 32 ? 1 : extent < 1.0 / 4 ? 2 : 3;
-            const dvec3 cell         = scale * (0.5 * (least + most) - low);
-            const auto at            = [&](int axis) { return static_cast<std::uint32_t>(cell[axis]); };
-            keys[k]                  = (rank << (3 * kCellBits) | morton_code(at(0), at(1), at(2))) << kIndexBits | t;
-        }
-    });
-    parallel_sort(keys.begin(), keys.end());
-    return keys;
+std::vector<TriangleId> ordered(const Scene& scene) {
+    std::vector<std::uint8_t> blocks(scene.triangles.size());
+    for (TriangleId t = 0; t < blocks.size(); ++t) blocks[t] = scene.blocks(t) ? 1 : 0;
+    return binned_shadows_detail::coherent_order(scene, blocks);
 }
 
 /// Boxes of `count` things, eight a node; of(k) is the box of thing k.
@@ -130,14 +105,14 @@ unsigned ShaftPlanes::may_meet(const EightTriangles& t) const {
 }
 
 ShaftTree::ShaftTree(const Scene& scene, const RaySpace& space) {
-    const std::vector<std::uint64_t> order = ordered(scene);
+    const std::vector<TriangleId> order = ordered(scene);
     if (order.empty()) return;
     count_ = order.size();
     leaves_.resize((order.size() + 7) / 8);
     parallel_ranges(leaves_.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
             for (std::size_t lane = 0; lane < 8; ++lane) {
-                const auto t = static_cast<TriangleId>(order[std::min(8 * n + lane, order.size() - 1)] & kIndexMask);
+                const TriangleId t    = order[std::min(8 * n + lane, order.size() - 1)];
                 EightTriangles& eight = leaves_[n];
                 eight.id[lane]        = t;
                 for (int k = 0; k < 3; ++k) {

@@ -15,11 +15,6 @@ namespace umbra::rays {
 struct EightTriangles {
     float x[3][8], y[3][8], z[3][8];
     TriangleId id[8];
-
-    [[nodiscard]] std::array<dvec3, 3> corners(int lane) const {
-        const auto at = [&](int k) { return dvec3(x[k][lane], y[k][lane], z[k][lane]); };
-        return {at(0), at(1), at(2)};
-    }
 };
 
 /// Eight boxes along the axes of ray space, side by side; those that are too few repeat the last one.
