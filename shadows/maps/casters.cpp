@@ -93,12 +93,13 @@ double Casters::distance(dvec3 p) const {
         if (!has(fitted_, part)) continue;
         const dvec3 to_box = glm::max(glm::max(dvec3(part.box.min) - p, p - dvec3(part.box.max)), 0.0);
         if (glm::length(to_box) >= nearest) continue;
-        const std::array<Extent, 1> range = reduce<1>(part.count, [&](std::size_t i, std::array<Extent, 1>& all) {
+        const auto range = reduce<1>(part.count, [&](std::size_t i, std::array<double, 1>& v) {
             const auto t = static_cast<TriangleId>(part.first + i);
-            all[0].add(distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
-                                            dvec3(scene_->vertex(t, 2))));
+            v[0]         = distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
+                                                dvec3(scene_->vertex(t, 2)));
+            return true;
         });
-        nearest                           = std::min(nearest, range[0].min);
+        nearest          = std::min(nearest, range[0].min);
     }
     return nearest;
 }

@@ -48,22 +48,19 @@ public:
     /// Extent of each of the n values that `values` gives for a position, over all that is fitted to.
     template <std::size_t n, class Values>
     [[nodiscard]] std::array<Extent, n> ranges(const Values& values) const {
-        return reduce<n>(planes_of_position_.size(), [&](std::size_t i, std::array<Extent, n>& all) {
-            if ((planes_of_position_[i] & fitted_) == 0) return;
-            const std::array<double, n> v = values(dvec3(scene_->positions[i]));
-            for (std::size_t k = 0; k < n; ++k) all[k].add(v[k]);
-        });
+        return ranges<n>(fitted_, values);
     }
 
     /// The least positive of the values that `value` gives for a position, over all that is drawn; infinite without
     /// one.
     template <class Value>
     [[nodiscard]] double least_drawn(const Value& value) const {
-        const auto all = reduce<1>(planes_of_position_.size(), [&](std::size_t i, std::array<Extent, 1>& range) {
-            if ((planes_of_position_[i] & drawn_) == 0) return;
-            if (const double v = value(dvec3(scene_->positions[i])); v > 0) range[0].add(v);
-        });
-        return all[0].min;
+        return ranges<1>(drawn_,
+                         [&](dvec3 p) {
+                             const double v = value(p);
+                             return std::array{v > 0 ? v : std::numeric_limits<double>::infinity()};
+                         })[0]
+            .min;
     }
 
     /// From p to the nearest point of what is fitted to.
@@ -103,15 +100,34 @@ private:
     /// Where each plane has the others, and the scene.
     void find_sides();
 
-    /// Ranges over `add(i, ranges)` for all i below `count`, in parallel.
-    template <std::size_t n, class Add>
-    [[nodiscard]] static std::array<Extent, n> reduce(std::size_t count, const Add& add) {
+    /// Over the positions of `parts`, bits as in planes_of_position_.
+    template <std::size_t n, class Values>
+    [[nodiscard]] std::array<Extent, n> ranges(std::uint64_t parts, const Values& values) const {
+        return reduce<n>(planes_of_position_.size(), [&](std::size_t i, std::array<double, n>& v) {
+            if ((planes_of_position_[i] & parts) == 0) return false;
+            v = values(dvec3(scene_->positions[i]));
+            return true;
+        });
+    }
+
+    /// Extents of the n values of all i below `count` for which value_of(i, values) is true. Parallel.
+    template <std::size_t n, class ValueOf>
+    [[nodiscard]] static std::array<Extent, n> reduce(std::size_t count, const ValueOf& value_of) {
         const std::size_t blocks = (count + kGrain - 1) / kGrain;
         std::vector<std::array<Extent, n>> partial(blocks);
         parallel_ranges(blocks, 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t block = begin; block < end; ++block)
-                for (std::size_t i = block * kGrain; i < std::min((block + 1) * kGrain, count); ++i)
-                    add(i, partial[block]);
+            for (std::size_t block = begin; block < end; ++block) {
+                // Limits apart, so that they become vector code.
+                std::array<double, n> v, min, max;
+                min.fill(Extent().min);
+                max.fill(Extent().max);
+                for (std::size_t i = block * kGrain; i < std::min((block + 1) * kGrain, count); ++i) {
+                    if (!value_of(i, v)) continue;
+                    for (std::size_t k = 0; k < n; ++k) min[k] = std::min(min[k], v[k]);
+                    for (std::size_t k = 0; k < n; ++k) max[k] = std::max(max[k], v[k]);
+                }
+                for (std::size_t k = 0; k < n; ++k) partial[block][k] = {min[k], max[k]};
+            }
         });
         std::array<Extent, n> all;
         for (const auto& p : partial)

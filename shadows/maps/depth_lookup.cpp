@@ -60,7 +60,7 @@ std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p
 
     const double per_width = width * f.nearness_per_depth(v.z);
     const double gradient  = std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
-    const double snapping  = (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / DepthMap::kSnap;
+    const double snapping  = (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / kSnapsPerSample;
     const double samples   = 2 * filter.radius + 1;
     receiver.bias          = bias.constant * per_width + bias.slope * gradient;
     if (bias.mode == BiasMode::manual) return receiver;

@@ -1,4 +1,4 @@
-// Depth maps, and the rasteriser that draws triangles into them: what is nearest to the light along each direction.
+// Depth maps: what is nearest to the light along each direction.
 //
 // Kept as *nearness* r: 1 on the near plane, 0 on the far one, affine in 1/z (perspective) or in z (orthographic),
 // hence linear over the map. Reversed so that floating point spends its fine steps where 1/z has its coarse ones.
@@ -9,18 +9,12 @@
 #include <functional>
 #include <memory>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "umbra/core/base/math.h"
+#include "umbra/shadows/maps/rasteriser.h"
 
 namespace umbra {
-
-/// unormN: depth 1 - r in steps of 1 / (2^N - 1), rounded to nearest as graphics hardware does; float32: r itself.
-enum class DepthFormat : std::uint8_t { unorm16, unorm24, unorm32, float32 };
-
-/// Which triangles are drawn, by the side that the light sees (anticlockwise corners: front).
-enum class Faces : std::uint8_t { all, front, back };
 
 class DepthMap {
 public:
@@ -72,14 +66,13 @@ public:
                                                     std::span<const std::span<const uvec3>> runs, Faces faces) const;
     static constexpr std::uint32_t kNoOwner = 0xffffffffu;
 
-    static constexpr int kSnap = 1024;  ///< corners are snapped to 1 / kSnap of a sample's spacing
-
 private:
     static constexpr std::uint32_t kFarWord = 0x3f800000;  ///< the bits of 1.0f
     [[nodiscard]] double decode(std::uint32_t word) const {
         if (format_ == DepthFormat::float32) return std::bit_cast<float>(kFarWord - word);
         return 1 - word * step_;
     }
+    [[nodiscard]] DepthCode code() const { return {format_, far_word_}; }
     [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(width_) * height_; }
 
     int width_, height_;

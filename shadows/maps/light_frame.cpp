@@ -25,36 +25,36 @@ bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest) {
     std::array<double, kRolls> angles;
     for (int i = 0; i < 3; ++i) angles[i] = std::atan2(frame.y[i], frame.x[i]);
     for (int i = 3; i < kRolls; ++i) angles[i] = (i - 3) * (kPi / 2) / (kRolls - 3);
-    std::array<dvec2, kRolls> rolls;
-    for (int i = 0; i < kRolls; ++i) rolls[i] = {std::cos(angles[i]), std::sin(angles[i])};
+    std::array<double, kRolls> cosines, sines;
+    for (int i = 0; i < kRolls; ++i) cosines[i] = std::cos(angles[i]), sines[i] = std::sin(angles[i]);
 
+    // The window's first axis in every roll, its second one, and depth.
     const auto ranges  = casters.ranges<2 * kRolls + 1>([&](dvec3 p) {
         std::array<double, 2 * kRolls + 1> values;
         dvec3 v            = frame.light_space(p);
         values[2 * kRolls] = v.z;
         if (frame.perspective) v /= v.z;
-        for (int i = 0; i < kRolls; ++i) {
-            values[2 * i]     = rolls[i].x * v.x + rolls[i].y * v.y;
-            values[2 * i + 1] = rolls[i].x * v.y - rolls[i].y * v.x;
-        }
+        for (int i = 0; i < kRolls; ++i) values[i] = cosines[i] * v.x + sines[i] * v.y;
+        for (int i = 0; i < kRolls; ++i) values[kRolls + i] = cosines[i] * v.y - sines[i] * v.x;
         return values;
     });
     const Extent depth = ranges.back();
     int best           = 0;
-    const auto area    = [&](int i) { return ranges[2 * i].half() * ranges[2 * i + 1].half(); };
+    const auto area    = [&](int i) { return ranges[i].half() * ranges[kRolls + i].half(); };
     for (int i = 1; i < kRolls; ++i)
         if (area(i) < area(best)) best = i;
+    const Extent across = ranges[best], down = ranges[kRolls + best];
     if (frame.perspective) {
         if (!(depth.min > 0)) return false;
-        for (const Extent& r : {ranges[2 * best], ranges[2 * best + 1]})
+        for (const Extent& r : {across, down})
             if (std::max(-r.min, r.max) > widest) return false;
     }
 
     const dvec3 x = frame.x;
-    frame.x       = rolls[best].x * x + rolls[best].y * frame.y;
-    frame.y       = rolls[best].x * frame.y - rolls[best].y * x;
-    frame.centre  = {ranges[2 * best].centre(), ranges[2 * best + 1].centre()};
-    frame.half    = {ranges[2 * best].half(), ranges[2 * best + 1].half()};
+    frame.x       = cosines[best] * x + sines[best] * frame.y;
+    frame.y       = cosines[best] * frame.y - sines[best] * x;
+    frame.centre  = {across.centre(), down.centre()};
+    frame.half    = {across.half(), down.half()};
     frame.near    = depth.min;
     frame.far     = depth.max;
     frame.reach   = kInfinity;

@@ -74,7 +74,7 @@ Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsign
         const double width     = widest * (perspective ? vz[k] : 1.0);
         const double per_width = width * per_depth[k];
         const double rx = std::abs(to.r_x[k]), ry = std::abs(to.r_y[k]);
-        const double gradient = rx < ry ? ry : rx, snapping = (rx + ry) / DepthMap::kSnap;
+        const double gradient = rx < ry ? ry : rx, snapping = (rx + ry) / kSnapsPerSample;
         to.bias[k]     = bias.constant * per_width + bias.slope * gradient;
         to.slack[k]    = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
         to.most[k]     = samples * kMostAutomatic * per_width;

@@ -113,6 +113,98 @@ TEST(DepthMap, RandomTriangulatedGridCoversEverySampleOnce) {
         }
 }
 
+/// True where the triangle covers sample (x, y), by edge functions in whole numbers. Corners are on the grid of
+/// snapping.
+bool covers(const std::vector<vec3>& p, const uvec3& t, int x, int y) {
+    const auto step = [&](std::uint32_t corner, int axis) {
+        return std::llrint((p[corner][axis] - 0.5) * kSnapsPerSample);
+    };
+    const auto edge = [&](std::uint32_t a, std::uint32_t b, long long at_x, long long at_y) {
+        return (step(b, 0) - step(a, 0)) * (at_y - step(a, 1)) - (step(b, 1) - step(a, 1)) * (at_x - step(a, 0));
+    };
+    const long long area = edge(t.x, t.y, step(t.z, 0), step(t.z, 1));
+    const uvec3 c        = area > 0 ? t : uvec3(t.x, t.z, t.y);
+    if (area == 0) return false;
+    for (int k = 0; k < 3; ++k) {
+        const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+        const long long e =
+            edge(a, b, static_cast<long long>(x) * kSnapsPerSample, static_cast<long long>(y) * kSnapsPerSample);
+        const bool top_left = step(b, 1) < step(a, 1) || (step(b, 1) == step(a, 1) && step(b, 0) > step(a, 0));
+        if (e < 0 || (e == 0 && !top_left)) return false;
+    }
+    return true;
+}
+
+TEST(DepthMap, TrianglesOfAllSizesCoverWhatExactEdgesCover) {
+    // Of at most as many samples across and down: those that are small are filled by other code than large ones. Many
+    // reach over the map's border, large ones so far that only a few columns of them are seen. The map is as wide as it
+    // is for those: what is more than a quarter of a map outside is clipped.
+    constexpr int width = 1024, height = 64;
+    std::mt19937 random(7);
+    for (const auto& [across, down] : std::vector<std::pair<int, int>>{
+             {1, 1}, {3, 3}, {8, 8}, {9, 9}, {8, 31}, {9, 33}, {2, 60}, {60, 2}, {8, 70}, {200, 30}, {900, 70}})
+        for (int round = 0; round < 120; ++round) {
+            // Up to nine triangles, one beside the other or alone, on whole and half samples in every third round.
+            const int grid  = round % 3 == 0 ? 2 : 1024;
+            const auto pick = [&](int low, int high) {
+                const int steps = std::uniform_int_distribution(low * grid, high * grid)(random);
+                return static_cast<float>(steps) / static_cast<float>(grid);
+            };
+            const auto place = [&](int extent, int samples) {
+                const int beyond = samples / 4;
+                if (extent > beyond || random() % 2 == 0) return pick(-beyond, samples + beyond - extent);
+                return random() % 2 == 0 ? pick(-extent, 8 - extent) : pick(samples - 8, samples + beyond - extent);
+            };
+            std::vector<vec3> positions;
+            Triangles triangles;
+            for (int i = 0; i < 1 + round % 9; ++i) {
+                const float x = place(across, width), y = place(down, height);
+                for (int k = 0; k < 3; ++k) positions.emplace_back(x + pick(0, across), y + pick(0, down), 0.5f);
+                triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+            }
+            std::vector<bool> expected(static_cast<std::size_t>(width) * height);
+            for (const uvec3& t : triangles) {
+                const vec3 low  = glm::min(glm::min(positions[t.x], positions[t.y]), positions[t.z]);
+                const vec3 high = glm::max(glm::max(positions[t.x], positions[t.y]), positions[t.z]);
+                for (int y = std::max(0, static_cast<int>(low.y) - 1);
+                     y < std::min(height, static_cast<int>(high.y) + 2); ++y)
+                    for (int x = std::max(0, static_cast<int>(low.x) - 1);
+                         x < std::min(width, static_cast<int>(high.x) + 2); ++x)
+                        if (covers(positions, t, x, y)) expected[y * width + x] = true;
+            }
+            DepthMap map(width, height, DepthFormat::float32);
+            const std::span<const uvec3> run(triangles);
+            map.draw(clip_from_samples(width, height), positions, std::span(&run, 1), Faces::all);
+            for (int y = 0; y < height; ++y)
+                for (int x = 0; x < width; ++x)
+                    ASSERT_EQ(!map.is_empty(x, y), expected[y * width + x])
+                        << across << " by " << down << ", round " << round << ", sample " << x << ' ' << y;
+        }
+}
+
+TEST(DepthMap, DepthDoesNotDependOnTheSizeThatATriangleIsFilledBy) {
+    // Two halves of one small square, beside a large triangle in the same plane: what both cover has one depth, to a
+    // rounding, whichever code drew it.
+    constexpr int size = 64;
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> anywhere(0, 56), slope(-0.006f, 0.006f);
+    for (int round = 0; round < 200; ++round) {
+        const float sx = slope(random), sy = slope(random);
+        const auto at = [&](float x, float y) { return vec3(x, y, 0.5f + sx * (x - 32) + sy * (y - 32)); };
+        const float x = anywhere(random), y = anywhere(random);
+        const DepthMap large = drawn(size, {at(-60, -20), at(120, -20), at(30, 130)}, {{0, 1, 2}});
+        const DepthMap small =
+            drawn(size, {at(x, y), at(x + 7, y + 1), at(x + 6, y + 7), at(x - 1, y + 6)}, {{0, 1, 2}, {0, 2, 3}});
+        int drawn_by_both = 0;
+        for (int i = 0; i < size * size; ++i) {
+            if (small.is_empty(i % size, i / size) || large.is_empty(i % size, i / size)) continue;
+            ASSERT_NEAR(small.nearness(i % size, i / size), large.nearness(i % size, i / size), 2e-5);
+            ++drawn_by_both;
+        }
+        ASSERT_GT(drawn_by_both, 10);
+    }
+}
+
 TEST(DepthMap, SamplesOnTopAndLeftEdgesAreDrawnOnRightAndBottomOnesAreNot) {
     // Corners at sample positions: samples lie exactly on all four edges and on the diagonal.
     const DepthMap map =
@@ -132,7 +224,7 @@ TEST(DepthMap, DegenerateTrianglesAndSlivers) {
     }
     // A sliver one step of the grid wide keeps its depths between those of its corners.
     const DepthMap map =
-        drawn(64, {{0, 8.5f, 0.2f}, {64, 8.5f, 0.8f}, {0, 8.5f + 1.0f / DepthMap::kSnap, 0.9f}}, {{0, 1, 2}});
+        drawn(64, {{0, 8.5f, 0.2f}, {64, 8.5f, 0.8f}, {0, 8.5f + 1.0f / kSnapsPerSample, 0.9f}}, {{0, 1, 2}});
     for (int x = 0; x < 64; ++x) {
         ASSERT_FALSE(map.is_empty(x, 8));
         EXPECT_NEAR(1 - map.nearness(x, 8), 0.2 + 0.6 * (x + 0.5) / 64, 1e-6);
@@ -204,7 +296,7 @@ TEST(DepthMap, PerspectiveDepthIsHyperbolicAndClippedOnlyAtTheLight) {
             if (map.is_empty(x, y)) continue;
             const double r = near * (far - z) / (z * (far - near));
             // Cut corners are snapped too: a step of the grid moves the plane.
-            const double snapped = near * far / (far - near) * 2 / size / DepthMap::kSnap;
+            const double snapped = near * far / (far - near) * 2 / size / kSnapsPerSample;
             ASSERT_NEAR(map.nearness(x, y), std::min(r, 1.0), 2 * snapped + 1e-6) << x << ' ' << y;
         }
     }
