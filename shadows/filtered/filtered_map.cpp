@@ -212,10 +212,11 @@ public:
 
     void visibility(const PointBatch& points, LightId light, Visibility out) const override {
         const Light& source = views_->scene().lights[light];
-        look_up(*views_, points, light, bias_, compared(), out, [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+        const auto share    = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
             const MapView& view = views_->views()[v];
             return tables_.empty() ? lit(view, maps_[v], receiver) : soft_lit(view, tables_[v], receiver, source, p);
-        });
+        };
+        look_up(*views_, points, light, bias_, compared(), out, point_by_point(share));
     }
 
     /// Whose depth the map holds in the texel under the filter that blocks the point, the nearest of several. Draws the

@@ -10,25 +10,29 @@
 
 namespace umbra {
 
-/// Writes S_j of every point that asks for it, in parallel: 0 where the light's centre is behind the point's plane,
-/// share(v, receiver, p) where view v is the first that covers the point, and where none does 1, or `undefined`
-/// where nobody looked. `p` is the point in world space.
+/// Writes S_j of every point that asks for it, in parallel: 0 where the light's centre is behind the point's plane;
+/// what share(v, receivers, at, s) writes into s[k] of the covered lanes k where view v is the first that covers the
+/// point; and where none does 1, or `undefined` where nobody looked. Lane k is the point at.point(k), in world space.
 template <class Share>
 void look_up(const LightViews& views, const PointBatch& points, LightId light, const Bias& bias, const Filter& filter,
              Visibility out, const Share& share) {
     const std::span<const MapView> all = views.views();
+    const Facing* const facing         = points.facing[light].data();
     for_each_eight_facets(views.scene(), points, light, [&](std::size_t first, unsigned which, const FacetPoints8& at) {
         for (int k = 0; k < 8; ++k) {
             const std::size_t i = first + static_cast<std::size_t>(k);
-            if ((which >> k & 1) == 0 || !centre_is_behind(views.scene(), points, light, i)) continue;
+            if ((which >> k & 1) == 0 || facing[i] != Facing::partly) continue;
+            if (!centre_is_behind(views.scene(), points, light, i)) continue;
             out.s[i] = 0;
             which &= ~(1u << k);
         }
         for (std::size_t v = 0; v < all.size() && which != 0; ++v) {
             const Receivers8 receivers = receive_eight(all[v], at, which, bias, filter);
+            if (receivers.covered == 0) continue;
+            float s[8];
+            share(v, receivers, at, s);
             for (int k = 0; k < 8; ++k)
-                if ((receivers.covered >> k & 1) != 0)
-                    out.s[first + static_cast<std::size_t>(k)] = share(v, receivers.lane(k), at.point(k));
+                if ((receivers.covered >> k & 1) != 0) out.s[first + static_cast<std::size_t>(k)] = s[k];
             which &= ~receivers.covered;
         }
         for (std::size_t i = first; which != 0; ++i, which >>= 1) {
@@ -37,6 +41,15 @@ void look_up(const LightViews& views, const PointBatch& points, LightId light, c
             if (!views.cover_all()) out.answer[i] = Answer::undefined;
         }
     });
+}
+
+/// A share for look_up that asks one(v, receiver, p) point by point.
+template <class One>
+auto point_by_point(const One& one) {
+    return [one](std::size_t v, const Receivers8& receivers, const FacetPoints8& at, float(&s)[8]) {
+        for (int k = 0; k < 8; ++k)
+            if ((receivers.covered >> k & 1) != 0) s[k] = one(v, receivers.lane(k), at.point(k));
+    };
 }
 
 /// The picture that points are seen in: their raster's, or without one that of the scene's camera, in the scene's size,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "umbra/shadows/maps/penumbra.h"
 
@@ -82,25 +83,129 @@ std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet
 
 namespace {
 
-/// The weight of the square's samples, all in the map, that are not blocked: is_blocked of each, with what the samples
-/// of a column and of a row have alike computed once.
-double lit_in_square(const MapView& view, const Receiver& p, BiasMode mode, const SquareKernel& square) {
-    double across[SquareKernel::kMostInRow], nearest[SquareKernel::kMostInRow], counts[SquareKernel::kMostInRow];
-    for (int k = 0; k < square.side; ++k) across[k] = p.r + p.r_x * (square.x + k + 0.5 - p.x);
-    double lit = 0;
-    for (int j = 0; j < square.side; ++j) {
-        const double down = p.r_y * (square.y + j + 0.5 - p.y);
-        for (int k = 0; k < square.side; ++k) nearest[k] = view.map.nearness(square.x + k, square.y + j);
-        for (int k = 0; k < square.side; ++k) {
-            const double plane = across[k] + down, above = p.r - plane;
-            const double eased = (above > 0 ? above : 0.0) + p.slack;
-            const double by    = mode == BiasMode::automatic ? (p.most < eased ? p.most : eased) : 0.0;
-            const double r     = (mode == BiasMode::manual ? p.r : plane + by) + p.bias;
-            counts[k]          = nearest[k] > (r > 0 ? r : 0.0) ? 0 : square.across[k] * square.down[j];
+/// Four positions in a map, in samples.
+struct FourPlaces {
+    FourDoubles x, y;
+};
+
+/// Four samples of a map, and what it shows there; as is_blocked has it, in a view without midpoints.
+struct FourSamples {
+    FourDoubles nearness;  ///< where blocked
+    FourMasks blocked;
+};
+
+void floor_of(const FourDoubles& v, FourDoubles& whole) {
+    constexpr double kShift = 0x1.8p52;
+    whole                   = (v + kShift) - kShift;
+    whole                   = whole > v ? whole - 1 : whole;
+}
+
+/// Asks the four samples in which `at` lies.
+void ask(const MapView& view, const Receiver& p, const FourPlaces& at, BiasMode mode, FourSamples& found) {
+    constexpr FourDoubles kZero{};
+    FourDoubles x, y;
+    floor_of(at.x, x), floor_of(at.y, y);
+    const double width = view.map.width(), height = view.map.height();
+    const FourMasks in_map = (x >= 0) & (y >= 0) & (x < width) & (y < height);
+    FourDoubles r          = kZero + p.r;
+    if (mode != BiasMode::manual) {
+        r = p.r + p.r_x * (x + 0.5 - p.x) + p.r_y * (y + 0.5 - p.y);
+        if (mode == BiasMode::automatic) {
+            const FourDoubles above = p.r - r, eased = (above > 0 ? above : kZero) + p.slack;
+            r += p.most < eased ? kZero + p.most : eased;
         }
-        for (int k = 0; k < square.side; ++k) lit += counts[k];
     }
-    return lit;
+    r += p.bias;
+    view.map.nearness(__builtin_convertvector(in_map ? y * width + x : kZero, FourInts), found.nearness);
+    found.blocked = in_map & (found.nearness > (r > 0 ? r : kZero));
+}
+
+/// Calls body(places, n) for a disc's points, four at a time, of which the first n count: as far from the receiver as
+/// `within`, turned as it says.
+template <class Body>
+void for_each_four(const Receiver& p, std::span<const dvec2> points, dvec2 within, const Body& body) {
+    for (std::size_t from = 0; from < points.size(); from += kFour) {
+        const std::size_t n = std::min<std::size_t>(kFour, points.size() - from);
+        const auto of       = [&](std::size_t k) { return points[from + std::min(k, n - 1)]; };
+        const dvec2 a = of(0), b = of(1), c = of(2), d = of(3);
+        const FourDoubles x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y};
+        const FourPlaces at{p.x + within.x * (p.turn.x * x - p.turn.y * y),
+                            p.y + within.y * (p.turn.y * x + p.turn.x * y)};
+        body(at, static_cast<int>(n));
+    }
+}
+
+/// How many of the first n are blocked.
+int count(const FourMasks& blocked, int n) {
+    constexpr FourMasks kLane{0, 1, 2, 3};
+    const FourMasks counted = blocked & (kLane < n);
+    return static_cast<int>(-((counted[0] + counted[1]) + (counted[2] + counted[3])));
+}
+
+/// The share of a disc's samples that are not blocked, in a view without midpoints.
+double lit_in_disc(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
+    FourSamples samples;
+    double lit = 0;
+    for_each_four(p, filter.points, dvec2(filter.radius + 0.5), [&](const FourPlaces& at, int n) {
+        if (!filter.bilinear) {
+            ask(view, p, at, mode, samples);
+            lit += n - count(samples.blocked, n);
+            return;
+        }
+        for (int k = 0; k < n; ++k) {
+            const double x = std::floor(at.x[k] - 0.5), y = std::floor(at.y[k] - 0.5);
+            const double fx = at.x[k] - 0.5 - x, fy = at.y[k] - 0.5 - y;
+            const FourPlaces corners{FourDoubles{x, x + 1, x, x + 1}, FourDoubles{y, y, y + 1, y + 1}};
+            ask(view, p, corners, mode, samples);
+            const FourDoubles weights{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+            const FourDoubles counts = samples.blocked ? FourDoubles{} : weights;
+            lit += (counts[0] + counts[1]) + (counts[2] + counts[3]);
+        }
+    });
+    return lit / static_cast<double>(filter.points.size());
+}
+
+/// The weight of the square's samples that are not blocked: is_blocked of each, with what the samples of a column and
+/// of a row have alike computed once. Rows of kBlocks times four samples are compared, all in the map, of which those
+/// beyond the square's side have no weight.
+template <int kBlocks, BiasMode mode>
+double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel& square) {
+    constexpr FourDoubles kSteps{0, 1, 2, 3};
+    constexpr FourDoubles kZero{};
+    FourDoubles across[kBlocks], weight[kBlocks], lit{};
+    for (int b = 0; b < kBlocks; ++b) {
+        across[b] = p.r + p.r_x * (square.x + kFour * b + kSteps + 0.5 - p.x);
+        std::memcpy(&weight[b], &square.across[kFour * b], sizeof weight[b]);
+        weight[b] = kFour * b + kSteps < square.side ? weight[b] : kZero;
+    }
+    for (int j = 0; j < square.side; ++j) {
+        const double down = p.r_y * (square.y + j + 0.5 - p.y), of_row = square.down[j];
+        for (int b = 0; b < kBlocks; ++b) {
+            FourDoubles nearest;
+            view.map.nearness(square.x + kFour * b, square.y + j, nearest);
+            FourDoubles r = kZero + p.r;
+            if constexpr (mode != BiasMode::manual) {
+                r = across[b] + down;
+                if constexpr (mode == BiasMode::automatic) {
+                    const FourDoubles above = p.r - r, eased = (above > 0 ? above : kZero) + p.slack;
+                    r += p.most < eased ? kZero + p.most : eased;
+                }
+            }
+            r += p.bias;
+            lit += nearest > (r > 0 ? r : kZero) ? kZero : weight[b] * of_row;
+        }
+    }
+    return (lit[0] + lit[1]) + (lit[2] + lit[3]);
+}
+
+template <int kBlocks>
+double lit_in_square(const MapView& view, const Receiver& p, BiasMode mode, const SquareKernel& square) {
+    switch (mode) {
+        case BiasMode::manual: return lit_in_square<kBlocks, BiasMode::manual>(view, p, square);
+        case BiasMode::receiver_plane: return lit_in_square<kBlocks, BiasMode::receiver_plane>(view, p, square);
+        case BiasMode::automatic: break;
+    }
+    return lit_in_square<kBlocks, BiasMode::automatic>(view, p, square);
 }
 
 }  // namespace
@@ -109,12 +214,24 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
     if (filter.is_one_sample())
         return is_blocked(view, p, static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)), mode) ? 0.0f
                                                                                                                : 1.0f;
+    // Where no sample lies in the map, none blocks.
+    const double reach = filter.radius + 2;
+    if (p.x < -reach || p.y < -reach || p.x > view.map.width() + reach || p.y > view.map.height() + reach) return 1.0f;
     if (filter.kernel != Kernel::disc && filter.radius <= SquareKernel::kMostRadius && !view.midpoint) {
         const SquareKernel square = square_kernel({p.x, p.y}, filter);
-        if (square.x >= 0 && square.y >= 0 && square.x + square.side <= view.map.width() &&
-            square.y + square.side <= view.map.height())
-            return static_cast<float>(std::clamp(lit_in_square(view, p, mode, square) / square.whole, 0.0, 1.0));
+        constexpr int kMostBlocks = SquareKernel::kMostInRow / kFour;
+        const int blocks          = square.side <= 4 ? 1 : square.side <= 8 ? 2 : square.side <= 16 ? 4 : kMostBlocks;
+        if (square.x >= 0 && square.y >= 0 && square.x + kFour * blocks <= view.map.width() &&
+            square.y + square.side <= view.map.height()) {
+            const double lit = blocks == 1   ? lit_in_square<1>(view, p, mode, square)
+                               : blocks == 2 ? lit_in_square<2>(view, p, mode, square)
+                               : blocks == 4 ? lit_in_square<4>(view, p, mode, square)
+                                             : lit_in_square<kMostBlocks>(view, p, mode, square);
+            return static_cast<float>(std::clamp(lit / square.whole, 0.0, 1.0));
+        }
     }
+    if (filter.kernel == Kernel::disc && !view.midpoint)
+        return static_cast<float>(std::clamp(lit_in_disc(view, p, mode, filter), 0.0, 1.0));
     double lit         = 0;
     const double whole = for_each_sample({p.x, p.y}, p.turn, filter, [&](int i, int j, double weight) {
         if (!is_blocked(view, p, i, j, mode)) lit += weight;
@@ -123,25 +240,33 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
 }
 
 float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode, const SoftFilter& filter) {
-    const auto reach   = [&](double z) { return penumbra_reach(view, dvec2(filter.size), z, depth, filter.texels); };
-    const auto blocked = [&](dvec2 within, dvec2 point, ivec2& at) {
-        const dvec2 offset = within * turned(point, receiver.turn);
-        at = {static_cast<int>(std::floor(receiver.x + offset.x)), static_cast<int>(std::floor(receiver.y + offset.y))};
-        return is_blocked(view, receiver, at.x, at.y, mode);
+    const auto reach = [&](double z) { return penumbra_reach(view, dvec2(filter.size), z, depth, filter.texels); };
+    FourSamples samples{};
+    const auto ask_all = [&](const FourPlaces& at, int n) {
+        if (!view.midpoint) return ask(view, receiver, at, mode, samples);
+        for (int k = 0; k < n; ++k) {
+            const ivec2 sample(std::floor(at.x[k]), std::floor(at.y[k]));
+            samples.blocked[k] = is_blocked(view, receiver, sample.x, sample.y, mode) ? -1 : 0;
+            if (samples.blocked[k] != 0) samples.nearness[k] = view.map.nearness(sample.x, sample.y);
+        }
     };
-    const dvec2 search = reach(view.frame.near);
-    double sum         = 0;
-    int blockers       = 0;
-    ivec2 at{0};
-    for (const dvec2 point : filter.points) {
-        if (!blocked(search, point, at)) continue;
-        sum += view.frame.depth(view.map.nearness(at.x, at.y));
-        ++blockers;
-    }
+    double sum   = 0;
+    int blockers = 0;
+    for_each_four(receiver, filter.points, reach(view.frame.near), [&](const FourPlaces& at, int n) {
+        ask_all(at, n);
+        if (count(samples.blocked, n) == 0) return;
+        for (int k = 0; k < n; ++k) {
+            if (samples.blocked[k] == 0) continue;
+            sum += view.frame.depth(samples.nearness[k]);
+            ++blockers;
+        }
+    });
     if (blockers == 0) return 1;
-    const dvec2 penumbra = reach(sum / blockers);
-    int lit              = 0;
-    for (const dvec2 point : filter.points) lit += blocked(penumbra, point, at) ? 0 : 1;
+    int lit = 0;
+    for_each_four(receiver, filter.points, reach(sum / blockers), [&](const FourPlaces& at, int n) {
+        ask_all(at, n);
+        lit += n - count(samples.blocked, n);
+    });
     return static_cast<float>(lit) / static_cast<float>(filter.points.size());
 }
 

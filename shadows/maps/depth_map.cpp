@@ -37,11 +37,6 @@ void DepthMap::clear() {
     });
 }
 
-double DepthMap::quantum(double r) const {
-    if (format_ != DepthFormat::float32) return step_;
-    return std::max(std::abs(r), 0x1p-126) * 0x1p-23;
-}
-
 void DepthMap::draw(const dmat4& clip_from_world, std::span<const vec3> positions,
                     std::span<const std::span<const uvec3>> runs, Faces faces) {
     keep_nearest({width_, height_, code(), clip_from_world, positions, runs, faces}, words_.get());

@@ -5,13 +5,17 @@
 // [Eugene Lapidous, Guofang Jiao, Optimal Depth Buffer for Low-Cost Graphics Hardware, 1999]
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
+#include <cstring>
 #include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "umbra/core/base/math.h"
+#include "umbra/shadows/maps/four_lanes.h"
 #include "umbra/shadows/maps/rasteriser.h"
 
 namespace umbra {
@@ -32,11 +36,26 @@ public:
     [[nodiscard]] double nearness(int x, int y) const { return decode(word(x, y)); }
     [[nodiscard]] bool is_empty(int x, int y) const { return word(x, y) == far_word_; }
 
+    /// The same at (x, y) to (x + 3, y).
+    void nearness(int x, int y, FourDoubles& four) const {
+        FourWords words;
+        std::memcpy(&words, words_.get() + static_cast<std::size_t>(y) * width_ + x, sizeof words);
+        decode(words, four);
+    }
+    /// The same at samples y * width + x.
+    void nearness(const FourInts& samples, FourDoubles& four) const {
+        const FourWords words{words_[samples[0]], words_[samples[1]], words_[samples[2]], words_[samples[3]]};
+        decode(words, four);
+    }
+
     /// As kept: smaller is nearer, in every format.
     [[nodiscard]] std::uint32_t word(int x, int y) const { return words_[static_cast<std::size_t>(y) * width_ + x]; }
 
     /// Distance of neighbouring values of the format at nearness r: what rounding costs at most, twice.
-    [[nodiscard]] double quantum(double r) const;
+    [[nodiscard]] double quantum(double r) const {
+        const double of_float = std::max(std::abs(r), 0x1p-126) * 0x1p-23;
+        return format_ == DepthFormat::float32 ? of_float : step_;
+    }
 
     /// Draws triangles (runs of corner indices into `positions`) so that every sample keeps the nearest.
     ///
@@ -71,6 +90,13 @@ private:
     [[nodiscard]] double decode(std::uint32_t word) const {
         if (format_ == DepthFormat::float32) return std::bit_cast<float>(kFarWord - word);
         return 1 - word * step_;
+    }
+    void decode(const FourWords& words, FourDoubles& four) const {
+        if (format_ == DepthFormat::float32) {
+            four = __builtin_convertvector(reinterpret_cast<FourFloats>(kFarWord - words), FourDoubles);
+        } else {
+            four = 1 - __builtin_convertvector(words, FourDoubles) * step_;
+        }
     }
     [[nodiscard]] DepthCode code() const { return {format_, far_word_}; }
     [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(width_) * height_; }

@@ -82,7 +82,8 @@ struct Filter {
 /// The samples of a kernel that is a square and not too wide: x + i, y + j for i, j < side, of weight
 /// across[i] * down[j].
 struct SquareKernel {
-    static constexpr int kMostRadius = 16, kMostInRow = 2 * kMostRadius + 2;
+    static constexpr int kMostRadius = 16;
+    static constexpr int kMostInRow  = 36;  ///< at least 2 kMostRadius + 2, in fours
     int x = 0, y = 0, side = 0;
     double across[kMostInRow], down[kMostInRow];
     double whole = 0;  ///< sum of the weights

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/shadows/maps/four_lanes.h"
 
 namespace umbra {
 namespace {
@@ -22,9 +23,9 @@ constexpr std::size_t kBatch = 32;    // chunks between two joins: their triangl
 constexpr int kNarrow        = 8;     // triangles of at most as many columns
 constexpr int kTall          = 32;    // and rows become fragments
 
-constexpr int kLanes = 4;
-using Lanes          = double __attribute__((vector_size(kLanes * sizeof(double))));
-using Masks          = std::int64_t __attribute__((vector_size(kLanes * sizeof(double))));
+constexpr int kLanes = kFour;
+using Lanes          = FourDoubles;
+using Masks          = FourMasks;
 
 /// Corners in units of 1 / kSnapsPerSample, such that sample (x, y) lies at (kSnapsPerSample x, kSnapsPerSample y). Of
 /// positive area.
@@ -53,7 +54,7 @@ using Polygon = std::vector<dvec4>;
 
 // ---- clipping ------------------------------------------------------------------------------------------------------
 
-/// Signed distances from the planes that bound what can be snapped.
+/// FourInts distances from the planes that bound what can be snapped.
 std::array<double, 5> distances(const dvec4& c) {
     return {c.w - kMinW, kGuard * c.w - c.x, kGuard * c.w + c.x, kGuard * c.w - c.y, kGuard * c.w + c.y};
 }
@@ -77,8 +78,6 @@ void clip(Polygon& polygon) {
 }
 
 // ---- lanes ---------------------------------------------------------------------------------------------------------
-
-// Vectors are handed on by reference: without AVX, their calling convention is not settled.
 
 #define UMBRA_INLINE inline __attribute__((always_inline))
 
@@ -179,18 +178,14 @@ UMBRA_INLINE void find_spans(const Edges& e, const Lanes& y, Lanes& first, Lanes
 
 // ---- depths --------------------------------------------------------------------------------------------------------
 
-using Words  = std::uint32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
-using Signed = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::uint32_t))));
-
 template <DepthFormat format>
-UMBRA_INLINE void encode(const Lanes& r, std::uint32_t far_word, Words& bits) {
+UMBRA_INLINE void encode(const Lanes& r, std::uint32_t far_word, FourWords& bits) {
     if constexpr (format == DepthFormat::float32) {
-        using Floats      = float __attribute__((vector_size(kLanes * sizeof(float))));
-        const Floats kept = __builtin_convertvector(r, Floats);
-        bits              = far_word - reinterpret_cast<Words>(kept);
+        const FourFloats kept = __builtin_convertvector(r, FourFloats);
+        bits                  = far_word - reinterpret_cast<FourWords>(kept);
     } else {
         // Adding 2^52 leaves the rounded whole number in the low bits.
-        bits = __builtin_convertvector(reinterpret_cast<Masks>((1 - r) * far_word + 0x1p52), Words);
+        bits = __builtin_convertvector(reinterpret_cast<Masks>((1 - r) * far_word + 0x1p52), FourWords);
     }
 }
 
@@ -290,7 +285,7 @@ void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing, 
     const int y_last  = std::min(static_cast<int>(std::floor(y_high / kSnapsPerSample)), row_end - 1);
 
     constexpr Lanes kSteps{0, 1, 2, 3};
-    constexpr Signed kWholeSteps{0, 1, 2, 3};
+    constexpr FourInts kWholeSteps{0, 1, 2, 3};
     const std::size_t band_end = static_cast<std::size_t>(row_end) * drawing.width;
     const Lanes r_low = e.r_low, r_high = e.r_high;
     const double r_x             = e.r_x[0];
@@ -304,7 +299,7 @@ void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing, 
             const int count        = static_cast<int>(last[k]) - begin + 1;
             const double r_begin   = r_first[k];
             const std::size_t from = static_cast<std::size_t>(row + k) * drawing.width + begin;
-            const auto word        = [&](int i, Words& words) {
+            const auto word        = [&](int i, FourWords& words) {
                 Lanes at;
                 max_lanes(r_begin + r_x * (kSteps + i), r_low, at);
                 min_lanes(at, r_high, at);
@@ -315,16 +310,16 @@ void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing, 
                 // Samples behind the span's last one get their own word again, which is safe within the band.
                 if (from + count + kLanes <= band_end)
                     for (; i < count; i += kLanes) {
-                        Words words, kept;
+                        FourWords words, kept;
                         word(i, words);
-                        words |= reinterpret_cast<Words>(kWholeSteps >= count - i);
+                        words |= reinterpret_cast<FourWords>(kWholeSteps >= count - i);
                         std::memcpy(&kept, keep.words + from + i, sizeof kept);
                         kept = kept < words ? kept : words;
                         std::memcpy(keep.words + from + i, &kept, sizeof kept);
                     }
             }
             for (; i < count; i += kLanes) {
-                Words words;
+                FourWords words;
                 word(i, words);
                 for (int l = 0; l < std::min(kLanes, count - i); ++l) keep(from + i + l, words[l], t.from);
             }
@@ -523,7 +518,7 @@ void Snapper<format>::add_narrow(const Edges& e, const Masks& drawn) {
     std::array<std::array<std::int32_t, kLanes>, 3> at_first, right, down;
     for (int k = 0; k < 3; ++k) {
         const auto to_int = [](const Lanes& from, std::array<std::int32_t, kLanes>& to) {
-            const Signed whole = __builtin_convertvector(from, Signed);
+            const FourInts whole = __builtin_convertvector(from, FourInts);
             std::memcpy(to.data(), &whole, sizeof whole);
         };
         to_int(e.ax[k] * e.x_first + (e.dx[k] * (e.y_first * kSnapsPerSample) + e.c[k]) - e.fill[k], at_first[k]);

@@ -25,15 +25,13 @@ Receivers8 one_by_one(const MapView& view, const FacetPoints8& points, unsigned 
     return to;
 }
 
-}  // namespace
+// Each line below is one of `receive`. No loop has a branch: lanes that nobody asked for get some number.
 
-// Each line is one of `receive`.
-Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsigned which, const Bias& bias,
+template <bool perspective>
+Receivers8 receive_lanes(const MapView& view, const FacetPoints8& points, unsigned which, const Bias& bias,
                          const Filter& filter) {
-    if (bias.normal_offset > 0) return one_by_one(view, points, which, bias, filter);
-    const LightFrame& f    = view.frame;
-    const bool perspective = f.perspective;
-    const auto dot         = [](dvec3 a, double x, double y, double z) { return a.x * x + a.y * y + a.z * z; };
+    const LightFrame& f = view.frame;
+    const auto dot      = [](dvec3 a, double x, double y, double z) { return a.x * x + a.y * y + a.z * z; };
     Lanes vx, vy, vz, ax, ay;
     int covered[8];
     for (int k = 0; k < 8; ++k) {
@@ -42,7 +40,7 @@ Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsign
         const double over = perspective ? vz[k] : 1.0;
         ax[k]             = (vx[k] / over - f.centre.x) / f.half.x;
         ay[k]             = (vy[k] / over - f.centre.y) / f.half.y;
-        const bool behind = perspective & (vz[k] <= 0);
+        const bool behind = perspective && vz[k] <= 0;
         const int in_x = !(std::abs(ax[k]) > f.reach), in_y = !(std::abs(ay[k]) > f.reach);
         covered[k] = static_cast<int>(!behind) & in_x & in_y;
     }
@@ -56,22 +54,30 @@ Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsign
     const double depths  = f.far - f.near;
     const double samples = 2 * filter.radius + 1;
     const double from    = glm::length(f.origin);
-    Lanes largest, per_depth;
+    const double near = f.near, far = f.far;
+    const bool manual   = bias.mode == BiasMode::manual;
+    const bool is_plane = bias.mode == BiasMode::receiver_plane;
+    Lanes largest, per_depth, scale, nx, ny;
     for (int k = 0; k < 8; ++k) {
-        const double nx = dot(f.x, points.nx[k], points.ny[k], points.nz[k]),
-                     ny = dot(f.y, points.nx[k], points.ny[k], points.nz[k]),
-                     nz = dot(f.z, points.nx[k], points.ny[k], points.nz[k]);
+        nx[k]           = dot(f.x, points.nx[k], points.ny[k], points.nz[k]);
+        ny[k]           = dot(f.y, points.nx[k], points.ny[k], points.nz[k]);
+        const double nz = dot(f.z, points.nx[k], points.ny[k], points.nz[k]);
+        scale[k] =
+            perspective ? near * far / (depths * (nx[k] * vx[k] + ny[k] * vy[k] + nz * vz[k])) : 1 / (depths * nz);
+    }
+    for (int k = 0; k < 8; ++k) {
+        const bool finite = std::abs(scale[k]) <= std::numeric_limits<double>::max();
+        const double r_x = scale[k] * nx[k] * sample.x, r_y = scale[k] * ny[k] * sample.y;
+        to.r_x[k] = finite ? r_x : 0.0;
+        to.r_y[k] = finite ? r_y : 0.0;
+    }
+    for (int k = 0; k < 8; ++k) {
         const double x = ax[k] < -4 ? -4 : ax[k], y = ay[k] < -4 ? -4 : ay[k];
-        to.x[k] = ((x > 4 ? 4 : x) + 1) * 0.5 * across;
-        to.y[k] = ((y > 4 ? 4 : y) + 1) * 0.5 * down;
-        to.r[k] = perspective ? f.near * (f.far - vz[k]) / (vz[k] * depths) : (f.far - vz[k]) / depths;
-        const double scale =
-            perspective ? f.near * f.far / (depths * (nx * vx[k] + ny * vy[k] + nz * vz[k])) : 1 / (depths * nz);
-        const bool finite      = std::abs(scale) <= std::numeric_limits<double>::max();
-        to.r_x[k]              = finite ? scale * nx * sample.x : 0;
-        to.r_y[k]              = finite ? scale * ny * sample.y : 0;
-        per_depth[k]           = perspective ? f.near * f.far / (vz[k] * vz[k] * depths) : 1 / depths;
-        const double width     = widest * (perspective ? vz[k] : 1.0);
+        to.x[k]                = ((x > 4 ? 4 : x) + 1) * 0.5 * across;
+        to.y[k]                = ((y > 4 ? 4 : y) + 1) * 0.5 * down;
+        to.r[k]                = perspective ? near * (far - vz[k]) / (vz[k] * depths) : (far - vz[k]) / depths;
+        per_depth[k]           = perspective ? near * far / (vz[k] * vz[k] * depths) : 1 / depths;
+        const double width     = perspective ? widest * vz[k] : widest;
         const double per_width = width * per_depth[k];
         const double rx = std::abs(to.r_x[k]), ry = std::abs(to.r_y[k]);
         const double gradient = rx < ry ? ry : rx, snapping = (rx + ry) / kSnapsPerSample;
@@ -79,20 +85,50 @@ Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsign
         to.slack[k]    = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
         to.most[k]     = samples * kMostAutomatic * per_width;
         to.snapping[k] = snapping;
-        largest[k] =
-            std::sqrt(dot({points.px[k], points.py[k], points.pz[k]}, points.px[k], points.py[k], points.pz[k])) +
-            from + std::abs(vz[k]);
     }
-    if (bias.mode == BiasMode::manual) {
+    if (manual) {
         for (int k = 0; k < 8; ++k) to.slack[k] = to.most[k] = to.snapping[k] = 0;
         return to;
     }
     for (int k = 0; k < 8; ++k) {
-        if ((to.covered >> k & 1) == 0) continue;
+        const double length =
+            std::sqrt(points.px[k] * points.px[k] + points.py[k] * points.py[k] + points.pz[k] * points.pz[k]);
+        largest[k] = length + from + std::abs(vz[k]);
+    }
+    for (int k = 0; k < 8; ++k) {
         to.bias[k] += view.map.quantum(to.r[k]) + kPositionRounding * largest[k] * per_depth[k];
-        if (bias.mode == BiasMode::receiver_plane) to.bias[k] += to.snapping[k];
+        to.bias[k] += is_plane ? to.snapping[k] : 0.0;
     }
     return to;
+}
+
+}  // namespace
+
+Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsigned which, const Bias& bias,
+                         const Filter& filter) {
+    if (bias.normal_offset > 0) return one_by_one(view, points, which, bias, filter);
+    return view.frame.perspective ? receive_lanes<true>(view, points, which, bias, filter)
+                                  : receive_lanes<false>(view, points, which, bias, filter);
+}
+
+unsigned lit_lanes(const MapView& view, const Receivers8& p, BiasMode mode) {
+    const bool manual = mode == BiasMode::manual, automatic = mode == BiasMode::automatic;
+    Lanes x, y, bound;
+    for (int k = 0; k < 8; ++k) {
+        x[k] = std::floor(p.x[k]), y[k] = std::floor(p.y[k]);
+        const double plane = p.r[k] + p.r_x[k] * (x[k] + 0.5 - p.x[k]) + p.r_y[k] * (y[k] + 0.5 - p.y[k]);
+        const double above = p.r[k] - plane, eased = (above > 0 ? above : 0.0) + p.slack[k];
+        const double by = p.most[k] < eased ? p.most[k] : eased;
+        const double r  = (manual ? p.r[k] : automatic ? plane + by : plane) + p.bias[k];
+        bound[k]        = r > 0 ? r : 0.0;  // behind all that casts, r is negative
+    }
+    const double width = view.map.width(), height = view.map.height();
+    unsigned lit = p.covered;
+    for (int k = 0; k < 8; ++k) {
+        if ((p.covered >> k & 1) == 0 || x[k] < 0 || y[k] < 0 || x[k] >= width || y[k] >= height) continue;
+        if (view.map.nearness(static_cast<int>(x[k]), static_cast<int>(y[k])) > bound[k]) lit &= ~(1u << k);
+    }
+    return lit;
 }
 
 }  // namespace umbra

@@ -1,4 +1,5 @@
-// Where eight surface points lie in a depth map: `receive` in loops over lanes, the same bits.
+// Where eight surface points lie in a depth map, and whether one sample there blocks them: `receive` and `lit_share` in
+// loops over lanes, the same bits.
 #pragma once
 
 #include "umbra/shadows/maps/depth_lookup.h"
@@ -31,5 +32,8 @@ struct Receivers8 {
 /// `receive` of each lane k whose bit of `which` is set.
 [[nodiscard]] Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsigned which,
                                        const Bias& bias, const Filter& filter);
+
+/// Bit k: lane k is covered, and `lit_share` is 1 there, with a filter of one sample in a view without midpoints.
+[[nodiscard]] unsigned lit_lanes(const MapView& view, const Receivers8& receivers, BiasMode mode);
 
 }  // namespace umbra

@@ -201,10 +201,16 @@ void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibili
     const auto rotated_share = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
         return share(v, rotated(receiver, camera, p), p);
     };
-    if (rotation_ == Rotation::none)
-        look_up(*views_, points, light, bias_, filter_, out, share);
+    const auto one_sample = [&](std::size_t v, const Receivers8& receivers, const FacetPoints8&, float(&s)[8]) {
+        const unsigned lit = lit_lanes(views_->views()[v], receivers, bias_.mode);
+        for (int k = 0; k < 8; ++k) s[k] = (lit >> k & 1) != 0 ? 1.0f : 0.0f;
+    };
+    if (filter_.is_one_sample() && !is_soft_ && !map_options_.midpoints)
+        look_up(*views_, points, light, bias_, filter_, out, one_sample);
+    else if (rotation_ == Rotation::none)
+        look_up(*views_, points, light, bias_, filter_, out, point_by_point(share));
     else
-        look_up(*views_, points, light, bias_, filter_, out, rotated_share);
+        look_up(*views_, points, light, bias_, filter_, out, point_by_point(rotated_share));
 
     PointBatch traced;
     const PointBatch* const seen = picture(points, traced);

@@ -12,6 +12,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/maps/depth_lookup.h"
+#include "umbra/shadows/maps/penumbra.h"
 #include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -48,6 +49,113 @@ MapView map_of(const Blocks& blocks) {
 double share(const MapView& map, dvec2 at, const Filter& filter, dvec2 turn = {1, 0}) {
     return lit_share(map, {.x = at.x, .y = at.y, .r = 0.5, .r_x = 0, .r_y = 0, .bias = 0, .turn = turn},
                      BiasMode::manual, filter);
+}
+
+TEST(Kernels, PointsBesideTheMapSeeWhatReachesIntoTheirKernel) {
+    // All samples block. How much of a kernel lies in the map decides, on all four sides, up to where none does.
+    const MapView map               = map_of([](int, int) { return true; });
+    const std::vector<dvec2> points = even_disk(24);
+    int darkened = 0, lit = 0;
+    for (const Kernel kernel : {Kernel::grid, Kernel::disc, Kernel::castano3, Kernel::castano5, Kernel::castano7})
+        for (const int radius : {0, 1, 3, 20})
+            for (const bool bilinear : {false, true}) {
+                const Filter filter{kernel_radius(kernel, radius), bilinear, kernel, points};
+                for (double beyond = -2; beyond < filter.radius + 4; beyond += 0.31)
+                    for (const dvec2 at : {dvec2(-beyond, 20), dvec2(kSize + beyond, 20), dvec2(20, -beyond),
+                                           dvec2(20, kSize + beyond), dvec2(-beyond, -beyond)}) {
+                        double outside     = 0;
+                        const double whole = for_each_sample(at, {1, 0}, filter, [&](int i, int j, double weight) {
+                            if (i < 0 || j < 0 || i >= kSize || j >= kSize) outside += weight;
+                        });
+                        const double s     = share(map, at, filter);
+                        ASSERT_NEAR(s, outside / whole, 1e-6)
+                            << static_cast<int>(kernel) << ' ' << radius << ' ' << beyond;
+                        darkened += beyond > 0 && s < 1 ? 1 : 0;
+                        lit += s == 1 ? 1 : 0;
+                    }
+            }
+    EXPECT_GT(darkened, 500);
+    EXPECT_GT(lit, 500);
+}
+
+TEST(Kernels, SharesAreThoseOfTheirSamplesOneByOne) {
+    // Half of the samples block, without a pattern; discs of few points, squares of all sizes.
+    std::mt19937 random(5);
+    std::vector<bool> blocks(static_cast<std::size_t>(kSize) * kSize);
+    for (std::size_t i = 0; i < blocks.size(); ++i) blocks[i] = random() % 2 == 0;
+    const auto blocked = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < kSize && y < kSize && blocks[static_cast<std::size_t>(y * kSize + x)];
+    };
+    const MapView map = map_of(blocked);
+    std::uniform_real_distribution<double> place(-4, kSize + 4), turns(0, 2 * kPi);
+    for (const Kernel kernel : {Kernel::grid, Kernel::disc, Kernel::castano3, Kernel::castano5, Kernel::castano7})
+        for (int trial = 0; trial < 1500; ++trial) {
+            const std::vector<dvec2> points = even_disk(1 + trial % 11);
+            const Filter filter{kernel_radius(kernel, trial % 18), trial % 2 == 0, kernel, points};
+            const double angle = turns(random);
+            const dvec2 at(place(random), place(random)), turn(std::cos(angle), std::sin(angle));
+            double lit         = 0;
+            const double whole = for_each_sample(at, turn, filter, [&](int i, int j, double weight) {
+                if (!blocked(i, j)) lit += weight;
+            });
+            ASSERT_NEAR(share(map, at, filter, turn), lit / whole, 1e-6)
+                << static_cast<int>(kernel) << " radius " << filter.radius << " points " << points.size();
+        }
+}
+
+TEST(Kernels, PcssTakesTheMeanOfTheDepthsThatItsSearchFinds) {
+    // Every sample blocks, each at another depth; what is right comes from one point of the disc after the other.
+    std::mt19937 random(6);
+    std::uniform_real_distribution<double> depth(1.5, 6), unit(0, 1), turns(0, 2 * kPi);
+    LightFrame frame;
+    frame.near = 1, frame.far = 10, frame.half = dvec2(0.5);
+    std::vector<vec3> positions;
+    std::vector<uvec3> triangles;
+    for (int y = 0; y < kSize; ++y)
+        for (int x = 0; x < kSize; ++x) {
+            if (random() % 3 == 0) continue;  // holes
+            const auto first = static_cast<std::uint32_t>(positions.size());
+            const double z   = depth(random);
+            for (const dvec2 by : {dvec2(0, 0), dvec2(1, 0), dvec2(1, 1), dvec2(0, 1)}) {
+                const dvec2 at = (dvec2(x, y) + by) / static_cast<double>(kSize) - 0.5;
+                positions.emplace_back(at.x * z, at.y * z, z);
+            }
+            triangles.emplace_back(first, first + 1, first + 2);
+            triangles.emplace_back(first, first + 2, first + 3);
+        }
+    MapView view{frame, DepthMap(kSize, kSize, DepthFormat::float32)};
+    const std::span<const uvec3> run(triangles);
+    view.map.draw(frame.clip_from_world(), positions, std::span(&run, 1), Faces::all);
+    int partly = 0;
+    for (int trial = 0; trial < 2000; ++trial) {
+        const std::vector<dvec2> points = even_disk(3 + trial % 9);
+        const SoftFilter filter{points, 0.05 + 0.4 * unit(random), 12};
+        const double z = 2 + 7 * unit(random), angle = turns(random);
+        Receiver p{.x    = kSize * unit(random),
+                   .y    = kSize * unit(random),
+                   .r    = frame.nearness(z),
+                   .r_x  = 0,
+                   .r_y  = 0,
+                   .bias = 0};
+        p.turn             = {std::cos(angle), std::sin(angle)};
+        const auto blocker = [&](dvec2 offset) {
+            const int x       = static_cast<int>(std::floor(p.x + offset.x)),
+                      y       = static_cast<int>(std::floor(p.y + offset.y));
+            const bool in_map = x >= 0 && y >= 0 && x < kSize && y < kSize;
+            return in_map && view.map.nearness(x, y) > p.r ? frame.depth(view.map.nearness(x, y)) : 0;
+        };
+        const auto reach = [&](double at) { return penumbra_reach(view, dvec2(filter.size), at, z, filter.texels); };
+        double sum       = 0;
+        int found = 0, lit = 0;
+        for (const dvec2 point : points)
+            if (const double d = blocker(reach(frame.near) * turned(point, p.turn)); d > 0) sum += d, ++found;
+        if (found > 0)
+            for (const dvec2 point : points) lit += blocker(reach(sum / found) * turned(point, p.turn)) == 0 ? 1 : 0;
+        const double expected = found == 0 ? 1 : static_cast<double>(lit) / static_cast<double>(points.size());
+        ASSERT_NEAR(soft_share(view, p, z, BiasMode::manual, filter), expected, 1e-6) << trial;
+        partly += expected > 0 && expected < 1 ? 1 : 0;
+    }
+    EXPECT_GT(partly, 500);
 }
 
 struct Castano {
