@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
 namespace umbra {
 namespace {
 
@@ -48,6 +52,30 @@ TEST(Groups, KeepNeighboursTogether) {
         EXPECT_EQ(right - left, 3u);
         EXPECT_EQ(bottom - top, 3u);
     }
+}
+
+TEST(Groups, ComeInTheCurvesOrderWherePatchesHaveOneGroup) {
+    // Patches larger and smaller than squares of 4 x 4 pixels, and some points that are in no group.
+    for (const auto& [width, height] : {std::pair{200, 131}, {71, 35}, {6, 9}, {4, 4}})
+        for (const std::uint32_t patch : {1u, 3u, 4u, 8u, 37u, 500u}) {
+            const auto of = [&, pitch = static_cast<std::uint32_t>(width)](std::size_t i) -> std::size_t {
+                const auto at = static_cast<std::uint32_t>(i);
+                return (at % pitch / patch + 2 * (at / pitch / patch)) % 5;
+            };
+            const PointBatch points = batch(width, height, true);
+            std::vector<std::uint32_t> order(points.size());
+            std::iota(order.begin(), order.end(), 0u);
+            std::ranges::sort(order, {}, [&, pitch = static_cast<std::uint32_t>(width)](std::uint32_t i) {
+                return morton_code(i % pitch, i / pitch);
+            });
+            const auto groups = grouped(points, 3, of);
+            for (std::size_t g = 0; g < 3; ++g) {
+                std::vector<std::uint32_t> expected;
+                std::ranges::copy_if(order, std::back_inserter(expected), [&](std::uint32_t i) { return of(i) == g; });
+                EXPECT_TRUE(std::ranges::equal(groups[g], expected))
+                    << width << " x " << height << ", patches of " << patch;
+            }
+        }
 }
 
 TEST(Groups, AreTheSameForAnyNumberOfThreads) {
