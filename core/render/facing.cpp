@@ -34,8 +34,7 @@ Facing facing_of(const Scene& scene, LightId id, TriangleId t, bool flipped) {
     return turn * side_of_light(light, a, b, c) > 0 ? Facing::front : Facing::away;
 }
 
-bool centre_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
-    if (points.facing[light][i] != Facing::partly) return false;
+bool centre_of_cut_light_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
     const TriangleId t = points.triangle[i];
     const int side     = side_of_light(scene.lights[light], scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
     return points.flipped[i] ? side >= 0 : side <= 0;

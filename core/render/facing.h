@@ -14,9 +14,15 @@ namespace umbra {
 /// Which part of the light a point of triangle t sees, whose normal is `flipped` against the triangle's winding. Exact.
 [[nodiscard]] Facing facing_of(const Scene& scene, LightId light, TriangleId t, bool flipped);
 
+/// centre_is_behind where the plane of point i cuts the light.
+[[nodiscard]] bool centre_of_cut_light_is_behind(const Scene& scene, const PointBatch& points, LightId light,
+                                                 std::size_t i);
+
 /// Whether the centre of an area light that the plane of point i cuts is behind that plane, or in it: what methods ask
 /// that take an area light as one point, in its centre, whose S_j is then 0 there. False where the plane does not cut
 /// the light. Exact. `points.facing[light]` is filled.
-[[nodiscard]] bool centre_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i);
+[[nodiscard]] inline bool centre_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
+    return points.facing[light][i] == Facing::partly && centre_of_cut_light_is_behind(scene, points, light, i);
+}
 
 }  // namespace umbra

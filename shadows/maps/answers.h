@@ -17,12 +17,10 @@ template <class Share>
 void look_up(const LightViews& views, const PointBatch& points, LightId light, const Bias& bias, const Filter& filter,
              Visibility out, const Share& share) {
     const std::span<const MapView> all = views.views();
-    const Facing* const facing         = points.facing[light].data();
     for_each_eight_facets(views.scene(), points, light, [&](std::size_t first, unsigned which, const FacetPoints8& at) {
         for (int k = 0; k < 8; ++k) {
             const std::size_t i = first + static_cast<std::size_t>(k);
-            if ((which >> k & 1) == 0 || facing[i] != Facing::partly) continue;
-            if (!centre_is_behind(views.scene(), points, light, i)) continue;
+            if ((which >> k & 1) == 0 || !centre_is_behind(views.scene(), points, light, i)) continue;
             out.s[i] = 0;
             which &= ~(1u << k);
         }

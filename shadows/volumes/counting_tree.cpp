@@ -4,6 +4,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel_sort.h"
@@ -29,6 +30,40 @@ ViewFrame looking_at(dvec3 target, dvec3 origin) {
     return view;
 }
 
+/// Limits of the coordinates of points that ask, and of their distances along a line of sight, in eight lanes.
+struct EightExtents {
+    using Floats  = float __attribute__((vector_size(8 * sizeof(float))));
+    using Doubles = double __attribute__((vector_size(8 * sizeof(double))));
+
+    Floats low[3], high[3];
+    Doubles nearest = Doubles{} + std::numeric_limits<double>::infinity();
+
+    EightExtents() {
+        for (int axis = 0; axis < 3; ++axis) {
+            low[axis]  = Floats{} + std::numeric_limits<float>::infinity();
+            high[axis] = -low[axis];
+        }
+    }
+
+    /// Points i to i + 7.
+    void add(const PointBatch& points, LightId light, std::size_t i, const dvec3& eye, const dvec3& forward) {
+        Floats nowhere;  // 0 where a point asks, else infinite
+        for (int k = 0; k < 8; ++k)
+            nowhere[k] =
+                points.asks(light, i + static_cast<std::size_t>(k)) ? 0 : std::numeric_limits<float>::infinity();
+        Doubles ahead = __builtin_convertvector(nowhere, Doubles);
+        for (int axis = 0; axis < 3; ++axis) {
+            Floats at;
+            std::memcpy(&at, &(axis == 0 ? points.px : axis == 1 ? points.py : points.pz)[i], sizeof at);
+            const Floats above = at + nowhere, below = at - nowhere;
+            low[axis]  = above < low[axis] ? above : low[axis];
+            high[axis] = below > high[axis] ? below : high[axis];
+            ahead += (__builtin_convertvector(at, Doubles) - eye[axis]) * forward[axis];
+        }
+        nearest = ahead < nearest ? ahead : nearest;
+    }
+};
+
 /// The eye's view where all points lie well in front of it, but from a little beside the eye: so that a plane or an
 /// edge that contains the eye, as in scenes laid out on a grid, or a light at the eye, is no special case. A far eye
 /// comes nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye:
@@ -41,16 +76,27 @@ ViewFrame choose_view(const PointBatch& points, LightId light) {
     };
     constexpr std::size_t run = 16384;
     std::vector<Extent> extents((points.size() + run - 1) / run);
+    const dvec3 eye     = perspective ? points.raster->eye : dvec3(0);
+    const dvec3 forward = perspective ? points.raster->forward : dvec3(0);
     parallel_ranges(extents.size(), 1, [&](std::size_t first, std::size_t last) {
-        for (std::size_t r = first; r < last; ++r)
-            for (std::size_t i = r * run; i < std::min(points.size(), (r + 1) * run); ++i) {
-                if (!points.asks(light, i)) continue;
-                extents[r].box = extend(extents[r].box, points.position(i));
-                if (perspective)
-                    extents[r].nearest =
-                        std::min(extents[r].nearest,
-                                 glm::dot(dvec3(points.position(i)) - points.raster->eye, points.raster->forward));
+        for (std::size_t r = first; r < last; ++r) {
+            EightExtents eight;
+            const std::size_t end = std::min(points.size(), (r + 1) * run);
+            std::size_t i         = r * run;
+            for (; i + 8 <= end; i += 8) eight.add(points, light, i, eye, forward);
+            for (int k = 0; k < 8; ++k) {
+                extents[r].box.min =
+                    glm::min(extents[r].box.min, vec3(eight.low[0][k], eight.low[1][k], eight.low[2][k]));
+                extents[r].box.max =
+                    glm::max(extents[r].box.max, vec3(eight.high[0][k], eight.high[1][k], eight.high[2][k]));
+                extents[r].nearest = std::min(extents[r].nearest, eight.nearest[k]);
             }
+            for (; i < end; ++i) {
+                if (!points.asks(light, i)) continue;
+                extents[r].box     = extend(extents[r].box, points.position(i));
+                extents[r].nearest = std::min(extents[r].nearest, glm::dot(dvec3(points.position(i)) - eye, forward));
+            }
+        }
     });
     Box box;
     double nearest = std::numeric_limits<double>::infinity();
