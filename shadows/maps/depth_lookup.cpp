@@ -100,6 +100,18 @@ void floor_of(const FourDoubles& v, FourDoubles& whole) {
     whole                   = whole > v ? whole - 1 : whole;
 }
 
+/// What four samples are compared with, as is_blocked has it, where the point's plane has the nearness `plane`.
+void find_reference(const Receiver& p, BiasMode mode, const FourDoubles& plane, FourDoubles& r) {
+    constexpr FourDoubles kZero{};
+    r = mode == BiasMode::manual ? kZero + p.r : plane;
+    if (mode == BiasMode::automatic) {
+        const FourDoubles above = p.r - plane, eased = (above > 0 ? above : kZero) + p.slack;
+        r += p.most < eased ? kZero + p.most : eased;
+    }
+    r += p.bias;
+    r = r > 0 ? r : kZero;
+}
+
 /// Asks the four samples in which `at` lies.
 void ask(const MapView& view, const Receiver& p, const FourPlaces& at, BiasMode mode, FourSamples& found) {
     constexpr FourDoubles kZero{};
@@ -107,17 +119,10 @@ void ask(const MapView& view, const Receiver& p, const FourPlaces& at, BiasMode 
     floor_of(at.x, x), floor_of(at.y, y);
     const double width = view.map.width(), height = view.map.height();
     const FourMasks in_map = (x >= 0) & (y >= 0) & (x < width) & (y < height);
-    FourDoubles r          = kZero + p.r;
-    if (mode != BiasMode::manual) {
-        r = p.r + p.r_x * (x + 0.5 - p.x) + p.r_y * (y + 0.5 - p.y);
-        if (mode == BiasMode::automatic) {
-            const FourDoubles above = p.r - r, eased = (above > 0 ? above : kZero) + p.slack;
-            r += p.most < eased ? kZero + p.most : eased;
-        }
-    }
-    r += p.bias;
+    FourDoubles r;
+    find_reference(p, mode, p.r + p.r_x * (x + 0.5 - p.x) + p.r_y * (y + 0.5 - p.y), r);
     view.map.nearness(__builtin_convertvector(in_map ? y * width + x : kZero, FourInts), found.nearness);
-    found.blocked = in_map & (found.nearness > (r > 0 ? r : kZero));
+    found.blocked = in_map & (found.nearness > r);
 }
 
 /// Calls body(places, n) for a disc's points, four at a time, of which the first n count: as far from the receiver as
@@ -181,18 +186,10 @@ double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel&
     for (int j = 0; j < square.side; ++j) {
         const double down = p.r_y * (square.y + j + 0.5 - p.y), of_row = square.down[j];
         for (int b = 0; b < kBlocks; ++b) {
-            FourDoubles nearest;
+            FourDoubles nearest, r;
             view.map.nearness(square.x + kFour * b, square.y + j, nearest);
-            FourDoubles r = kZero + p.r;
-            if constexpr (mode != BiasMode::manual) {
-                r = across[b] + down;
-                if constexpr (mode == BiasMode::automatic) {
-                    const FourDoubles above = p.r - r, eased = (above > 0 ? above : kZero) + p.slack;
-                    r += p.most < eased ? kZero + p.most : eased;
-                }
-            }
-            r += p.bias;
-            lit += nearest > (r > 0 ? r : kZero) ? kZero : weight[b] * of_row;
+            find_reference(p, mode, across[b] + down, r);
+            lit += nearest > r ? kZero : weight[b] * of_row;
         }
     }
     return (lit[0] + lit[1]) + (lit[2] + lit[3]);
