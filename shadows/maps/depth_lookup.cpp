@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 
 #include "umbra/shadows/maps/penumbra.h"
 
@@ -94,6 +95,17 @@ struct FourSamples {
     FourMasks blocked;
 };
 
+/// Calls body with the mode as a constant.
+template <class Body>
+auto with_mode(BiasMode mode, const Body& body) {
+    switch (mode) {
+        case BiasMode::manual: return body(std::integral_constant<BiasMode, BiasMode::manual>());
+        case BiasMode::receiver_plane: return body(std::integral_constant<BiasMode, BiasMode::receiver_plane>());
+        case BiasMode::automatic: break;
+    }
+    return body(std::integral_constant<BiasMode, BiasMode::automatic>());
+}
+
 void floor_of(const FourDoubles& v, FourDoubles& whole) {
     constexpr double kShift = 0x1.8p52;
     whole                   = (v + kShift) - kShift;
@@ -101,7 +113,8 @@ void floor_of(const FourDoubles& v, FourDoubles& whole) {
 }
 
 /// What four samples are compared with, as is_blocked has it, where the point's plane has the nearness `plane`.
-void find_reference(const Receiver& p, BiasMode mode, const FourDoubles& plane, FourDoubles& r) {
+template <BiasMode mode>
+void find_reference(const Receiver& p, const FourDoubles& plane, FourDoubles& r) {
     constexpr FourDoubles kZero{};
     r = mode == BiasMode::manual ? kZero + p.r : plane;
     if (mode == BiasMode::automatic) {
@@ -112,15 +125,17 @@ void find_reference(const Receiver& p, BiasMode mode, const FourDoubles& plane, 
     r = r > 0 ? r : kZero;
 }
 
-/// Asks the four samples in which `at` lies.
-void ask(const MapView& view, const Receiver& p, const FourPlaces& at, BiasMode mode, FourSamples& found) {
+/// Asks the four samples in which `at` lies. Inline, so that what it finds stays in registers.
+template <BiasMode mode>
+[[gnu::always_inline]] inline void ask(const MapView& view, const Receiver& p, const FourPlaces& at,
+                                       FourSamples& found) {
     constexpr FourDoubles kZero{};
     FourDoubles x, y;
     floor_of(at.x, x), floor_of(at.y, y);
     const double width = view.map.width(), height = view.map.height();
     const FourMasks in_map = (x >= 0) & (y >= 0) & (x < width) & (y < height);
     FourDoubles r;
-    find_reference(p, mode, p.r + p.r_x * (x + 0.5 - p.x) + p.r_y * (y + 0.5 - p.y), r);
+    find_reference<mode>(p, p.r + p.r_x * (x + 0.5 - p.x) + p.r_y * (y + 0.5 - p.y), r);
     view.map.nearness(__builtin_convertvector(in_map ? y * width + x : kZero, FourInts), found.nearness);
     found.blocked = in_map & (found.nearness > r);
 }
@@ -140,34 +155,80 @@ void for_each_four(const Receiver& p, std::span<const dvec2> points, dvec2 withi
     }
 }
 
-/// How many of the first n are blocked.
-int count(const FourMasks& blocked, int n) {
-    constexpr FourMasks kLane{0, 1, 2, 3};
-    const FourMasks counted = blocked & (kLane < n);
-    return static_cast<int>(-((counted[0] + counted[1]) + (counted[2] + counted[3])));
-}
+/// Counts which of four are blocked, lane by lane.
+class BlockedCount {
+public:
+    /// The first n of four.
+    void add(const FourMasks& blocked, int n) {
+        constexpr FourMasks kLane{0, 1, 2, 3};
+        lanes_ -= blocked & (kLane < n);
+    }
+    [[nodiscard]] int all() const { return static_cast<int>((lanes_[0] + lanes_[1]) + (lanes_[2] + lanes_[3])); }
+
+private:
+    FourMasks lanes_{};
+};
 
 /// The share of a disc's samples that are not blocked, in a view without midpoints.
-double lit_in_disc(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
+template <BiasMode mode>
+double lit_in_disc(const MapView& view, const Receiver& p, const Filter& filter) {
     FourSamples samples;
+    BlockedCount blocked;
     double lit = 0;
     for_each_four(p, filter.points, dvec2(filter.radius + 0.5), [&](const FourPlaces& at, int n) {
         if (!filter.bilinear) {
-            ask(view, p, at, mode, samples);
-            lit += n - count(samples.blocked, n);
+            ask<mode>(view, p, at, samples);
+            blocked.add(samples.blocked, n);
             return;
         }
         for (int k = 0; k < n; ++k) {
             const double x = std::floor(at.x[k] - 0.5), y = std::floor(at.y[k] - 0.5);
             const double fx = at.x[k] - 0.5 - x, fy = at.y[k] - 0.5 - y;
             const FourPlaces corners{FourDoubles{x, x + 1, x, x + 1}, FourDoubles{y, y, y + 1, y + 1}};
-            ask(view, p, corners, mode, samples);
+            ask<mode>(view, p, corners, samples);
             const FourDoubles weights{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
             const FourDoubles counts = samples.blocked ? FourDoubles{} : weights;
             lit += (counts[0] + counts[1]) + (counts[2] + counts[3]);
         }
     });
-    return lit / static_cast<double>(filter.points.size());
+    const auto whole = static_cast<double>(filter.points.size());
+    return (filter.bilinear ? lit : whole - blocked.all()) / whole;
+}
+
+/// soft_share, of any view.
+template <BiasMode mode, bool midpoints>
+float lit_softly(const MapView& view, const Receiver& receiver, double depth, const SoftFilter& filter) {
+    const auto reach = [&](double z) { return penumbra_reach(view, dvec2(filter.size), z, depth, filter.texels); };
+    FourSamples samples{};
+    const auto ask_all = [&](const FourPlaces& at, int n) {
+        if constexpr (!midpoints) return ask<mode>(view, receiver, at, samples);
+        for (int k = 0; k < n; ++k) {
+            const ivec2 sample(std::floor(at.x[k]), std::floor(at.y[k]));
+            samples.blocked[k] = is_blocked(view, receiver, sample.x, sample.y, mode) ? -1 : 0;
+            if (samples.blocked[k] != 0) samples.nearness[k] = view.map.nearness(sample.x, sample.y);
+        }
+    };
+    // Where no sample of the search lies in the map, none blocks.
+    const dvec2 search = reach(view.frame.near), at_map{receiver.x, receiver.y};
+    const dvec2 size(view.map.width(), view.map.height());
+    if (glm::any(glm::lessThan(at_map + search, dvec2(-1))) || glm::any(glm::greaterThan(at_map - search, size + 1.0)))
+        return 1;
+    double sum = 0;
+    BlockedCount blockers;
+    for_each_four(receiver, filter.points, search, [&](const FourPlaces& at, int n) {
+        ask_all(at, n);
+        blockers.add(samples.blocked, n);
+        for (int k = 0; k < n; ++k)
+            if (samples.blocked[k] != 0) sum += view.frame.depth(samples.nearness[k]);
+    });
+    if (blockers.all() == 0) return 1;
+    BlockedCount blocked;
+    for_each_four(receiver, filter.points, reach(sum / blockers.all()), [&](const FourPlaces& at, int n) {
+        ask_all(at, n);
+        blocked.add(samples.blocked, n);
+    });
+    const int whole = static_cast<int>(filter.points.size());
+    return static_cast<float>(whole - blocked.all()) / static_cast<float>(whole);
 }
 
 /// The weight of the square's samples that are not blocked: is_blocked of each, with what the samples of a column and
@@ -188,7 +249,7 @@ double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel&
         for (int b = 0; b < kBlocks; ++b) {
             FourDoubles nearest, r;
             view.map.nearness(square.x + kFour * b, square.y + j, nearest);
-            find_reference(p, mode, across[b] + down, r);
+            find_reference<mode>(p, across[b] + down, r);
             lit += nearest > r ? kZero : weight[b] * of_row;
         }
     }
@@ -197,12 +258,7 @@ double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel&
 
 template <int kBlocks>
 double lit_in_square(const MapView& view, const Receiver& p, BiasMode mode, const SquareKernel& square) {
-    switch (mode) {
-        case BiasMode::manual: return lit_in_square<kBlocks, BiasMode::manual>(view, p, square);
-        case BiasMode::receiver_plane: return lit_in_square<kBlocks, BiasMode::receiver_plane>(view, p, square);
-        case BiasMode::automatic: break;
-    }
-    return lit_in_square<kBlocks, BiasMode::automatic>(view, p, square);
+    return with_mode(mode, [&](auto constant) { return lit_in_square<kBlocks, constant.value>(view, p, square); });
 }
 
 }  // namespace
@@ -228,7 +284,8 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
         }
     }
     if (filter.kernel == Kernel::disc && !view.midpoint)
-        return static_cast<float>(std::clamp(lit_in_disc(view, p, mode, filter), 0.0, 1.0));
+        return static_cast<float>(std::clamp(
+            with_mode(mode, [&](auto constant) { return lit_in_disc<constant.value>(view, p, filter); }), 0.0, 1.0));
     double lit         = 0;
     const double whole = for_each_sample({p.x, p.y}, p.turn, filter, [&](int i, int j, double weight) {
         if (!is_blocked(view, p, i, j, mode)) lit += weight;
@@ -237,34 +294,10 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
 }
 
 float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode, const SoftFilter& filter) {
-    const auto reach = [&](double z) { return penumbra_reach(view, dvec2(filter.size), z, depth, filter.texels); };
-    FourSamples samples{};
-    const auto ask_all = [&](const FourPlaces& at, int n) {
-        if (!view.midpoint) return ask(view, receiver, at, mode, samples);
-        for (int k = 0; k < n; ++k) {
-            const ivec2 sample(std::floor(at.x[k]), std::floor(at.y[k]));
-            samples.blocked[k] = is_blocked(view, receiver, sample.x, sample.y, mode) ? -1 : 0;
-            if (samples.blocked[k] != 0) samples.nearness[k] = view.map.nearness(sample.x, sample.y);
-        }
-    };
-    double sum   = 0;
-    int blockers = 0;
-    for_each_four(receiver, filter.points, reach(view.frame.near), [&](const FourPlaces& at, int n) {
-        ask_all(at, n);
-        if (count(samples.blocked, n) == 0) return;
-        for (int k = 0; k < n; ++k) {
-            if (samples.blocked[k] == 0) continue;
-            sum += view.frame.depth(samples.nearness[k]);
-            ++blockers;
-        }
+    return with_mode(mode, [&](auto constant) {
+        return view.midpoint ? lit_softly<constant.value, true>(view, receiver, depth, filter)
+                             : lit_softly<constant.value, false>(view, receiver, depth, filter);
     });
-    if (blockers == 0) return 1;
-    int lit = 0;
-    for_each_four(receiver, filter.points, reach(sum / blockers), [&](const FourPlaces& at, int n) {
-        ask_all(at, n);
-        lit += n - count(samples.blocked, n);
-    });
-    return static_cast<float>(lit) / static_cast<float>(filter.points.size());
 }
 
 std::optional<ivec2> blocked_sample(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {

@@ -104,9 +104,10 @@ TEST(Kernels, SharesAreThoseOfTheirSamplesOneByOne) {
 }
 
 TEST(Kernels, PcssTakesTheMeanOfTheDepthsThatItsSearchFinds) {
-    // Every sample blocks, each at another depth; what is right comes from one point of the disc after the other.
+    // Every sample blocks, each at another depth; what is right comes from one point of the disc after the other. Some
+    // receivers lie beside the map, and see what their search reaches there.
     std::mt19937 random(6);
-    std::uniform_real_distribution<double> depth(1.5, 6), unit(0, 1), turns(0, 2 * kPi);
+    std::uniform_real_distribution<double> depth(1.5, 6), unit(0, 1), turns(0, 2 * kPi), place(-0.3, 1.3);
     LightFrame frame;
     frame.near = 1, frame.far = 10, frame.half = dvec2(0.5);
     std::vector<vec3> positions;
@@ -131,8 +132,8 @@ TEST(Kernels, PcssTakesTheMeanOfTheDepthsThatItsSearchFinds) {
         const std::vector<dvec2> points = even_disk(3 + trial % 9);
         const SoftFilter filter{points, 0.05 + 0.4 * unit(random), 12};
         const double z = 2 + 7 * unit(random), angle = turns(random);
-        Receiver p{.x    = kSize * unit(random),
-                   .y    = kSize * unit(random),
+        Receiver p{.x    = kSize * place(random),
+                   .y    = kSize * place(random),
                    .r    = frame.nearness(z),
                    .r_x  = 0,
                    .r_y  = 0,
