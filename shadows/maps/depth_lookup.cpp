@@ -107,9 +107,8 @@ auto with_mode(BiasMode mode, const Body& body) {
 }
 
 void floor_of(const FourDoubles& v, FourDoubles& whole) {
-    constexpr double kShift = 0x1.8p52;
-    whole                   = (v + kShift) - kShift;
-    whole                   = whole > v ? whole - 1 : whole;
+    round_four(v, whole);
+    whole = whole > v ? whole - 1 : whole;
 }
 
 /// What four samples are compared with, as is_blocked has it, where the point's plane has the nearness `plane`.

@@ -79,21 +79,13 @@ void clip(Polygon& polygon) {
 
 // ---- lanes ---------------------------------------------------------------------------------------------------------
 
-#define UMBRA_INLINE inline __attribute__((always_inline))
+[[gnu::always_inline]] inline void spread(double value, Lanes& lanes) { lanes = Lanes{} + value; }
 
-UMBRA_INLINE void spread(double value, Lanes& lanes) { lanes = Lanes{} + value; }
+[[gnu::always_inline]] inline void min_lanes(const Lanes& a, const Lanes& b, Lanes& least) { least = a < b ? a : b; }
 
-/// To the nearest whole number, of numbers below 2^51.
-UMBRA_INLINE void round_lanes(const Lanes& v, Lanes& rounded) {
-    constexpr double kShift = 0x1.8p52;
-    rounded                 = (v + kShift) - kShift;
-}
+[[gnu::always_inline]] inline void max_lanes(const Lanes& a, const Lanes& b, Lanes& most) { most = a > b ? a : b; }
 
-UMBRA_INLINE void min_lanes(const Lanes& a, const Lanes& b, Lanes& least) { least = a < b ? a : b; }
-
-UMBRA_INLINE void max_lanes(const Lanes& a, const Lanes& b, Lanes& most) { most = a > b ? a : b; }
-
-UMBRA_INLINE bool any(const Masks& m) { return ((m[0] | m[1]) | (m[2] | m[3])) != 0; }
+[[gnu::always_inline]] inline bool any(const Masks& m) { return ((m[0] | m[1]) | (m[2] | m[3])) != 0; }
 
 // ---- spans ---------------------------------------------------------------------------------------------------------
 
@@ -111,7 +103,8 @@ struct Edges {
     Lanes x_first, x_last, y_first, y_last;  ///< samples of the bounding box that lie in the map
 };
 
-UMBRA_INLINE void find_edge(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by, int k, Edges& e) {
+[[gnu::always_inline]] inline void find_edge(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by, int k,
+                                             Edges& e) {
     const Lanes zero{};
     const Lanes dy = by - ay;
     e.dx[k]        = bx - ax;
@@ -123,8 +116,8 @@ UMBRA_INLINE void find_edge(const Lanes& ax, const Lanes& ay, const Lanes& bx, c
 }
 
 /// All but the bounding box.
-UMBRA_INLINE void find_edges(const std::array<Lanes, 3>& x, const std::array<Lanes, 3>& y,
-                             const std::array<Lanes, 3>& r, Edges& e) {
+[[gnu::always_inline]] inline void find_edges(const std::array<Lanes, 3>& x, const std::array<Lanes, 3>& y,
+                                              const std::array<Lanes, 3>& r, Edges& e) {
     find_edge(x[1], y[1], x[2], y[2], 0, e);
     find_edge(x[2], y[2], x[0], y[0], 1, e);
     find_edge(x[0], y[0], x[1], y[1], 2, e);
@@ -145,7 +138,8 @@ UMBRA_INLINE void find_edges(const std::array<Lanes, 3>& x, const std::array<Lan
 }
 
 /// What rows y cover, a row a lane: samples [first, last], which may be empty, and the nearness at `first`.
-UMBRA_INLINE void find_spans(const Edges& e, const Lanes& y, Lanes& first, Lanes& last, Lanes& r_first) {
+[[gnu::always_inline]] inline void find_spans(const Edges& e, const Lanes& y, Lanes& first, Lanes& last,
+                                              Lanes& r_first) {
     const Lanes zero{};
     const Lanes before = e.x_first - 1, after = e.x_last + 1;
     std::array<Lanes, 3> value;  // E at x = 0
@@ -157,7 +151,7 @@ UMBRA_INLINE void find_spans(const Edges& e, const Lanes& y, Lanes& first, Lanes
         // The quotient may be off by a rounding, and the nearest whole number may be on either side: neighbours settle
         // it exactly, towards the inside and then back.
         Lanes at = c * e.towards[k];
-        round_lanes(at, at);
+        round_four(at, at);
         max_lanes(at, before, at);
         min_lanes(at, after, at);
         at += e.ax[k] * at + c < zero ? e.inwards[k] : zero;
@@ -179,7 +173,7 @@ UMBRA_INLINE void find_spans(const Edges& e, const Lanes& y, Lanes& first, Lanes
 // ---- depths --------------------------------------------------------------------------------------------------------
 
 template <DepthFormat format>
-UMBRA_INLINE void encode(const Lanes& r, std::uint32_t far_word, FourWords& bits) {
+[[gnu::always_inline]] inline void encode(const Lanes& r, std::uint32_t far_word, FourWords& bits) {
     if constexpr (format == DepthFormat::float32) {
         const FourFloats kept = __builtin_convertvector(r, FourFloats);
         bits                  = far_word - reinterpret_cast<FourWords>(kept);
@@ -190,7 +184,7 @@ UMBRA_INLINE void encode(const Lanes& r, std::uint32_t far_word, FourWords& bits
 }
 
 template <DepthFormat format>
-UMBRA_INLINE std::uint32_t encode_one(double r, std::uint32_t far_word) {
+[[gnu::always_inline]] inline std::uint32_t encode_one(double r, std::uint32_t far_word) {
     if constexpr (format == DepthFormat::float32) return far_word - std::bit_cast<std::uint32_t>(static_cast<float>(r));
     return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>((1 - r) * far_word + 0x1p52));
 }
@@ -217,7 +211,7 @@ using RowBits = std::uint32_t __attribute__((vector_size(8 * sizeof(std::int32_t
 constexpr RowBits kFirstRow{1, 1 << 8, 1 << 16, 1 << 24, 1, 1 << 8, 1 << 16, 1 << 24};
 
 /// Bit 8 y + x of the result is row y of column x.
-UMBRA_INLINE std::uint64_t row_by_row(const RowBits& columns) {
+[[gnu::always_inline]] inline std::uint64_t row_by_row(const RowBits& columns) {
     std::array<std::uint64_t, 4> pairs;
     std::memcpy(pairs.data(), &columns, sizeof columns);
     const std::uint64_t left = pairs[0] | pairs[1], right = pairs[2] | pairs[3];
@@ -409,8 +403,8 @@ void Snapper<format>::snap_four(std::span<const uvec3> triangles) {
     const double width = drawing_.width, height = drawing_.height;
     for (int k = 0; k < 3; ++k) {
         const Lanes inverse_w = 1 / W[k];
-        round_lanes(((X[k] * inverse_w + 1) * width - 1) * (kSnapsPerSample / 2.0), x[k]);
-        round_lanes(((Y[k] * inverse_w + 1) * height - 1) * (kSnapsPerSample / 2.0), y[k]);
+        round_four(((X[k] * inverse_w + 1) * width - 1) * (kSnapsPerSample / 2.0), x[k]);
+        round_four(((Y[k] * inverse_w + 1) * height - 1) * (kSnapsPerSample / 2.0), y[k]);
         r[k] = R[k] * inverse_w;
     }
     place(x, y, r, drawn, from.data());
@@ -430,7 +424,7 @@ void Snapper<format>::clip_and_snap(const std::array<std::array<Lanes, 3>, 4>& c
             const double inverse_w = 1 / v.w;
             Lanes at{((v.x * inverse_w + 1) * drawing_.width - 1) * (kSnapsPerSample / 2.0),
                      ((v.y * inverse_w + 1) * drawing_.height - 1) * (kSnapsPerSample / 2.0)};
-            round_lanes(at, at);
+            round_four(at, at);
             x[k][0] = at[0], y[k][0] = at[1], r[k][0] = v.z * inverse_w;
         }
         const std::array<const uvec3*, kLanes> all{from, from, from, from};
@@ -453,8 +447,8 @@ void Snapper<format>::place(const std::array<Lanes, 3>& x, const std::array<Lane
         max_lanes(high, v[2], high);
         low *= 1.0 / kSnapsPerSample;
         high *= 1.0 / kSnapsPerSample;
-        round_lanes(low, first);
-        round_lanes(high, last);
+        round_four(low, first);
+        round_four(high, last);
         first = first < low ? first + 1 : first;
         last  = last > high ? last - 1 : last;
         narrow &= last - first < small;
@@ -553,8 +547,6 @@ void Snapper<format>::add_narrow(const Edges& e, const Masks& drawn) {
         }
     }
 }
-
-#undef UMBRA_INLINE
 
 /// Hands `keep` all samples that triangles cover, each once a triangle.
 template <class Keep>
