@@ -5,6 +5,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <span>
 #include <string>
@@ -15,6 +16,7 @@
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/scene.h"
+#include "umbra/shadows/reason.h"
 #include "umbra/shadows/settings.h"
 
 namespace umbra {
@@ -36,32 +38,80 @@ struct Service {
     explicit operator bool() const { return how != How::not_at_all; }
 };
 
+/// What a phase of a method made. It is const from then on and may be used from any thread; it is moved nowhere, so
+/// that others may refer to it. All that a phase was given must outlive what it made, but the Method need not.
+class Value {
+public:
+    Value()                        = default;
+    virtual ~Value()               = default;
+    Value(const Value&)            = delete;
+    Value& operator=(const Value&) = delete;
+
+    /// Memory that it holds, bytes, counted from the containers' sizes; without what it refers to.
+    [[nodiscard]] virtual std::size_t memory_bytes() const { return 0; }
+    /// The same in the memory of a device.
+    [[nodiscard]] virtual std::size_t device_bytes() const { return 0; }
+};
+
+/// What `build` made: what depends on geometry alone. Methods derive from this class where they need to keep anything,
+/// and from the next two.
+class Built : public Value {
+public:
+    Built(const Scene& of, const SceneFacts& its_facts) : scene(of), facts(its_facts) {}
+    const Scene& scene;
+    const SceneFacts& facts;
+};
+
+/// What `aim` made: what depends on geometry and on one light.
+class Aimed : public Value {
+public:
+    Aimed(const Built& from, LightId at) : built(from), light(at) {}
+    [[nodiscard]] const Scene& scene() const { return built.scene; }
+    [[nodiscard]] const Light& source() const { return built.scene.lights[light]; }
+    const Built& built;
+    const LightId light;
+};
+
+/// What `look` made: what depends on geometry and on the surface points, and serves all lights.
+class Looked : public Value {
+public:
+    explicit Looked(const PointBatch& at) : points(at) {}
+    const PointBatch& points;
+};
+
+/// A value as the type that the method's own phase made it.
+template <class Own>
+[[nodiscard]] const Own& as(const Value& value) {
+    assert(dynamic_cast<const Own*>(&value) != nullptr);
+    return static_cast<const Own&>(value);
+}
+
 class Method;
 
 /// What a method says of a scene (Method::serves); `not_at_all` where occluders let a part of the light through and the
 /// method does not compute that (Method::multiplies).
 [[nodiscard]] Service verdict(const Method& method, const SceneFacts& facts);
 
-/// One method with one set of parameters. Calls come from one thread at a time, except that `visibility` and `blame`
-/// may run in several threads at once; a method does its own parallelism (core/base/parallel.h), and its results do not
-/// depend on the number of threads.
+/// One method with one set of parameters, which never change. Its phases are functions: each makes a value from what it
+/// is given, and keeps nothing. All members may be called from any thread; a method does its own parallelism
+/// (core/base/parallel.h), and its results do not depend on the number of threads.
 ///
-/// The three phases are timed apart: a moving object repeats all of them, a light the last two, a camera the last.
-/// Each phase does its own work, so that its time is what the movement costs.
+///     build(scene) ----> Built --+--> aim(light) ----> Aimed  --+--> visibility, blame, explain
+///                                +--> look(points) --> Looked --+
 ///
-/// Errors. `configure`, `build` and `aim` throw UsageError where the parameters cannot be had for this scene (what to
-/// change is in the message), and std::bad_alloc; `visibility` and `blame` throw std::bad_alloc alone. After an
-/// exception the object may be configured and built again.
+/// The phases are timed apart. An object that moved repeats all; a light repeats its own aim and visibility; the camera
+/// repeats look, once for all lights, and visibility. Each phase does its own work, so that its time is what the
+/// movement costs. A value also serves other settings of the method, if these differ only in parameters of later phases
+/// (first_changed_phase).
+///
+/// Errors. Every phase may throw MethodError, where the method failed, and std::bad_alloc; the constructor, `build` and
+/// `aim` also UsageError where the parameters cannot be had for this scene: the message says what to change.
 class Method {
 public:
     Method()                         = default;
     virtual ~Method()                = default;
     Method(const Method&)            = delete;
     Method& operator=(const Method&) = delete;
-
-    /// Takes the parameters. Called before anything else, and again where they change: then the phases from the first
-    /// changed parameter's on are called again (first_changed_phase), and what earlier phases made is still there.
-    virtual void configure(const Settings& settings) = 0;
 
     /// From the scene's facts alone, as if no triangle let a part of the light through: callers ask `verdict`, which
     /// knows of those. The phases are called only where that is not `not_at_all`.
@@ -74,37 +124,50 @@ public:
     /// Which fraction it answers. A method is compared with the truth of the same measure.
     [[nodiscard]] virtual Measure measures() const { return Measure::area; }
 
-    /// What depends on geometry alone. `scene` and `facts` must outlive this object. May be called again.
-    virtual void build(const Scene& scene, const SceneFacts& facts) = 0;
+    /// Called before each `build`, outside the clock: for what must be there and is not the method's own work, as
+    /// starting a program, or writing the scene to a file for it.
+    virtual void warm_up(const Scene& /*scene*/, const SceneFacts& /*facts*/) const {}
 
-    /// What depends on one light. `visibility` may be asked for this light until the next aim; called again where it
-    /// moved.
-    virtual void aim(LightId light) = 0;
+    /// What depends on geometry alone.
+    [[nodiscard]] virtual std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const {
+        return std::make_unique<Built>(scene, facts);
+    }
+
+    /// What depends on one light. Repeated where that light moved.
+    [[nodiscard]] virtual std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const {
+        return std::make_unique<Aimed>(built, light);
+    }
+
+    /// What depends on the points alone, once for all lights. Batches without a raster are served, unless
+    /// MethodInfo::needs_raster. The lights may have moved since `build`; the batch's `facing` is up to date in
+    /// `visibility`, and may change between this call and that.
+    [[nodiscard]] virtual std::unique_ptr<const Looked> look(const Built& /*built*/, const PointBatch& points) const {
+        return std::make_unique<Looked>(points);
+    }
 
     /// Writes S_j for every point that asks for it (`points.asks(light, i)`): s in [0, 1], `undefined` where the method
-    /// cannot tell, a half width where it proves one. Other entries stay as they are, which is the answer there.
-    /// `light` is the one aimed at. Batches without a raster are served, unless MethodInfo::needs_raster.
-    virtual void visibility(const PointBatch& points, LightId light, Visibility out) const = 0;
+    /// cannot tell, a half width where it proves one. Other entries stay as they are, which is the answer there. Both
+    /// values come from one Built.
+    virtual void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const = 0;
 
     /// Which triangle the method holds responsible where it says shadow: writes one of the blocking triangles a point,
     /// for points (a batch without a raster) that `visibility` has answered with less than 1 for this light;
     /// kNoTriangle where it can name none. Asked after the timed phases, to explain errors; need not be fast.
-    virtual void blame(const PointBatch& /*points*/, LightId /*light*/, std::span<TriangleId> blockers) const {
+    virtual void blame(const Aimed& /*aimed*/, const Looked& /*looked*/, std::span<TriangleId> blockers) const {
         std::fill(blockers.begin(), blockers.end(), kNoTriangle);
     }
 
-    /// Memory held after build and aim, bytes, counted from the containers' sizes; 0 where it holds none.
-    [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
+    /// Why `visibility` gave this answer at point i of what it looks at, which asks for the light; for any answer. The
+    /// default says what geometry says of the triangle that `blame` names; methods add what they compared.
+    [[nodiscard]] virtual Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const;
 };
 
 /// A method that reads its parameters from `options`, a struct of its own.
 template <class Options>
 class MethodWith : public Method {
-public:
-    void configure(const Settings& settings) override { options = settings.as<Options>(); }
-
 protected:
-    Options options;
+    explicit MethodWith(const Settings& settings) : options(settings.as<Options>()) {}
+    const Options options;
 };
 
 /// A named set of settings, typed METHOD@NAME.
@@ -123,26 +186,25 @@ struct MethodInfo {
     std::string_view summary;  ///< one or two sentences: what it does, where it errs
     std::vector<Parameter> parameters{};
     std::vector<Preset> presets{};
-    bool reference  = false;  ///< its answers may serve as truth: the first such method that serves a scene
-    bool by_default = true;   ///< it runs where nobody says which methods; false for what is too slow for that
-    std::vector<std::string_view> shown_on{};  ///< where it is not by default: canonical scenes on which it runs where
-                                               ///< nobody says which methods, so that reports show it
-    bool needs_raster = false;                 ///< it serves only batches that have a raster
-    std::string_view seed{};                   ///< the parameter that seeds its noise; empty: it has none
-    std::string_view stand_in{};  ///< settings with which it is the substitute where no reference serves, or where one
-                                  ///< takes too long at every point; empty: it never is
-    std::unique_ptr<Method> (*create)() = nullptr;  ///< not configured yet
+    bool reference  = false;    ///< its answers may serve as truth: the first such method that serves a scene
+    bool by_default = true;     ///< it runs where nobody says which methods; false for what is too slow for that
+    bool shown      = false;    ///< where it is not by default: reports show it on the scenes that name it
+                                ///< (scenes/canonical.txt), and on ladders
+    bool needs_raster = false;  ///< it serves only batches that have a raster
+    std::string_view seed{};    ///< the parameter that seeds its noise; empty: it has none
+    std::unique_ptr<const Method> (*create)(const Settings& settings) = nullptr;  ///< create<T>
 
     /// Whether reports show it, on all scenes or on some.
-    [[nodiscard]] bool is_shown() const { return by_default || !shown_on.empty(); }
+    [[nodiscard]] bool is_shown() const { return by_default || shown; }
 
-    /// Created and configured. Throws UsageError where the settings contradict one another.
-    [[nodiscard]] std::unique_ptr<Method> make(const Settings& settings) const;
+    /// Throws UsageError where the settings contradict one another.
+    [[nodiscard]] std::unique_ptr<const Method> make(const Settings& settings) const;
     /// The same with all defaults.
-    [[nodiscard]] std::unique_ptr<Method> make() const { return make(Settings(parameters)); }
+    [[nodiscard]] std::unique_ptr<const Method> make() const { return make(Settings(parameters)); }
 };
 
-/// All methods, in report order.
+/// All methods, in report order: those of methods.def, then those of plugins (shadows/plugin.h). Throws InputError at
+/// the first call, where a plugin cannot be had.
 [[nodiscard]] std::span<const MethodInfo* const> methods();
 
 /// Throws UsageError, naming the methods that there are.
@@ -155,16 +217,17 @@ struct MethodChoice {
 
     explicit MethodChoice(const MethodInfo& method) : info(&method), settings(method.parameters) {}  ///< all defaults
     [[nodiscard]] std::string text() const;  ///< "NAME" or "NAME:k=v,..." with what differs from the defaults
-    [[nodiscard]] std::unique_ptr<Method> make() const { return info->make(settings); }
+    [[nodiscard]] std::unique_ptr<const Method> make() const { return info->make(settings); }
 };
 
 /// "NAME", "NAME@PRESET", "NAME:k=v,k=v" or "NAME@PRESET:k=v": the method and its settings. Throws UsageError: what was
 /// found, what is expected.
 [[nodiscard]] MethodChoice parse_method(std::string_view text);
 
+/// T is the method's class, which is made of its settings.
 template <class T>
-std::unique_ptr<Method> create() {
-    return std::make_unique<T>();
+std::unique_ptr<const Method> create(const Settings& settings) {
+    return std::make_unique<T>(settings);
 }
 
 }  // namespace umbra

@@ -1,12 +1,17 @@
 // The list of methods, and finding one by what is typed.
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cstdlib>
+#include <map>
 #include <set>
+#include <sstream>
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/shadows/method.h"
+#include "umbra/shadows/plugin.h"
 
 namespace umbra {
 
@@ -17,11 +22,48 @@ namespace umbra {
 
 namespace {
 
-const std::vector<const MethodInfo*> kMethods = {
+const MethodInfo* method_of_plugin(const std::string& file) {
+    void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) throw InputError(fmt::format("{}: cannot be loaded: {}", file, dlerror()));
+    using Entry      = const MethodInfo* (*)(const PluginStamp&);
+    const auto entry = reinterpret_cast<Entry>(dlsym(library, "umbra_plugin"));
+    if (entry == nullptr)
+        throw InputError(fmt::format("{}: is no plugin, expected UMBRA_PLUGIN(method) in its source", file));
+    const MethodInfo* const method = entry(PluginStamp{});
+    if (method == nullptr)
+        throw InputError(
+            fmt::format("{}: was compiled with another compiler or other headers than this program", file));
+    return method;
+}
+
+/// Those of methods.def, in its order, and then those of the plugins that the environment names, with their files.
+struct KnownMethods {
+    std::vector<const MethodInfo*> all{
 #define METHOD(name) &name,
 #include "umbra/shadows/methods.def"
 #undef METHOD
+    };
+    std::map<const MethodInfo*, std::string> files{};
+    KnownMethods();
 };
+
+KnownMethods::KnownMethods() {
+    const char* const plugins = std::getenv("UMBRA_PLUGINS");
+    std::istringstream list(plugins != nullptr ? plugins : "");
+    for (std::string file; std::getline(list, file, ':');) {
+        if (file.empty()) continue;
+        const MethodInfo* const method = method_of_plugin(file);
+        if (std::ranges::find(all, method->name, &MethodInfo::name) != all.end())
+            throw InputError(fmt::format("{}: there is already a method \"{}\"", file, method->name));
+        all.push_back(method);
+        files[method] = file;
+    }
+}
+
+const KnownMethods& known_methods() {
+    static const KnownMethods known;
+    return known;
+}
 
 /// Sets "k=v,k=v". No name may come twice.
 void apply(std::string_view list, Settings& settings) {
@@ -63,6 +105,16 @@ Service verdict(const Method& method, const SceneFacts& facts) {
     return service;
 }
 
+Reason Method::explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const {
+    TriangleId blocker = kNoTriangle;
+    if (given.answer != Answer::undefined && given.s < 1) {
+        const auto which       = static_cast<std::uint32_t>(i);
+        const PointBatch point = pick(looked.points, {&which, 1});
+        blame(aimed, *look(aimed.built, point), {&blocker, 1});
+    }
+    return reason_by_geometry(aimed.scene(), looked.points, i, aimed.light, given, blocker);
+}
+
 std::string_view to_string(How how) {
     switch (how) {
         case How::not_at_all: return "not";
@@ -73,11 +125,16 @@ std::string_view to_string(How how) {
     return "";
 }
 
-std::span<const MethodInfo* const> methods() { return kMethods; }
+std::span<const MethodInfo* const> methods() { return known_methods().all; }
+
+std::string plugin_file(const MethodInfo& method) {
+    const auto found = known_methods().files.find(&method);
+    return found != known_methods().files.end() ? found->second : std::string();
+}
 
 const MethodInfo& find_method(std::string_view name) {
     std::vector<std::string> known;
-    for (const MethodInfo* m : kMethods) {
+    for (const MethodInfo* m : methods()) {
         if (m->name == name) return *m;
         known.emplace_back(m->name);
     }
@@ -85,11 +142,7 @@ const MethodInfo& find_method(std::string_view name) {
         fmt::format("unknown method \"{}\" (known: {}){}", name, fmt::join(known, ", "), did_you_mean(name, known)));
 }
 
-std::unique_ptr<Method> MethodInfo::make(const Settings& settings) const {
-    std::unique_ptr<Method> method = create();
-    method->configure(settings);
-    return method;
-}
+std::unique_ptr<const Method> MethodInfo::make(const Settings& settings) const { return create(settings); }
 
 std::string MethodChoice::text() const {
     std::string text(info->name);

@@ -35,6 +35,7 @@ std::string_view to_string(Phase phase) {
     switch (phase) {
         case Phase::build: return "build";
         case Phase::aim: return "aim";
+        case Phase::look: return "look";
         case Phase::visibility: return "visibility";
     }
     return "";
@@ -46,6 +47,7 @@ std::string_view to_string(Parameter::Type type) {
         case Parameter::Type::real: return "real";
         case Parameter::Type::choice: return "choice";
         case Parameter::Type::boolean: return "boolean";
+        case Parameter::Type::text: return "text";
     }
     return "";
 }
@@ -77,13 +79,14 @@ double Parameter::parse(std::string_view given) const {
             if (!read_number(given, number))
                 throw UsageError(fmt::format("{}={}: expected a finite number", name, given));
             break;
+        case Type::text: return 0;
     }
     if (number < min || number > max) throw UsageError(fmt::format("{}={}: expected {} to {}", name, given, min, max));
     return number;
 }
 
 Settings::Settings(std::span<const Parameter> parameters) : parameters_(parameters) {
-    for (const Parameter& p : parameters_) values_.push_back(p.fallback);
+    for (const Parameter& p : parameters_) values_.push_back(p.fallback), texts_.emplace_back(p.fallback_text);
 }
 
 std::size_t Settings::index(std::string_view name) const {
@@ -100,6 +103,7 @@ std::size_t Settings::index(std::string_view name) const {
 void Settings::set(std::string_view name, std::string_view value) {
     const std::size_t k = index(name);
     values_[k]          = parameters_[k].parse(value);
+    if (parameters_[k].type == Parameter::Type::text) texts_[k] = value;
 }
 
 void Settings::set(std::string_view name, double value) {
@@ -111,17 +115,20 @@ void Settings::set(std::string_view name, double value) {
 
 double Settings::value(std::string_view name) const { return values_[index(name)]; }
 
-std::string Settings::text(const Parameter& p) const { return p.text(value(p.name)); }
+std::string Settings::text(const Parameter& p) const {
+    const std::size_t k = index(p.name);
+    return p.type == Parameter::Type::text ? texts_[k] : p.text(values_[k]);
+}
 
 bool Settings::is_default(std::string_view name) const {
     const std::size_t k = index(name);
-    return values_[k] == parameters_[k].fallback;
+    return values_[k] == parameters_[k].fallback && texts_[k] == parameters_[k].fallback_text;
 }
 
 Phase first_changed_phase(const Settings& from, const Settings& to) {
     Phase first = Phase::visibility;
     for (const Parameter& p : from.parameters())
-        if (from.value(p.name) != to.value(p.name)) first = std::min(first, p.phase);
+        if (from.value(p.name) != to.value(p.name) || from.text(p) != to.text(p)) first = std::min(first, p.phase);
     return first;
 }
 

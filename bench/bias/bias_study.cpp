@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "umbra/bench/run/at_work.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
 
@@ -18,10 +19,9 @@ struct Truth {
     std::vector<float> s;
 };
 
-Truth find_truth(Method& reference, const PointBatch& points, LightId light) {
+Truth find_truth(MethodAtWork& reference, const PointBatch& points, LightId light) {
     VisibilityPlane plane(points.size());
-    reference.aim(light);
-    reference.visibility(points, light, plane.out());
+    reference.visibility(light, plane.out());
     const std::vector<std::uint8_t> band = edge_band(points, light, plane, kHardTolerance);
     Truth truth{std::vector<Truth::Place>(points.size(), Truth::Place::unjudged), {}};
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -47,26 +47,24 @@ BiasErrors count_wrong(const Truth& truth, const VisibilityPlane& plane) {
 class Lookups {
 public:
     Lookups(const PreparedScene& prepared, const MethodChoice& choice)
-        : points_(prepared.points), settings_(choice.settings), method_(choice.make()), plane_(prepared.points.size()) {
-        method_->build(prepared.scene, prepared.facts);
-    }
-    void aim(LightId light) { method_->aim(light_ = light); }
-    [[nodiscard]] BiasErrors errors(const Truth& truth, const Settings& settings) {
-        const Phase from = first_changed_phase(settings_, settings);
-        settings_        = settings;
-        method_->configure(settings_);
-        if (from <= Phase::aim) method_->aim(light_);
+        : points_(prepared.points),
+          choice_(choice),
+          method_(choice, prepared.scene, prepared.facts),
+          plane_(prepared.points.size()) {}
+    [[nodiscard]] BiasErrors errors(LightId light, const Truth& truth, const Settings& settings) {
+        choice_.settings = settings;
+        method_.set(choice_);
+        if (!method_.looks_at(points_)) method_.look(points_);
         plane_.clear();
-        method_->visibility(points_, light_, plane_.out());
+        method_.visibility(light, plane_.out());
         return count_wrong(truth, plane_);
     }
 
 private:
     const PointBatch& points_;
-    Settings settings_;
-    std::unique_ptr<Method> method_;
+    MethodChoice choice_;
+    MethodAtWork method_;
     VisibilityPlane plane_;
-    LightId light_ = 0;
 };
 
 constexpr std::string_view kStudied = "shadow_zbuffer";  // the method whose bias this command is about
@@ -157,24 +155,23 @@ BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const 
 
     const Reference reference = default_reference(prepared.facts);
     progress(fmt::format("{}: {}", scene.name, reference.choice.info->name));
-    const std::unique_ptr<Method> exact = reference.choice.make();
-    exact->build(scene, prepared.facts);
+    MethodAtWork exact(reference.choice, scene, prepared.facts);
+    exact.look(prepared.points);
     Lookups lookups(prepared, studied);
     const auto bias = [&](std::string_view mode, double constant, double slope, double normal_offset) {
         return with_bias(studied.settings, mode, constant, slope, normal_offset);
     };
     for (LightId light = 0; light < scene.lights.size(); ++light) {
-        const Truth truth = find_truth(*exact, prepared.points, light);
+        const Truth truth = find_truth(exact, prepared.points, light);
         study.points += static_cast<std::uint64_t>(
             std::ranges::count_if(truth.place, [](Truth::Place p) { return p != Truth::Place::unjudged; }));
-        lookups.aim(light);
-        study.automatic += lookups.errors(truth, bias("auto", 0, 0, 0));
-        study.receiver_plane += lookups.errors(truth, bias("receiver_plane", 0, 0, 0));
+        study.automatic += lookups.errors(light, truth, bias("auto", 0, 0, 0));
+        study.receiver_plane += lookups.errors(light, truth, bias("receiver_plane", 0, 0, 0));
         for (BiasCell& cell : study.cells) {
             if (cell.constant == 0 && cell.slope == 0)
                 progress(
                     fmt::format("{}: {}, normal offset {}", scene.name, scene.lights[light].name, cell.normal_offset));
-            cell.errors += lookups.errors(truth, bias("manual", cell.constant, cell.slope, cell.normal_offset));
+            cell.errors += lookups.errors(light, truth, bias("manual", cell.constant, cell.slope, cell.normal_offset));
         }
     }
     return study;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "umbra/bench/out/files.h"
@@ -15,46 +16,46 @@
 namespace umbra {
 namespace {
 
-using Seen   = AthertonWeiler::Seen;
+using Seen   = LitPolygons::Seen;
 using Out    = std::back_insert_iterator<std::string>;
 namespace fs = std::filesystem;
 
 /// A triangle of the scene in world space, and what a light sees of it.
 class LitTriangle {
 public:
-    LitTriangle(const Scene& scene, const AthertonWeiler& method, TriangleId t)
-        : method_(&method),
+    LitTriangle(const LitPolygons& polygons, TriangleId t)
+        : polygons_(polygons),
           t_(t),
-          a_(scene.vertex(t, 0)),
-          ab_(dvec3(scene.vertex(t, 1)) - a_),
-          ac_(dvec3(scene.vertex(t, 2)) - a_) {}
+          a_(polygons.scene().vertex(t, 0)),
+          ab_(dvec3(polygons.scene().vertex(t, 1)) - a_),
+          ac_(dvec3(polygons.scene().vertex(t, 2)) - a_) {}
 
     [[nodiscard]] dvec3 at(dvec2 uv) const { return a_ + uv.x * ab_ + uv.y * ac_; }
     [[nodiscard]] double area() const {
-        return method_->seen(t_) == Seen::unknown ? 0 : glm::length(glm::cross(ab_, ac_)) / 2;
+        return polygons_.seen(t_) == Seen::unknown ? 0 : glm::length(glm::cross(ab_, ac_)) / 2;
     }
     /// The lit polygons' triangles.
     [[nodiscard]] std::vector<std::array<dvec2, 3>> triangles() const {
-        if (method_->seen(t_) == Seen::parts) return method_->lit_triangles(t_);
-        if (method_->seen(t_) == Seen::lit) return {{dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)}};
+        if (polygons_.seen(t_) == Seen::parts) return polygons_.lit_triangles(t_);
+        if (polygons_.seen(t_) == Seen::lit) return {{dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)}};
         return {};
     }
     /// Their outlines.
     [[nodiscard]] std::vector<std::vector<dvec2>> loops() const {
-        if (method_->seen(t_) == Seen::parts) return method_->lit_loops(t_);
-        if (method_->seen(t_) == Seen::lit) return {whole()};
+        if (polygons_.seen(t_) == Seen::parts) return polygons_.lit_loops(t_);
+        if (polygons_.seen(t_) == Seen::lit) return {whole()};
         return {};
     }
     [[nodiscard]] static std::vector<dvec2> whole() { return {{0, 0}, {1, 0}, {0, 1}}; }
     [[nodiscard]] bool is_wound_towards(dvec3 direction) const { return glm::dot(glm::cross(ab_, ac_), direction) > 0; }
     [[nodiscard]] double lit_area() const {
-        double share = 0;
-        for (const auto& [p, q, r] : triangles()) share += (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
-        return share * area();
+        double fraction = 0;
+        for (const auto& [p, q, r] : triangles()) fraction += (q.x - p.x) * (r.y - p.y) - (q.y - p.y) * (r.x - p.x);
+        return fraction * area();
     }
 
 private:
-    const AthertonWeiler* method_;
+    const LitPolygons& polygons_;
     TriangleId t_;
     dvec3 a_, ab_, ac_;
 };
@@ -66,13 +67,13 @@ std::string in_one_line(std::string name) {
     return name;
 }
 
-std::string mesh_text(const Scene& scene, const AthertonWeiler& method, const std::string& title) {
+std::string mesh_text(const LitPolygons& polygons, const std::string& title) {
     std::string text   = fmt::format("# {}\n", in_one_line(title));
     std::size_t vertex = 1;
-    for (const Object& object : scene.objects) {
+    for (const Object& object : polygons.scene().objects) {
         fmt::format_to(Out(text), "o {}\n", in_one_line(object.name));
         for (TriangleId t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t) {
-            const LitTriangle triangle(scene, method, t);
+            const LitTriangle triangle(polygons, t);
             for (const auto& corners : triangle.triangles()) {
                 for (const dvec2 uv : corners) {
                     const dvec3 p = triangle.at(uv);
@@ -113,20 +114,19 @@ void append_path(std::string& d, const Frame& frame, const LitTriangle& triangle
     d += "Z";
 }
 
-std::string drawing_text(const Scene& scene, const AthertonWeiler& method, const PlanarReceiver& plane,
-                         const std::string& title) {
+std::string drawing_text(const LitPolygons& polygons, const PlanarReceiver& plane, const std::string& title) {
     const Frame frame(plane.normal);
     dvec2 low(std::numeric_limits<double>::infinity()), high = -low;
     std::string dark, unseen, bright;
     for (const TriangleId t : plane.triangles) {
-        const LitTriangle triangle(scene, method, t);
+        const LitTriangle triangle(polygons, t);
         for (const dvec2 uv : LitTriangle::whole()) {
             const dvec2 p = frame.at(triangle.at(uv));
             low           = glm::min(low, p);
             high          = glm::max(high, p);
         }
         const bool turned = !triangle.is_wound_towards(plane.normal);
-        append_path(method.seen(t) == Seen::unknown ? unseen : dark, frame, triangle, LitTriangle::whole(), turned);
+        append_path(polygons.seen(t) == Seen::unknown ? unseen : dark, frame, triangle, LitTriangle::whole(), turned);
         for (const auto& loop : triangle.loops()) append_path(bright, frame, triangle, loop, turned);
     }
     const dvec2 size    = high - low;
@@ -148,10 +148,10 @@ std::string drawing_text(const Scene& scene, const AthertonWeiler& method, const
 
 /// {area, lit_area} of some triangles.
 template <class Triangles>
-Json areas(const Scene& scene, const AthertonWeiler& method, const Triangles& triangles) {
+Json areas(const LitPolygons& polygons, const Triangles& triangles) {
     double area = 0, lit = 0;
     for (const TriangleId t : triangles) {
-        const LitTriangle triangle(scene, method, t);
+        const LitTriangle triangle(polygons, t);
         area += triangle.area();
         lit += triangle.lit_area();
     }
@@ -174,24 +174,25 @@ std::vector<std::string> file_names(const Scene& scene) {
 Json write_lit_polygons(const Scene& scene, const SceneFacts& facts, const fs::path& folder) {
     Json record = {
         {"schema", kResultsSchema}, {"version", version()}, {"scene", scene_json(scene)}, {"lights", Json::array()}};
-    const std::vector<std::string> names = file_names(scene);
-    AthertonWeiler method;
-    method.build(scene, facts);
+    const std::vector<std::string> names       = file_names(scene);
+    const std::unique_ptr<const Method> method = atherton_weiler.make();
+    const std::unique_ptr<const Built> built   = method->build(scene, facts);
     std::vector<TriangleId> all(scene.triangles.size());
     std::iota(all.begin(), all.end(), TriangleId{0});
     for (LightId light = 0; light < scene.lights.size(); ++light) {
-        method.aim(light);
+        const std::unique_ptr<const Aimed> aimed = method->aim(*built, light);
+        const auto& polygons                     = as<LitPolygons>(*aimed);
         const std::string title = fmt::format("What {} lights in {}", scene.lights[light].name, scene.name);
         Json entry              = {{"name", scene.lights[light].name}, {"mesh", names[light] + ".obj"}};
-        entry.update(areas(scene, method, all));
-        write_text(folder / (names[light] + ".obj"), mesh_text(scene, method, title));
+        entry.update(areas(polygons, all));
+        write_text(folder / (names[light] + ".obj"), mesh_text(polygons, title));
         entry["planes"] = Json::array();
         for (std::size_t k = 0; k < facts.planes.size(); ++k) {
             const PlanarReceiver& plane = facts.planes[k];
             Json drawn                  = {{"drawing", fmt::format("{}_plane_{}.svg", names[light], k + 1)},
                                            {"normal", {number(plane.normal.x), number(plane.normal.y), number(plane.normal.z)}}};
-            drawn.update(areas(scene, method, plane.triangles));
-            write_text(folder / drawn["drawing"].get<std::string>(), drawing_text(scene, method, plane, title));
+            drawn.update(areas(polygons, plane.triangles));
+            write_text(folder / drawn["drawing"].get<std::string>(), drawing_text(polygons, plane, title));
             entry["planes"].push_back(std::move(drawn));
         }
         record["lights"].push_back(std::move(entry));

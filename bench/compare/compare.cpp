@@ -17,6 +17,7 @@
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/canonical.h"
 #include "umbra/bench/run/explain.h"
 #include "umbra/bench/run/noise_runs.h"
 #include "umbra/bench/run/steps.h"
@@ -49,7 +50,7 @@ Json method_entry(const FilePlace& place, const PreparedScene& prepared, const M
     const Scene& scene = prepared.scene;
     std::vector<Explained> explained;
     at.reset();
-    const auto noise = noise_runs(run.choice, scene, prepared.facts, prepared.points);
+    const auto noise = noise_runs(*run.work, scene, prepared.points);
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         at = j;
         explained.push_back(explain(scene, prepared.points, j, run, reference, noise[j] ? &*noise[j] : nullptr));
@@ -67,7 +68,7 @@ Json method_entry(const FilePlace& place, const PreparedScene& prepared, const M
 
 /// The methods of the options, in order; where these name none, those that are the default on this scene. Throws
 /// UsageError, also where settings contradict one another.
-std::vector<MethodChoice> chosen(const CompareOptions& options, const std::string& scene) {
+std::vector<MethodChoice> chosen(const CompareOptions& options, const fs::path& scene) {
     std::vector<MethodChoice> choices;
     for (const std::string& text : options.methods) {
         choices.push_back(parse_method(text));
@@ -76,8 +77,7 @@ std::vector<MethodChoice> chosen(const CompareOptions& options, const std::strin
     choices.insert(choices.end(), options.choices.begin(), options.choices.end());
     if (choices.empty())
         for (const MethodInfo* info : methods())
-            if (info->by_default || std::ranges::find(info->shown_on, scene) != info->shown_on.end())
-                choices.emplace_back(*info);
+            if (runs_by_itself(*info, scene)) choices.emplace_back(*info);
     return choices;
 }
 
@@ -107,7 +107,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const auto tell = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", scene_name(file), what));
     };
-    const std::vector<MethodChoice> choices = chosen(options, scene_name(file));
+    const std::vector<MethodChoice> choices = chosen(options, file);
 
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size, options.pixel_samples);
@@ -159,7 +159,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     std::optional<Truth> other;
     const auto differs_in_measure = [&](const MethodChoice& choice) {
         const Measure measure = choice.make()->measures();
-        if (prepared.facts.hard_lights_only || measure == reference_run.method->measures()) return false;
+        if (prepared.facts.hard_lights_only || measure == reference_run.work->method().measures()) return false;
         if (!other) {
             Reference chosen = default_reference(prepared.facts, measure);
             tell("reference " + chosen.choice.text());

@@ -6,15 +6,14 @@
 namespace umbra {
 namespace {
 
-/// S_j of an area light at subpixels, aimed at: interpolated between pixel centres where that shows no difference,
+/// S_j of an area light at subpixels: interpolated between pixel centres where that shows no difference,
 /// since a reference takes long at every point.
 VisibilityPlane smoothed_plane(const PreparedScene& prepared, const MethodRun& run, LightId light) {
     std::vector<std::uint32_t> ask;
     VisibilityPlane plane  = between_centres(prepared.scene, prepared.points, run.planes[light], prepared.subpixels,
                                              prepared.pixel_side, light, ask);
     const PointBatch asked = pick(prepared.subpixels, ask);
-    VisibilityPlane answers(asked.size(), run.is_coloured);
-    run.method->visibility(asked, light, answers.out());
+    const VisibilityPlane answers = run.work->ask(asked, light);
     for (std::size_t k = 0; k < ask.size(); ++k) {
         plane.s[ask[k]] = answers.s[k], plane.answer[ask[k]] = answers.answer[k];
         if (run.is_coloured) plane.colour[ask[k]] = answers.colour[k];
@@ -24,15 +23,16 @@ VisibilityPlane smoothed_plane(const PreparedScene& prepared, const MethodRun& r
 
 std::vector<VisibilityPlane> fine_planes(const PreparedScene& prepared, const MethodRun& run) {
     std::vector<VisibilityPlane> planes;
+    run.work->look(prepared.subpixels);
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
-        run.method->aim(j);
         if (run.choice.info->reference && is_area(prepared.scene.lights[j].kind)) {
             planes.push_back(smoothed_plane(prepared, run, j));
             continue;
         }
         planes.emplace_back(prepared.subpixels.size(), run.is_coloured);
-        run.method->visibility(prepared.subpixels, j, planes.back().out());
+        run.work->visibility(j, planes.back().out());
     }
+    run.work->forget_look();
     return planes;
 }
 

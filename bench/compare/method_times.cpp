@@ -18,7 +18,7 @@ void remove_files(const fs::path& folder, const Json& files) {
 }  // namespace
 
 RunTimes times_of(const MethodRun& run) {
-    RunTimes times{run.build.median};
+    RunTimes times{.build = run.build.median, .look = run.look.median};
     for (const Timing& t : run.aim) times.aim.push_back(t.median);
     for (const Timing& t : run.visibility) times.visibility.push_back(t.median);
     return times;
@@ -36,7 +36,7 @@ Json time_methods(const fs::path& folder, const PreparedScene& prepared, std::sp
         which.push_back(k);
         turn_options.first.push_back(answered[k].first);
     }
-    constexpr double phases = 3;
+    constexpr double phases = 4;
     turn_options.rounds     = repeats.max_runs;
     turn_options.budget_ms  = phases * repeats.budget_ms * static_cast<double>(timed.size());
     turn_options.progress   = [&](const std::string& what) { tell("times, " + what); };

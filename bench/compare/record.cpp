@@ -14,7 +14,8 @@ namespace {
 Json parameters_json(const Settings& settings) {
     Json values = Json::object();
     for (const Parameter& p : settings.parameters())
-        values[std::string(p.name)] = setting_json(p, settings.value(p.name));
+        values[std::string(p.name)] =
+            p.type == Parameter::Type::text ? Json(settings.text(p)) : setting_json(p, settings.value(p.name));
     return values;
 }
 
@@ -106,6 +107,7 @@ std::string failed_in_words(const std::optional<std::string>& light, const std::
 Json times_json(const MethodRun& run) {
     return {{"build_ms", timing_json(run.build)},
             {"aim_ms", timing_json(total(run.aim))},
+            {"look_ms", timing_json(run.look)},
             {"visibility_ms", timing_json(total(run.visibility))}};
 }
 
@@ -130,13 +132,15 @@ Json reference_json(const Reference& reference, const ReferenceRun& ran, const S
 
 Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
                  std::span<const Explained> explained, const std::string& reference) {
-    Json entry             = head_json(id, run.choice, run.service);
-    entry["times"]         = nullptr;
-    entry["light_times"]   = nullptr;
-    entry["memory_bytes"]  = run.memory_bytes;
+    Json entry            = head_json(id, run.choice, run.service);
+    entry["times"]        = nullptr;
+    entry["light_times"]  = nullptr;
+    entry["memory_bytes"] = run.memory_bytes;
+    entry["points_bytes"] = run.points_bytes;
+    if (run.device_bytes > 0) entry["device_bytes"] = run.device_bytes;
     const auto covered     = run.coverage(prepared.points);
     entry["coverage"]      = covered ? Json(*covered) : Json();
-    entry["measures"]      = to_string(run.method->measures());
+    entry["measures"]      = to_string(run.work->method().measures());
     entry["compared_with"] = reference;
     Json& errors = entry["errors"] = Json::array();
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j)

@@ -50,7 +50,8 @@ Json lasting(Json record) {
     record["scene"].erase("source");
     record["reference"].erase("times");
     for (Json& method : record["methods"])
-        for (const char* key : {"times", "light_times", "memory_bytes"}) method.erase(key);
+        for (const char* key : {"times", "light_times", "memory_bytes", "points_bytes", "device_bytes"})
+            method.erase(key);
     return record;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "umbra/bench/run/at_work.h"
 #include "umbra/bench/run/contract.h"
 #include "umbra/bench/run/stratified_sample.h"
 #include "umbra/core/errors/visibility_error.h"
@@ -13,8 +14,7 @@ namespace umbra {
 FrameTruth::FrameTruth(const Reference& reference, const Scene& scene, const SceneFacts& facts,
                        const PointBatch& points, std::uint64_t area_points)
     : scene_(&scene), points_(&points) {
-    const auto method = reference.choice.make();
-    method->build(scene, facts);
+    MethodAtWork work(reference.choice, scene, facts);
     PointBatch sampled;
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const bool area = is_area(scene.lights[j].kind);
@@ -25,8 +25,9 @@ FrameTruth::FrameTruth(const Reference& reference, const Scene& scene, const Sce
         }
         const PointBatch& asked = area ? sampled : points;
         planes_.emplace_back(asked.size());
-        method->aim(j);
-        method->visibility(asked, j, planes_.back().out());
+        if (!work.looks_at(asked)) work.look(asked);
+        work.forget_aims();
+        work.visibility(j, planes_.back().out());
         check_contract(reference.choice.info->name, planes_.back(), asked, j);
     }
 }

@@ -49,6 +49,7 @@ struct LogScale {
 double at(const Json& point, bool whole_frame) {
     const Json& times = point["times"];
     double ms         = times["visibility_ms"]["min"].get<double>();
+    if (times.contains("look_ms")) ms += times["look_ms"]["min"].get<double>();
     if (whole_frame) ms += times["aim_ms"]["min"].get<double>() + times["build_ms"]["min"].get<double>();
     return std::max(ms, 1e-3);
 }

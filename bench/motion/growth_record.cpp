@@ -70,7 +70,7 @@ Json fitted_crossing_json(const GrowthRun& run, const GrowthSeries& a, const Gro
 void add_crossings(const GrowthRun& run, Json& crossings) {
     for (std::size_t a = 0; a < run.series.size(); ++a)
         for (std::size_t b = a + 1; b < run.series.size(); ++b)
-            for (const Quantity quantity : {Quantity::visibility, Quantity::light_frame, Quantity::object_frame})
+            for (const Quantity quantity : {Quantity::camera_frame, Quantity::light_frame, Quantity::object_frame})
                 for (const MeasuredCrossing& c : measured_crossings(run.series[a], run.series[b], quantity)) {
                     const std::string first = run.series[a].choice.text(), second = run.series[b].choice.text();
                     crossings.push_back(

@@ -31,7 +31,7 @@ void keep(Turns turns, double x, double longest_ms, const std::vector<std::size_
         else if (!times.failed.empty())
             series.left_out = fmt::format("failed at {:g}: {}", x, times.failed);
         else {
-            const double ms = times.cold_build + times.cold_aim + times.cold_visibility;
+            const double ms = times.cold.all();
             if (ms > longest_ms) series.left_out = fmt::format("took {:.0f} ms at {:g}", ms, x);
             series.points.push_back({x, std::move(times), turns.noise_bar});
         }
@@ -45,14 +45,16 @@ std::vector<double> GrowthSeries::rounds(const GrowthPoint& point, Quantity quan
     switch (quantity) {
         case Quantity::build: return t.build;
         case Quantity::aim: return t.aim;
-        case Quantity::visibility: return t.visibility;
+        case Quantity::camera_frame:
         case Quantity::light_frame:
         case Quantity::object_frame: break;
         case Quantity::memory: return {static_cast<double>(t.memory_bytes)};
     }
     std::vector<double> sums(t.visibility);
     for (std::size_t r = 0; r < sums.size(); ++r)
-        sums[r] += t.aim[r] + (quantity == Quantity::object_frame ? t.build[r] : 0);
+        sums[r] += (quantity != Quantity::light_frame ? t.look[r] : 0) +
+                   (quantity != Quantity::camera_frame ? t.aim[r] : 0) +
+                   (quantity == Quantity::object_frame ? t.build[r] : 0);
     return sums;
 }
 

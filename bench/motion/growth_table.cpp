@@ -12,14 +12,15 @@ std::string fixed(const Json& value, int digits = 2) {
 std::string general(const Json& value) { return value.is_null() ? "none" : fmt::format("{:.3g}", value.get<double>()); }
 
 std::string times_of(const Json& family) {
-    std::string table = fmt::format("  {:36} {:>12} {:>10} {:>10} {:>10} {:>10}\n", "least ms", text(family["unit"]),
-                                    "build", "aim", "visibility", "MB");
+    std::string table = fmt::format("  {:36} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "least ms",
+                                    text(family["unit"]), "build", "aim", "look", "visibility", "MB");
     for (const Json& method : family["methods"]) {
         for (const Json& point : method["points"])
-            table += fmt::format("  {:36} {:>12.0f} {:>10} {:>10} {:>10} {:>10.2f}\n", text(method["text"]),
-                                 point["x"].get<double>(), fixed(point["times"]["build_ms"]["min"]),
-                                 fixed(point["times"]["aim_ms"]["min"]), fixed(point["times"]["visibility_ms"]["min"]),
-                                 point["memory_bytes"].get<double>() / 1e6);
+            table +=
+                fmt::format("  {:36} {:>12.0f} {:>10} {:>10} {:>10} {:>10} {:>10.2f}\n", text(method["text"]),
+                            point["x"].get<double>(), fixed(point["times"]["build_ms"]["min"]),
+                            fixed(point["times"]["aim_ms"]["min"]), fixed(point["times"]["look_ms"]["min"]),
+                            fixed(point["times"]["visibility_ms"]["min"]), point["memory_bytes"].get<double>() / 1e6);
         if (method.contains("left_out"))
             table += fmt::format("  {:36} {}\n", text(method["text"]), text(method["left_out"]));
     }

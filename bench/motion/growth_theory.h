@@ -9,9 +9,9 @@
 
 namespace umbra {
 
-/// What is fitted: the phases, the two frames that repeat more than one of them, and the memory.
-enum class Quantity : std::uint8_t { build, aim, visibility, light_frame, object_frame, memory };
-inline constexpr std::array kQuantities{Quantity::build,       Quantity::aim,          Quantity::visibility,
+/// What is fitted: two phases, what the frame after a camera, a light, an object that moved repeats, and the memory.
+enum class Quantity : std::uint8_t { build, aim, camera_frame, light_frame, object_frame, memory };
+inline constexpr std::array kQuantities{Quantity::build,       Quantity::aim,          Quantity::camera_frame,
                                         Quantity::light_frame, Quantity::object_frame, Quantity::memory};
 [[nodiscard]] std::string_view to_string(Quantity quantity);
 

@@ -7,16 +7,15 @@
 namespace umbra {
 
 FrameWork frame_work(Movement movement, std::size_t lights, LightId moved) {
-    FrameWork work{movement == Movement::object, std::vector<bool>(lights, movement == Movement::object)};
+    const bool all = movement == Movement::object;
+    FrameWork work{all, std::vector<bool>(lights, all), movement != Movement::light};
     if (movement == Movement::light) work.aim[moved] = true;
     return work;
 }
 
 KeptMethod::KeptMethod(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
                        std::function<double()> clock)
-    : choice_(choice), scene_(&scene), facts_(&facts), clock_(std::move(clock)), planes_(scene.lights.size()) {
-    for (std::size_t j = 0; j < scene.lights.size(); ++j) methods_.push_back(choice.make());
-}
+    : work_(choice, scene, facts), clock_(std::move(clock)), planes_(scene.lights.size()) {}
 
 double KeptMethod::timed(const std::function<void()>& work) const {
     const double start = clock_();
@@ -25,21 +24,29 @@ double KeptMethod::timed(const std::function<void()>& work) const {
 }
 
 RunTimes KeptMethod::run(const FrameWork& work, const PointBatch& points) {
-    const std::size_t lights = methods_.size();
-    RunTimes times{0, std::vector<double>(lights), std::vector<double>(lights)};
+    const std::size_t lights = planes_.size();
+    RunTimes times{0, std::vector<double>(lights), 0, std::vector<double>(lights)};
     if (work.build) {
-        times.build = timed([&] { methods_.front()->build(*scene_, *facts_); });
-        for (std::size_t j = 1; j < lights; ++j) methods_[j]->build(*scene_, *facts_);
+        work_.forget_build();
+        work_.warm_up();
+        times.build = timed([&] { work_.build(); });
     }
-    for (LightId j = 0; j < lights; ++j)
-        if (work.aim[j]) times.aim[j] = timed([&] { methods_[j]->aim(j); });
+    for (LightId j = 0; j < lights; ++j) {
+        if (!work.aim[j]) continue;
+        work_.forget_aim(j);
+        times.aim[j] = timed([&] { work_.aim(j); });
+    }
+    if (work.look) {
+        work_.forget_look();
+        times.look = timed([&] { work_.look(points); });
+    }
     for (LightId j = 0; j < lights; ++j) {
         if (planes_[j].size() == points.size())
             planes_[j].clear();
         else
             planes_[j] = VisibilityPlane(points.size());
-        times.visibility[j] = timed([&] { methods_[j]->visibility(points, j, planes_[j].out()); });
-        check_contract(choice_.info->name, planes_[j], points, j);
+        times.visibility[j] = timed([&] { work_.visibility(j, planes_[j].out()); });
+        check_contract(choice().info->name, planes_[j], points, j);
     }
     return times;
 }

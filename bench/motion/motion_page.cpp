@@ -118,7 +118,7 @@ json method_view(const Json& method) {
     else if (!method.contains("movements"))
         view["why"] = "does not serve: " + text(method["serves"]["why"]);
     if (!method.contains("movements")) return view;
-    for (const char* phase : {"build", "aim", "visibility"})
+    for (const char* phase : {"build", "aim", "look", "visibility"})
         view[phase] = milliseconds(value(method["at_rest"][fmt::format("{}_ms", phase)]["median"]));
     for (const Movement movement : kMovements)
         view["movements"].push_back(movement_cells(method, std::string(to_string(movement))));

@@ -14,6 +14,7 @@ Json frame_json(const MotionFrame& frame) {
     const FrameErrors& e = frame.errors;
     return {{"build_ms", number(frame.times.build)},
             {"aim_ms", frame.times.aim},
+            {"look_ms", number(frame.times.look)},
             {"visibility_ms", frame.times.visibility},
             {"points", e.points},
             {"undefined", e.undefined},

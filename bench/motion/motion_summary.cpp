@@ -49,7 +49,7 @@ double model_ms(const SceneMotion& motion, const MethodMotion& method, Movement 
                                    : workload.object) = 1;
     const TurnTimes& still                            = method.still;
     const double aim = median(movement == Movement::light ? still.light_aim[motion.moved] : still.aim);
-    return frame_cost_ms(workload, median(still.build), aim, median(still.visibility));
+    return frame_cost_ms(workload, {median(still.build), aim, median(still.look), median(still.visibility)});
 }
 
 ErrorSummary summarise_errors(const std::vector<MotionFrame>& frames) {
@@ -132,12 +132,13 @@ std::vector<BreakEven> break_evens(const SceneMotion& motion, const std::vector<
         for (const std::size_t fast : competitors) {
             const TurnTimes &a = motion.methods[slow].still, &b = motion.methods[fast].still;
             const double setup = median(a.build) + median(a.aim) - median(b.build) - median(b.aim);
-            const double saves = median(b.visibility) - median(a.visibility);
+            const auto frame   = [](const TurnTimes& t) { return median(t.look) + median(t.visibility); };
+            const double saves = frame(b) - frame(a);
             if (!(setup > 0 && saves > 0)) continue;
             BreakEven pair{slow, fast, setup, saves, std::ceil(setup / saves), {never, 0}};
             for (std::size_t r = 0; r < std::min(a.build.size(), b.build.size()); ++r) {
                 const double longer  = a.build[r] + a.aim[r] - b.build[r] - b.aim[r];
-                const double shorter = b.visibility[r] - a.visibility[r];
+                const double shorter = b.look[r] + b.visibility[r] - a.look[r] - a.visibility[r];
                 const double frames  = shorter > 0 ? std::max(0.0, std::ceil(longer / shorter)) : never;
                 pair.interval        = {std::min(pair.interval.low, frames), std::max(pair.interval.high, frames)};
             }

@@ -139,10 +139,11 @@ Totals totals(const Field& method) {
         absolute += mae.value_or(0) * n;
     }
     if (t.points > 0) t.mae = absolute / t.points;
-    const Field times = method["times"];
-    t.camera_ms       = times["visibility_ms"]["median"].number();
-    t.light_ms        = sum(t.camera_ms, times["aim_ms"]["median"].number());
-    t.object_ms       = sum(t.light_ms, times["build_ms"]["median"].number());
+    const Field times     = method["times"];
+    const auto visibility = times["visibility_ms"]["median"].number();
+    t.camera_ms = times["look_ms"].present() ? sum(visibility, times["look_ms"]["median"].number()) : visibility;
+    t.light_ms  = sum(visibility, times["aim_ms"]["median"].number());
+    t.object_ms = sum(sum(t.camera_ms, times["aim_ms"]["median"].number()), times["build_ms"]["median"].number());
     return t;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/bench/run/at_work.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/shadows/radiosity/exchange.h"
@@ -52,22 +53,28 @@ void write_light(const PreparedScene& prepared, const Exchange& exchange, const 
     write("direct.png", direct), write("indirect.png", added), write("both.png", both);
 }
 
-/// The elements of S_j, as bright as it is.
-void write_elements(const PreparedScene& prepared, const ExchangeOptions& options, LightId light,
-                    const fs::path& file) {
+/// The elements of S_j of each light, as bright as it is.
+Json write_elements(const PreparedScene& prepared, const ExchangeOptions& options, const fs::path& folder) {
+    const Scene& scene       = prepared.scene;
+    const PointBatch& points = prepared.points;
     MethodChoice choice(find_method("radiosity"));
     choice.settings.set("size", options.size);
     choice.settings.set("samples", options.light_samples);
-    Radiosity method;
-    method.configure(choice.settings);
-    method.build(prepared.scene, prepared.facts);
-    method.aim(light);
-    VisibilityPlane plane(prepared.points.size());
-    method.visibility(prepared.points, light, plane.out());
-    write_image(file, picture(prepared.points, kNoSurface, [&](std::size_t i) {
-                    const auto [patch, leaf] = method.element(prepared.points, i);
-                    return (0.25f + 0.75f * plane.s[i]) * colour_of(std::uint64_t{patch} << 32 | leaf);
-                }));
+    MethodAtWork radiosity(choice, scene, prepared.facts);
+    radiosity.look(points);
+    Json written = Json::array();
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        VisibilityPlane plane(points.size());
+        radiosity.visibility(light, plane.out());
+        const auto& elements   = as<RadiosityElements>(radiosity.aimed(light));
+        const std::string file = fmt::format("elements_{}.png", light + 1);
+        write_image(folder / file, picture(points, kNoSurface, [&](std::size_t i) {
+                        const auto [patch, leaf] = elements.element(points, i);
+                        return (0.25f + 0.75f * plane.s[i]) * colour_of(std::uint64_t{patch} << 32 | leaf);
+                    }));
+        written.push_back({{"light", scene.lights[light].name}, {"picture", file}});
+    }
+    return written;
 }
 
 }  // namespace
@@ -102,12 +109,7 @@ Json exchange_light(const PreparedScene& prepared, const ExchangeOptions& option
                     return vec3(factor > kLeast ? static_cast<float>(1 - std::log10(factor) / std::log10(kLeast)) : 0);
                 }));
     record["pictures"] = {"direct.png", "indirect.png", "both.png", "patches.png", "form_factors.png"};
-    record["elements"] = Json::array();
-    for (LightId light = 0; light < prepared.scene.lights.size(); ++light) {
-        const std::string file = fmt::format("elements_{}.png", light + 1);
-        write_elements(prepared, options, light, folder / file);
-        record["elements"].push_back({{"light", prepared.scene.lights[light].name}, {"picture", file}});
-    }
+    record["elements"] = write_elements(prepared, options, folder);
     return record;
 }
 

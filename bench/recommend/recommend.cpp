@@ -21,11 +21,12 @@ constexpr double kTooExpensive = 5;  ///< one run each: more than a busy machine
 
 std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
     const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
-    const auto build = samples("build_ms"), aim = samples("aim_ms"), visibility = samples("visibility_ms");
+    const auto build = samples("build_ms"), aim = samples("aim_ms"), look = samples("look_ms"),
+               visibility = samples("visibility_ms");
     std::vector<double> costs;
     if (times.at("order").empty()) return costs;  // its one sample is of no round
     for (std::size_t r = 0; r < build.size(); ++r)
-        costs.push_back(frame_cost_ms(workload, build[r], aim[r], visibility[r]));
+        costs.push_back(frame_cost_ms(workload, {build[r], aim[r], look[r], visibility[r]}));
     return costs;
 }
 
@@ -147,7 +148,7 @@ private:
         const auto sum = [](const std::vector<double>& lights) {
             return std::accumulate(lights.begin(), lights.end(), 0.0);
         };
-        return frame_cost_ms(options_.workload, run->build, sum(run->aim), sum(run->visibility));
+        return frame_cost_ms(options_.workload, {run->build, sum(run->aim), run->look, sum(run->visibility)});
     }
 
     SceneLab& lab_;
@@ -183,7 +184,7 @@ std::vector<Family> families(std::span<const MethodChoice> choices) {
             const MethodChoice& other = family.settings.front();
             if (axis == nullptr || other.info != choice.info) return false;
             return std::ranges::all_of(choice.settings.parameters(), [&](const Parameter& p) {
-                return p.name == axis->name || choice.settings.value(p.name) == other.settings.value(p.name);
+                return p.name == axis->name || choice.settings.text(p) == other.settings.text(p);
             });
         };
         const auto found = std::ranges::find_if(all, belongs);

@@ -157,6 +157,7 @@ json time_view(const Field& root, const std::vector<Field>& methods) {
         rows.push_back({{"label", method_label(method, methods)},
                         {"build", timing(times["build_ms"])},
                         {"aim", timing(times["aim_ms"])},
+                        {"look", timing(times["look_ms"])},
                         {"visibility", timing(times["visibility_ms"])},
                         {"object", milliseconds(t.object_ms)},
                         {"light", milliseconds(t.light_ms)},

@@ -36,12 +36,14 @@ Samples samples(const Field& phase) {
 Movements movements(const Field& times) {
     const Samples build = samples(times["build_ms"]), aim = samples(times["aim_ms"]),
                   visibility = samples(times["visibility_ms"]);
+    Samples look             = samples(times["look_ms"]);
+    if (!times["look_ms"].present()) look.assign(visibility.size(), 0);  // records of older versions
     Movements m;
     m.paired = !times["order"].items().empty();
-    for (std::size_t r = 0; r < std::min({build.size(), aim.size(), visibility.size()}); ++r) {
-        m.ms[0].push_back(build[r] + aim[r] + visibility[r]);
+    for (std::size_t r = 0; r < std::min({build.size(), aim.size(), look.size(), visibility.size()}); ++r) {
+        m.ms[0].push_back(build[r] + aim[r] + look[r] + visibility[r]);
         m.ms[1].push_back(aim[r] + visibility[r]);
-        m.ms[2].push_back(visibility[r]);
+        m.ms[2].push_back(look[r] + visibility[r]);
     }
     return m;
 }

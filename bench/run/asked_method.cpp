@@ -9,8 +9,8 @@ namespace umbra {
 AskedMethod::AskedMethod(const Scene& scene, const SceneFacts& facts, const std::optional<MethodChoice>& choice)
     : scene_(&scene), is_coloured_(facts.has_coloured_filters) {
     if (!choice) return;
-    method_ = choice->make();
-    method_->build(scene, facts);
+    work_.emplace(*choice, scene, facts);
+    work_->build();
 }
 
 std::vector<VisibilityPlane> AskedMethod::operator()(const PointBatch& points) {
@@ -22,13 +22,12 @@ std::vector<std::vector<VisibilityPlane>> AskedMethod::of(std::span<const PointB
     asked_ = 0;
     std::vector<std::vector<VisibilityPlane>> planes;
     for (const PointBatch* points : batches) planes.push_back(lit_everywhere(*scene_, *points));
-    for (LightId light = 0; light < scene_->lights.size() && method_; ++light) {
-        method_->aim(light);
+    for (LightId light = 0; light < scene_->lights.size() && work_; ++light) {
+        work_->aim(light);
         for (std::size_t b = 0; b < batches.size(); ++b) {
             const PointBatch& points = *batches[b];
             for (std::size_t i = 0; i < points.size(); ++i) asked_ += points.asks(light, i) ? 1 : 0;
-            planes[b][light] = VisibilityPlane(points.size(), is_coloured_);
-            method_->visibility(points, light, planes[b][light].out());
+            planes[b][light] = work_->ask(points, light);
         }
     }
     return planes;

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "umbra/bench/run/at_work.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/facts.h"
@@ -32,7 +32,7 @@ public:
 
 private:
     const Scene* scene_;
-    std::unique_ptr<Method> method_;
+    std::optional<MethodAtWork> work_;
     bool is_coloured_;  ///< S_j has three channels
     std::size_t asked_ = 0;
 };

@@ -116,6 +116,7 @@ Json setting_json(const Parameter& p, double value) {
         case Parameter::Type::real: return value;
         case Parameter::Type::boolean: return value != 0;
         case Parameter::Type::choice: return p.text(value);
+        case Parameter::Type::text: return p.fallback_text;
     }
     return {};
 }

@@ -16,8 +16,7 @@ std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, L
     std::vector<TriangleId> who(which.size(), kNoTriangle);
     if (which.empty()) return who;
     try {
-        run.method->aim(light);
-        run.method->blame(pick(points, which), light, who);
+        run.work->blame(pick(points, which), light, who);
     } catch (...) {
         throw std::runtime_error(fmt::format("{}, asked for occluders: {}", run.choice.text(), current_message()));
     }

@@ -22,8 +22,7 @@ struct Explained {
 
 /// Sorts every point into its class and counts them; measures edges and penumbrae. `meter`, fed with runs of the same
 /// method with other seeds, tells noise from other errors; none: no point is of class `noise`. Both runs are of this
-/// scene and batch, and serve it; their methods are asked again where interior errors need a name, and are left
-/// aimed at `light` then.
+/// scene and batch, and serve it; their methods are asked again where interior errors need a name.
 [[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
                                 const MethodRun& reference, const NoiseMeter* meter = nullptr);
 

@@ -13,30 +13,27 @@ double other_seed(double own, int run) {
 
 }  // namespace
 
-std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
-                                                  const SceneFacts& facts, const PointBatch& points, int runs) {
+std::vector<std::optional<NoiseMeter>> noise_runs(const MethodAtWork& work, const Scene& scene,
+                                                  const PointBatch& points, int runs) {
     std::vector<std::optional<NoiseMeter>> meters(scene.lights.size());
+    const MethodChoice& choice  = work.choice();
     const std::string_view seed = choice.info->seed;
     if (seed.empty()) return meters;
     for (LightId j = 0; j < scene.lights.size(); ++j)
         if (is_area(scene.lights[j].kind)) meters[j].emplace(points.size());
     if (std::ranges::none_of(meters, [](const auto& meter) { return meter.has_value(); })) return meters;
 
-    std::unique_ptr<Method> method;
+    MethodAtWork other = work;
     for (int run = 0; run < runs; ++run) {
-        Settings settings = choice.settings;
-        settings.set(seed, other_seed(choice.settings.value(seed), run));
-        if (method == nullptr || first_changed_phase(choice.settings, settings) == Phase::build) {
-            method = choice.info->make(settings);
-            method->build(scene, facts);
-        } else {
-            method->configure(settings);
-        }
+        MethodChoice seeded = choice;
+        seeded.settings.set(seed, other_seed(choice.settings.value(seed), run));
+        other.set(seeded);
+        if (!other.looks_at(points)) other.look(points);
         for (LightId j = 0; j < scene.lights.size(); ++j) {
             if (!meters[j]) continue;
             VisibilityPlane plane(points.size());
-            method->aim(j);
-            method->visibility(points, j, plane.out());
+            other.forget_aims();
+            other.visibility(j, plane.out());
             meters[j]->add(plane.s);
         }
     }

@@ -15,8 +15,8 @@ inline constexpr int kNoiseRuns = 8;
 
 /// One meter a light, fed with `runs` runs; empty for methods that have no seed (their answers are always the same)
 /// and for lights without an area (all their samples are one point).
-[[nodiscard]] std::vector<std::optional<NoiseMeter>> noise_runs(const MethodChoice& choice, const Scene& scene,
-                                                                const SceneFacts& facts, const PointBatch& points,
-                                                                int runs = kNoiseRuns);
+/// `work` is on this scene; what it has built is shared.
+[[nodiscard]] std::vector<std::optional<NoiseMeter>> noise_runs(const MethodAtWork& work, const Scene& scene,
+                                                                const PointBatch& points, int runs = kNoiseRuns);
 
 }  // namespace umbra

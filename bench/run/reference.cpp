@@ -28,31 +28,30 @@ std::uint64_t surface_points(const PointBatch& points) {
     return points.size() - static_cast<std::uint64_t>(std::ranges::count(points.triangle, kNoTriangle));
 }
 
-/// What the method, which is built, counts at one of these points, for all area lights together.
-double steps_of_a_point(Method& method, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
+/// What the method counts at one of these points, for all area lights together.
+double steps_of_a_point(MethodAtWork& work, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
                         std::optional<LightId>* at) {
     std::atomic<std::uint64_t> steps = 0;
+    work.look(points);
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         if (!is_area(scene.lights[light].kind)) continue;
         if (at != nullptr) *at = light;
-        method.aim(light);
         VisibilityPlane plane(points.size(), facts.has_coloured_filters);
         Visibility out = plane.out();
         out.steps      = &steps;
-        method.visibility(points, light, out);
+        work.visibility(light, out);
     }
     if (at != nullptr) at->reset();
+    work.forget_look();
     return static_cast<double>(steps) / static_cast<double>(points.size());
 }
 
 /// At how many of `all` points with a surface the reference answers for area lights.
-std::uint64_t affordable(const Reference& reference, const Scene& scene, const SceneFacts& facts,
-                         const PointBatch& points, std::uint64_t all, std::optional<LightId>* at) {
+std::uint64_t affordable(MethodAtWork& work, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
+                         std::uint64_t all, std::optional<LightId>* at) {
     const std::uint64_t by_triangles = affordable_points(all, scene.triangles.size(), 0);
     if (by_triangles < all || all <= kProbe) return by_triangles;
-    const auto method = reference.choice.make();
-    method->build(scene, facts);
-    const double steps = steps_of_a_point(*method, scene, facts, pick(points, stratified_sample(points, kProbe)), at);
+    const double steps = steps_of_a_point(work, scene, facts, pick(points, stratified_sample(points, kProbe)), at);
     return affordable_points(all, scene.triangles.size(), steps);
 }
 
@@ -74,12 +73,7 @@ void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sa
     run.judged[light] = std::move(judged);
 }
 
-/// The substitute where no reference serves, or where one takes too long at every point.
-MethodChoice stand_in_for_reference() {
-    for (const MethodInfo* info : methods())
-        if (!info->stand_in.empty()) return parse_method(fmt::format("{}:{}", info->name, info->stand_in));
-    throw UsageError("no method in the list can replace a reference");
-}
+MethodChoice stand_in_for_reference() { return parse_method(kStandIn); }
 
 /// The same method, answering this measure. Throws UsageError where it cannot.
 MethodChoice of_measure(MethodChoice choice, Measure measure) {
@@ -142,15 +136,14 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
     ReferenceRun done{MethodRun{reference.choice}, all, all, {}};
     MethodRun& run = done.run;
-    run.method     = reference.choice.make();
-    run.service    = verdict(*run.method, facts);
+    run            = begin_run(reference.choice, scene, facts);
     if (!run.service)
         throw UsageError(
             fmt::format("{} cannot be the reference of this scene: {}", reference.choice.info->name, run.service.why));
     // Only the exact reference is slow: every other one answers for the whole picture, unless `wanted` says otherwise.
     if (!wanted)
         wanted =
-            any_area && reference.choice.info->reference ? affordable(reference, scene, facts, points, all, at) : all;
+            any_area && reference.choice.info->reference ? affordable(*run.work, scene, facts, points, all, at) : all;
     constexpr Repeats kOnce{1, 0};
     if (!any_area || *wanted >= all) {
         run = run_method(reference.choice, scene, facts, points, kOnce, at);
@@ -158,7 +151,7 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     }
 
     const MethodRun stand_in =
-        run_method(of_measure(stand_in_for_reference(), run.method->measures()), scene, facts, points, kOnce);
+        run_method(of_measure(stand_in_for_reference(), run.work->method().measures()), scene, facts, points, kOnce);
     if (!stand_in.service) {  // then every point is the reference's, however long that takes
         run = run_method(reference.choice, scene, facts, points, kOnce, at);
         return done;
@@ -166,7 +159,8 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     run.is_coloured                         = stand_in.is_coloured;
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
-    run.build                               = time_runs(kOnce, [&] { run.method->build(scene, facts); });
+    run.build                               = time_runs(
+                                      kOnce, [&] { run.work->build(); }, [&] { run.work->forget_build(), run.work->warm_up(); });
     run.judged.resize(scene.lights.size());
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const bool area = is_area(scene.lights[light].kind);
@@ -174,9 +168,10 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
         run_light(run, area ? sampled : points, light, kOnce);
         if (area) scatter(run, light, sample, stand_in.planes[light], points);
     }
-    run.memory_bytes = run.method->memory_bytes();
-    done.judged      = sample.size();
-    done.stand_in    = stand_in.choice.text();
+    note_memory(run);
+    run.work->forget_look();  // at points that end here
+    done.judged   = sample.size();
+    done.stand_in = stand_in.choice.text();
     return done;
 }
 

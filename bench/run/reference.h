@@ -9,6 +9,9 @@
 
 namespace umbra {
 
+/// The substitute where no reference serves, or where one takes too long at every point.
+inline constexpr std::string_view kStandIn = "ray_traced@best";
+
 /// What the others are compared with, why that is a reference, and what it is not.
 struct Reference {
     MethodChoice choice;
@@ -21,7 +24,7 @@ struct Reference {
 [[nodiscard]] Reference default_reference(const SceneFacts& facts, Measure measure = Measure::area);
 
 /// The reference's answers: at all points of the picture for lights without an area; for area lights at all points, or
-/// at a stratified sample of them. Elsewhere its planes hold values of another method (MethodInfo::stand_in), which
+/// at a stratified sample of them. Elsewhere its planes hold values of another method (kStandIn), which
 /// locate shadow edges and make the reference's picture, and are never compared (MethodRun::judged).
 struct ReferenceRun {
     MethodRun run;

@@ -68,30 +68,54 @@ std::optional<double> MethodRun::coverage(const PointBatch& points) const {
     return static_cast<double>(given) / static_cast<double>(asked);
 }
 
+MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts) {
+    MethodRun run{choice};
+    run.work        = std::make_shared<MethodAtWork>(choice, scene, facts);
+    run.service     = run.work->service();
+    run.is_coloured = facts.has_coloured_filters;
+    return run;
+}
+
+void look_at(MethodRun& run, const PointBatch& points, const Repeats& repeats) {
+    MethodAtWork& work = *run.work;
+    if (work.looks_at(points)) return;
+    const Timing look = time_runs(
+        repeats, [&] { work.look(points); }, [&] { work.forget_look(); });
+    run.look = run.look.runs == 0 ? look : total({run.look, look});
+}
+
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
-    run.aim.push_back(time_runs(repeats, [&] { run.method->aim(light); }));
+    MethodAtWork& work = *run.work;
+    run.aim.push_back(time_runs(
+        repeats, [&] { work.aim(light); }, [&] { work.forget_aim(light); }));
+    look_at(run, points, repeats);
     VisibilityPlane plane(points.size(), run.is_coloured);
     run.visibility.push_back(time_runs(
-        repeats, [&] { run.method->visibility(points, light, plane.out()); }, [&] { plane.clear(); }));
+        repeats, [&] { work.visibility(light, plane.out()); }, [&] { plane.clear(); }));
     check_contract(run.choice.info->name, plane, points, light);
     run.planes.push_back(std::move(plane));
 }
 
+void note_memory(MethodRun& run) {
+    run.memory_bytes = run.work->memory_bytes();
+    run.points_bytes = run.work->points_bytes();
+    run.device_bytes = run.work->device_bytes();
+}
+
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
                      const Repeats& repeats, std::optional<LightId>* at) {
-    MethodRun run{choice};
-    run.method  = choice.make();
-    run.service = verdict(*run.method, facts);
+    MethodRun run = begin_run(choice, scene, facts);
     if (!run.service) return run;
-
-    run.is_coloured = facts.has_coloured_filters;
-    run.build       = time_runs(repeats, [&] { run.method->build(scene, facts); });
+    MethodAtWork& work = *run.work;
+    run.build          = time_runs(
+                 repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
+    look_at(run, points, repeats);
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         if (at != nullptr) *at = light;
         run_light(run, points, light, repeats);
     }
     if (at != nullptr) at->reset();
-    run.memory_bytes = run.method->memory_bytes();
+    note_memory(run);
     return run;
 }
 

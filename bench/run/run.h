@@ -1,4 +1,4 @@
-// Running a method on a scene: the three phases, timed apart, and the S_j planes that come out.
+// Running a method on a scene: its phases, timed apart, and the S_j planes that come out.
 #pragma once
 
 #include <functional>
@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "umbra/bench/run/at_work.h"
 #include "umbra/core/errors/visibility_error.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/scene/facts.h"
@@ -34,14 +35,15 @@ struct Repeats {
 struct MethodRun {
     MethodChoice choice;
     Service service{};
-    Timing build{};
+    Timing build{}, look{};                           ///< look: of all batches that it was asked for
     std::vector<Timing> aim{}, visibility{};          ///< [light]
-    std::size_t memory_bytes = 0;                     ///< after the last light was aimed at
+    std::size_t memory_bytes = 0;                     ///< of geometry and of the last light
+    std::size_t points_bytes = 0, device_bytes = 0;   ///< of the points; on a device
     std::vector<VisibilityPlane> planes{};            ///< [light]
     bool is_coloured = false;                         ///< planes have three channels
     std::vector<std::vector<std::uint8_t>> judged{};  ///< [light][point] of a reference: 0 where its value only finds
                                                       ///< edges and judges nothing; empty: every point judges
-    std::shared_ptr<Method> method{};                 ///< built, and aimed at the last light: to be asked further
+    std::shared_ptr<MethodAtWork> work{};             ///< to be asked further
 
     /// judged[light], or empty.
     [[nodiscard]] std::span<const std::uint8_t> judged_points(LightId light) const {
@@ -60,9 +62,19 @@ struct MethodRun {
                                    const PointBatch& points, const Repeats& repeats,
                                    std::optional<LightId>* at = nullptr);
 
-/// The last two phases for one light, on points that may be others than those of the other lights: adds to `run`, whose
-/// method has been built.
+/// The phase of the points, where it does not look at these yet: adds to `run.look`. `points` must outlive the next
+/// one.
+void look_at(MethodRun& run, const PointBatch& points, const Repeats& repeats);
+
+/// The phases of one light, and of the points where it does not look at these yet: adds to `run`, whose method has been
+/// built. `points` must outlive the next call.
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats);
+
+/// What the values of a run hold, into the run.
+void note_memory(MethodRun& run);
+
+/// A run of a setting whose phases are still to come: `work` and `service` are there.
+[[nodiscard]] MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts);
 
 /// Sum of the medians (and of minima and maxima) of several timings: what all lights together cost.
 [[nodiscard]] Timing total(const std::vector<Timing>& timings);

@@ -314,9 +314,10 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, int a
     bench.prepare();
     const int samples         = across * across;
     const MethodChoice choice = parse_method(fmt::format("ray_traced:samples={}", samples));
+    const SceneFacts facts    = find_facts(bench.scene);
     const auto method         = choice.make();
-    method->build(bench.scene, find_facts(bench.scene));
-    method->aim(light);
+    const auto built          = method->build(bench.scene, facts);
+    const auto aimed          = method->aim(*built, light);
     VisibilityPlane plane(bench.points.size());
     const std::vector<float>& s = plane.s;
     const CameraFrame f         = *bench.points.raster;
@@ -329,7 +330,7 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, int a
                            std::vector<std::uint8_t>(bench.points.size())};
     };
     BareShadows fast = shadows(*bench.fast), robust = shadows(*bench.robust);
-    const auto ours = [&] { method->visibility(bench.points, light, plane.out()); };
+    const auto ours = [&] { method->visibility(*aimed, *method->look(*built, bench.points), plane.out()); };
 
     ours();
     fast.packets();

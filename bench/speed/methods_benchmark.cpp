@@ -1,8 +1,9 @@
 // Every method x phase x scene, and visibility by threads and by resolution. SCENE/METHOD/PHASE, milliseconds:
 //
 //     small     9,000 triangles, medium 65,000, million 1,024,000 (speed_scenes.h); 640x360 pixels, or as the name says
-//     build     geometry alone; aim: one point light; point, area: visibility of that light, of a rectangle light
-//               (methods without penumbrae get a scene that has the point light alone)
+//     build     geometry alone; aim: one point light; look: the points alone, for all lights; point, area: visibility
+//               of that light, of a rectangle light (methods without penumbrae get a scene that has the point light
+//               alone)
 //
 // A method that is too slow for a whole picture answers for a sample of its points; the label says how many. Before the
 // clock starts the answers are compared with those of `exact`, and a method whose answers are wrong is not timed.
@@ -89,10 +90,16 @@ PointBatch points_for(Stage& stage, const MethodInfo& info, LightId light, Size 
     return is_slow(info, light) ? pick(all, spread(all, kSampled)) : all;
 }
 
-VisibilityPlane answers(Method& method, const PointBatch& points, LightId light) {
+std::unique_ptr<const Built> build(const Method& method, const Stage& stage) {
+    method.warm_up(stage.scene, stage.facts);
+    return method.build(stage.scene, stage.facts);
+}
+
+VisibilityPlane answers(const Stage& stage, const MethodInfo& info, const PointBatch& points, LightId light) {
+    const auto method = info.make();
+    const auto built  = build(*method, stage);
     VisibilityPlane plane(points.size());
-    method.aim(light);
-    method.visibility(points, light, plane.out());
+    method->visibility(*method->aim(*built, light), *method->look(*built, points), plane.out());
     return plane;
 }
 
@@ -104,15 +111,9 @@ std::optional<std::string> what_is_wrong(Stage& stage, const MethodInfo& info, L
     if (stage.checked.empty()) stage.checked = spread(all, kChecked);
     const PointBatch checked = pick(all, stage.checked);
     auto [expected, unknown] = stage.expected.try_emplace(light);
-    if (unknown) {
-        const auto exact = find_method("exact").make();
-        exact->build(stage.scene, stage.facts);
-        expected->second = answers(*exact, checked, light);
-    }
-    const auto method = info.make();
-    method->build(stage.scene, stage.facts);
+    if (unknown) expected->second = answers(stage, find_method("exact"), checked, light);
     const bool whole             = info.needs_raster;
-    const VisibilityPlane mine   = answers(*method, whole ? all : checked, light);
+    const VisibilityPlane mine   = answers(stage, info, whole ? all : checked, light);
     const VisibilityPlane& truth = expected->second;
     std::size_t compared = 0, wrong = 0;
     for (std::size_t k = 0; k < checked.size(); ++k) {
@@ -136,19 +137,36 @@ bool refused(benchmark::State& state, Stage& stage, const MethodInfo& info, Ligh
 
 void time_build(benchmark::State& state, Stage& stage, const MethodInfo& info) {
     if (refused(state, stage, info, kPoint)) return;
-    std::unique_ptr<Method> method;
+    const auto method = info.make();
+    std::unique_ptr<const Built> built;
     timed_loop(
-        state, [&] { method->build(stage.scene, stage.facts); }, [&] { method = info.make(); });
+        state, [&] { built = method->build(stage.scene, stage.facts); },
+        [&] { built.reset(), method->warm_up(stage.scene, stage.facts); });
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.scene.triangles.size()));
-    state.counters["memory_bytes"] = static_cast<double>(method->memory_bytes());
+    state.counters["memory_bytes"] = static_cast<double>(built->memory_bytes());
 }
 
 void time_aim(benchmark::State& state, Stage& stage, const MethodInfo& info) {
     if (refused(state, stage, info, kPoint)) return;
     const auto method = info.make();
-    method->build(stage.scene, stage.facts);
-    timed_loop(state, [&] { method->aim(kPoint); });
-    state.counters["memory_bytes"] = static_cast<double>(method->memory_bytes());
+    const auto built  = build(*method, stage);
+    std::unique_ptr<const Aimed> aimed;
+    timed_loop(
+        state, [&] { aimed = method->aim(*built, kPoint); }, [&] { aimed.reset(); });
+    state.counters["memory_bytes"] = static_cast<double>(built->memory_bytes() + aimed->memory_bytes());
+}
+
+void time_look(benchmark::State& state, Stage& stage, const MethodInfo& info) {
+    if (refused(state, stage, info, kPoint)) return;
+    const PointBatch points = points_for(stage, info, kPoint, {});
+    const auto method       = info.make();
+    const auto built        = build(*method, stage);
+    std::unique_ptr<const Looked> looked;
+    timed_loop(
+        state, [&] { looked = method->look(*built, points); }, [&] { looked.reset(); });
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+    state.counters["memory_bytes"] = static_cast<double>(looked->memory_bytes());
+    if (is_slow(info, kPoint)) state.SetLabel(fmt::format("{} points", points.size()));
 }
 
 void time_visibility(benchmark::State& state, Stage& stage, const MethodInfo& info, LightId light, Size size,
@@ -157,11 +175,12 @@ void time_visibility(benchmark::State& state, Stage& stage, const MethodInfo& in
     const ThreadLimit limit(threads);
     const PointBatch points = points_for(stage, info, light, size);
     const auto method       = info.make();
-    method->build(stage.scene, stage.facts);
-    method->aim(light);
+    const auto built        = build(*method, stage);
+    const auto aimed        = method->aim(*built, light);
+    const auto looked       = method->look(*built, points);
     VisibilityPlane plane(points.size());
     timed_loop(
-        state, [&] { method->visibility(points, light, plane.out()); }, [&] { plane.clear(); });
+        state, [&] { method->visibility(*aimed, *looked, plane.out()); }, [&] { plane.clear(); });
     std::int64_t asked = 0;
     for (std::size_t i = 0; i < points.size(); ++i) asked += points.asks(light, i);
     state.SetItemsProcessed(state.iterations() * asked);
@@ -170,12 +189,13 @@ void time_visibility(benchmark::State& state, Stage& stage, const MethodInfo& in
 
 void add_method(Stage& stage, const MethodInfo& info) {
     const auto add = [&](const std::string& what, auto&& function) {
-        benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", stage.name, info.name, what).c_str(), function)
+        return benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", stage.name, info.name, what).c_str(), function)
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
     };
     add("build", [&](benchmark::State& s) { time_build(s, stage, info); });
     add("aim", [&](benchmark::State& s) { time_aim(s, stage, info); });
+    add("look", [&](benchmark::State& s) { time_look(s, stage, info); })->MinTime(0.1);  // most have nothing to do
     add("point", [&](benchmark::State& s) { time_visibility(s, stage, info, kPoint, {}, 0); });
     if (stage.scene.lights.size() > kArea)
         add("area", [&](benchmark::State& s) { time_visibility(s, stage, info, kArea, {}, 0); });

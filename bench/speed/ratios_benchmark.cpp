@@ -48,15 +48,29 @@ struct Stage {
 /// A method that is ready to answer. `stage` must outlive it.
 struct Ready {
     const Stage& stage;
-    std::unique_ptr<Method> method;
+    std::unique_ptr<const Method> method;
+    std::unique_ptr<const Built> built{};
+    std::unique_ptr<const Aimed> aimed{};
     VisibilityPlane plane;
 
     Ready(const Stage& s, std::string_view settings)
         : stage(s), method(parse_method(settings).make()), plane(s.points.size()) {
-        method->build(s.scene, s.facts);
-        method->aim(0);
+        build();
+        aim();
     }
-    void see() { method->visibility(stage.points, 0, plane.out()); }
+    void build() {
+        aimed.reset(), built.reset();
+        method->warm_up(stage.scene, stage.facts);  // nothing, of the methods here
+        built = method->build(stage.scene, stage.facts);
+    }
+    void aim() {
+        aimed.reset();
+        aimed = method->aim(*built, 0);
+    }
+    /// A camera's frame of one light: look and visibility.
+    void see() { method->visibility(*aimed, *method->look(*built, stage.points), plane.out()); }
+    /// A moved object's frame.
+    void all() { build(), aim(), see(); }
 };
 
 /// Skips the benchmark, and says so, where the mean difference of the answers is above `allowed`.
@@ -86,19 +100,14 @@ void time_see(benchmark::State& state, Stage& stage, std::string_view one, std::
              {{std::string(other), [&] { b.see(); }}});
 }
 
-/// Build, aim and S_j of one method, a moved object's frame, over those of another.
+/// Build, aim and S_j of one method over those of another.
 void time_all(benchmark::State& state, Stage& stage, std::string_view one, std::string_view other, double allowed) {
     stage.prepare();
     Ready a(stage, one), b(stage, other);
     a.see(), b.see();
     if (!agree(state, a, b, allowed)) return;
-    const auto all = [&](Ready& r) {
-        r.method->build(stage.scene, stage.facts);
-        r.method->aim(0);
-        r.see();
-    };
-    in_turns(state, fmt::format("{}: build, aim, S_j of {}", stage.name, one), [&] { all(a); },
-             {{std::string(other), [&] { all(b); }}});
+    in_turns(state, fmt::format("{}: build, aim, S_j of {}", stage.name, one), [&] { a.all(); },
+             {{std::string(other), [&] { b.all(); }}});
 }
 
 /// What a light that moved costs before S_j is asked for, over a moved object's frame.
@@ -107,16 +116,11 @@ void time_aim(benchmark::State& state, Stage& stage, std::string_view settings) 
     if (!parse_method(settings).make()->serves(stage.facts))
         return state.SkipWithError(fmt::format("{} does not serve this scene", settings).c_str());
     Ready aimed(stage, settings), all(stage, settings);
-    const auto see_all = [&] {
-        all.method->build(stage.scene, stage.facts);
-        all.method->aim(0);
-        all.see();
-    };
-    aimed.method->aim(0);  // once more, as below
-    aimed.see(), see_all();
+    aimed.aim();  // once more, as below
+    aimed.see(), all.all();
     if (!agree(state, aimed, all, 0)) return;
-    in_turns(state, fmt::format("{}: aim of {}", stage.name, settings), [&] { aimed.method->aim(0); },
-             {{"build, aim, S_j", see_all}});
+    in_turns(state, fmt::format("{}: aim of {}", stage.name, settings), [&] { aimed.aim(); },
+             {{"build, aim, S_j", [&] { all.all(); }}});
 }
 
 /// The sum over the G-buffer.

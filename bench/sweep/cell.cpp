@@ -32,7 +32,8 @@ std::string code_of_truth(const std::optional<std::string>& reference) {
     std::string codes;
     if (reference) codes = code_key(*parse_method(*reference).info);
     for (const MethodInfo* info : methods())
-        if (info->reference || !info->stand_in.empty()) codes += code_key(*info);
+        if (info->reference) codes += code_key(*info);
+    codes += code_key(*parse_method(kStandIn).info);
     return codes;
 }
 
@@ -95,9 +96,8 @@ const CellView::Truth& CellView::truth(Measure measure) {
     Truth truth{reference, {MethodRun{reference.choice}, 0, 0, {}}, std::nullopt, {}};
     if (read_truth(file, p.scene.lights.size(), p.points.size(), truth.ran)) {
         MethodRun& run = truth.ran.run;
-        run.method     = reference.choice.make();
-        run.service    = verdict(*run.method, p.facts);
-        run.method->build(p.scene, p.facts);
+        run.work       = std::make_shared<MethodAtWork>(reference.choice, p.scene, p.facts);
+        run.service    = run.work->service();
     } else if (options_.reference && measure == Measure::area) {
         truth.ran = run_reference(truth.reference, p.scene, p.facts, p.points, options_.points);
         write_truth(file, truth.ran, p.points.raster->width, p.points.raster->height);
@@ -118,19 +118,17 @@ Json CellView::reference() {
     return record;
 }
 
-std::shared_ptr<Method> CellView::configured(const MethodChoice& choice) {
-    if (built_ && built_->info == choice.info &&
-        first_changed_phase(built_->settings, choice.settings) != Phase::build) {
-        method_->configure(choice.settings);
+const std::shared_ptr<MethodAtWork>& CellView::at_work(const MethodChoice& choice) {
+    if (work_ && work_->choice().info == choice.info) {
+        work_->set(choice);
     } else {
-        built_.reset();
-        method_ = choice.make();
-        // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
-        const ThreadLimit one(1);
-        if (verdict(*method_, prepared().facts)) method_->build(prepared().scene, prepared().facts);
+        work_.reset();
+        work_ = std::make_shared<MethodAtWork>(choice, prepared().scene, prepared().facts);
     }
-    built_ = choice;
-    return method_;
+    // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
+    const ThreadLimit one(1);
+    if (work_->service()) work_->built();
+    return work_;
 }
 
 Json CellView::compute(const MethodChoice& choice) {
@@ -141,8 +139,8 @@ Json CellView::compute(const MethodChoice& choice) {
     Json cell;
     try {
         MethodRun run{seeded(choice, view_)};
-        run.method  = configured(run.choice);
-        run.service = verdict(*run.method, p.facts);
+        run.work    = at_work(run.choice);
+        run.service = run.work->service();
         if (!run.service) {
             cell = unserved_json(id, choice, run.service);
         } else {
@@ -150,11 +148,11 @@ Json CellView::compute(const MethodChoice& choice) {
                 at = j;
                 run_light(run, p.points, j, kOnce);
             }
-            run.memory_bytes = run.method->memory_bytes();
+            note_memory(run);
             at.reset();
-            const Measure measure = p.facts.hard_lights_only ? Measure::area : run.method->measures();
+            const Measure measure = p.facts.hard_lights_only ? Measure::area : run.work->method().measures();
             const Truth& against  = truth(measure);
-            const auto noise      = noise_runs(run.choice, scene, p.facts, p.points, kCellNoiseRuns);
+            const auto noise      = noise_runs(*run.work, scene, p.points, kCellNoiseRuns);
             std::vector<Explained> explained;
             for (LightId j = 0; j < scene.lights.size(); ++j) {
                 at = j;
@@ -173,7 +171,7 @@ Json CellView::compute(const MethodChoice& choice) {
     } catch (const InputError&) {  // a file that cannot be written is no fault of the method
         throw;
     } catch (...) {
-        built_.reset();
+        work_.reset();
         cell = failed_json(id, choice, scene, at, current_message());
     }
     cell["view"] = view_;

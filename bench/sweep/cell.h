@@ -60,7 +60,7 @@ private:
     };
     [[nodiscard]] const Truth& truth(Measure measure);
     [[nodiscard]] std::string what_truth_depends_on() const;
-    [[nodiscard]] std::shared_ptr<Method> configured(const MethodChoice& choice);
+    [[nodiscard]] const std::shared_ptr<MethodAtWork>& at_work(const MethodChoice& choice);
 
     std::shared_ptr<const Scene> own_;
     std::filesystem::path file_;
@@ -70,8 +70,7 @@ private:
     std::string scene_key_;
     std::optional<PreparedScene> prepared_;
     std::map<Measure, Truth> truths_;
-    std::optional<MethodChoice> built_;  ///< what `method_` was built with last
-    std::shared_ptr<Method> method_;
+    std::shared_ptr<MethodAtWork> work_;  ///< of the method that was asked last
 };
 
 }  // namespace umbra

@@ -5,9 +5,13 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
+#include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
+
+#include "umbra/shadows/plugin.h"
 
 #include "code_versions.h"  // made by bench/sweep/code_versions.cmake
 
@@ -128,6 +132,11 @@ std::string scene_key(const Scene& scene) {
 std::string code_key(const MethodInfo& method) {
     for (const auto& [name, key] : kCodeVersions)
         if (name == method.name) return std::string(key);
+    if (const std::string file = plugin_file(method); !file.empty()) {
+        std::ifstream in(file, std::ios::binary);
+        const std::string code(std::istreambuf_iterator<char>(in), {});
+        return combined_key({"plugin", code});
+    }
     throw std::logic_error(fmt::format("{} has no line in methods.def", method.name));
 }
 

@@ -59,17 +59,21 @@ std::optional<RunTimes> SceneLab::price(const MethodChoice& choice) {
     if (const auto found = store_.find(key)) {
         const Json& price = found->at("price");
         return RunTimes{price.at("build_ms").get<double>(), price.at("aim_ms").get<std::vector<double>>(),
-                        price.at("visibility_ms").get<std::vector<double>>()};
+                        price.at("look_ms").get<double>(), price.at("visibility_ms").get<std::vector<double>>()};
     }
     if (options_.progress) options_.progress(fmt::format("price: {}", choice.text()));
     const Turns turns  = time_in_turns(view(0).prepared(), {&choice, 1}, {.rounds = 1, .budget_ms = 0});
     const TurnTimes& t = turns.settings.front();
     if (t.build.empty() || !t.failed.empty()) return std::nullopt;
-    RunTimes price{t.build.front()};
+    RunTimes price{.build = t.build.front(), .look = t.look.front()};
     for (const std::vector<double>& light : t.light_aim) price.aim.push_back(light.front());
     for (const std::vector<double>& light : t.light_visibility) price.visibility.push_back(light.front());
     store_.keep({{"key", key},
-                 {"price", {{"build_ms", price.build}, {"aim_ms", price.aim}, {"visibility_ms", price.visibility}}}});
+                 {"price",
+                  {{"build_ms", price.build},
+                   {"aim_ms", price.aim},
+                   {"look_ms", price.look},
+                   {"visibility_ms", price.visibility}}}});
     return price;
 }
 

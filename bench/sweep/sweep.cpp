@@ -8,6 +8,7 @@
 #include <set>
 
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/run/canonical.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/bench/sweep/cell_store.h"
@@ -25,10 +26,7 @@ CellOptions cell_options(const SweepPlan& plan) { return {plan.size, plan.refere
 
 /// Without --methods: what runs on every scene, and what runs by itself on each of the plan's scenes.
 bool is_default(const MethodInfo& info, const SweepPlan& plan) {
-    return info.by_default ||
-           (info.is_shown() && std::ranges::all_of(plan.scenes, [&](const fs::path& scene) {
-                return std::ranges::find(info.shown_on, scene.stem().string()) != info.shown_on.end();
-            }));
+    return std::ranges::all_of(plan.scenes, [&](const fs::path& scene) { return runs_by_itself(info, scene); });
 }
 
 /// What is typed is wrong before anything is computed.

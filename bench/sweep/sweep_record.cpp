@@ -40,7 +40,7 @@ Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
     for (const char* member : {"text", "name", "title"}) entry[member] = cell.at(member);
     entry["preset"] = preset.empty() ? Json() : Json(preset);
     for (const char* member :
-         {"parameters", "serves", "failed", "measures", "compared_with", "memory_bytes", "coverage"})
+         {"parameters", "serves", "failed", "measures", "compared_with", "memory_bytes", "points_bytes", "coverage"})
         if (cell.contains(member)) entry[member] = cell.at(member);
     entry["excluded"] = why.empty() ? Json() : Json(why);
     entry["views"]    = Json::array();
@@ -61,7 +61,7 @@ Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
 std::optional<double> cost_of(const Json& times, const Workload& workload) {
     if (times.is_null()) return std::nullopt;
     const auto phase = [&](const char* name) { return times.at(name).at("median").get<double>(); };
-    return frame_cost_ms(workload, phase("build_ms"), phase("aim_ms"), phase("visibility_ms"));
+    return frame_cost_ms(workload, {phase("build_ms"), phase("aim_ms"), phase("look_ms"), phase("visibility_ms")});
 }
 
 Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload, const Json& turns) {

@@ -135,6 +135,7 @@ private:
         for (const RunTimes& run : runs) {
             t.build.push_back(run.build);
             t.aim.push_back(sum(run.aim));
+            t.look.push_back(run.look);
             t.visibility.push_back(sum(run.visibility));
             for (std::size_t j = 0; j < lights; ++j) {
                 t.light_aim[j].push_back(run.aim[j]);
@@ -191,25 +192,29 @@ private:
     /// One build, then aim and visibility of each member. One that throws is out of all later rounds; those behind it
     /// in the group get a build of their own.
     void run_group(const Group& group, bool cold) {
-        std::unique_ptr<Method> method;
+        std::optional<MethodAtWork> work;
         double build = 0;
         for (std::size_t k = 0; k < group.size(); ++k) {
             Entry& e = entries_[group[k]];
             if (cold) tell(choice_of(e).text());
             try {
                 if (k == 0) {
-                    method = choice_of(e).make();
-                    build  = timed([&] { method->build(prepared_.scene, prepared_.facts); });
+                    work.emplace(choice_of(e), prepared_.scene, prepared_.facts);
+                    work->warm_up();
+                    build = timed([&] { work->build(); });
                 } else {
-                    method->configure(choice_of(e).settings);
+                    work->set(choice_of(e));
                 }
-                RunTimes run{build};
+                RunTimes run{.build = build};
+                work->forget_look();
+                run.look = timed([&] { work->look(prepared_.points); });
                 for (LightId j = 0; j < prepared_.scene.lights.size(); ++j) {
                     plane_.clear();
-                    run.aim.push_back(timed([&] { method->aim(j); }));
-                    run.visibility.push_back(timed([&] { method->visibility(prepared_.points, j, plane_.out()); }));
+                    work->forget_aims();
+                    run.aim.push_back(timed([&] { work->aim(j); }));
+                    run.visibility.push_back(timed([&] { work->visibility(j, plane_.out()); }));
                 }
-                turns_.settings[e.setting].memory_bytes = method->memory_bytes();
+                turns_.settings[e.setting].memory_bytes = work->memory_bytes();
                 if (cold)
                     keep_cold(e, run);
                 else
@@ -231,12 +236,9 @@ private:
 
     void keep_cold(Entry& e, const RunTimes& run) {
         cold_.resize(turns_.settings.size());
-        cold_[e.setting]  = run;
-        TurnTimes& t      = turns_.settings[e.setting];
-        t.cold_build      = run.build;
-        t.cold_aim        = sum(run.aim);
-        t.cold_visibility = sum(run.visibility);
-        e.latest          = run.all();
+        cold_[e.setting]                = run;
+        turns_.settings[e.setting].cold = run;
+        e.latest                        = run.all();
     }
 
     void keep(Entry& e, RunTimes run) {
@@ -269,11 +271,12 @@ double wall_clock_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-double RunTimes::all() const { return build + sum(aim) + sum(visibility); }
+double RunTimes::all() const { return build + sum(aim) + look + sum(visibility); }
 
 std::vector<double> totals(const TurnTimes& times) {
     std::vector<double> all(times.build.size());
-    for (std::size_t r = 0; r < all.size(); ++r) all[r] = times.build[r] + times.aim[r] + times.visibility[r];
+    for (std::size_t r = 0; r < all.size(); ++r)
+        all[r] = times.build[r] + times.aim[r] + times.look[r] + times.visibility[r];
     return all;
 }
 
@@ -295,11 +298,13 @@ Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice>
 Json turn_times_json(const TurnTimes& times) {
     return {{"build_ms", samples_json(times.build)},
             {"aim_ms", samples_json(times.aim)},
+            {"look_ms", samples_json(times.look)},
             {"visibility_ms", samples_json(times.visibility)},
             {"cold",
-             {{"build_ms", number(times.cold_build)},
-              {"aim_ms", number(times.cold_aim)},
-              {"visibility_ms", number(times.cold_visibility)}}},
+             {{"build_ms", number(times.cold.build)},
+              {"aim_ms", number(sum(times.cold.aim))},
+              {"look_ms", number(times.cold.look)},
+              {"visibility_ms", number(sum(times.cold.visibility))}}},
             {"order", times.order}};
 }
 

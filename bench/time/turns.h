@@ -19,7 +19,9 @@ namespace umbra {
 /// One run of all phases, milliseconds; aim and visibility by light.
 struct RunTimes {
     double build = 0;
-    std::vector<double> aim{}, visibility{};  ///< [light]
+    std::vector<double> aim{};         ///< [light]
+    double look = 0;                   ///< of the points, once for all lights
+    std::vector<double> visibility{};  ///< [light]
 
     [[nodiscard]] double all() const;  ///< of all phases and lights
 };
@@ -46,11 +48,11 @@ struct TurnOptions {
 struct TurnTimes {
     MethodChoice choice;
     Service service{};
-    std::vector<double> build{}, aim{}, visibility{};
+    std::vector<double> build{}, aim{}, look{}, visibility{};
     std::vector<std::vector<double>> light_aim{}, light_visibility{};  ///< [light][round]
-    double cold_build = 0, cold_aim = 0, cold_visibility = 0;          ///< the first run, kept apart
+    RunTimes cold{};                                                   ///< the first run, kept apart
     std::vector<int> order{};          ///< its position within each round, from 0; the A/A twin has one too
-    std::size_t memory_bytes = 0;      ///< after the last light was aimed at
+    std::size_t memory_bytes = 0;      ///< of geometry and of the last light
     bool only_cold           = false;  ///< it took so long that the first run is also the one sample
     std::string failed{};              ///< the message of what it threw; its samples up to there are kept
 };
@@ -65,11 +67,12 @@ struct Turns {
 };
 
 /// Every setting once a round, in an order drawn for each round. Settings of one method that differ only in parameters
-/// of aim or visibility form a group: in each round they follow one another behind one build, on a Method that is new
-/// in this round, and each is recorded with the time of that build. The order of the groups is drawn, and that within
+/// of later phases than build form a group: in each round they follow one another behind one build, which is new in
+/// this round, and each is recorded with the time of that build. The order of the groups is drawn, and that within
 /// each. The cheapest setting runs a second time, in a group of its own, as an A/A control.
 ///
-/// Only the method is inside the clock: not its construction, not the clearing of planes.
+/// Only the phases are inside the clock: not the construction of a method, nor Method::warm_up, nor the end of values,
+/// nor the clearing of planes. Each run looks at the points once, and then takes light after light.
 ///
 /// Before the first round each setting runs once (`cold`), in the order given, groups together. It takes part in a
 /// round where its time by its last run fits into what is left of its part of the budget, the budget over the number of

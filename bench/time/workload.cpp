@@ -60,10 +60,11 @@ std::string to_text(const Workload& workload) {
     return fmt::format("camera={},light={},object={}", workload.camera, workload.light, workload.object);
 }
 
-double frame_cost_ms(const Workload& workload, double build_ms, double aim_ms, double visibility_ms) {
+double frame_cost_ms(const Workload& workload, const PhaseTimes& times) {
     const double frames = std::max({workload.camera, workload.light, workload.object});
     const auto of       = [&](double events, double ms) { return events > 0 ? events / frames * ms : 0; };
-    return of(workload.object, build_ms) + of(std::max(workload.light, workload.object), aim_ms) + visibility_ms;
+    return of(workload.object, times.build) + of(std::max(workload.light, workload.object), times.aim) +
+           of(std::max(workload.camera, workload.object), times.look) + times.visibility;
 }
 
 }  // namespace umbra

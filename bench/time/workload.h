@@ -18,11 +18,16 @@ struct Workload {
 /// As `parse_workload` reads it.
 [[nodiscard]] std::string to_text(const Workload& workload);
 
-/// Expected milliseconds a frame: p_object build + p_light aim + p_camera visibility. There is a frame for each event
+/// Milliseconds of the phases of a frame that repeats them, all lights together.
+struct PhaseTimes {
+    double build = 0, aim = 0, look = 0, visibility = 0;
+};
+
+/// Expected milliseconds a frame: p_build build + p_aim aim + p_look look + visibility. There is a frame for each event
 /// of the most frequent kind; p is the fraction of the frames, (0, 1], in which the phase is repeated. A moving object
-/// repeats all phases and a moving light the last two, so that aim is repeated at the larger of the rates of lights and
-/// objects, and visibility in every frame. Infinite or NaN times give an infinite or NaN cost, unless their phase is
-/// never repeated.
-[[nodiscard]] double frame_cost_ms(const Workload& workload, double build_ms, double aim_ms, double visibility_ms);
+/// repeats all phases, a moving light its aim, and a moving camera the look at the points: aim is repeated at the
+/// larger of the rates of lights and objects, look at that of cameras and objects, visibility in every frame. Infinite
+/// or NaN times give an infinite or NaN cost, unless their phase is never repeated.
+[[nodiscard]] double frame_cost_ms(const Workload& workload, const PhaseTimes& times);
 
 }  // namespace umbra

@@ -76,20 +76,23 @@ std::optional<FrameCost> cost_of(const SweptScene& scene, const Field& setting) 
     FrameCost cost{*median, *median, *median};
     const auto phase = [&](const char* name, const char* member) { return setting["times"][name][member]; };
     const auto build = phase("build_ms", "samples").items(), aim = phase("aim_ms", "samples").items(),
-               visibility = phase("visibility_ms", "samples").items();
+               look = phase("look_ms", "samples").items(),  // none in records of older versions
+        visibility  = phase("visibility_ms", "samples").items();
     std::vector<double> rounds;
     if (build.size() == visibility.size() && aim.size() == visibility.size())
         for (std::size_t r = 0; r < visibility.size(); ++r)
-            rounds.push_back(frame_cost_ms(scene.workload, not_negative(build[r]), not_negative(aim[r]),
-                                           not_negative(visibility[r])));
+            rounds.push_back(frame_cost_ms(scene.workload,
+                                           {not_negative(build[r]), not_negative(aim[r]),
+                                            r < look.size() ? not_negative(look[r]) : 0, not_negative(visibility[r])}));
     if (!rounds.empty()) {
         cost.low  = std::min(*median, quantile(rounds, 0.25));
         cost.high = std::max(*median, quantile(rounds, 0.75));
     } else {
         const auto end = [&](const char* member) {
-            return frame_cost_ms(scene.workload, phase("build_ms", member).number().value_or(0),
-                                 phase("aim_ms", member).number().value_or(0),
-                                 phase("visibility_ms", member).number().value_or(0));
+            return frame_cost_ms(
+                scene.workload,
+                {phase("build_ms", member).number().value_or(0), phase("aim_ms", member).number().value_or(0),
+                 phase("look_ms", member).number().value_or(0), phase("visibility_ms", member).number().value_or(0)});
         };
         if (phase("visibility_ms", "min").present()) cost.low = std::min(*median, end("min"));
         if (phase("visibility_ms", "max").present()) cost.high = std::max(*median, end("max"));

@@ -6,6 +6,11 @@
 // arrangement of them says which parts are covered. All of it is exact: vertices, barycentrics and light are the floats
 // of the scene, every sign is proven and every intersection a rational point.
 //
+//     build       welds the triangles, and makes a tree of their boxes
+//     aim         finds the outlines as the light sees them, and cuts each triangle: counts the triangles over one of
+//                 its points, and projects onto it the outlines above and the lines in which it is passed through
+//     visibility  looks each point up in the polygons of its triangle
+//
 // This work is based on:
 // Peter Atherton, Kevin Weiler, Donald Greenberg. Polygon Shadow Generation. 1978
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005 (triangles counted by outlines)
@@ -13,13 +18,16 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <utility>
 
+#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/shadows/atherton/lit_part.h"
 #include "umbra/shadows/atherton/receiver.h"
 #include "umbra/shadows/shared/exact_segment.h"
+#include "umbra/shadows/shared/triangle_tree.h"
 
 namespace umbra {
 
@@ -27,74 +35,65 @@ using namespace atherton_detail;
 using exact_detail::ExactPoint;
 using exact_detail::Segment;
 
-AthertonWeiler::AthertonWeiler()  = default;
-AthertonWeiler::~AthertonWeiler() = default;
+struct atherton_detail::WeldedTriangles final : Built {
+    WeldedTriangles(const Scene& of, const SceneFacts& its_facts)
+        : Built(of, its_facts),
+          topology(find_topology(of, 0, static_cast<std::uint32_t>(of.triangles.size()))),
+          tree(of) {}
 
-const std::vector<std::vector<dvec2>>& AthertonWeiler::lit_loops(TriangleId t) const { return parts_[t]->loops(); }
-std::vector<std::array<dvec2, 3>> AthertonWeiler::lit_triangles(TriangleId t) const { return parts_[t]->triangles(); }
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
+        return tree.memory_bytes() + bytes(topology.triangles) + bytes(topology.edges) + bytes(topology.uses) +
+               bytes(topology.position) + bytes(topology.degenerate);
+    }
 
-Service AthertonWeiler::serves(const SceneFacts& facts) const {
-    if (!facts.hard_lights_only) return {How::not_at_all, "Lit polygons have no penumbra: no area lights."};
-    return {How::exactly, "Lit polygons are cut by exact arithmetic, and points are found in them by exact signs."};
-}
-
-void AthertonWeiler::build(const Scene& scene, const SceneFacts&) {
-    scene_    = &scene;
-    topology_ = find_topology(scene, 0, static_cast<std::uint32_t>(scene.triangles.size()));
-    triangles_.emplace(scene);
-}
-
-void AthertonWeiler::aim(LightId light) {
-    light_ = &scene_->lights[light];
-    find_sides();
-    outlines_ = find_outlines(*scene_, topology_, covers_);
-    std::vector<Box> boxes;
-    for (const OutlineEdge& edge : outlines_) boxes.push_back(extend(extend(Box{}, edge.from), edge.to));
-    outline_tree_.emplace(std::move(boxes));
-    seen_.assign(sides_.size(), Seen::unknown);
-    parts_.clear();
-    parts_.resize(sides_.size());
-    parallel_ranges(sides_.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            if (sides_[t] != 0) cut(static_cast<TriangleId>(t));
-    });
-}
-
-void AthertonWeiler::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!points.asks(light, i)) continue;
-            const TriangleId t = points.triangle[i];
-            switch (seen_[t]) {
-                case Seen::unknown: out.answer[i] = Answer::undefined; break;
-                case Seen::lit: out.s[i] = 1; break;
-                case Seen::umbra: out.s[i] = 0; break;
-                case Seen::parts: {
-                    const LitPart::At at = parts_[t]->at(points.u[i], points.v[i]);
-                    out.s[i]             = at == LitPart::At::umbra ? 0.0f : 1.0f;
-                    if (at == LitPart::At::boundary) out.answer[i] = Answer::on_boundary;
-                    break;
-                }
-            }
-        }
-    });
-}
-
-/// +1 for triangles that face the light, -1 for those that face away, 0 for those that it sees edge-on.
-void AthertonWeiler::find_sides() {
-    sides_.resize(scene_->triangles.size());
-    covers_.resize(sides_.size());
-    parallel_ranges(sides_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            const auto id = static_cast<TriangleId>(t);
-            sides_[t]     = static_cast<std::int8_t>(
-                side_of_light(*light_, scene_->vertex(id, 0), scene_->vertex(id, 1), scene_->vertex(id, 2)));
-            covers_[t] = scene_->blocks(id) ? sides_[t] : std::int8_t{0};
-        }
-    });
-}
+    const Topology topology;
+    const TriangleTree tree;
+};
 
 namespace {
+
+/// +1 for triangles that face the light, -1 for those that face away, 0 for those that it sees edge-on.
+std::vector<std::int8_t> sides_of(const Scene& scene, const Light& light) {
+    std::vector<std::int8_t> sides(scene.triangles.size());
+    parallel_ranges(sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) {
+            const auto id = static_cast<TriangleId>(t);
+            sides[t]      = static_cast<std::int8_t>(
+                side_of_light(light, scene.vertex(id, 0), scene.vertex(id, 1), scene.vertex(id, 2)));
+        }
+    });
+    return sides;
+}
+
+std::vector<std::int8_t> of_those_that_block(const Scene& scene, std::vector<std::int8_t> sides) {
+    parallel_ranges(sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            if (!scene.blocks(static_cast<TriangleId>(t))) sides[t] = 0;
+    });
+    return sides;
+}
+
+std::vector<Box> boxes_of(const std::vector<OutlineEdge>& outlines) {
+    std::vector<Box> boxes;
+    for (const OutlineEdge& edge : outlines) boxes.push_back(extend(extend(Box{}, edge.from), edge.to));
+    return boxes;
+}
+
+/// Every triangle that the segment from a point of triangle `own` to the light crosses or touches, until visit
+/// returns false.
+template <class Visit>
+void visit_met(const WeldedTriangles& triangles, const Light& light, TriangleId own, float u, float v,
+               const Visit& visit) {
+    const Scene& scene = triangles.scene;
+    const ExactPoint point(scene, own, u, v);
+    const Segment segment(point, light);
+    triangles.tree.visit(segment.piece(), [&](TriangleId t) {
+        if (t == own || triangles.topology.degenerate[t] || !scene.blocks(t)) return true;
+        const auto met = segment.meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+        return met == Segment::Meeting::none || visit(t, met);
+    });
+}
 
 /// Where the segment meets the receiver's plane.
 Projected in_plane(const Projected& a, const Projected& b) { return between(a, b, a.height / (a.height - b.height)); }
@@ -109,23 +108,37 @@ void add(const Receiver& receiver, const Projected& from, const Projected& to, i
 
 }  // namespace
 
-/// Every triangle that the segment from a point of triangle `own` to the light crosses or touches, until visit
-/// returns false.
-template <class Visit>
-void AthertonWeiler::visit_met(TriangleId own, float u, float v, const Visit& visit) const {
-    const ExactPoint point(*scene_, own, u, v);
-    const Segment segment(point, *light_);
-    triangles_->visit(segment.piece(), [&](TriangleId t) {
-        if (t == own || topology_.degenerate[t] || !scene_->blocks(t)) return true;
-        const auto met = segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
-        return met == Segment::Meeting::none || visit(t, met);
+LitPolygons::LitPolygons(const WeldedTriangles& among, LightId at)
+    : Aimed(among, at),
+      triangles_(among),
+      sides_(sides_of(scene(), source())),
+      covers_(of_those_that_block(scene(), sides_)),
+      outlines_(find_outlines(scene(), triangles_.topology, covers_)),
+      outline_tree_(boxes_of(outlines_)),
+      seen_(sides_.size(), Seen::unknown),
+      parts_(sides_.size()) {
+    parallel_ranges(sides_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t)
+            if (sides_[t] != 0) cut(static_cast<TriangleId>(t));
     });
 }
 
-void AthertonWeiler::cut(TriangleId t) {
+LitPolygons::~LitPolygons() = default;
+
+const std::vector<std::vector<dvec2>>& LitPolygons::lit_loops(TriangleId t) const { return part(t).loops(); }
+std::vector<std::array<dvec2, 3>> LitPolygons::lit_triangles(TriangleId t) const { return part(t).triangles(); }
+
+std::size_t LitPolygons::memory_bytes() const {
+    std::size_t bytes = outline_tree_.memory_bytes() + outlines_.size() * sizeof(OutlineEdge) + 2 * sides_.size() +
+                        seen_.size() + parts_.size() * sizeof(parts_[0]);
+    for (const auto& part : parts_) bytes += part ? part->memory_bytes() : 0;
+    return bytes;
+}
+
+void LitPolygons::cut(TriangleId t) {
     const std::optional<Probe> probe = find_probe(t);
     if (!probe) return;
-    const Receiver receiver(*scene_, t, *light_);
+    const Receiver receiver(scene(), t, source());
     std::vector<OutlinePiece> pieces;
     add_outlines(receiver, pieces);
     add_cuts(t, receiver, pieces);
@@ -138,7 +151,7 @@ void AthertonWeiler::cut(TriangleId t) {
 }
 
 /// The first of some points that lies on no outline; none where all do.
-std::optional<AthertonWeiler::Probe> AthertonWeiler::find_probe(TriangleId t) const {
+std::optional<LitPolygons::Probe> LitPolygons::find_probe(TriangleId t) const {
     constexpr std::array<std::pair<float, float>, 8> kPoints{{{0.34375f, 0.3125f},
                                                               {0.21f, 0.27f},
                                                               {0.51f, 0.13f},
@@ -150,7 +163,7 @@ std::optional<AthertonWeiler::Probe> AthertonWeiler::find_probe(TriangleId t) co
     for (const auto& [u, v] : kPoints) {
         bool clear = true;
         int covers = 0;
-        visit_met(t, u, v, [&](TriangleId, Segment::Meeting met) {
+        visit_met(triangles_, source(), t, u, v, [&](TriangleId, Segment::Meeting met) {
             clear = met != Segment::Meeting::touches;
             covers += met == Segment::Meeting::crosses;
             return clear;
@@ -161,8 +174,8 @@ std::optional<AthertonWeiler::Probe> AthertonWeiler::find_probe(TriangleId t) co
 }
 
 /// The outlines of what is over the receiver.
-void AthertonWeiler::add_outlines(const Receiver& receiver, Pieces& pieces) const {
-    outline_tree_->visit(
+void LitPolygons::add_outlines(const Receiver& receiver, Pieces& pieces) const {
+    outline_tree_.visit(
         receiver.towards_light(), [](std::uint32_t, const Box&) { return true; },
         [&](BoxTree::Item item) {
             const OutlineEdge& edge = outlines_[item];
@@ -173,8 +186,8 @@ void AthertonWeiler::add_outlines(const Receiver& receiver, Pieces& pieces) cons
 }
 
 /// The lines in which triangles meet the receiver's plane: what is below does not cover it.
-void AthertonWeiler::add_cuts(TriangleId own, const Receiver& receiver, Pieces& pieces) const {
-    triangles_->visit(
+void LitPolygons::add_cuts(TriangleId own, const Receiver& receiver, Pieces& pieces) const {
+    triangles_.tree.visit(
         receiver.itself(), [](std::uint32_t, const Box&) { return true; },
         [&](TriangleId t) {
             if (t != own && covers_[t] != 0) add_cut(own, t, receiver, pieces);
@@ -182,14 +195,14 @@ void AthertonWeiler::add_cuts(TriangleId own, const Receiver& receiver, Pieces& 
         });
 }
 
-void AthertonWeiler::add_cut(TriangleId own, TriangleId t, const Receiver& receiver, Pieces& pieces) const {
+void LitPolygons::add_cut(TriangleId own, TriangleId t, const Receiver& receiver, Pieces& pieces) const {
     std::array<int, 3> side{}, corner{-1, -1, -1};
     std::array<vec3, 3> position{};
-    const uvec3 mine = topology_.triangles[own], its = topology_.triangles[t];
+    const uvec3 mine = triangles_.topology.triangles[own], its = triangles_.topology.triangles[t];
     int shared = 0;
     for (int k = 0; k < 3; ++k) {
         const auto at = static_cast<std::size_t>(k);
-        position[at]  = scene_->vertex(t, k);
+        position[at]  = scene().vertex(t, k);
         for (int m = 0; m < 3; ++m)
             if (its[k] == mine[m]) corner[at] = m;
         shared += corner[at] >= 0;
@@ -211,31 +224,90 @@ void AthertonWeiler::add_cut(TriangleId own, TriangleId t, const Receiver& recei
     add(receiver, in_plane(at(end), at(end + 1)), in_plane(at(begin), at(begin + 1)), sides_[t], true, pieces);
 }
 
-void AthertonWeiler::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
-    parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            blockers[i] = kNoTriangle;
-            if (!points.asks(light, i)) continue;
-            visit_met(points.triangle[i], points.u[i], points.v[i], [&](TriangleId t, Segment::Meeting met) {
-                if (met == Segment::Meeting::crosses) blockers[i] = t;
-                return met != Segment::Meeting::crosses;
-            });
-        }
-    });
-}
+namespace {
 
-std::size_t AthertonWeiler::memory_bytes() const {
-    std::size_t bytes = (triangles_ ? triangles_->memory_bytes() : 0) +
-                        (outline_tree_ ? outline_tree_->memory_bytes() : 0) +
-                        topology_.triangles.size() * sizeof(uvec3) + topology_.edges.size() * sizeof(Edge) +
-                        topology_.uses.size() * sizeof(EdgeUse) + topology_.position.size() * sizeof(std::uint32_t) +
-                        topology_.degenerate.size() + outlines_.size() * sizeof(OutlineEdge) + 2 * sides_.size() +
-                        seen_.size() + parts_.size() * sizeof(parts_[0]);
-    for (const auto& part : parts_) bytes += part ? part->memory_bytes() : 0;
-    return bytes;
-}
+class AthertonWeiler final : public Method {
+public:
+    explicit AthertonWeiler(const Settings&) {}  // it has no parameters
 
-extern const MethodInfo atherton_weiler;
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        if (!facts.hard_lights_only) return {How::not_at_all, "Lit polygons have no penumbra: no area lights."};
+        return {How::exactly, "Lit polygons are cut by exact arithmetic, and points are found in them by exact signs."};
+    }
+
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<WeldedTriangles>(scene, facts);
+    }
+
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return std::make_unique<LitPolygons>(as<WeldedTriangles>(built), light);
+    }
+
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        using Seen               = LitPolygons::Seen;
+        const auto& polygons     = as<LitPolygons>(aimed);
+        const PointBatch& points = looked.points;
+        parallel_ranges(points.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!points.asks(aimed.light, i)) continue;
+                const TriangleId t = points.triangle[i];
+                switch (polygons.seen(t)) {
+                    case Seen::unknown: out.answer[i] = Answer::undefined; break;
+                    case Seen::lit: out.s[i] = 1; break;
+                    case Seen::umbra: out.s[i] = 0; break;
+                    case Seen::parts: {
+                        const LitPart::At at = polygons.part(t).at(points.u[i], points.v[i]);
+                        out.s[i]             = at == LitPart::At::umbra ? 0.0f : 1.0f;
+                        if (at == LitPart::At::boundary) out.answer[i] = Answer::on_boundary;
+                        break;
+                    }
+                }
+            }
+        });
+    }
+
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const auto& triangles    = as<WeldedTriangles>(aimed.built);
+        const PointBatch& points = looked.points;
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                blockers[i] = kNoTriangle;
+                if (!points.asks(aimed.light, i)) continue;
+                visit_met(triangles, aimed.source(), points.triangle[i], points.u[i], points.v[i],
+                          [&](TriangleId t, Segment::Meeting met) {
+                              if (met == Segment::Meeting::crosses) blockers[i] = t;
+                              return met != Segment::Meeting::crosses;
+                          });
+            }
+        });
+    }
+
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason      = Method::explain(aimed, looked, i, given);
+        const auto& light  = as<LitPolygons>(aimed);
+        const TriangleId t = looked.points.triangle[i];
+        constexpr std::array kSeen{"unknown", "lit", "umbra", "lit and umbra"};
+        reason.evidence.push_back({"the light sees of the triangle", kSeen[static_cast<std::size_t>(light.seen(t))]});
+        if (light.seen(t) != LitPolygons::Seen::parts) return reason;
+        // In barycentric coordinates the nearest border of a lit polygon; in the world, by the triangle's own edges.
+        const Scene& scene = aimed.scene();
+        const dvec3 a(scene.vertex(t, 0)), ab = dvec3(scene.vertex(t, 1)) - a, ac = dvec3(scene.vertex(t, 2)) - a;
+        const auto in_world = [&](dvec2 uv) { return a + uv.x * ab + uv.y * ac; };
+        const dvec3 p       = in_world(dvec2(looked.points.u[i], looked.points.v[i]));
+        double nearest      = std::numeric_limits<double>::infinity();
+        for (const std::vector<dvec2>& loop : light.lit_loops(t))
+            for (std::size_t k = 0; k < loop.size(); ++k)
+                nearest =
+                    std::min(nearest, distance_to_segment(p, in_world(loop[k]), in_world(loop[(k + 1) % loop.size()])));
+        reason.evidence.push_back({"outlines of lit polygons", static_cast<double>(light.lit_loops(t).size())});
+        if (nearest > 0 && nearest < std::numeric_limits<double>::infinity() && given.answer == Answer::given)
+            reason.margin = given.s > 0 ? nearest : -nearest, reason.unit = "world";
+        return reason;
+    }
+};
+
+}  // namespace
+
 const MethodInfo atherton_weiler{
     .name  = "atherton_weiler",
     .title = "Lit polygons",
@@ -245,7 +317,7 @@ const MethodInfo atherton_weiler{
         "polygons, once for all cameras, and a point is looked up in the polygons of its triangle. Limit: no area "
         "lights; the time to cut grows with the outlines that cross one another on a receiver.",
     .by_default = false,
-    .shown_on   = {"sun_on_plane", "stairs", "interpenetrating"},
+    .shown      = true,
     .create     = create<AthertonWeiler>};
 
 }  // namespace umbra

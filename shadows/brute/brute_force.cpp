@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/light_points.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/shared/light_points.h"
 
 namespace umbra {
 namespace {
@@ -44,8 +44,17 @@ bool crosses(dvec3 p, dvec3 d, double end, dvec3 a, dvec3 b, dvec3 c) {
     return t > 0 && t < end && u >= 0 && v >= 0 && u + v <= 1;
 }
 
+/// Triangles that take any of the light that meets them.
+struct Occluders final : Built {
+    using Built::Built;
+    [[nodiscard]] std::size_t memory_bytes() const override { return triangles.size() * sizeof(TriangleId); }
+    std::vector<TriangleId> triangles;
+};
+
 class BruteForce final : public MethodWith<Options> {
 public:
+    explicit BruteForce(const Settings& settings) : MethodWith(settings) {}
+
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (facts.triangles > static_cast<std::uint64_t>(options.max_triangles))
             return {How::not_at_all, fmt::format("{} triangles, and each point would be tested against all of them; "
@@ -57,43 +66,57 @@ public:
 
     [[nodiscard]] bool multiplies() const override { return true; }
 
-    void build(const Scene& scene, const SceneFacts&) override {
-        scene_ = &scene;
-        occluders_.clear();
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        auto occluders = std::make_unique<Occluders>(scene, facts);
         for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-            if (scene.lets_through(t) != vec3(1)) occluders_.push_back(t);
+            if (scene.lets_through(t) != vec3(1)) occluders->triangles.push_back(t);
+        return occluders;
     }
 
-    void aim(LightId light) override { light_ = light; }
-
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const PointBatch& points = looked.points;
+        const int samples        = samples_of(aimed.source());
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                if (!points.asks(light, i)) continue;
+                if (!points.asks(aimed.light, i)) continue;
                 vec3 sum(0);
-                for (int k = 0; k < samples(); ++k) {
-                    const Segment s = segment(points, i, k);
-                    if (!s.behind) sum += passes(points.triangle[i], s);
+                for (int k = 0; k < samples; ++k) {
+                    const Segment s = segment(aimed, points, i, k);
+                    if (!s.behind) sum += passed(aimed, points.triangle[i], s);
                 }
-                sum /= static_cast<float>(samples());
+                sum /= static_cast<float>(samples);
                 out.s[i] = mean_of(sum);
                 if (!out.colour.empty()) out.colour[i] = sum;
             }
         });
     }
 
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const PointBatch& points = looked.points;
+        const int samples        = samples_of(aimed.source());
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 blockers[i] = kNoTriangle;
-                if (!points.asks(light, i)) continue;
-                for (int k = 0; k < samples() && blockers[i] == kNoTriangle; ++k)
-                    blockers[i] = first_blocker(points.triangle[i], segment(points, i, k));
+                if (!points.asks(aimed.light, i)) continue;
+                for (int k = 0; k < samples && blockers[i] == kNoTriangle; ++k)
+                    blockers[i] = first_blocker(aimed, points.triangle[i], segment(aimed, points, i, k));
             }
         });
     }
 
-    [[nodiscard]] std::size_t memory_bytes() const override { return occluders_.size() * sizeof(TriangleId); }
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason = Method::explain(aimed, looked, i, given);
+        if (is_area(aimed.source().kind)) {
+            add_samples(reason, options.samples, given);
+            return reason;
+        }
+        const Segment s     = segment(aimed, looked.points, i, 0);
+        std::size_t crossed = 0;
+        for (const TriangleId t : as<Occluders>(aimed.built).triangles)
+            crossed += t != looked.points.triangle[i] && is_crossed(aimed.scene(), t, s);
+        reason.evidence.push_back({"triangles crossed", static_cast<double>(crossed)});
+        return reason;
+    }
 
 private:
     /// The points p + t d, 0 < t < end.
@@ -103,43 +126,39 @@ private:
         bool behind;  ///< runs behind the plane of the point's triangle: that part of the light is not seen
     };
 
-    [[nodiscard]] const Light& light() const { return scene_->lights[light_]; }
-    [[nodiscard]] int samples() const { return is_area(light().kind) ? options.samples : 1; }
+    [[nodiscard]] int samples_of(const Light& light) const { return is_area(light.kind) ? options.samples : 1; }
 
     /// From point i to the light, or to its k-th sample.
-    [[nodiscard]] Segment segment(const PointBatch& points, std::size_t i, int k) const {
-        const dvec3 p = exact_position(*scene_, points, i);
-        if (light().kind == LightKind::directional) return {p, -dvec3(light().direction), double(kInfinity), false};
-        if (!is_area(light().kind)) return {p, dvec3(light().position) - p, 1, false};
-        const dvec3 d = light_point(light(), p, k) - p;
-        return {p, d, 1, points.facing[light_][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), d) <= 0};
+    [[nodiscard]] static Segment segment(const Aimed& aimed, const PointBatch& points, std::size_t i, int k) {
+        const Light& light = aimed.source();
+        const dvec3 p      = exact_position(aimed.scene(), points, i);
+        if (light.kind == LightKind::directional) return {p, -dvec3(light.direction), double(kInfinity), false};
+        if (!is_area(light.kind)) return {p, dvec3(light.position) - p, 1, false};
+        const dvec3 d = light_point(light, p, k) - p;
+        return {p, d, 1, points.facing[aimed.light][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), d) <= 0};
     }
 
-    [[nodiscard]] bool meets(TriangleId own, const Segment& s, TriangleId t) const {
-        return t != own && crosses(s.p, s.d, s.end, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
-                                   dvec3(scene_->vertex(t, 2)));
+    [[nodiscard]] static bool is_crossed(const Scene& scene, TriangleId t, const Segment& s) {
+        return crosses(s.p, s.d, s.end, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
+                       dvec3(scene.vertex(t, 2)));
     }
 
-    /// What is left of the light when it arrives, per channel: 1 where no triangle lies between, 0 where one blocks.
-    [[nodiscard]] vec3 passes(TriangleId own, const Segment& s) const {
-        vec3 share(1);
-        for (const TriangleId t : occluders_) {
-            if (!meets(own, s, t)) continue;
-            share *= scene_->lets_through(t);
-            if (share == vec3(0)) break;
+    /// The fraction of the light that arrives, per channel: 1 where no triangle lies between, 0 where one blocks.
+    [[nodiscard]] static vec3 passed(const Aimed& aimed, TriangleId own, const Segment& s) {
+        vec3 fraction(1);
+        for (const TriangleId t : as<Occluders>(aimed.built).triangles) {
+            if (t == own || !is_crossed(aimed.scene(), t, s)) continue;
+            fraction *= aimed.scene().lets_through(t);
+            if (fraction == vec3(0)) break;
         }
-        return share;
+        return fraction;
     }
 
-    [[nodiscard]] TriangleId first_blocker(TriangleId own, const Segment& s) const {
-        for (const TriangleId t : occluders_)
-            if (meets(own, s, t)) return t;
+    [[nodiscard]] static TriangleId first_blocker(const Aimed& aimed, TriangleId own, const Segment& s) {
+        for (const TriangleId t : as<Occluders>(aimed.built).triangles)
+            if (t != own && is_crossed(aimed.scene(), t, s)) return t;
         return kNoTriangle;
     }
-
-    const Scene* scene_ = nullptr;
-    LightId light_      = 0;
-    std::vector<TriangleId> occluders_;  ///< that take any light
 };
 
 }  // namespace

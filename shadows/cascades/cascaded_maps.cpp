@@ -1,12 +1,14 @@
 // Cascaded shadow maps: the view of the camera is split by depth, and each part has a shadow map of its own, so that
 // texels are small where pixels are.
 //
+//   build       what casts (BuiltCasters)
 //   aim         what casts, as the light sees it, and the window that holds it; other lights than directional ones:
 //               one map or a cube, drawn (LightViews)
+//   look        the camera; where depths of what is visible are split and the points have no picture, one is traced
+//               (SeenPicture)
 //   visibility  splits the depths that the camera sees, fits a window to each part, draws the maps that some point
 //               needs, and compares each point with the map of its part
-// Nothing of a camera is kept from one call to the next: a camera that moves draws all maps again, and the times say
-// so.
+// No map of a camera is kept from one call to the next: a camera that moves draws all maps again, and the times say so.
 //
 // This work is based on:
 // Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
@@ -24,7 +26,6 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/facing.h"
-#include "umbra/core/render/gbuffer.h"
 #include "umbra/shadows/maps/answers.h"
 
 namespace umbra {
@@ -37,7 +38,7 @@ const std::vector<Parameter> kCascadeParameters{
                                    .doc   = "Parts that the view of a directional light's points is split into; each "
                                             "has a map.",
                                    .unit  = "maps",
-                                   .phase = Phase::visibility,
+                                   .phase = Phase::aim,  // whose memory counts them
                                    .min   = 1,
                                    .max   = 8}),
     resolution_parameter<Options>("Texels along each side of a map; of other lights, too: a cube has six.",
@@ -58,7 +59,7 @@ const std::vector<Parameter> kCascadeParameters{
          .doc     = "Depths that are split. scene: of all geometry within the view, seen or hidden; visible: of the "
                     "points that the picture shows, to which the windows are fitted, too. Without a picture, visible "
                     "traces one.",
-         .phase   = Phase::visibility,
+         .phase   = Phase::look,
          .choices = "scene|visible"}),
     parameter<&Options::window>(
         {.name    = "window",
@@ -90,31 +91,41 @@ const std::vector<Parameter> kCascadeParameters{
     normal_offset_parameter<Options>(),
 };
 
+bool is_sun(const Light& light) { return light.kind == LightKind::directional; }
+
+/// What `aim` makes for a directional light; for others it makes LightViews.
+struct Sun final : Aimed {
+    /// `bytes` are those of the cascades' maps, which `visibility` holds while it runs.
+    Sun(const Built& from, LightId at, std::size_t bytes)
+        : Aimed(from, at), casters(as<BuiltCasters>(from).casters, source()), maps_bytes(bytes) {
+        if (casters.box().empty()) return;
+        window = looking_along(dvec3(casters.box().centre()), dvec3(source().direction), false);
+        fit_to_scene(*window, casters, kInfinity);
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override { return window ? maps_bytes : 0; }
+
+    const SelectedCasters casters;
+    std::optional<LightFrame> window;  ///< of all that casts, where something does
+    const std::size_t maps_bytes;
+};
+
 }  // namespace
 
-void CascadedMaps::configure(const Settings& settings) {
-    const Options o = options_ = settings.as<Options>();
-    bias_                      = {o.bias, o.constant, o.slope, o.normal_offset};
-    filter_                    = o.filter == CascadeFilter::nearest ? Filter{} : Filter{o.radius, o.bilinear};
-    const MapMargins room      = margins("cascaded_maps", o, filter_.radius, filter_.radius);
-    const double map           = 4.0 * o.resolution * o.resolution;
-    if ((o.cascades + 1) * map > LightViews::half_of_memory())
+CascadedMaps::CascadedMaps(const Settings& settings)
+    : MethodWith(settings),
+      bias_{options.bias, options.constant, options.slope, options.normal_offset},
+      filter_(options.filter == CascadeFilter::nearest ? Filter{} : Filter{options.radius, options.bilinear}),
+      room_(margins("cascaded_maps", options, filter_.radius, filter_.radius)),
+      view_options_{.method     = "cascaded_maps",
+                    .resolution = options.resolution,
+                    .border     = room_.border,
+                    .headroom   = room_.headroom} {
+    const double map = 4.0 * options.resolution * options.resolution;
+    if ((options.cascades + 1) * map > LightViews::half_of_memory())
         throw UsageError(
             fmt::format("cascaded_maps: cascades={} and resolution={} take more than half of the machine's "
                         "memory ({:.0f} MiB a map), expected fewer or smaller ones",
-                        o.cascades, o.resolution, map / (1 << 20)));
-    cascade_options_ = {.cascades   = o.cascades,
-                        .splits     = o.splits,
-                        .lambda     = o.lambda,
-                        .window     = o.window,
-                        .stable     = o.stable,
-                        .blend      = o.blend,
-                        .resolution = o.resolution,
-                        .border     = room.border,
-                        .headroom   = room.headroom};
-    view_options_    = {
-           .method = "cascaded_maps", .resolution = o.resolution, .border = room.border, .headroom = room.headroom};
-    if (views_) views_->set_options(view_options_);
+                        options.cascades, options.resolution, map / (1 << 20)));
 }
 
 Service CascadedMaps::serves(const SceneFacts& facts) const {
@@ -129,52 +140,48 @@ Service CascadedMaps::serves(const SceneFacts& facts) const {
     return {How::approximately, why + "."};
 }
 
-void CascadedMaps::build(const Scene& scene, const SceneFacts& facts) {
-    const auto suns = std::ranges::count(scene.lights, LightKind::directional, &Light::kind);
-    scene_          = &scene;
-    casters_.reset();
-    window_.reset();
-    views_.reset();
-    if (suns > 0) casters_.emplace(scene, facts, true);
-    if (suns < std::ssize(scene.lights)) views_.emplace(scene, facts, view_options_);
+std::unique_ptr<const Built> CascadedMaps::build(const Scene& scene, const SceneFacts& facts) const {
+    return std::make_unique<BuiltCasters>(scene, facts, true);
 }
 
-void CascadedMaps::aim(LightId light) {
-    const Light& aimed = scene_->lights[light];
-    is_sun_            = aimed.kind == LightKind::directional;
-    if (!is_sun_) {
-        views_->fit(light);
-        views_->rasterise();
-        return;
-    }
-    window_.reset();
-    casters_->select(aimed);
-    if (casters_->box().empty()) return;
-    window_ = looking_along(dvec3(casters_->box().centre()), dvec3(aimed.direction), false);
-    fit_to_scene(*window_, *casters_, kInfinity);
+std::unique_ptr<const Aimed> CascadedMaps::aim(const Built& built, LightId light) const {
+    if (is_sun(built.scene.lights[light]))
+        return std::make_unique<Sun>(
+            built, light, sizeof(std::uint32_t) * options.cascades * options.resolution * options.resolution);
+    return std::make_unique<LightViews>(built, light, view_options_);
 }
 
-std::optional<Cascades> CascadedMaps::fit(const PointBatch& points, LightId light) const {
-    if (!window_) return {};
-    const CameraFrame camera = picture_of(*scene_, points);
-    const View view(camera);
+std::unique_ptr<const Looked> CascadedMaps::look(const Built& built, const PointBatch& points) const {
+    // The points may be any, and answers must not depend on which are asked together: the picture's own decide.
+    const bool traced = options.depth_range == DepthRange::visible && std::ranges::any_of(built.scene.lights, is_sun);
+    return std::make_unique<SeenPicture>(built.scene, points, traced);
+}
+
+std::optional<Cascades> CascadedMaps::fit(const Aimed& aimed, const Looked& looked) const {
+    const auto& window = as<Sun>(aimed).window;
+    if (!window) return {};
+    const auto& seen   = as<SeenPicture>(looked);
+    const Scene& scene = aimed.scene();
+    const View view(seen.camera);
     std::vector<dvec4> planes;
-    if (options_.window == CascadeWindow::receivers) {
-        const auto sides = window_sides(*window_, view);
+    if (options.window == CascadeWindow::receivers) {
+        const auto sides = window_sides(*window, view);
         planes.assign(sides.begin(), sides.end());
     }
-    if (options_.depth_range == DepthRange::visible) {
-        if (points.raster)
-            return fit_cascades(cascade_options_, *window_, view, *receivers_of(*scene_, points, light, view, planes));
-        // The points may be any, and answers must not depend on which are asked together: the picture's own decide.
-        try {
-            const RayScene rays(*scene_);
-            const PointBatch seen = primary_points(rays, *scene_, scene_->camera, camera.width, camera.height);
-            return fit_cascades(cascade_options_, *window_, view, *receivers_of(*scene_, seen, light, view, planes));
-        } catch (const InputError&) {  // an eye too far away for rays: what is in view serves as well
-        }
-    }
-    return fit_cascades(cascade_options_, *window_, view, *receivers_in_view(*scene_, view, planes));
+    // Where the eye is too far away for rays, what is in view serves as well as what is seen.
+    const PointBatch* const shown = options.depth_range == DepthRange::visible ? seen.shown() : nullptr;
+    const auto receivers          = shown != nullptr ? receivers_of(scene, *shown, aimed.light, view, planes)
+                                                     : receivers_in_view(scene, view, planes);
+    return fit_cascades({.cascades   = options.cascades,
+                         .splits     = options.splits,
+                         .lambda     = options.lambda,
+                         .window     = options.window,
+                         .stable     = options.stable,
+                         .blend      = options.blend,
+                         .resolution = options.resolution,
+                         .border     = room_.border,
+                         .headroom   = room_.headroom},
+                        *window, view, *receivers);
 }
 
 /// Maps of one light, and which of them answer a point.
@@ -209,13 +216,13 @@ struct CascadedMaps::Lookups {
     }
 };
 
-CascadedMaps::Lookups CascadedMaps::look_up(const PointBatch& points, LightId light) const {
+CascadedMaps::Lookups CascadedMaps::look_up(const Aimed& aimed, const Looked& looked) const {
     Lookups lookups;
-    if (!is_sun_) {
-        lookups.views = views_->views();
+    if (!is_sun(aimed.source())) {
+        lookups.views = as<LightViews>(aimed).views();
         return lookups;
     }
-    lookups.cascades = fit(points, light);
+    lookups.cascades = fit(aimed, looked);
     if (!lookups.cascades) return lookups;
     const Cascades& cascades = *lookups.cascades;
     std::atomic<std::uint32_t> asked{0};
@@ -223,7 +230,7 @@ CascadedMaps::Lookups CascadedMaps::look_up(const PointBatch& points, LightId li
         const std::uint32_t bit = k == Cascades::kLit ? 0 : 1u << k;
         if ((bit & ~asked.load(std::memory_order_relaxed)) != 0) asked |= bit;
     };
-    for_each_facet(*scene_, points, light, [&](std::size_t, const Facet&, dvec3 p) {
+    for_each_facet(aimed.scene(), looked.points, aimed.light, [&](std::size_t, const Facet&, dvec3 p) {
         const Cascades::Choice choice = cascades.choose(p);
         note(choice.first);
         note(choice.second);
@@ -233,22 +240,24 @@ CascadedMaps::Lookups CascadedMaps::look_up(const PointBatch& points, LightId li
         const Cascade& cascade = k < cascades.parts.size() ? cascades.parts[k] : cascades.whole;
         if ((asked >> k & 1) == 0 || !cascade.casts) continue;
         const dmat4 clip_from_world = cascade.frame.clip_from_world();
-        const auto triangles        = casters_->seen_by(clip_from_world);
+        const auto triangles        = as<Sun>(aimed).casters.seen_by(clip_from_world);
         if (triangles.empty()) continue;
         MapView& view = lookups.drawn[k].emplace(
-            MapView{cascade.frame, DepthMap(options_.resolution, options_.resolution, DepthFormat::float32)});
-        view.map.draw(clip_from_world, scene_->positions, triangles, Faces::all);
+            MapView{cascade.frame, DepthMap(options.resolution, options.resolution, DepthFormat::float32)});
+        view.map.draw(clip_from_world, aimed.scene().positions, triangles, Faces::all);
     }
     return lookups;
 }
 
-void CascadedMaps::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    const Lookups lookups = look_up(points, light);
-    const auto lit        = [&](const std::optional<Lookups::Asked>& asked) {
+void CascadedMaps::visibility(const Aimed& aimed, const Looked& looked, Visibility out) const {
+    const Scene& scene       = aimed.scene();
+    const PointBatch& points = looked.points;
+    const Lookups lookups    = look_up(aimed, looked);
+    const auto lit           = [&](const std::optional<Lookups::Asked>& asked) {
         return asked ? lit_share(lookups.view(*asked), asked->receiver, bias_.mode, filter_) : 1.0f;
     };
-    for_each_facet(*scene_, points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        if (centre_is_behind(*scene_, points, light, i)) {
+    for_each_facet(scene, points, aimed.light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+        if (centre_is_behind(scene, points, aimed.light, i)) {
             out.s[i] = 0;
             return;
         }
@@ -264,25 +273,32 @@ void CascadedMaps::visibility(const PointBatch& points, LightId light, Visibilit
 }
 
 /// The triangle whose depth the texel holds that blocks the point, the nearest of several. Draws the maps again.
-void CascadedMaps::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
-    const Lookups lookups = look_up(points, light);
-    BlockingSamples samples(points.size());
-    for_each_facet(*scene_, points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+void CascadedMaps::blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const {
+    const Lookups lookups = look_up(aimed, looked);
+    BlockingSamples samples(looked.points.size());
+    for_each_facet(aimed.scene(), looked.points, aimed.light, [&](std::size_t i, const Facet& facet, dvec3 p) {
         const Lookups::Answer answer = lookups.at(facet, p, bias_, filter_);
         for (const auto& asked : {answer.first, answer.second})
             if (asked && samples.find(i, asked->view, lookups.view(*asked), asked->receiver, bias_.mode, filter_))
                 return;
     });
     samples.name(blockers, [&](std::size_t v) {
-        return is_sun_ ? owners(*lookups.drawn[v], *casters_, Faces::all) : views_->owners(v);
+        return is_sun(aimed.source()) ? owners(*lookups.drawn[v], as<Sun>(aimed).casters, Faces::all)
+                                      : as<LightViews>(aimed).owners(v);
     });
 }
 
-std::size_t CascadedMaps::memory_bytes() const {
-    std::size_t bytes = (casters_ ? casters_->memory_bytes() : 0) + (views_ ? views_->memory_bytes() : 0);
-    if (is_sun_ && window_)
-        bytes += sizeof(std::uint32_t) * options_.cascades * options_.resolution * options_.resolution;
-    return bytes;
+Reason CascadedMaps::explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const {
+    Reason reason                = Method::explain(aimed, looked, i, given);
+    const Lookups lookups        = look_up(aimed, looked);
+    const Facet facet            = facet_of(aimed.scene(), looked.points.triangle[i], looked.points.flipped[i] != 0);
+    const Lookups::Answer answer = lookups.at(facet, exact_position(aimed.scene(), looked.points, i), bias_, filter_);
+    if (answer.first)
+        add_texel(reason, *answer.first, lookups.view(*answer.first), given);
+    else
+        reason.evidence.push_back({"map", "nothing casts onto the point's part of the view"});
+    if (answer.share > 0) reason.evidence.push_back({"fraction of the next map", answer.share});
+    return reason;
 }
 
 extern const MethodInfo cascaded_maps;
@@ -310,7 +326,7 @@ const MethodInfo cascaded_maps{
                    {"best", "cascades=8,resolution=4096,filter=pcf,depth_range=visible",
                     "Eight maps of 4096 x 4096 texels, 3 x 3 comparisons."}},
     .by_default = false,
-    .shown_on   = {"low_sun_fence", "fog_colonnade", "sun_on_plane"},
+    .shown      = true,
     .create     = create<CascadedMaps>};
 
 }  // namespace umbra

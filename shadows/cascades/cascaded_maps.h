@@ -25,38 +25,31 @@ struct CascadedMapsOptions : ComparingOptions {
     CascadeFilter filter   = CascadeFilter::nearest;
 };
 
-class CascadedMaps final : public Method {
+class CascadedMaps final : public MethodWith<CascadedMapsOptions> {
 public:
-    void configure(const Settings& settings) override;
+    explicit CascadedMaps(const Settings& settings);
     [[nodiscard]] Service serves(const SceneFacts& facts) const override;
-    void build(const Scene& scene, const SceneFacts& facts) override;
-    void aim(LightId light) override;
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override;
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override;
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override;
     /// Of a directional light it fits and draws the cascades first, each time: that is what a moved camera costs.
     /// The camera is that of the batch's raster; without one the scene's, with a picture of the scene's size.
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override;
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override;
-    /// With the maps of the cascades, which `visibility` holds while it runs.
-    [[nodiscard]] std::size_t memory_bytes() const override;
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override;
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override;
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override;
 
-    /// The windows for a batch, of the directional light that it is aimed at; nothing casts: none.
-    [[nodiscard]] std::optional<Cascades> fit(const PointBatch& points, LightId light) const;
+    /// The windows for a batch, of a directional light; nothing casts: none.
+    [[nodiscard]] std::optional<Cascades> fit(const Aimed& aimed, const Looked& looked) const;
 
 private:
     /// Views of a light, and which of them are asked for each point.
     struct Lookups;
-    [[nodiscard]] Lookups look_up(const PointBatch& points, LightId light) const;
+    [[nodiscard]] Lookups look_up(const Aimed& aimed, const Looked& looked) const;
 
-    CascadedMapsOptions options_;
-    CascadeOptions cascade_options_;
-    LightViews::Options view_options_;
-    Bias bias_;
-    Filter filter_;
-    const Scene* scene_ = nullptr;
-    bool is_sun_        = false;      ///< the light that it is aimed at is directional
-    std::optional<Casters> casters_;  ///< for directional lights, where there is one
-    std::optional<LightFrame>
-        window_;  ///< of all that casts, seen by the light that it is aimed at, where something does
-    std::optional<LightViews> views_;  ///< for other lights, where there is one
+    const Bias bias_;
+    const Filter filter_;
+    const MapMargins room_;
+    const LightViews::Options view_options_;  ///< of other lights than directional ones
 };
 
 }  // namespace umbra

@@ -171,7 +171,14 @@ class SeenPoints final : public Receivers {
 public:
     SeenPoints(const Scene& scene, const PointBatch& points, LightId light, const View& view,
                std::span<const dvec4> planes)
-        : scene_(&scene), points_(&points), light_(light), view_(view), planes_(planes.begin(), planes.end()) {}
+        : scene_(&scene), points_(&points), view_(view), planes_(planes.begin(), planes.end()) {
+        if (points.facing.empty()) {
+            sides_.triangle = points.triangle;
+            sides_.flipped  = points.flipped;
+            face_light(sides_, scene, light);
+        }
+        facing_ = (points.facing.empty() ? sides_ : points).facing[light];
+    }
 
     [[nodiscard]] Extent depths() const override {
         return reduced(
@@ -199,7 +206,7 @@ public:
 private:
     /// The point, where it counts.
     [[nodiscard]] std::optional<dvec3> at(std::size_t i) const {
-        if (!points_->asks(light_, i)) return {};
+        if (facing_[i] < Facing::partly) return {};
         const dvec3 p = exact_position(*scene_, *points_, i);
         for (const dvec4& plane : planes_)
             if (distance(plane, p - view_.eye()) < 0) return {};
@@ -208,9 +215,10 @@ private:
 
     const Scene* scene_;
     const PointBatch* points_;
-    LightId light_;
     View view_;
     std::vector<dvec4> planes_;
+    PointBatch sides_;  ///< what decides `facing` alone, where the batch has none
+    std::span<const Facing> facing_;
 };
 
 }  // namespace

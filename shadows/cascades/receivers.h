@@ -37,8 +37,8 @@ public:
 [[nodiscard]] std::unique_ptr<Receivers> receivers_in_view(const Scene& scene, const View& view,
                                                            std::span<const dvec4> planes);
 
-/// The points of the batch that ask for S_j of the light and lie within `planes`, as above. The scene and the
-/// batch must outlive it.
+/// The points of the batch that ask for S_j of the light and lie within `planes`, as above. Which of them ask is
+/// decided here where the batch has no `facing`. The scene and the batch must outlive it.
 [[nodiscard]] std::unique_ptr<Receivers> receivers_of(const Scene& scene, const PointBatch& points, LightId light,
                                                       const View& view, std::span<const dvec4> planes);
 

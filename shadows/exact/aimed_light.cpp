@@ -15,13 +15,19 @@ constexpr double kBoxRounding = 1e-12;  ///< relative: more than the rounding of
 
 }  // namespace
 
+AimedLight::AimedLight(const Light& light, const Occluders& occluders)
+    : light_(light),
+      half_(half_axes(light)),
+      exact_half_(is_sphere() ? ExactAxes{} : exact_axes(light, half_)),
+      side_(is_sphere() ? std::vector<std::int8_t>{} : sides(occluders)),
+      across_(those_across(occluders)) {}
+
 std::optional<LightPlane> AimedLight::plane_from(const ExactPoint& p) const {
-    return light_.kind == LightKind::sphere ? sphere_light_plane(light_, p)
-                                            : flat_light_plane(light_, half_, exact_half_, p);
+    return is_sphere() ? sphere_light_plane(light_, p) : flat_light_plane(light_, half_, exact_half_, p);
 }
 
 std::optional<BoxTree::Region> AimedLight::region_from(const ExactPoint& p, double reach) const {
-    if (light_.kind == LightKind::sphere) {
+    if (is_sphere()) {
         // The tangent disk with its rim lies within the sphere, and the square about it in sqrt(2) times that.
         const dvec3 centre = dvec3(light_.position) - dvec3(p.corner());
         const Entries to   = p.to(Entries{centre, kUnit * largest(centre)});
@@ -33,36 +39,31 @@ std::optional<BoxTree::Region> AimedLight::region_from(const ExactPoint& p, doub
     return shaft(p, space, reach);
 }
 
-void AimedLight::find_sides(const Occluders& occluders) {
-    side_.resize(occluders.topology.position.size());
+/// Exact.
+std::vector<std::int8_t> AimedLight::sides(const Occluders& occluders) const {
+    std::vector<std::int8_t> side(occluders.topology.position.size());
     const dvec3 centre(light_.position);
     const Entries u{half_.u, axis_error(light_)}, v{half_.v, axis_error(light_)};
-    parallel_ranges(side_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+    parallel_ranges(side.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const vec3 q          = occluders.position(static_cast<std::uint32_t>(k));
             const dvec3 d         = dvec3(q) - centre;
             const Filtered<int> s = sign_of_determinant(u, v, Entries{d, kUnit * largest(d)});
-            side_[k]              = static_cast<std::int8_t>(
+            side[k]               = static_cast<std::int8_t>(
                 s ? *s : sign_of_determinant(exact_half_.u, exact_half_.v, rational(q) - rational(light_.position)));
         }
     });
+    return side;
 }
 
 dvec3 AimedLight::reach() const {
-    if (light_.kind == LightKind::sphere) return dvec3(kSphereReach * static_cast<double>(light_.radius));
+    if (is_sphere()) return dvec3(kSphereReach * static_cast<double>(light_.radius));
     return kFlatReach * (glm::abs(half_.u) + glm::abs(half_.v));
 }
 
-void AimedLight::aim(const Light& light, const Occluders& occluders) {
-    light_ = light;
-    half_  = half_axes(light);
-    side_.clear();
-    across_.clear();
-    if (light.kind != LightKind::sphere) {
-        exact_half_ = exact_axes(light, half_);
-        find_sides(occluders);
-    }
-    const dvec3 centre(light.position), wide = reach();
+std::vector<TriangleId> AimedLight::those_across(const Occluders& occluders) const {
+    std::vector<TriangleId> across;
+    const dvec3 centre(light_.position), wide = reach();
     const Topology& topology = occluders.topology;
     for (TriangleId t = 0; t < topology.triangles.size(); ++t) {
         const uvec3 v = topology.triangles[t];
@@ -75,8 +76,9 @@ void AimedLight::aim(const Light& light, const Occluders& occluders) {
             const double around = wide[k] + kBoxRounding * (std::abs(centre[k]) + wide[k]);
             apart               = apart || hi < centre[k] - around || lo > centre[k] + around;
         }
-        if (!apart) across_.push_back(t);
+        if (!apart) across.push_back(t);
     }
+    return across;
 }
 
 }  // namespace umbra::exact_detail

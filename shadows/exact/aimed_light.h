@@ -10,7 +10,7 @@ namespace umbra::exact_detail {
 
 class AimedLight {
 public:
-    void aim(const Light& light, const Occluders& occluders);
+    AimedLight(const Light& light, const Occluders& occluders);
 
     [[nodiscard]] bool round() const { return light_.kind != LightKind::rectangle; }
 
@@ -33,12 +33,14 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const { return side_.size() + across_.size() * sizeof(TriangleId); }
 
 private:
-    void find_sides(const Occluders& occluders);
+    [[nodiscard]] bool is_sphere() const { return light_.kind == LightKind::sphere; }
+    [[nodiscard]] std::vector<std::int8_t> sides(const Occluders& occluders) const;
+    [[nodiscard]] std::vector<TriangleId> those_across(const Occluders& occluders) const;
     [[nodiscard]] dvec3 reach() const;
 
     Light light_;
-    DiskAxes half_{};
-    ExactAxes exact_half_{};
+    DiskAxes half_;
+    ExactAxes exact_half_;           ///< a sphere has none
     std::vector<std::int8_t> side_;  ///< one a welded vertex; a sphere has none
     std::vector<TriangleId> across_;
 };

@@ -58,7 +58,7 @@ bool surely_before_light(const Sight& sight, TriangleId t) {
     if (sight.plane.exact_axes) return true;  // the count has seen to it, with the plane itself
     const Disk disk(sight);
     for (int k = 0; k < 3; ++k)
-        if (disk.place(disk.p.to(sight.occluders.scene->vertex(t, k))) != Disk::Place::before) return false;
+        if (disk.place(disk.p.to(sight.occluders.scene.vertex(t, k))) != Disk::Place::before) return false;
     return true;
 }
 
@@ -72,7 +72,7 @@ double area_in_doubt(const Sight& sight) {
         dvec3 corner[3];
         bool all_before = true, all_beyond = true;
         for (int k = 0; k < 3; ++k) {
-            const vec3 position     = sight.occluders.scene->vertex(t, k);
+            const vec3 position     = sight.occluders.scene.vertex(t, k);
             corner[k]               = dvec3(position);
             d[k]                    = disk.p.to(position);
             const Disk::Place place = disk.place(d[k]);

@@ -1,22 +1,28 @@
 // Exact visibility: of hard lights by the segment from the exact surface point to the light (exact_segment.h), or by
 // all triangles against binned points (binned_shadows.h) with the same answers; of area lights by the part of the light
 // that no triangle covers as seen from there (exact_area.h).
+//
+//     build       what each triangle takes of the light, a tree of boxes, triangles in groups for the bins; where there
+//                 are area lights, the welded triangles and the edges that may be silhouette edges
+//     aim         on which side of an area light's plane each vertex lies, and which triangles may pass through it
+//     visibility  the segment of each point in the tree, all triangles against the points in bins, or the sweep over
+//                 the silhouette edges before an area light
 #include <fmt/format.h>
 
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <span>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/light_points.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/exact/exact_area.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/shared/binned_shadows.h"
 #include "umbra/shadows/shared/exact_segment.h"
-#include "umbra/shadows/shared/light_points.h"
 #include "umbra/shadows/shared/triangle_tree.h"
 
 namespace umbra {
@@ -56,6 +62,126 @@ const std::vector<Parameter> kParameters{
          .area_lights = true}),
 };
 
+/// What a triangle takes of the light that meets it.
+enum class Takes : std::uint8_t { all, part, nothing };
+
+/// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
+Takes taken_by(const Scene& scene, TriangleId t) {
+    const vec3 passes = scene.lets_through(t);
+    if (passes == vec3(1) || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
+        return Takes::nothing;
+    return passes == vec3(0) ? Takes::all : Takes::part;
+}
+
+std::vector<Takes> taken_by_all(const Scene& scene) {
+    std::vector<Takes> takes(scene.triangles.size());
+    parallel_ranges(takes.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) takes[t] = taken_by(scene, static_cast<TriangleId>(t));
+    });
+    return takes;
+}
+
+/// The triangles, as segments meet them, as points in bins do, and as they lie before area lights.
+class Geometry final : public Built {
+public:
+    Geometry(const Scene& of, const SceneFacts& its_facts)
+        : Built(of, its_facts),
+          takes_(taken_by_all(of)),
+          tree_(of),
+          bins_(of),
+          before_area_lights_(its_facts.hard_lights_only ? nullptr : std::make_unique<const AreaOccluders>(of, tree_)) {
+    }
+
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return tree_.memory_bytes() + takes_.size() + bins_.memory_bytes() +
+               (before_area_lights_ ? before_area_lights_->memory_bytes() : 0);
+    }
+
+    [[nodiscard]] const BinnedShadows& bins() const { return bins_; }
+    /// Only where the scene has area lights.
+    [[nodiscard]] const AreaOccluders& before_area_lights() const { return *before_area_lights_; }
+
+    /// `crosses` as soon as one triangle that blocks is crossed; else `touches` if any is touched. `last` is tried
+    /// first.
+    [[nodiscard]] Segment::Meeting first_meeting(const Segment& segment, TriangleId own, TriangleId& last) const {
+        using Meeting   = Segment::Meeting;
+        const auto with = [&](TriangleId t) {
+            return t == own || takes_[t] != Takes::all ? Meeting::none : meeting(segment, t);
+        };
+        if (last != kNoTriangle && with(last) == Meeting::crosses) return Meeting::crosses;
+        Meeting met = Meeting::none;
+        tree_.visit(segment.piece(), [&](TriangleId t) {
+            const Meeting m = with(t);
+            if (m == Meeting::crosses) last = t;
+            met = std::max(met, m);
+            return m != Meeting::crosses;
+        });
+        return met;
+    }
+
+    /// What all triangles that are crossed let through together, per channel, though none of them blocks. `met` becomes
+    /// `touches` where one is touched.
+    [[nodiscard]] vec3 passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
+        dvec3 fraction(1);
+        tree_.visit(segment.piece(), [&](TriangleId t) {
+            if (t == own || takes_[t] != Takes::part) return true;
+            const auto m = meeting(segment, t);
+            if (m == Segment::Meeting::crosses) fraction *= dvec3(scene.lets_through(t));
+            if (m == Segment::Meeting::touches) met = m;
+            return true;
+        });
+        return vec3(fraction);
+    }
+
+    /// How many triangles that take light the segment crosses, and touches.
+    [[nodiscard]] std::array<std::size_t, 2> count_met(const Segment& segment, TriangleId own) const {
+        std::array<std::size_t, 2> count{};
+        tree_.visit(segment.piece(), [&](TriangleId t) {
+            if (t == own || takes_[t] == Takes::nothing) return true;
+            const auto met = meeting(segment, t);
+            count[0] += met == Segment::Meeting::crosses;
+            count[1] += met == Segment::Meeting::touches;
+            return true;
+        });
+        return count;
+    }
+
+    /// What is crossed is decided exactly, and which of that is nearest in double.
+    [[nodiscard]] TriangleId nearest_crossed(const Segment& segment, TriangleId own) const {
+        const BoxTree::Piece piece = segment.piece();
+        TriangleId nearest         = kNoTriangle;
+        double least               = std::numeric_limits<double>::infinity();
+        tree_.visit(piece, [&](TriangleId t) {
+            if (t == own || takes_[t] == Takes::nothing || meeting(segment, t) != Segment::Meeting::crosses)
+                return true;
+            const dvec3 x(scene.vertex(t, 0)), y(scene.vertex(t, 1)), z(scene.vertex(t, 2));
+            const dvec3 n         = glm::cross(y - x, z - x);
+            const double distance = std::abs(glm::dot(n, x - piece.from) / glm::dot(n, piece.direction));
+            if (distance < least || (distance == least && t < nearest)) least = distance, nearest = t;
+            return true;
+        });
+        return nearest;
+    }
+
+private:
+    [[nodiscard]] Segment::Meeting meeting(const Segment& segment, TriangleId t) const {
+        return segment.meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+    }
+
+    const std::vector<Takes> takes_;  ///< one a triangle
+    const TriangleTree tree_;
+    const BinnedShadows bins_;
+    const std::unique_ptr<const AreaOccluders> before_area_lights_;  ///< null where no light has an area
+};
+
+struct AreaLight final : Aimed {
+    AreaLight(const Geometry& among, LightId at)
+        : Aimed(among, at), area_light(source(), among.before_area_lights().occluders) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return area_light.memory_bytes(); }
+
+    const AimedLight area_light;
+};
+
 constexpr int kPoints = 256;  ///< of an area light, tried in turn until one is hidden
 
 /// A point light at point k of an area light, as p sees it.
@@ -66,18 +192,19 @@ Light point_of(const Light& light, const ExactPoint& p, int k) {
     return point;
 }
 
+ExactPoint exact_point(const Scene& scene, const PointBatch& points, std::size_t i) {
+    return {scene, points.triangle[i], points.u[i], points.v[i]};
+}
+
 class Exact final : public MethodWith<Options> {
 public:
-    void configure(const Settings& settings) override {
-        MethodWith::configure(settings);
-        area_ = ExactArea(options.arithmetic, options.measure);
-    }
+    explicit Exact(const Settings& settings) : MethodWith(settings) {}
 
     [[nodiscard]] Measure measures() const override { return options.measure; }
 
     [[nodiscard]] bool multiplies() const override { return true; }
 
-    Service serves(const SceneFacts& facts) const override {
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         bool round = false;
         for (const LightFacts& light : facts.lights)
             round = round || light.kind == LightKind::disk || light.kind == LightKind::sphere;
@@ -99,80 +226,74 @@ public:
             "cannot be told of a round light, have a proven bracket."};
     }
 
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        scene_ = &scene;
-        takes_.resize(scene.triangles.size());
-        parallel_ranges(takes_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t t = begin; t < end; ++t) takes_[t] = taken_by(scene, static_cast<TriangleId>(t));
-        });
-        has_filters_ = facts.has_filters;
-        tree_.emplace(scene);
-        bins_            = BinnedShadows(scene);
-        has_area_lights_ = !facts.hard_lights_only;
-        if (has_area_lights_) area_.build(scene, *tree_);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<Geometry>(scene, facts);
     }
 
-    void aim(LightId light) override {
-        if (is_area(scene_->lights[light].kind)) area_.aim(scene_->lights[light]);
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        if (!is_area(built.scene.lights[light].kind)) return std::make_unique<Aimed>(built, light);
+        return std::make_unique<AreaLight>(as<Geometry>(built), light);
     }
 
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        if (!is_area(scene_->lights[light].kind))
-            bins_serve(points) ? bins_.visibility(points, light, out) : see_hard(points, light, out);
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        if (is_area(aimed.source().kind))
+            see_area(as<AreaLight>(aimed), looked.points, out);
+        else if (bins_serve(aimed.built, looked.points))
+            as<Geometry>(aimed.built).bins().visibility(looked.points, aimed.light, out);
         else
-            see_area(points, light, out);
+            see_hard(aimed, looked.points, out);
     }
 
     /// The nearest of the triangles that the segment to the light crosses. For an area light, the segment to one of its
     /// points, the first of a fixed list that is occluded.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> who) const override {
-        const Light& lamp = scene_->lights[light];
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const PointBatch& points = looked.points;
+        const auto& geometry     = as<Geometry>(aimed.built);
+        const Light& light       = aimed.source();
+        const bool has_area      = is_area(light.kind);
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
-                who[i] = kNoTriangle;
-                if (!points.asks(light, i)) continue;
-                const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
-                for (int k = 0; k < (is_area(lamp.kind) ? kPoints : 1) && who[i] == kNoTriangle; ++k)
-                    who[i] = nearest_crossed(Segment(point, is_area(lamp.kind) ? point_of(lamp, point, k) : lamp),
-                                             points.triangle[i]);
+                blockers[i] = kNoTriangle;
+                if (!points.asks(aimed.light, i)) continue;
+                const ExactPoint point = exact_point(aimed.scene(), points, i);
+                for (int k = 0; k < (has_area ? kPoints : 1) && blockers[i] == kNoTriangle; ++k)
+                    blockers[i] = geometry.nearest_crossed(Segment(point, has_area ? point_of(light, point, k) : light),
+                                                           points.triangle[i]);
             }
         });
     }
 
-    std::size_t memory_bytes() const override {
-        return (tree_ ? tree_->memory_bytes() : 0) + takes_.size() + bins_.memory_bytes() +
-               (has_area_lights_ ? area_.memory_bytes() : 0);
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason = Method::explain(aimed, looked, i, given);
+        if (is_area(aimed.source().kind)) return reason;
+        const ExactPoint point = exact_point(aimed.scene(), looked.points, i);
+        const auto [crossed, touched] =
+            as<Geometry>(aimed.built).count_met(Segment(point, aimed.source()), looked.points.triangle[i]);
+        reason.evidence.push_back({"triangles crossed", static_cast<double>(crossed)});
+        reason.evidence.push_back({"triangles touched", static_cast<double>(touched)});
+        return reason;
     }
 
 private:
-    /// What a triangle takes of the light that meets it.
-    enum class Takes : std::uint8_t { all, part, nothing };
-
-    /// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
-    static Takes taken_by(const Scene& scene, TriangleId t) {
-        const vec3 passes = scene.lets_through(t);
-        if (passes == vec3(1) || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
-            return Takes::nothing;
-        return passes == vec3(0) ? Takes::all : Takes::part;
-    }
-
     /// Bins know what blocks, not what lets a part through.
-    [[nodiscard]] bool bins_serve(const PointBatch& points) const {
-        if (has_filters_ || options.hard_lights == HardLights::segments) return false;
-        return options.hard_lights == HardLights::bins || 2 * points.size() >= scene_->triangles.size();
+    [[nodiscard]] bool bins_serve(const Built& built, const PointBatch& points) const {
+        if (built.facts.has_filters || options.hard_lights == HardLights::segments) return false;
+        return options.hard_lights == HardLights::bins || 2 * points.size() >= built.scene.triangles.size();
     }
 
-    void see_hard(const PointBatch& points, LightId light, Visibility out) const {
+    static void see_hard(const Aimed& aimed, const PointBatch& points, Visibility out) {
+        const auto& geometry   = as<Geometry>(aimed.built);
+        const bool has_filters = geometry.facts.has_filters;
         parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
             TriangleId last = kNoTriangle;  // what blocked a point often blocks its neighbour
             for (std::size_t i = begin; i < end; ++i) {
-                if (points.facing[light][i] != Facing::front) continue;
-                const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
-                const Segment segment(point, scene_->lights[light]);
-                Segment::Meeting met = first_meeting(segment, points.triangle[i], last);
-                out.s[i]             = met == Segment::Meeting::crosses ? 0.0f : 1.0f;
-                vec3 colour(out.s[i]);
-                if (has_filters_ && met != Segment::Meeting::crosses) colour = passed(segment, points.triangle[i], met);
+                if (points.facing[aimed.light][i] != Facing::front) continue;
+                const ExactPoint point = exact_point(aimed.scene(), points, i);
+                const Segment segment(point, aimed.source());
+                Segment::Meeting met = geometry.first_meeting(segment, points.triangle[i], last);
+                vec3 colour(met == Segment::Meeting::crosses ? 0.0f : 1.0f);
+                if (has_filters && met != Segment::Meeting::crosses)
+                    colour = geometry.passed(segment, points.triangle[i], met);
                 out.s[i] = mean_of(colour);
                 if (!out.colour.empty()) out.colour[i] = colour;
                 out.answer[i] = met == Segment::Meeting::touches ? Answer::on_boundary : Answer::given;
@@ -180,19 +301,22 @@ private:
         });
     }
 
-    void see_area(const PointBatch& points, LightId light, Visibility out) const {
-        const bool irradiance = options.measure == Measure::irradiance;
-        const bool bracket    = irradiance || scene_->lights[light].kind != LightKind::rectangle;
-        const auto see        = [&](std::size_t i, ExactArea::Workspace& work) {
-            const bool partly = points.facing[light][i] == Facing::partly;
+    void see_area(const AreaLight& aimed, const PointBatch& points, Visibility out) const {
+        const ExactArea area(as<Geometry>(aimed.built).before_area_lights(), aimed.area_light, options.arithmetic,
+                             options.measure);
+        const bool irradiance  = options.measure == Measure::irradiance;
+        const bool bracket     = irradiance || aimed.source().kind != LightKind::rectangle;
+        const bool has_filters = aimed.built.facts.has_filters;
+        const auto see         = [&](std::size_t i, ExactArea::Workspace& work) {
+            const bool partly = points.facing[aimed.light][i] == Facing::partly;
             const int turn    = points.flipped[i] ? -1 : 1;
             const ExactArea::Answer answer =
-                area_.seen(points.triangle[i], points.u[i], points.v[i], partly, turn, work);
+                area.seen(points.triangle[i], points.u[i], points.v[i], partly, turn, work);
             out.s[i]      = irradiance ? answer.irradiance : answer.visibility;
             out.answer[i] = answer.edge_on ? Answer::on_boundary : Answer::given;
-            if (has_filters_) {
+            if (has_filters) {
                 const auto passed =
-                    area_.seen_through(points.triangle[i], points.u[i], points.v[i], partly, turn, answer, work);
+                    area.seen_through(points.triangle[i], points.u[i], points.v[i], partly, turn, answer, work);
                 if (!passed) out.answer[i] = Answer::undefined;
                 out.s[i] = passed ? mean_of(*passed) : 0.0f;
                 if (!out.colour.empty() && passed) out.colour[i] = *passed;
@@ -205,71 +329,14 @@ private:
             std::size_t count = 0;
             tile.for_each_run([&](std::size_t first, std::size_t n) {
                 for (std::size_t i = first; i < first + n; ++i)
-                    if (points.asks(light, i)) asked[count++] = static_cast<std::uint32_t>(i);
+                    if (points.asks(aimed.light, i)) asked[count++] = static_cast<std::uint32_t>(i);
             });
             const auto see_group = [&](std::size_t i) { see(i, work); };
-            area_.for_all(points, std::span(asked).first(count), work, see_group);
+            area.for_all(points, std::span(asked).first(count), work, see_group);
             if (out.steps != nullptr) *out.steps += work.steps;
         };
         for_each_tile(points, see_tile, 1);
     }
-
-    /// `crosses` as soon as one triangle is crossed; else `touches` if any is touched. `last` is tried first.
-    Segment::Meeting first_meeting(const Segment& segment, TriangleId own, TriangleId& last) const {
-        using Meeting   = Segment::Meeting;
-        const auto with = [&](TriangleId t) {
-            return t == own || takes_[t] != Takes::all
-                       ? Meeting::none
-                       : segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
-        };
-        if (last != kNoTriangle && with(last) == Meeting::crosses) return Meeting::crosses;
-        Meeting met = Meeting::none;
-        tree_->visit(segment.piece(), [&](TriangleId t) {
-            const Meeting m = with(t);
-            if (m == Meeting::crosses) last = t;
-            met = std::max(met, m);
-            return m != Meeting::crosses;
-        });
-        return met;
-    }
-
-    /// What all triangles that are crossed let through together, per channel, though none of them blocks. `met` becomes
-    /// `touches` where one is touched.
-    vec3 passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
-        dvec3 share(1);
-        tree_->visit(segment.piece(), [&](TriangleId t) {
-            if (t == own || takes_[t] != Takes::part) return true;
-            const auto m = segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2));
-            if (m == Segment::Meeting::crosses) share *= dvec3(scene_->lets_through(t));
-            if (m == Segment::Meeting::touches) met = m;
-            return true;
-        });
-        return vec3(share);
-    }
-
-    /// What is crossed is decided exactly, and which of that is nearest in double.
-    TriangleId nearest_crossed(const Segment& segment, TriangleId own) const {
-        const BoxTree::Piece piece = segment.piece();
-        TriangleId nearest         = kNoTriangle;
-        double least               = std::numeric_limits<double>::infinity();
-        tree_->visit(piece, [&](TriangleId t) {
-            const vec3 x = scene_->vertex(t, 0), y = scene_->vertex(t, 1), z = scene_->vertex(t, 2);
-            if (t == own || takes_[t] == Takes::nothing || segment.meeting(x, y, z) != Segment::Meeting::crosses)
-                return true;
-            const dvec3 n    = glm::cross(dvec3(y) - dvec3(x), dvec3(z) - dvec3(x));
-            const double way = std::abs(glm::dot(n, dvec3(x) - piece.from) / glm::dot(n, piece.direction));
-            if (way < least || (way == least && t < nearest)) least = way, nearest = t;
-            return true;
-        });
-        return nearest;
-    }
-
-    const Scene* scene_ = nullptr;
-    std::optional<TriangleTree> tree_;
-    BinnedShadows bins_;
-    std::vector<Takes> takes_;  ///< one a triangle
-    bool has_area_lights_ = false, has_filters_ = false;
-    ExactArea area_{ExactArea::Arithmetic::filtered, Measure::area};
 };
 
 }  // namespace

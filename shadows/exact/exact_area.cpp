@@ -60,11 +60,11 @@ ExactArea::Answer ExactArea::seen_in_rough_plane(const Sight& sight, Workspace& 
     const dvec3 to_light = space.to_centre().value;
     const double around  = 2 * reach * std::max(glm::length(sight.plane.u), glm::length(sight.plane.v)) +
                           space.to_centre().error + 2 * sight.viewpoint.point().slack();
-    occluders_.triangles->visit(BoxTree::Piece{sight.viewpoint.point().rounded() + to_light, dvec3(0), 0, around},
-                                [&](TriangleId t) {
-                                    clear = clear && t == sight.viewpoint.own();
-                                    return clear;
-                                });
+    occluders_.triangles.visit(BoxTree::Piece{sight.viewpoint.point().rounded() + to_light, dvec3(0), 0, around},
+                               [&](TriangleId t) {
+                                   clear = clear && t == sight.viewpoint.own();
+                                   return clear;
+                               });
     if (!clear) return kNothingKnown;
     const Projection<FloatSpace> projection(sight, space);
     TriangleId blocker = kNoTriangle;
@@ -96,10 +96,10 @@ bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint3
     if (which.size() < kFewest) return false;
     constexpr double kApart = 1.0 / 8;  // of the distance to the light: they do not lie together
     const auto at           = [&](std::uint32_t i) {
-        return ExactPoint(*occluders_.scene, points.triangle[i], points.u[i], points.v[i]);
+        return ExactPoint(occluders_.scene, points.triangle[i], points.u[i], points.v[i]);
     };
     const std::uint32_t middle = which[which.size() / 2];
-    const Viewpoint viewpoint(*occluders_.scene, points.triangle[middle], points.u[middle], points.v[middle],
+    const Viewpoint viewpoint(occluders_.scene, points.triangle[middle], points.u[middle], points.v[middle],
                               work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
     if (!plane || !(plane->rounding <= kRoughest)) return false;
@@ -123,7 +123,7 @@ bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint3
 }
 
 ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const {
-    const Viewpoint viewpoint(*occluders_.scene, own, u, v, work.coplanar);
+    const Viewpoint viewpoint(occluders_.scene, own, u, v, work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
     if (!plane) return kAllVisible;
     const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn, work.over};
@@ -154,7 +154,7 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
                                             Workspace& work) const {
     const vec3 without(seen.visibility);
     if (seen.edge_on || seen.visibility == 0) return without;
-    const Scene& scene = *occluders_.scene;
+    const Scene& scene = occluders_.scene;
     const Viewpoint viewpoint(scene, own, u, v, work.coplanar);
     const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
     if (!plane) return without;
@@ -168,7 +168,7 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
     };
     const FloatSpace space(viewpoint.point(), *plane);
     if (space.orientation())
-        occluders_.triangles->visit(
+        occluders_.triangles.visit(
             shaft(viewpoint.point(), space, 1 + 8 * plane->rounding), [](std::uint32_t, const Box&) { return true; },
             take);
     else
@@ -180,23 +180,6 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
     const std::optional<dvec3> passed = light_through_filters(sight, exact_space, work.between, work.steps);
     if (!passed) return std::nullopt;
     return vec3(glm::clamp(*passed, 0.0, 1.0));
-}
-
-void ExactArea::build(const Scene& scene, const BoxTree& triangles) {
-    occluders_ = {&scene, &triangles, find_topology(scene, 0, static_cast<std::uint32_t>(scene.triangles.size())), {}};
-    occluders_.casts_nothing = occluders_.topology.degenerate;
-    for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-        if (!scene.blocks(t)) occluders_.casts_nothing[t] = 1;
-    edges_.build(occluders_);
-}
-
-void ExactArea::aim(const Light& light) { light_.aim(light, occluders_); }
-
-std::size_t ExactArea::memory_bytes() const {
-    const auto bytes         = [](const auto& list) { return list.size() * sizeof(list[0]); };
-    const Topology& topology = occluders_.topology;
-    return bytes(topology.triangles) + bytes(topology.position) + bytes(topology.edges) + bytes(topology.uses) +
-           bytes(topology.degenerate) + bytes(occluders_.casts_nothing) + edges_.memory_bytes() + light_.memory_bytes();
 }
 
 }  // namespace umbra::exact_detail

@@ -8,6 +8,20 @@
 
 namespace umbra::exact_detail {
 
+/// The geometry, whatever the light.
+struct AreaOccluders {
+    /// `scene` and `triangles`, the tree of the boxes of its triangles, must outlive this object.
+    AreaOccluders(const Scene& scene, const BoxTree& triangles) : occluders(scene, triangles), edges(occluders) {}
+    AreaOccluders(const AreaOccluders&)            = delete;
+    AreaOccluders& operator=(const AreaOccluders&) = delete;
+
+    const Occluders occluders;
+    const SilhouetteEdges edges;
+
+    [[nodiscard]] std::size_t memory_bytes() const { return occluders.memory_bytes() + edges.memory_bytes(); }
+};
+
+/// One light among the occluders, to be asked from points.
 class ExactArea {
 public:
     /// `filtered`: in doubles with a bound on the error, and in rationals where the bound is not small.
@@ -40,12 +54,10 @@ public:
         std::uint64_t rational_points = 0, steps = 0;
     };
 
-    explicit ExactArea(Arithmetic arithmetic, Measure measure = Measure::area)
-        : arithmetic_(arithmetic), measure_(measure) {}
-
-    /// `scene` and `triangles`, the tree of the boxes of its triangles, must outlive this object.
-    void build(const Scene& scene, const BoxTree& triangles);
-    void aim(const Light& light);
+    /// `light` is aimed among these occluders. Both must outlive this object, which refers to them.
+    ExactArea(const AreaOccluders& among, const AimedLight& light, Arithmetic arithmetic,
+              Measure measure = Measure::area)
+        : occluders_(among.occluders), edges_(among.edges), light_(light), arithmetic_(arithmetic), measure_(measure) {}
 
     /// Calls see(i) for all these points of the batch, in any order; changes the order of `which`. What `seen` needs is
     /// looked for once for points that lie together: while it runs, `seen` may be called with this workspace for i
@@ -74,8 +86,6 @@ public:
     [[nodiscard]] std::optional<vec3> seen_through(TriangleId own, float u, float v, bool partly, int turn,
                                                    const Answer& seen, Workspace& work) const;
 
-    [[nodiscard]] std::size_t memory_bytes() const;
-
 private:
     static constexpr std::size_t kFewest = 4;  ///< points for which it is worth looking once for all of them
 
@@ -85,11 +95,11 @@ private:
     void find_silhouette(const Viewpoint& viewpoint, const FloatSpace& space, Workspace& work) const;
     [[nodiscard]] Answer seen_in_rough_plane(const Sight& sight, Workspace& work) const;
 
+    const Occluders& occluders_;
+    const SilhouetteEdges& edges_;
+    const AimedLight& light_;
     Arithmetic arithmetic_;
     Measure measure_;
-    Occluders occluders_;
-    SilhouetteEdges edges_;
-    AimedLight light_;
 };
 
 }  // namespace umbra::exact_detail

@@ -122,7 +122,7 @@ Filtered<int> LayerCount<Space>::at(double x, double y, TriangleId& blocker) con
         for (const TriangleId t : *candidates)
             if (!count(t)) break;
     } else {
-        sight.occluders.triangles->visit(BoxTree::Piece{p.rounded(), centre.value + across, 1.0, rounding}, count);
+        sight.occluders.triangles.visit(BoxTree::Piece{p.rounded(), centre.value + across, 1.0, rounding}, count);
     }
     return layers;
 }

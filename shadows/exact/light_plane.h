@@ -2,9 +2,9 @@
 // of a sphere a point sees the disk whose rim is where the cone of its tangents touches the sphere.
 #pragma once
 
+#include "umbra/core/render/light_points.h"
 #include "umbra/core/scene/lights.h"
 #include "umbra/shadows/shared/exact_point.h"
-#include "umbra/shadows/shared/light_points.h"
 
 namespace umbra::exact_detail {
 

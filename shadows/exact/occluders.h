@@ -7,13 +7,17 @@
 namespace umbra::exact_detail {
 
 struct Occluders {
-    const Scene* scene       = nullptr;       ///< must outlive this
-    const BoxTree* triangles = nullptr;       ///< of the boxes of its triangles; must outlive this
-    Topology topology;                        ///< of all of them
+    /// `tree`: of the boxes of the scene's triangles. Both must outlive this object.
+    Occluders(const Scene& of, const BoxTree& tree);
+
+    const Scene& scene;
+    const BoxTree& triangles;
+    Topology topology;                        ///< of all triangles
     std::vector<std::uint8_t> casts_nothing;  ///< one a triangle: 1 without an area, or where it does not block
 
     /// Of a welded vertex.
-    [[nodiscard]] vec3 position(std::uint32_t vertex) const { return scene->positions[topology.position[vertex]]; }
+    [[nodiscard]] vec3 position(std::uint32_t vertex) const { return scene.positions[topology.position[vertex]]; }
+    [[nodiscard]] std::size_t memory_bytes() const;
 };
 
 }  // namespace umbra::exact_detail

@@ -13,9 +13,23 @@ constexpr double kNormalError = 0x1p-20;  ///< a rounded unit normal is off by l
 
 }  // namespace
 
+SilhouetteEdges::SilhouetteEdges(const Occluders& occluders)
+    : occluders_(occluders),
+      tree_(find_candidates()),
+      cones_(tree_.summaries([&](std::uint32_t e) { return cone_of(edges_[e]); }, NormalCone::joined)) {}
+
+/// Fills `uses_` and `edges_`, and returns the edges' boxes.
+std::vector<Box> SilhouetteEdges::find_candidates() {
+    for (const Edge& e : occluders_.topology.edges) add(e);
+    std::vector<Box> boxes(edges_.size());
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+        boxes[e] = extend(extend(Box{}, occluders_.position(edges_[e].a)), occluders_.position(edges_[e].b));
+    return boxes;
+}
+
 /// Whether the edge's two triangles continue each other in one plane: they cancel wherever they are seen from.
 bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const {
-    const auto corner    = [&](TriangleId t, int k) { return occluders_->scene->vertex(t, k); };
+    const auto corner    = [&](TriangleId t, int k) { return occluders_.scene.vertex(t, k); };
     const EdgeUse &first = uses_[edge.first], &second = uses_[edge.first + 1];
     const auto in_one_plane = [&] {
         return side_of_plane(corner(first.triangle, 0), corner(first.triangle, 1), corner(first.triangle, 2),
@@ -35,11 +49,11 @@ bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge, const dvec3
 }
 
 void SilhouetteEdges::add(const Edge& e) {
-    const auto corner        = [&](TriangleId t, int k) { return dvec3(occluders_->scene->vertex(t, k)); };
-    const Topology& topology = occluders_->topology;
+    const auto corner        = [&](TriangleId t, int k) { return dvec3(occluders_.scene.vertex(t, k)); };
+    const Topology& topology = occluders_.topology;
     CandidateEdge edge{e.a, e.b, static_cast<std::uint32_t>(uses_.size()), 0};
     for (std::uint32_t k = e.first; k < e.first + e.count; ++k)
-        if (!occluders_->casts_nothing[topology.uses[k].triangle]) uses_.push_back(topology.uses[k]);
+        if (!occluders_.casts_nothing[topology.uses[k].triangle]) uses_.push_back(topology.uses[k]);
     edge.count = static_cast<std::uint32_t>(uses_.size()) - edge.first;
     bool flat  = false;
     if (edge.count == 1 || edge.count == 2) {
@@ -67,21 +81,9 @@ NormalCone SilhouetteEdges::cone_of(const CandidateEdge& edge) const {
     return NormalCone::joined(NormalCone::around(n, 0), NormalCone::around(alike ? m : -m, 0));
 }
 
-void SilhouetteEdges::build(const Occluders& occluders) {
-    occluders_ = &occluders;
-    uses_.clear();
-    edges_.clear();
-    for (const Edge& e : occluders.topology.edges) add(e);
-    std::vector<Box> boxes(edges_.size());
-    for (std::size_t e = 0; e < edges_.size(); ++e)
-        boxes[e] = extend(extend(Box{}, occluders.position(edges_[e].a)), occluders.position(edges_[e].b));
-    tree_.emplace(std::move(boxes));
-    cones_ = tree_->summaries([&](std::uint32_t e) { return cone_of(edges_[e]); }, NormalCone::joined);
-}
-
 int SilhouetteEdges::change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const {
     int change        = 0;
-    const Entries d   = viewpoint.point().to(occluders_->position(edge.a));
+    const Entries d   = viewpoint.point().to(occluders_.position(edge.a));
     const double sure = kNormalError * largest(d.value) + 4 * d.error;
     for (std::uint32_t k = 0; k < edge.count; ++k) {
         const EdgeUse& use = uses_[edge.first + k];
@@ -108,13 +110,13 @@ void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space
     }
     const BoxTree::Region region = shaft(viewpoint.point(), space, reach);
     const auto enter = [&](std::uint32_t node, const Box& box) { return !cones_[node].one_sided(box, region.from); };
-    tree_->visit(region, enter, take);
+    tree_.visit(region, enter, take);
 }
 
 /// Whether the edge's two triangles surely cancel for all points at most `around` from this one in every coordinate.
 bool SilhouetteEdges::cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const {
     if (edge.count != 2) return false;
-    const Entries d   = viewpoint.point().to(occluders_->position(edge.a));
+    const Entries d   = viewpoint.point().to(occluders_.position(edge.a));
     const double sure = kNormalError * (largest(d.value) + around) + 4 * d.error;
     int change        = 0;
     for (std::uint32_t k = 0; k < 2; ++k) {
@@ -136,7 +138,7 @@ bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, BoxTree::Region 
     const auto enter = [&](std::uint32_t node, const Box& box) {
         return !cones_[node].one_sided(box, region.from, far);
     };
-    tree_->visit(region, enter, [&](std::uint32_t e) {
+    tree_.visit(region, enter, [&](std::uint32_t e) {
         if (!cancels_around(viewpoint, edges_[e], around)) group.edges.push_back(e);
         return group.edges.size() <= most;
     });
@@ -149,8 +151,8 @@ bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, BoxTree::Region 
     };
     for (std::size_t e = 0; e < n; ++e) {
         const CandidateEdge& edge = edges_[group.edges[e]];
-        put(group.a, e, vec3(dvec3(occluders_->position(edge.a)) - group.origin));
-        put(group.b, e, vec3(dvec3(occluders_->position(edge.b)) - group.origin));
+        put(group.a, e, vec3(dvec3(occluders_.position(edge.a)) - group.origin));
+        put(group.b, e, vec3(dvec3(occluders_.position(edge.b)) - group.origin));
         put(group.first, e, turned(edge, 0));
         put(group.second, e, turned(edge, 1));
     }
@@ -244,7 +246,7 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
 
 std::size_t SilhouetteEdges::memory_bytes() const {
     return uses_.size() * sizeof(EdgeUse) + edges_.size() * sizeof(CandidateEdge) + cones_.size() * sizeof(NormalCone) +
-           (tree_ ? tree_->memory_bytes() : 0);
+           tree_.memory_bytes();
 }
 
 }  // namespace umbra::exact_detail

@@ -50,7 +50,7 @@ struct EdgeGroup {
 class SilhouetteEdges {
 public:
     /// `occluders` must outlive this object.
-    void build(const Occluders& occluders);
+    explicit SilhouetteEdges(const Occluders& occluders);
 
     /// All silhouette edges that may lie before the light and within |x|, |y| <= `reach` of its plane, for one point.
     void gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
@@ -70,6 +70,7 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
+    [[nodiscard]] std::vector<Box> find_candidates();
     void add(const Edge& edge);
     [[nodiscard]] bool continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const;
     [[nodiscard]] NormalCone cone_of(const CandidateEdge& edge) const;
@@ -77,10 +78,10 @@ private:
     [[nodiscard]] vec3 turned(const CandidateEdge& edge, std::uint32_t k) const;
     [[nodiscard]] bool cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const;
 
-    const Occluders* occluders_ = nullptr;
-    std::vector<EdgeUse> uses_;
-    std::vector<CandidateEdge> edges_;
-    std::optional<BoxTree> tree_;    ///< of the edges
+    const Occluders& occluders_;
+    std::vector<EdgeUse> uses_{};
+    std::vector<CandidateEdge> edges_{};
+    BoxTree tree_;                   ///< of the edges
     std::vector<NormalCone> cones_;  ///< one a node of it: the normals of the triangles there, so turned that an edge
                                      ///< whose two triangles see the point from one side is no silhouette edge
 };

@@ -14,7 +14,7 @@ void TrianglesOver::gather(const Occluders& occluders, const ExactPoint& p, dvec
     around_ = around + 64 * kUnit * (largest(origin_) + largest(to_place));
     triangles_.clear();
     const double slack = around_ + p.slack() + 16 * kUnit * (largest(origin_) + largest(to_place));
-    occluders.triangles->visit(BoxTree::Piece{origin_, to_place, 1.0, slack}, [&](TriangleId t) {
+    occluders.triangles.visit(BoxTree::Piece{origin_, to_place, 1.0, slack}, [&](TriangleId t) {
         if (occluders.casts_nothing[t] == 0) triangles_.push_back(t);
         return triangles_.size() <= kMost;
     });
@@ -27,7 +27,7 @@ void TrianglesOver::gather(const Occluders& occluders, const ExactPoint& p, dvec
             list.resize(n);
             for (std::size_t i = 0; i < n; ++i)
                 list[i] =
-                    static_cast<float>(static_cast<double>(occluders.scene->vertex(triangles_[i], c)[k]) - origin_[k]);
+                    static_cast<float>(static_cast<double>(occluders.scene.vertex(triangles_[i], c)[k]) - origin_[k]);
         }
     // Segments of these points are off from this one by `around_`, and from a plane through it by twice that.
     if (!find_out(dvec3(0), to_place, 0, 2 * around_)) return;

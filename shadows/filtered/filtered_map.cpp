@@ -1,12 +1,15 @@
 // Filterable shadow maps: draw depth from the light, turn it into moments that may be averaged, and bound the lit
 // fraction of a surface point by the mean moments about it.
 //
-// build and aim choose views and draw depth as the shadow z-buffer does (shadows/maps); aim then turns each sample into
-// moments and averages these over a box (moment_map.h).
-// visibility takes each point to the view that covers it, moves it towards the light by the bias, and asks one bilinear
-// mean for a bound of the fraction that does not block (moments.h): what PCF finds by comparing every sample.
-// filter=pcss has windows in place of the box, of any size by summed-area tables (summed_moments.h): those in which it
-// searches for what blocks an area light, and one as wide as the penumbra behind that (shadows/maps/penumbra.h).
+//   build       what can block a light (shadows/maps)
+//   aim         chooses views and draws depth as the shadow z-buffer does (shadows/maps), then turns each sample into
+//               moments and averages these over a box (moment_map.h)
+//   visibility  takes each point to the view that covers it, moves it towards the light by the bias, and asks one
+//               bilinear mean for a bound of the fraction that does not block (moments.h): what PCF finds by comparing
+//               every sample
+// look makes nothing. filter=pcss has windows in place of the box, of any size by summed-area tables
+// (summed_moments.h): those in which it searches for what blocks an area light, and one as wide as the penumbra behind
+// that (shadows/maps/penumbra.h).
 //
 // This work is based on:
 // William Donnelly, Andrew Lauritzen. Variance Shadow Maps. 2006 (kind=vsm)
@@ -21,7 +24,6 @@
 // Li Shen, Jieqing Feng, Baoguang Yang. Exponential Soft Shadow Mapping. 2013 (filter=pcss, kind=evsm2, evsm4)
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "umbra/core/base/error.h"
 #include "umbra/shadows/filtered/summed_moments.h"
@@ -145,42 +147,48 @@ const std::vector<Parameter> kFilteredParameters{
 
 constexpr double kSteps = 0x1p16;  // of S_j: floats keep moments to 2^-24, and bounds are ratios of their differences
 
-class FilteredMap final : public Method {
+/// What `aim` makes: the views of a light, and their moments.
+struct FilteredViews final : LightViews {
+    using LightViews::LightViews;
+    /// Moments, and the depth that blame asks.
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        std::size_t bytes = LightViews::memory_bytes();
+        for (const MomentMap& map : maps) bytes += map.memory_bytes();
+        for (const SummedMoments& table : tables) bytes += table.memory_bytes();
+        return bytes;
+    }
+    std::vector<MomentMap> maps;        ///< of the views, in their order
+    std::vector<SummedMoments> tables;  ///< in their place, where what blocks an area light is searched for
+};
+
+class FilteredMap final : public MethodWith<FilteredOptions> {
 public:
-    void configure(const Settings& settings) override {
-        options_          = settings.as<FilteredOptions>();
-        const double most = options_.precision == MomentPrecision::single ? kMostExponentSingle : kMostExponentTwofold;
-        bound_ = {options_.kind, std::min(options_.positive_exponent, most), std::min(options_.negative_exponent, most),
-                  options_.min_variance, options_.moment_bias};
+    explicit FilteredMap(const Settings& settings) : MethodWith(settings) {
+        const double most = options.precision == MomentPrecision::single ? kMostExponentSingle : kMostExponentTwofold;
+        bound_ = {options.kind, std::min(options.positive_exponent, most), std::min(options.negative_exponent, most),
+                  options.min_variance, options.moment_bias};
         soft_bound_          = bound_;
         soft_bound_.positive = std::min(bound_.positive, SummedMoments::kMostExponent);
         soft_bound_.negative = std::min(bound_.negative, SummedMoments::kMostExponent);
-        finds_blockers_      = options_.filter == MomentFilter::pcss;
-        filter_              = {options_.radius, true};
-        bias_ = {options_.bias == DepthBias::manual ? BiasMode::manual : BiasMode::automatic, options_.constant,
-                 options_.slope, options_.normal_offset};
-        if (finds_blockers_ && options_.kind == MomentKind::esm)
+        if (finds_blockers_ && options.kind == MomentKind::esm)
             throw UsageError(
                 "filtered_map: filter=pcss sums exponentials of 5 times the depth at most, of which kind=esm keeps too "
                 "little to tell what blocks, expected kind=vsm, evsm2, evsm4 or msm");
-        search_texels_ = finds_blockers_ ? options_.search * options_.resolution : 0;
         // Moments are kept beside the depth that they are made of.
-        int bytes = MomentMap::bytes_per_sample(options_.kind, options_.empty, options_.precision);
-        if (finds_blockers_) bytes = std::max(bytes, SummedMoments::bytes_per_sample(options_.kind, options_.empty));
+        int bytes = MomentMap::bytes_per_sample(options.kind, options.empty, options.precision);
+        if (finds_blockers_) bytes = std::max(bytes, SummedMoments::bytes_per_sample(options.kind, options.empty));
         const double share = 4.0 / (4 + bytes);
-        const double reach = std::max<double>(options_.radius, search_texels_);
+        const double reach = std::max<double>(options.radius, search_);
         // What is nearer to the light than what the map is fitted to counts as on the near plane: a quarter of the
         // map's side before that, so that exponentials of the two depths differ, too.
-        const MapMargins room = margins("filtered_map", options_, options_.radius, reach, 0.25 * options_.resolution);
-        map_options_          = {.method         = "filtered_map",
-                                 .resolution     = options_.resolution,
-                                 .fit_to_casters = options_.fit == Fit::casters,
-                                 .all_depths     = finds_blockers_,
-                                 .surround       = options_.surround,
-                                 .border         = room.border,
-                                 .headroom       = room.headroom,
-                                 .memory_limit   = share * LightViews::half_of_memory()};
-        if (views_) views_->set_options(map_options_);
+        const MapMargins room = margins("filtered_map", options, options.radius, reach, 0.25 * options.resolution);
+        map_options_          = {.method       = "filtered_map",
+                                 .resolution   = options.resolution,
+                                 .all_depths   = finds_blockers_,
+                                 .surround     = options.surround,
+                                 .border       = room.border,
+                                 .headroom     = room.headroom,
+                                 .memory_limit = share * LightViews::half_of_memory()};
     }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
@@ -191,60 +199,71 @@ public:
         return {How::approximately, why + "."};
     }
 
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        maps_.clear();
-        tables_.clear();
-        views_.emplace(scene, facts, map_options_);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<BuiltCasters>(scene, facts, options.fit == Fit::casters);
     }
 
-    void aim(LightId light) override {
-        maps_.clear();
-        tables_.clear();
-        views_->fit(light);
-        views_->rasterise();
-        const bool soft = finds_blockers_ && is_area(views_->scene().lights[light].kind);
-        for (const MapView& view : views_->views())
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        auto filtered   = std::make_unique<FilteredViews>(built, light, map_options_);
+        const bool soft = finds_blockers_ && is_area(filtered->source().kind);
+        for (const MapView& view : filtered->views())
             if (soft)
-                tables_.emplace_back(view, soft_bound_, options_.empty, 2 * search_texels_);
+                filtered->tables.emplace_back(view, soft_bound_, options.empty, 2 * search_);
             else
-                maps_.emplace_back(view, bound_, options_.radius, options_.empty, options_.precision);
+                filtered->maps.emplace_back(view, bound_, options.radius, options.empty, options.precision);
+        return filtered;
     }
 
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        const Light& source = views_->scene().lights[light];
-        const auto share    = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
-            const MapView& view = views_->views()[v];
-            return tables_.empty() ? lit(view, maps_[v], receiver) : soft_lit(view, tables_[v], receiver, source, p);
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const auto& of   = as<FilteredViews>(aimed);
+        const auto share = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+            const MapView& view = of.views()[v];
+            return of.tables.empty() ? lit(view, of.maps[v], receiver)
+                                     : soft_lit(view, of.tables[v], receiver, of.source(), p);
         };
-        look_up(*views_, points, light, bias_, compared(), out, point_by_point(share));
+        look_up(of, looked.points, bias_, compared(of), out, point_by_point(share));
     }
 
     /// Whose depth the map holds in the texel under the filter that blocks the point, the nearest of several. Draws the
     /// maps again.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const auto& of = as<FilteredViews>(aimed);
         // What a window shows may lie farther off; few points are asked.
-        const Filter asked = tables_.empty() ? filter_ : Filter{static_cast<int>(std::ceil(search_texels_)), false};
-        BlockingSamples samples(points.size());
-        for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-            if (auto found = receive(views_->views(), facet, p, bias_, compared())) {
+        const Filter asked = of.tables.empty() ? filter_ : Filter{static_cast<int>(std::ceil(search_)), false};
+        BlockingSamples samples(looked.points.size());
+        for_each_facet(of.scene(), looked.points, of.light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+            if (auto found = receive(of.views(), facet, p, bias_, compared(of))) {
                 found->receiver.bias = total_bias(found->receiver);
-                samples.find(i, found->view, views_->views()[found->view], found->receiver, BiasMode::manual, asked);
+                samples.find(i, found->view, of.views()[found->view], found->receiver, BiasMode::manual, asked);
             }
         });
-        samples.name(blockers, [&](std::size_t v) { return views_->owners(v); });
+        samples.name(blockers, [&](std::size_t v) { return of.owners(v); });
     }
 
-    /// Moments, and the depth that blame asks.
-    [[nodiscard]] std::size_t memory_bytes() const override {
-        std::size_t bytes = views_ ? views_->memory_bytes() : 0;
-        for (const MomentMap& map : maps_) bytes += map.memory_bytes();
-        for (const SummedMoments& table : tables_) bytes += table.memory_bytes();
-        return bytes;
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason            = Method::explain(aimed, looked, i, given);
+        const PointBatch& points = looked.points;
+        const auto& of           = as<FilteredViews>(aimed);
+        const Facet facet        = facet_of(of.scene(), points.triangle[i], points.flipped[i] != 0);
+        const auto found = receive(of.views(), facet, exact_position(of.scene(), points, i), bias_, compared(of));
+        if (!found) {
+            reason.evidence.push_back({"map", "none shows the point"});
+            return reason;
+        }
+        add_texel(reason, *found, of.views()[found->view], given);
+        if (!of.tables.empty()) return reason;
+        const Receiver& receiver     = found->receiver;
+        const FilteredDepth filtered = of.maps[found->view].at(receiver.x, receiver.y);
+        const double z               = compared_depth(of.views()[found->view], receiver.r + total_bias(receiver));
+        reason.evidence.push_back({"drawn fraction of the filter", filtered.drawn});
+        if (filtered.drawn == 0) return reason;
+        reason.evidence.push_back({"bound of the lit fraction by moments", lit_bound(bound_, filtered.moments, z)});
+        return reason;
     }
 
 private:
     /// What the automatic bias is for: the parts of a window follow the receiver's plane, however wide it is.
-    [[nodiscard]] Filter compared() const { return tables_.empty() ? filter_ : Filter{}; }
+    [[nodiscard]] Filter compared(const FilteredViews& of) const { return of.tables.empty() ? filter_ : Filter{}; }
 
     /// Nearness that is added to the point's: the filter's samples have one depth to be compared with.
     [[nodiscard]] static double total_bias(const Receiver& r) { return r.bias + std::min(r.slack, r.most); }
@@ -260,13 +279,13 @@ private:
     /// As far as the empty texels, and no farther; where those are apart, what lies behind all that is drawn does so by
     /// its distance.
     [[nodiscard]] double compared_depth(const MapView& view, double nearness) const {
-        const double most = options_.empty == EmptySamples::far ? 1 : kInfinity;
+        const double most = options.empty == EmptySamples::far ? 1 : kInfinity;
         return std::min(linear_depth(view.frame, nearness), most);
     }
 
     [[nodiscard]] double lit(const FilteredDepth& filtered, const MomentBound& of, double z) const {
         const double bound = lit_bound(of, filtered.moments, z);
-        const double cut   = std::max(0.0, (bound - options_.bleed) / (1 - options_.bleed));
+        const double cut   = std::max(0.0, (bound - options.bleed) / (1 - options.bleed));
         const double s     = std::clamp(1 - filtered.drawn * (1 - cut), 0.0, 1.0);
         // Bounds tend to 0 and 1; what float moments do not tell from these is 0 or 1.
         return std::round(s * kSteps) / kSteps;
@@ -286,11 +305,11 @@ private:
         const LightFrame& f = view.frame;
         const dvec3 q       = f.light_space(p);
         const dvec2 size    = rectangle_as(f, light, dvec2(q) / q.z);
-        const int parts     = options_.parts;
+        const int parts     = options.parts;
         const dvec2 at(receiver.x, receiver.y);
         // Windows that are searched hold whole samples: four entries of the table in place of sixteen.
         const auto for_window = [&](double depth, bool searched, const auto& body) {
-            const dvec2 half = penumbra_reach(view, size, depth, q.z, search_texels_) / static_cast<double>(parts);
+            const dvec2 half = penumbra_reach(view, size, depth, q.z, search_) / static_cast<double>(parts);
             for (int j = 0; j < parts; ++j)
                 for (int i = 0; i < parts; ++i) {
                     const dvec2 offset = half * dvec2(2 * i + 1 - parts, 2 * j + 1 - parts);
@@ -302,7 +321,7 @@ private:
         };
         // The mean of the first window also has what blocks other points alone; the next windows are narrower.
         double blocking = f.near;
-        for (int k = 0; k < options_.searches; ++k) {
+        for (int k = 0; k < options.searches; ++k) {
             double sum = 0, dark = 0;
             for_window(blocking, true, [&](const WindowedDepth& part, double z) {
                 const double lit = lit_bound(soft_bound_, part.moments, z), weight = part.drawn * (1 - lit);
@@ -318,16 +337,13 @@ private:
         return static_cast<float>(1 - blocked / (parts * parts));
     }
 
-    FilteredOptions options_;
+    const bool finds_blockers_ = options.filter == MomentFilter::pcss;
+    const double search_       = finds_blockers_ ? options.search * options.resolution : 0;  ///< texels
+    const Filter filter_{options.radius, true};
+    const Bias bias_{options.bias == DepthBias::manual ? BiasMode::manual : BiasMode::automatic, options.constant,
+                     options.slope, options.normal_offset};
     MomentBound bound_, soft_bound_;  ///< of maps and of tables
-    bool finds_blockers_  = false;    ///< filter=pcss
-    double search_texels_ = 0;
-    Bias bias_;
-    Filter filter_;
     LightViews::Options map_options_;
-    std::optional<LightViews> views_;
-    std::vector<MomentMap> maps_;        ///< of the views, in their order
-    std::vector<SummedMoments> tables_;  ///< in their place, where an area light's blockers are found
 };
 
 }  // namespace
@@ -352,7 +368,7 @@ const MethodInfo filtered_map{
                    {"fast", "resolution=512", "A map of 512 x 512 texels."},
                    {"best", "resolution=4096", "A map of 4096 x 4096 texels."}},
     .by_default = false,
-    .shown_on   = {"sun_on_plane", "low_sun_fence", "interpenetrating"},
+    .shown      = true,
     .create     = create<FilteredMap>};
 
 }  // namespace umbra

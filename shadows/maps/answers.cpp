@@ -1,12 +1,49 @@
 #include "umbra/shadows/maps/answers.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "umbra/core/base/error.h"
+#include "umbra/core/render/gbuffer.h"
 
 namespace umbra {
 
-CameraFrame picture_of(const Scene& scene, const PointBatch& points) {
-    if (points.raster) return *points.raster;
-    return frame(scene.camera, std::max(1, scene.width), std::max(1, scene.height));
+SeenPicture::SeenPicture(const Scene& scene, const PointBatch& at, bool traced)
+    : Looked(at),
+      camera(at.raster ? *at.raster : frame(scene.camera, std::max(1, scene.width), std::max(1, scene.height))) {
+    if (!traced || at.raster) return;
+    try {
+        traced_ = primary_points(RayScene(scene), scene, scene.camera, camera.width, camera.height);
+        traced_->facing.clear();
+    } catch (const InputError&) {  // an eye too far away for rays
+    }
+}
+
+const PointBatch* SeenPicture::shown() const { return points.raster ? &points : traced_ ? &*traced_ : nullptr; }
+
+std::size_t SeenPicture::memory_bytes() const {
+    constexpr std::size_t kPoint = sizeof(TriangleId) + 8 * sizeof(float) + sizeof(std::uint8_t);
+    return traced_ ? traced_->size() * kPoint : 0;
+}
+
+void add_texel(Reason& reason, const FoundReceiver& found, const MapView& view, Given given) {
+    const Receiver& receiver = found.receiver;
+    const int x              = std::clamp(static_cast<int>(receiver.x), 0, view.map.width() - 1),
+              y              = std::clamp(static_cast<int>(receiver.y), 0, view.map.height() - 1);
+    const double stored      = view.frame.depth(view.map.nearness(x, y));
+    const double own         = view.frame.depth(receiver.r);
+    const double compared =
+        view.frame.depth(std::min(1.0, receiver.r + receiver.bias + std::min(receiver.slack, receiver.most)));
+    reason.evidence.push_back({"map", static_cast<double>(found.view)});
+    reason.evidence.push_back({"texel", fmt::format("{}, {}", x, y)});
+    reason.evidence.push_back({"stored depth", stored, "world"});
+    reason.evidence.push_back({"depth of the point", own, "world"});
+    reason.evidence.push_back({"bias towards the light", own - compared, "world"});
+    const double margin = stored - compared;
+    if (given.answer != Answer::given || margin * (static_cast<double>(given.s) - 0.5) <= 0) return;
+    reason.margin = margin;
+    reason.unit   = "world, along the view";
 }
 
 bool BlockingSamples::find(std::size_t i, std::size_t k, const MapView& view, const Receiver& receiver, BiasMode mode,

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/shadows/maps/facets.h"
 #include "umbra/shadows/maps/light_views.h"
+#include "umbra/shadows/reason.h"
 
 namespace umbra {
 
@@ -14,13 +16,15 @@ namespace umbra {
 /// what share(v, receivers, at, s) writes into s[k] of the covered lanes k where view v is the first that covers the
 /// point; and where none does 1, or `undefined` where nobody looked. Lane k is the point at.point(k), in world space.
 template <class Share>
-void look_up(const LightViews& views, const PointBatch& points, LightId light, const Bias& bias, const Filter& filter,
-             Visibility out, const Share& share) {
+void look_up(const LightViews& views, const PointBatch& points, const Bias& bias, const Filter& filter, Visibility out,
+             const Share& share) {
     const std::span<const MapView> all = views.views();
-    for_each_eight_facets(views.scene(), points, light, [&](std::size_t first, unsigned which, const FacetPoints8& at) {
+    const Scene& scene                 = views.scene();
+    const LightId light                = views.light;
+    for_each_eight_facets(scene, points, light, [&](std::size_t first, unsigned which, const FacetPoints8& at) {
         for (int k = 0; k < 8; ++k) {
             const std::size_t i = first + static_cast<std::size_t>(k);
-            if ((which >> k & 1) == 0 || !centre_is_behind(views.scene(), points, light, i)) continue;
+            if ((which >> k & 1) == 0 || !centre_is_behind(scene, points, light, i)) continue;
             out.s[i] = 0;
             which &= ~(1u << k);
         }
@@ -50,9 +54,30 @@ auto point_by_point(const One& one) {
     };
 }
 
-/// The picture that points are seen in: their raster's, or without one that of the scene's camera, in the scene's size,
-/// so that answers do not depend on which points are asked together.
-[[nodiscard]] CameraFrame picture_of(const Scene& scene, const PointBatch& points);
+/// What `look` makes for methods that ask what the camera sees.
+class SeenPicture final : public Looked {
+public:
+    /// `traced`: the points of a picture are asked for, which are traced where the batch has no raster.
+    SeenPicture(const Scene& scene, const PointBatch& at, bool traced);
+
+    /// The picture that the points are seen in: their raster's, or without one that of the scene's camera, in the
+    /// scene's size, so that answers do not depend on which points are asked together.
+    const CameraFrame camera;
+
+    /// The picture's points; none where they were not traced, or the eye is too far away for rays. Traced points have
+    /// no `facing`: a light may move before it is asked for.
+    [[nodiscard]] const PointBatch* shown() const;
+
+    [[nodiscard]] std::size_t memory_bytes() const override;
+
+private:
+    std::optional<PointBatch> traced_;
+};
+
+/// Adds to a reason what the map holds in the texel that the point lies in, and what that is compared with. Depths are
+/// along the view's axis, from the light or its window. The margin becomes the difference of the two depths, where it
+/// has the answer's sign: with a filter other texels may have decided.
+void add_texel(Reason& reason, const FoundReceiver& found, const MapView& view, Given given);
 
 /// For each point of a batch the sample of one of several maps that blocks it, and then the triangle that it shows.
 class BlockingSamples {

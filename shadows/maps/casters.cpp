@@ -14,7 +14,7 @@ constexpr double kGrazing        = 1e-6;     // sine: flatter light may as well 
 }  // namespace
 
 Casters::Casters(const Scene& scene, const SceneFacts& facts, bool leave_out)
-    : scene_(&scene), planes_of_position_(scene.positions.size(), 0) {
+    : scene_(scene), planes_of_position_(scene.positions.size(), 0) {
     std::vector<std::uint8_t> plane_of_triangle(scene.triangles.size(), kMaxPlanes);
     if (leave_out) find_planes(facts, plane_of_triangle);
     for (std::size_t t = 0; t < scene.triangles.size(); ++t)
@@ -51,7 +51,7 @@ void Casters::find_sides() {
             for (std::size_t p = 0; p < planes_of_position_.size(); ++p) {
                 const std::uint64_t in = planes_of_position_[p];
                 if (in == 0) continue;
-                const double distance = glm::dot(plane.normal, dvec3(scene_->positions[p])) - plane.offset;
+                const double distance = glm::dot(plane.normal, dvec3(scene_.positions[p])) - plane.offset;
                 plane.scene.add(distance);
                 for (std::uint64_t rest = in & ~(std::uint64_t{1} << kMaxPlanes); rest != 0; rest &= rest - 1)
                     plane.others[std::countr_zero(rest)].add(distance);
@@ -60,14 +60,13 @@ void Casters::find_sides() {
     });
 }
 
-void Casters::select(const Light& light) {
+SelectedCasters::SelectedCasters(const Casters& casters, const Light& light) : casters_(casters) {
     const bool infinite = light.kind == LightKind::directional;
+    const auto& planes  = casters.planes_;
     std::vector<std::size_t> set;
-    std::vector<int> side(planes_.size());
-    drawn_  = ~std::uint64_t{0};
-    fitted_ = ~std::uint64_t{0};
-    for (std::size_t i = 0; i < planes_.size(); ++i) {
-        const Plane& plane    = planes_[i];
+    std::vector<int> side(planes.size());
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        const auto& plane     = planes[i];
         const double distance = infinite ? -glm::dot(plane.normal, glm::normalize(dvec3(light.direction)))
                                          : glm::dot(plane.normal, dvec3(light.position)) - plane.offset;
         const double least    = infinite ? kGrazing : plane.tolerance;
@@ -76,27 +75,26 @@ void Casters::select(const Light& light) {
         if (plane.has_on_side(plane.scene, side[i])) drawn_ &= ~(std::uint64_t{1} << i);
         if (std::ranges::all_of(set, [&](std::size_t j) {
                 return plane.has_on_side(plane.others[j], side[i]) &&
-                       planes_[j].has_on_side(planes_[j].others[i], side[j]);
+                       planes[j].has_on_side(planes[j].others[i], side[j]);
             })) {
             set.push_back(i);
             fitted_ &= ~(std::uint64_t{1} << i);
         }
     }
-    box_ = {};
-    for (const Part& part : parts_)
-        if (has(fitted_, part)) box_ = extend(box_, part.box);
+    for (const auto& part : casters.parts_)
+        if (part.is_in(fitted_)) box_ = extend(box_, part.box);
 }
 
-double Casters::distance(dvec3 p) const {
+double SelectedCasters::distance(dvec3 p) const {
     double nearest = std::numeric_limits<double>::infinity();
-    for (const Part& part : parts_) {
-        if (!has(fitted_, part)) continue;
+    for (const auto& part : casters_.parts_) {
+        if (!part.is_in(fitted_)) continue;
         const dvec3 to_box = glm::max(glm::max(dvec3(part.box.min) - p, p - dvec3(part.box.max)), 0.0);
         if (glm::length(to_box) >= nearest) continue;
         const auto range = reduce<1>(part.count, [&](std::size_t i, std::array<double, 1>& v) {
             const auto t = static_cast<TriangleId>(part.first + i);
-            v[0]         = distance_to_triangle(p, dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)),
-                                                dvec3(scene_->vertex(t, 2)));
+            v[0]         = distance_to_triangle(p, dvec3(scene().vertex(t, 0)), dvec3(scene().vertex(t, 1)),
+                                                dvec3(scene().vertex(t, 2)));
             return true;
         });
         nearest          = std::min(nearest, range[0].min);
@@ -104,10 +102,10 @@ double Casters::distance(dvec3 p) const {
     return nearest;
 }
 
-std::vector<std::span<const uvec3>> Casters::seen_by(const dmat4& clip_from_world, bool all) const {
+std::vector<std::span<const uvec3>> SelectedCasters::seen_by(const dmat4& clip_from_world, bool all) const {
     std::vector<std::span<const uvec3>> runs;
-    for (const Part& part : parts_) {
-        if (!all && !has(drawn_, part)) continue;
+    for (const auto& part : casters_.parts_) {
+        if (!all && !part.is_in(drawn_)) continue;
         std::array<int, 5> outside{};
         for (int corner = 0; corner < 8; ++corner) {
             const dvec4 c = clip_from_world * dvec4(corner & 1 ? part.box.max.x : part.box.min.x,
@@ -117,7 +115,7 @@ std::vector<std::span<const uvec3>> Casters::seen_by(const dmat4& clip_from_worl
             for (int side = 0; side < 5; ++side) outside[side] += is_outside[side];
         }
         if (std::ranges::find(outside, 8) == outside.end())
-            runs.push_back(std::span(scene_->triangles).subspan(part.first, part.count));
+            runs.push_back(std::span(scene().triangles).subspan(part.first, part.count));
     }
     return runs;
 }

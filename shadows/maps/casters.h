@@ -23,7 +23,7 @@ struct Extent {
     [[nodiscard]] double half() const { return 0.5 * (max - min); }
 };
 
-/// What can cast a shadow, and where it lies.
+/// What can cast a shadow, and where it lies: serves all lights. `scene` must outlive it.
 ///
 /// Many scenes have floors and walls that reach far beyond all else, and a map fitted to those wastes its
 /// samples. What such planes do, seen from a light:
@@ -34,16 +34,56 @@ struct Extent {
 ///     triangles outside the set. What is not in the window is lit.
 class Casters {
 public:
+    /// Nothing is left out for any light, unless `leave_out`.
     Casters(const Scene& scene, const SceneFacts& facts, bool leave_out);
 
-    /// Leaves out what need not be drawn, or not be fitted to, as seen from `light`.
-    void select(const Light& light);
-
-    [[nodiscard]] const Scene& scene() const { return *scene_; }
-    [[nodiscard]] const Box& box() const { return box_; }  ///< of what is fitted to
     [[nodiscard]] std::size_t memory_bytes() const {
         return planes_of_position_.size() * sizeof(std::uint64_t) + parts_.size() * sizeof(Part);
     }
+
+private:
+    friend class SelectedCasters;
+    static constexpr std::uint8_t kMaxPlanes = 63;  ///< as many may be left out; also says "in none of them"
+
+    struct Plane {
+        dvec3 normal;
+        double offset;
+        double tolerance;            ///< how far corners that mean to lie in it, or to touch it, may miss it
+        Extent scene;                ///< distances of the whole scene
+        std::vector<Extent> others;  ///< distances of the other planes' triangles
+
+        [[nodiscard]] bool has_on_side(const Extent& distances, int side) const {
+            return side > 0 ? distances.min >= -tolerance : distances.max <= tolerance;
+        }
+    };
+    /// Consecutive triangles of one object that lie in one of planes_ together, or in none.
+    struct Part {
+        TriangleId first;
+        std::uint32_t count;
+        std::uint8_t plane;
+        Box box;
+
+        [[nodiscard]] bool is_in(std::uint64_t planes) const { return (planes >> plane & 1) != 0; }
+    };
+
+    void find_planes(const SceneFacts& facts, std::vector<std::uint8_t>& plane_of_triangle);
+
+    /// Where each plane has the others, and the scene.
+    void find_sides();
+
+    const Scene& scene_;
+    std::vector<Plane> planes_;
+    std::vector<std::uint64_t> planes_of_position_;  ///< bit i: corner of a triangle in planes_[i]; kMaxPlanes: in none
+    std::vector<Part> parts_;
+};
+
+/// The casters as one light sees them, without what need not be drawn, or not be fitted to. `casters` must outlive it.
+class SelectedCasters {
+public:
+    SelectedCasters(const Casters& casters, const Light& light);
+
+    [[nodiscard]] const Scene& scene() const { return casters_.scene_; }
+    [[nodiscard]] const Box& box() const { return box_; }  ///< of what is fitted to
 
     /// Extent of each of the n values that `values` gives for a position, over all that is fitted to.
     template <std::size_t n, class Values>
@@ -71,41 +111,16 @@ public:
     [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world, bool all = false) const;
 
 private:
-    static constexpr std::size_t kGrain      = 4096;
-    static constexpr std::uint8_t kMaxPlanes = 63;  ///< as many may be left out; also says "in none of them"
+    static constexpr std::size_t kGrain = 4096;
 
-    struct Plane {
-        dvec3 normal;
-        double offset;
-        double tolerance;            ///< how far corners that mean to lie in it, or to touch it, may miss it
-        Extent scene;                ///< distances of the whole scene
-        std::vector<Extent> others;  ///< distances of the other planes' triangles
-
-        [[nodiscard]] bool has_on_side(const Extent& distances, int side) const {
-            return side > 0 ? distances.min >= -tolerance : distances.max <= tolerance;
-        }
-    };
-    /// Consecutive triangles of one object that lie in one of planes_ together, or in none.
-    struct Part {
-        TriangleId first;
-        std::uint32_t count;
-        std::uint8_t plane;
-        Box box;
-    };
-
-    [[nodiscard]] static bool has(std::uint64_t planes, const Part& part) { return (planes >> part.plane & 1) != 0; }
-
-    void find_planes(const SceneFacts& facts, std::vector<std::uint8_t>& plane_of_triangle);
-
-    /// Where each plane has the others, and the scene.
-    void find_sides();
-
-    /// Over the positions of `parts`, bits as in planes_of_position_.
+    /// Over the positions of `planes`, bits as in planes_of_position_.
     template <std::size_t n, class Values>
-    [[nodiscard]] std::array<Extent, n> ranges(std::uint64_t parts, const Values& values) const {
-        return reduce<n>(planes_of_position_.size(), [&](std::size_t i, std::array<double, n>& v) {
-            if ((planes_of_position_[i] & parts) == 0) return false;
-            v = values(dvec3(scene_->positions[i]));
+    [[nodiscard]] std::array<Extent, n> ranges(std::uint64_t planes, const Values& values) const {
+        const std::vector<vec3>& positions          = scene().positions;
+        const std::vector<std::uint64_t>& planes_of = casters_.planes_of_position_;
+        return reduce<n>(planes_of.size(), [&](std::size_t i, std::array<double, n>& v) {
+            if ((planes_of[i] & planes) == 0) return false;
+            v = values(dvec3(positions[i]));
             return true;
         });
     }
@@ -135,11 +150,8 @@ private:
         return all;
     }
 
-    const Scene* scene_;
-    std::vector<Plane> planes_;
-    std::vector<std::uint64_t> planes_of_position_;  ///< bit i: corner of a triangle in planes_[i]; kMaxPlanes: in none
-    std::vector<Part> parts_;
-    std::uint64_t drawn_ = 0, fitted_ = 0;  ///< bits as in planes_of_position_
+    const Casters& casters_;
+    std::uint64_t drawn_ = ~std::uint64_t{0}, fitted_ = ~std::uint64_t{0};  ///< bits as in planes_of_position_
     Box box_;
 };
 

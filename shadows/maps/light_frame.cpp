@@ -20,7 +20,7 @@ LightFrame looking_along(dvec3 origin, dvec3 z, bool perspective) {
     return frame;
 }
 
-bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest) {
+bool fit_to_scene(LightFrame& frame, const SelectedCasters& casters, double widest) {
     // The scene's own axes make good edges of the window (floors, walls); the other rolls are spread evenly.
     std::array<double, kRolls> angles;
     for (int i = 0; i < 3; ++i) angles[i] = std::atan2(frame.y[i], frame.x[i]);

@@ -54,6 +54,6 @@ struct LightFrame {
 
 /// Rolls the frame about its z and sets window, near and far so that it just holds the scene. False, with the frame as
 /// it was, where a perspective window would reach further than `widest` from the middle or behind the light.
-bool fit_to_scene(LightFrame& frame, const Casters& casters, double widest);
+bool fit_to_scene(LightFrame& frame, const SelectedCasters& casters, double widest);
 
 }  // namespace umbra

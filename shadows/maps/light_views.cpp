@@ -17,25 +17,95 @@ constexpr double kWideCone  = 1.7320509;   // tan 60 degrees, for a spot's own c
 constexpr double kFloatNear = 1e-6;        // near / far; reversed floats resolve any such ratio evenly
 constexpr double kEpsilon   = std::numeric_limits<double>::epsilon();
 
-}  // namespace
+/// Chooses the views of a light and fits them; their maps are empty.
+class Fitting {
+public:
+    Fitting(const BuiltCasters& built, const SelectedCasters& casters, const Light& light,
+            const LightViews::Options& options);
 
-double LightViews::half_of_memory() { return 0.5 * usable_memory(); }
+    std::vector<MapView> views;
+    bool cover_all = true;
 
-std::size_t LightViews::memory_bytes() const {
-    std::size_t bytes = casters_.memory_bytes();
-    for (const MapView& view : views_)
-        bytes += view.map.memory_bytes() + (view.midpoint ? view.midpoint->memory_bytes() : 0);
-    return bytes;
+private:
+    void fit_directional(dvec3 direction);
+    void fit_around(const Light& light);
+    /// Depth limits of a perspective window about the axis, with no geometry nearer to the light than `nearest`.
+    void set_depth(LightFrame& frame, double nearest) const;
+    void add_view(LightFrame frame, int resolution);
+    /// A cleared map, in the memory of a spare one if it can be had.
+    [[nodiscard]] DepthMap new_map(int resolution);
+
+    const LightViews::Options& options_;
+    const SelectedCasters& casters_;
+    std::vector<DepthMap> spare_;
+    double bytes_;  ///< of what casts, and of the maps so far
+};
+
+Fitting::Fitting(const BuiltCasters& built, const SelectedCasters& casters, const Light& light,
+                 const LightViews::Options& options)
+    : options_(options), casters_(casters), bytes_(static_cast<double>(built.memory_bytes())) {
+    for (MapView& view : built.spare->exchange({})) {
+        spare_.push_back(std::move(view.map));
+        if (view.midpoint) spare_.push_back(std::move(*view.midpoint));
+    }
+    if (casters.box().empty()) return;
+    if (light.kind == LightKind::directional)
+        fit_directional(dvec3(light.direction));
+    else
+        fit_around(light);
 }
 
-std::vector<TriangleId> owners(const MapView& view, const Casters& casters, Faces faces) {
-    static_assert(DepthMap::kNoOwner == kNoTriangle);
-    const dmat4 clip_from_world = view.frame.clip_from_world();
-    const Scene& scene          = casters.scene();
-    return view.map.owners(clip_from_world, scene.positions, scene.triangles, casters.seen_by(clip_from_world), faces);
+void Fitting::fit_directional(dvec3 direction) {
+    LightFrame frame = looking_along(dvec3(casters_.box().centre()), direction, false);
+    fit_to_scene(frame, casters_, kInfinity);
+    add_view(frame, options_.resolution);
 }
 
-void LightViews::add_view(LightFrame frame, int resolution) {
+void Fitting::fit_around(const Light& light) {
+    const dvec3 origin(light.position);
+    // Reversed floats resolve any distance from the light as well as any other, unorm depth does not.
+    const double nearest = options_.format == DepthFormat::float32 ? 0 : casters_.distance(origin);
+    LightFrame cube =
+        looking_along(origin, light.kind == LightKind::spot ? dvec3(light.direction) : dvec3(0, 0, 1), true);
+    int resolution = options_.resolution;
+    if (light.kind == LightKind::spot) {
+        const double rim = std::tan(static_cast<double>(light.spot.cutoff));
+        LightFrame cone  = cube;
+        if (rim > 0 && fit_to_scene(cone, casters_, std::min(rim, kWideCone))) return add_view(cone, resolution);
+        if (rim > 0 && rim <= kWideCone) {
+            cone.half = dvec2(rim);
+            set_depth(cone, nearest);
+            add_view(cone, resolution);
+            cover_all = options_.surround > 0;
+            if (!cover_all) return;
+            resolution = static_cast<int>(std::ceil(std::max(options_.surround * resolution, 4 * options_.border)));
+        }
+    }
+    const dvec3 to_scene = dvec3(casters_.box().centre()) - origin;
+    if (views.empty() && glm::length(to_scene) > 0) {
+        LightFrame whole = looking_along(origin, to_scene, true);
+        if (fit_to_scene(whole, casters_, kWide)) return add_view(whole, resolution);
+    }
+    // Sides of the cube as even permutations and turns of one right-handed frame.
+    const std::array<dvec3, 3> axes{cube.x, cube.y, cube.z};
+    for (int k = 0; k < 3; ++k)
+        for (double sign : {1.0, -1.0}) {
+            LightFrame side = cube;
+            side.x          = sign * axes[(k + 1) % 3];
+            side.y          = axes[(k + 2) % 3];
+            side.z          = sign * axes[k];
+            set_depth(side, nearest);
+            add_view(side, resolution);
+        }
+}
+
+void Fitting::set_depth(LightFrame& frame, double nearest) const {
+    const auto depth = casters_.ranges<1>([&](dvec3 p) { return std::array{frame.light_space(p).z}; });
+    frame.far        = depth[0].max > 0 ? depth[0].max : 1;
+    frame.near       = std::max(depth[0].min, nearest / std::sqrt(1 + glm::dot(frame.half, frame.half)));
+}
+
+void Fitting::add_view(LightFrame frame, int resolution) {
     const double inner = 1 - 2 * options_.border / resolution;
     frame.half /= inner;
     if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
@@ -57,16 +127,17 @@ void LightViews::add_view(LightFrame frame, int resolution) {
     frame.far += 0.01 * (frame.far - frame.near);
     if (casters_.seen_by(frame.clip_from_world()).empty()) return;
     const double bytes = (options_.midpoints ? 8.0 : 4.0) * resolution * resolution;
-    if (static_cast<double>(memory_bytes()) + bytes > options_.memory_limit)
+    if (bytes_ + bytes > options_.memory_limit)
         throw UsageError(
             fmt::format("{}: resolution={} takes more than half of the machine's memory "
                         "({:.0f} MiB a map, {} of them so far), expected a smaller one",
-                        options_.method, options_.resolution, bytes / (1 << 20), views_.size()));
-    views_.push_back({frame, new_map(resolution)});
-    if (options_.midpoints) views_.back().midpoint = new_map(resolution);
+                        options_.method, options_.resolution, bytes / (1 << 20), views.size()));
+    views.push_back({frame, new_map(resolution)});
+    if (options_.midpoints) views.back().midpoint = new_map(resolution);
+    bytes_ += bytes;
 }
 
-DepthMap LightViews::new_map(int resolution) {
+DepthMap Fitting::new_map(int resolution) {
     const auto fits  = [&](const DepthMap& m) { return m.width() == resolution && m.format() == options_.format; };
     const auto found = std::ranges::find_if(spare_, fits);
     if (found == spare_.end()) {
@@ -79,86 +150,47 @@ DepthMap LightViews::new_map(int resolution) {
     return map;
 }
 
-void LightViews::fit_directional(dvec3 direction) {
-    LightFrame frame = looking_along(dvec3(casters_.box().centre()), direction, false);
-    fit_to_scene(frame, casters_, kInfinity);
-    add_view(frame, options_.resolution);
+}  // namespace
+
+double LightViews::half_of_memory() { return 0.5 * usable_memory(); }
+
+std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces) {
+    static_assert(DepthMap::kNoOwner == kNoTriangle);
+    const dmat4 clip_from_world = view.frame.clip_from_world();
+    const Scene& scene          = casters.scene();
+    return view.map.owners(clip_from_world, scene.positions, scene.triangles, casters.seen_by(clip_from_world), faces);
 }
 
-void LightViews::set_depth(LightFrame& frame, double nearest) const {
-    const auto depth = casters_.ranges<1>([&](dvec3 p) { return std::array{frame.light_space(p).z}; });
-    frame.far        = depth[0].max > 0 ? depth[0].max : 1;
-    frame.near       = std::max(depth[0].min, nearest / std::sqrt(1 + glm::dot(frame.half, frame.half)));
+LightViews::LightViews(const Built& from, LightId at, const Options& options)
+    : Aimed(from, at),
+      casters_(as<BuiltCasters>(from).casters, source()),
+      spare_(as<BuiltCasters>(from).spare),
+      faces_(options.faces) {
+    Fitting fitting(as<BuiltCasters>(from), casters_, source(), options);
+    views_     = std::move(fitting.views);
+    cover_all_ = fitting.cover_all;
+    rasterise();
 }
 
-void LightViews::fit_around(const Light& light) {
-    const dvec3 origin(light.position);
-    // Reversed floats resolve any distance from the light as well as any other, unorm depth does not.
-    const double nearest = options_.format == DepthFormat::float32 ? 0 : casters_.distance(origin);
-    LightFrame cube =
-        looking_along(origin, light.kind == LightKind::spot ? dvec3(light.direction) : dvec3(0, 0, 1), true);
-    int resolution = options_.resolution;
-    if (light.kind == LightKind::spot) {
-        const double rim = std::tan(static_cast<double>(light.spot.cutoff));
-        LightFrame cone  = cube;
-        if (rim > 0 && fit_to_scene(cone, casters_, std::min(rim, kWideCone))) return add_view(cone, resolution);
-        if (rim > 0 && rim <= kWideCone) {
-            cone.half = dvec2(rim);
-            set_depth(cone, nearest);
-            add_view(cone, resolution);
-            cover_all_ = options_.surround > 0;
-            if (!cover_all_) return;
-            resolution = static_cast<int>(std::ceil(std::max(options_.surround * resolution, 4 * options_.border)));
-        }
-    }
-    const dvec3 to_scene = dvec3(casters_.box().centre()) - origin;
-    if (views_.empty() && glm::length(to_scene) > 0) {
-        LightFrame whole = looking_along(origin, to_scene, true);
-        if (fit_to_scene(whole, casters_, kWide)) return add_view(whole, resolution);
-    }
-    // Sides of the cube as even permutations and turns of one right-handed frame.
-    const std::array<dvec3, 3> axes{cube.x, cube.y, cube.z};
-    for (int k = 0; k < 3; ++k)
-        for (double sign : {1.0, -1.0}) {
-            LightFrame side = cube;
-            side.x          = sign * axes[(k + 1) % 3];
-            side.y          = axes[(k + 2) % 3];
-            side.z          = sign * axes[k];
-            set_depth(side, nearest);
-            add_view(side, resolution);
-        }
-}
+LightViews::~LightViews() { (void)spare_->exchange(std::move(views_)); }
 
-void LightViews::fit(LightId light) {
-    for (MapView& view : views_) {
-        spare_.push_back(std::move(view.map));
-        if (view.midpoint) spare_.push_back(std::move(*view.midpoint));
-    }
-    views_.clear();
-    cover_all_     = true;
-    const Light& l = casters_.scene().lights[light];
-    casters_.select(l);
-    if (casters_.box().empty()) {
-        spare_.clear();
-        return;
-    }
-    if (l.kind == LightKind::directional)
-        fit_directional(dvec3(l.direction));
-    else
-        fit_around(l);
-    spare_.clear();
+std::size_t LightViews::memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const MapView& view : views_)
+        bytes += view.map.memory_bytes() + (view.midpoint ? view.midpoint->memory_bytes() : 0);
+    return bytes;
 }
 
 void LightViews::rasterise() {
-    const std::vector<vec3>& positions = casters_.scene().positions;
+    const std::vector<vec3>& positions = scene().positions;
     for (MapView& view : views_) {
         const dmat4 clip_from_world = view.frame.clip_from_world();
         const auto triangles        = casters_.seen_by(clip_from_world);
-        view.map.draw(clip_from_world, positions, triangles, options_.faces);
+        view.map.draw(clip_from_world, positions, triangles, faces_);
         if (!view.midpoint) continue;
         // What blocks nothing may be the second surface: a box's lower side, on a floor.
         view.midpoint->draw_behind(view.map, clip_from_world, positions, casters_.seen_by(clip_from_world, true),
-                                   options_.faces);
+                                   faces_);
         const LightFrame& f = view.frame;
         view.midpoint->move_towards(view.map, [&f](double first, double second) {
             return f.nearness(0.5 * (f.depth(first) + f.depth(second)));

@@ -9,10 +9,13 @@
 // Maps reach over their view's border by as much as the filter does, so that no filter ever crosses a cube's seam.
 #pragma once
 
+#include <memory>
+#include <mutex>
 #include <optional>
 
 #include "umbra/shadows/maps/depth_map.h"
 #include "umbra/shadows/maps/light_frame.h"
+#include "umbra/shadows/method.h"
 
 namespace umbra {
 
@@ -25,20 +28,46 @@ struct MapView {
 
 /// Which triangle each sample of a view's map shows that `faces` of `casters` were drawn into, kNoTriangle where none.
 /// Draws the map again.
-[[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const Casters& casters, Faces faces);
+[[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces);
 
-class LightViews {
+/// Keeps the maps of a LightViews that ends, so that the next one draws in their memory: the system clears new memory
+/// page by page, which takes longer than drawing a small scene.
+class SpareMaps {
+public:
+    /// Keeps these in place of what it kept until now, which it returns. Any thread.
+    [[nodiscard]] std::vector<MapView> exchange(std::vector<MapView> views) {
+        const std::lock_guard lock(mutex_);
+        kept_.swap(views);
+        return views;
+    }
+
+private:
+    std::mutex mutex_;
+    std::vector<MapView> kept_;  ///< of one light at most
+};
+
+/// What `build` makes for methods with depth maps: what casts.
+class BuiltCasters final : public Built {
+public:
+    BuiltCasters(const Scene& of, const SceneFacts& its_facts, bool leave_out)
+        : Built(of, its_facts), casters(of, its_facts, leave_out) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return casters.memory_bytes(); }
+    const Casters casters;
+    const std::shared_ptr<SpareMaps> spare = std::make_shared<SpareMaps>();
+};
+
+/// What `aim` makes: the views of one light, fitted and drawn.
+class LightViews : public Aimed {
 public:
     /// Half of what the machine has.
     [[nodiscard]] static double half_of_memory();
 
     struct Options {
         std::string_view method{};  ///< in errors
-        int resolution      = 2048;
-        DepthFormat format  = DepthFormat::float32;
-        Faces faces         = Faces::all;
-        bool fit_to_casters = true;
-        bool all_depths     = false;  ///< the maps keep how near everything is that they show; otherwise what is nearer
+        int resolution     = 2048;
+        DepthFormat format = DepthFormat::float32;
+        Faces faces        = Faces::all;
+        bool all_depths    = false;   ///< the maps keep how near everything is that they show; otherwise what is nearer
                                       ///< than all that they are fitted to has nearness 1
         bool midpoints      = false;  ///< the views have midpoints, which takes as much memory and time as the maps
         double surround     = 0.5;
@@ -47,41 +76,27 @@ public:
         double memory_limit = half_of_memory();  ///< bytes, for all maps of a light
     };
 
-    LightViews(const Scene& scene, const SceneFacts& facts, const Options& options)
-        : options_(options), casters_(scene, facts, options.fit_to_casters) {}
-
-    /// For the next fit. `fit_to_casters` stays as it was made.
-    void set_options(const Options& options) { options_ = options; }
-
-    /// Chooses the views of `light` and fits them; their maps are empty. Throws UsageError where the maps take more
-    /// than `memory_limit`.
-    void fit(LightId light);
-    /// Draws the depth of what casts into the maps of all views, and their midpoints.
-    void rasterise();
+    /// `from` is a BuiltCasters. Throws UsageError where the maps and what casts take more than `memory_limit`.
+    LightViews(const Built& from, LightId at, const Options& options);
+    ~LightViews() override;
 
     [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
     /// Which triangle each sample of view k's map shows, kNoTriangle where none. Draws the map again.
     [[nodiscard]] std::vector<TriangleId> owners(std::size_t k) const {
-        return umbra::owners(views_[k], casters_, options_.faces);
+        return umbra::owners(views_[k], casters_, faces_);
     }
     /// False where what lies outside a spot's cone was left out; else nothing that casts lies where no view looks.
     [[nodiscard]] bool cover_all() const { return cover_all_; }
-    [[nodiscard]] const Scene& scene() const { return casters_.scene(); }
-    [[nodiscard]] std::size_t memory_bytes() const;
+    [[nodiscard]] std::size_t memory_bytes() const override;
 
 private:
-    void add_view(LightFrame frame, int resolution);
-    /// A cleared map, in the memory of a spare one if it can be had.
-    [[nodiscard]] DepthMap new_map(int resolution);
-    void fit_directional(dvec3 direction);
-    void fit_around(const Light& light);
-    /// Depth limits of a perspective window about the axis, with no geometry nearer to the light than `nearest`.
-    void set_depth(LightFrame& frame, double nearest) const;
+    /// Draws the depth of what casts into the maps of all views, and their midpoints.
+    void rasterise();
 
-    Options options_;
-    Casters casters_;
+    const SelectedCasters casters_;
+    const std::shared_ptr<SpareMaps> spare_;
+    const Faces faces_;
     std::vector<MapView> views_;
-    std::vector<DepthMap> spare_;  ///< maps of the last fit, while the next one goes on
     bool cover_all_ = true;
 };
 

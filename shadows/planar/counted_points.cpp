@@ -15,11 +15,11 @@ namespace umbra::planar {
 
 class DarkeningTree::Counter {
 public:
-    Counter(DarkeningTree& tree, const Outline& outline) : tree_(tree), outline_(outline) {}
+    Counter(DarkeningTree& tree, const Outline& outline) : tree_(tree), points_(tree.points_), outline_(outline) {}
 
     std::vector<std::uint32_t> run() {
-        const std::size_t top = tree_.levels_.size() - 1;
-        if (!is_within_reach(tree_.levels_[top][0])) {
+        const std::size_t top = points_.levels.size() - 1;
+        if (!is_within_reach(points_.levels[top][0])) {
             Work all;
             for (std::size_t k = 0; k < kBranches; ++k) add_doubtful(top, k, all);
             return std::move(all.doubtful);
@@ -83,7 +83,7 @@ private:
     }
 
     void add_doubtful(std::size_t level, std::size_t child, Work& work) const {
-        const Range under = tree_.points_under(level, child);
+        const Range under = points_.points_under(level, child);
         for (std::size_t i = under.begin; i < under.end; ++i)
             if (tree_.dark_[i] == 0) work.doubtful.push_back(static_cast<std::uint32_t>(i));
     }
@@ -93,8 +93,8 @@ private:
     template <class Body>
     void split(std::size_t level, std::size_t n, std::span<const std::uint32_t> all, dvec2 from, double count,
                std::array<std::vector<std::uint32_t>, kBranches>& edges, Work& work, const Body& body) {
-        const Node& node          = tree_.levels_[level][n];
-        const std::uint32_t there = static_cast<std::uint8_t>(~node.dark);
+        const Node& node          = points_.levels[level][n];
+        const std::uint32_t there = static_cast<std::uint8_t>(~tree_.dark_branches_[level][n]);
         double low_x[kBranches], low_y[kBranches], high_x[kBranches], high_y[kBranches], x[kBranches], y[kBranches];
         double counts[kBranches], doubt[kBranches];
         for (std::size_t k = 0; k < kBranches; ++k) {
@@ -155,10 +155,10 @@ private:
     }
 
     void count_leaf(std::size_t leaf, std::span<const std::uint32_t> edges, dvec2 from, double over_from, Work& work) {
-        const std::size_t begin = leaf * kLeaf, size = std::min(kLeaf, tree_.points_.size() - begin);
+        const std::size_t begin = leaf * kLeaf, size = std::min(kLeaf, points_.size - begin);
         double x[kLeaf], y[kLeaf], counts[kLeaf], doubt[kLeaf];
         for (std::size_t i = 0; i < kLeaf; ++i) {
-            x[i] = tree_.x_[begin + i], y[i] = tree_.y_[begin + i];
+            x[i] = points_.x[begin + i], y[i] = points_.y[begin + i];
             counts[i] = over_from, doubt[i] = 0;
         }
         for (const std::uint32_t e : edges) add_changes(outline_.edges[e], from, x, y, counts, doubt);
@@ -171,11 +171,12 @@ private:
     }
 
     DarkeningTree& tree_;
+    const PlaneTree& points_;
     const Outline& outline_;
 };
 
 std::vector<std::uint32_t> DarkeningTree::darken(const Outline& outline) {
-    if (levels_.empty() || (outline.edges.empty() && outline.count == 0)) return {};
+    if (points_.levels.empty() || (outline.edges.empty() && outline.count == 0)) return {};
     return Counter(*this, outline).run();
 }
 

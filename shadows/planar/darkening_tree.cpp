@@ -11,53 +11,46 @@
 
 namespace umbra::planar {
 
-// ---- building -------------------------------------------------------------------------------------------------------
+// ---- points in a plane ----------------------------------------------------------------------------------------------
 
-DarkeningTree::DarkeningTree(RawVector<std::uint32_t> points, RawVector<double> x, RawVector<double> y, bool in_order)
-    : points_(std::move(points)), x_(std::move(x)), y_(std::move(y)) {
-    if (!in_order) sort();
-    // Filled up, so that leaves are tested whole.
-    x_.resize(leaf_count() * kLeaf, 0);
-    y_.resize(leaf_count() * kLeaf, 0);
-    build_boxes();
-    brighten();
-}
-
-void DarkeningTree::sort() {
-    const std::size_t count = points_.size();
+void sort_in_plane(RawVector<std::uint32_t>& points, Places& places) {
+    const std::size_t count                = points.size();
+    const RawVector<std::uint32_t> indices = points;
+    const RawVector<double> x = places.x, y = places.y;
     dvec2 low(+kInfinity), high(-kInfinity);
     for (std::size_t i = 0; i < count; ++i) {
-        low  = glm::min(low, place(i));
-        high = glm::max(high, place(i));
+        low  = glm::min(low, dvec2(x[i], y[i]));
+        high = glm::max(high, dvec2(x[i], y[i]));
     }
     const double extent = std::max({high.x - low.x, high.y - low.y, 1e-300});
     struct Keyed {
         std::uint64_t key;
-        std::uint32_t place;
+        std::uint32_t at;
     };
     std::vector<Keyed> order(count);
     parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const dvec2 p = (place(i) - low) / extent * 0x1p31;
+            const dvec2 p = (dvec2(x[i], y[i]) - low) / extent * 0x1p31;
             order[i]      = {morton_code(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)),
                              static_cast<std::uint32_t>(i)};
         }
     });
     parallel_sort(order.begin(), order.end(),
-                  [](const Keyed& l, const Keyed& r) { return l.key != r.key ? l.key < r.key : l.place < r.place; });
-    const RawVector<std::uint32_t> points = points_;
-    const RawVector<double> x = x_, y = y_;
+                  [](const Keyed& l, const Keyed& r) { return l.key != r.key ? l.key < r.key : l.at < r.at; });
     parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            points_[i] = points[order[i].place];
-            x_[i]      = x[order[i].place];
-            y_[i]      = y[order[i].place];
+            points[i]   = indices[order[i].at];
+            places.x[i] = x[order[i].at];
+            places.y[i] = y[order[i].at];
         }
     });
 }
 
-void DarkeningTree::build_boxes() {
-    if (points_.empty()) return;
+PlaneTree::PlaneTree(Places places) : size(places.x.size()), x(std::move(places.x)), y(std::move(places.y)) {
+    // Filled up, so that leaves are tested whole.
+    x.resize(leaf_count() * kLeaf, 0);
+    y.resize(leaf_count() * kLeaf, 0);
+    if (size == 0) return;
     std::size_t children = leaf_count();
     do {
         std::vector<Node> nodes((children + kBranches - 1) / kBranches);
@@ -66,25 +59,25 @@ void DarkeningTree::build_boxes() {
                 for (std::size_t k = 0; k < kBranches; ++k) set_box(nodes[n], k, n * kBranches + k, children);
         });
         children = nodes.size();
-        levels_.push_back(std::move(nodes));
+        levels.push_back(std::move(nodes));
     } while (children > 1);
 }
 
 /// The box of branch k of a node of the level that is being built: child `child` of the level below it. Children of the
 /// lowest nodes are leaves.
-void DarkeningTree::set_box(Node& node, std::size_t k, std::size_t child, std::size_t children) const {
+void PlaneTree::set_box(Node& node, std::size_t k, std::size_t child, std::size_t children) const {
     vec2 low(+kInfinity), high(-kInfinity);
-    if (child < children && levels_.empty()) {
-        const std::size_t begin = child * kLeaf, end = std::min(points_.size(), begin + kLeaf);
-        dvec2 least(x_[begin], y_[begin]), most      = least;
+    if (child < children && levels.empty()) {
+        const std::size_t begin = child * kLeaf, end = std::min(size, begin + kLeaf);
+        dvec2 least(x[begin], y[begin]), most        = least;
         for (std::size_t i = begin + 1; i < end; ++i) {
-            least = glm::min(least, dvec2(x_[i], y_[i]));
-            most  = glm::max(most, dvec2(x_[i], y_[i]));
+            least = glm::min(least, dvec2(x[i], y[i]));
+            most  = glm::max(most, dvec2(x[i], y[i]));
         }
         low  = {float_below(least.x), float_below(least.y)};
         high = {float_above(most.x), float_above(most.y)};
     } else if (child < children) {
-        const Node& below = levels_.back()[child];
+        const Node& below = levels.back()[child];
         for (std::size_t i = 0; i < kBranches; ++i) {
             low  = glm::min(low, vec2(below.low_x[i], below.low_y[i]));
             high = glm::max(high, vec2(below.high_x[i], below.high_y[i]));
@@ -96,21 +89,37 @@ void DarkeningTree::set_box(Node& node, std::size_t k, std::size_t child, std::s
     node.high_y[k] = high.y;
 }
 
+PlaneTree::Range PlaneTree::points_under(std::size_t level, std::size_t child) const {
+    std::size_t width = kLeaf;
+    for (std::size_t l = 0; l < level; ++l) width *= kBranches;
+    return {child * width, std::min(size, (child + 1) * width)};
+}
+
+std::size_t PlaneTree::memory_bytes() const {
+    std::size_t bytes = 2 * x.size() * sizeof(double);
+    for (const auto& nodes : levels) bytes += nodes.size() * sizeof(Node);
+    return bytes;
+}
+
 // ---- darkening ------------------------------------------------------------------------------------------------------
 
+DarkeningTree::DarkeningTree(const PlaneTree& points) : points_(points), dark_branches_(points.levels.size()) {
+    brighten();
+}
+
 void DarkeningTree::brighten() {
-    dark_.assign(points_.size(), 0);
-    for (std::size_t level = 0; level < levels_.size(); ++level) {
-        const std::size_t children = level == 0 ? leaf_count() : levels_[level - 1].size();
-        for (std::size_t n = 0; n < levels_[level].size(); ++n) {
-            const std::size_t present = std::min(kBranches, children - n * kBranches);
-            levels_[level][n].dark    = static_cast<std::uint8_t>(0xffu << present);  // what is not there is dark
-        }
+    dark_.assign(points_.size, 0);
+    for (std::size_t level = 0; level < points_.levels.size(); ++level) {
+        const std::size_t nodes    = points_.levels[level].size();
+        const std::size_t children = level == 0 ? points_.leaf_count() : points_.levels[level - 1].size();
+        // What is not there is dark.
+        dark_branches_[level].assign(nodes, 0);
+        dark_branches_[level].back() = static_cast<std::uint8_t>(0xffu << (children - (nodes - 1) * kBranches));
     }
 }
 
 void DarkeningTree::darken(const Shadow& shadow, const std::array<Side, 3>& sides) {
-    if (!levels_.empty()) darken(levels_.size() - 1, 0, shadow, sides);
+    if (!points_.levels.empty()) darken(points_.levels.size() - 1, 0, shadow, sides);
 }
 
 /// How the shadow covers a box, from the greatest and least value of each side over it. Rounding is far below the float
@@ -132,8 +141,8 @@ DarkeningTree::Cover DarkeningTree::cover(const std::array<Side, 3>& sides, cons
 
 /// Returns whether the whole node is dark now.
 bool DarkeningTree::darken(std::size_t level, std::size_t n, const Shadow& shadow, const std::array<Side, 3>& sides) {
-    Node& node = levels_[level][n];
-    const std::atomic_ref<std::uint8_t> dark(node.dark);
+    const Node& node = points_.levels[level][n];
+    const std::atomic_ref<std::uint8_t> dark(dark_branches_[level][n]);
     std::uint32_t hit = 0;
     for (std::uint32_t k = 0; k < kBranches; ++k)
         hit |= static_cast<std::uint32_t>((node.low_x[k] <= shadow.high.x) & (node.high_x[k] >= shadow.low.x) &
@@ -160,13 +169,13 @@ bool DarkeningTree::darken(std::size_t level, std::size_t n, const Shadow& shado
 
 /// Returns whether the whole leaf is dark now.
 bool DarkeningTree::darken_leaf(std::size_t leaf, const std::array<Side, 3>& sides) {
-    const double* const x = x_.data() + leaf * kLeaf;
-    const double* const y = y_.data() + leaf * kLeaf;
+    const double* const x = points_.x.data() + leaf * kLeaf;
+    const double* const y = points_.y.data() + leaf * kLeaf;
     double least[kLeaf];
     for (std::size_t i = 0; i < kLeaf; ++i)
         least[i] = std::min({sides[0].at(x[i], y[i]), sides[1].at(x[i], y[i]), sides[2].at(x[i], y[i])});
     bool all = true;
-    for (std::size_t i = 0; i < std::min(kLeaf, points_.size() - leaf * kLeaf); ++i) {
+    for (std::size_t i = 0; i < std::min(kLeaf, points_.size - leaf * kLeaf); ++i) {
         const std::atomic_ref<std::uint8_t> dark(dark_[leaf * kLeaf + i]);
         if (least[i] >= 0)
             dark.store(1, std::memory_order_relaxed);
@@ -176,15 +185,9 @@ bool DarkeningTree::darken_leaf(std::size_t leaf, const std::array<Side, 3>& sid
     return all;
 }
 
-DarkeningTree::Range DarkeningTree::points_under(std::size_t level, std::size_t child) const {
-    std::size_t width = kLeaf;
-    for (std::size_t l = 0; l < level; ++l) width *= kBranches;
-    return {child * width, std::min(points_.size(), (child + 1) * width)};
-}
-
 /// All points under child `child` of `level` become dark.
 void DarkeningTree::fill(std::size_t level, std::size_t child) {
-    const Range under = points_under(level, child);
+    const Range under = points_.points_under(level, child);
     for (std::size_t i = under.begin; i < under.end; ++i)
         std::atomic_ref<std::uint8_t>(dark_[i]).store(1, std::memory_order_relaxed);
 }

@@ -11,13 +11,16 @@
 //
 // build finds the receivers, which are both sides of every large plane, and the occluders with their edges. aim picks
 // the light's sources and projects from each of them, onto each receiver, the edges at which the number of shadows
-// changes (outline.h). visibility sorts the points by receiver and, for each source, darkens those over which there is
-// a shadow (darkening_tree.h): S_j is the fraction of the sources from which the point stayed bright. A point where
-// rounding leaves open whether there is one is tested against every triangle.
+// changes (outline.h). look sorts the points by receiver, and those of a receiver by where they lie in its plane.
+// visibility darkens, for each source, the points over which there is a shadow (darkening_tree.h): S_j is the fraction
+// of the sources from which the point stayed bright. A point where rounding leaves open whether there is one is tested
+// against every triangle.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 #include "umbra/core/base/heights.h"
@@ -38,6 +41,8 @@ using planar::LocalSource;
 using planar::OccluderEdges;
 using planar::Occluders;
 using planar::Outline;
+using planar::Places;
+using planar::PlaneTree;
 using planar::Receiver;
 using planar::Shadow;
 using planar::Shadows;
@@ -79,15 +84,176 @@ const std::vector<Parameter> kParameters{
          .sweep   = "weighted|per_triangle"}),
 };
 
+constexpr std::uint32_t kNoGroup = 0xffffffffu;
+
+double area_of(const SceneFacts& facts) {
+    double area = 0;
+    for (const ObjectFacts& object : facts.objects) area += object.area;
+    return area;
+}
+
+bool is_receiver(const PlanarReceiver& plane, double scene_area, const Options& options) {
+    return plane.area >= options.plane_share * scene_area;
+}
+
+/// Whether all its corners lie in it, up to the arithmetic that found it, in double.
+bool is_flat(const PlanarReceiver& plane, const Box& box) {
+    const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
+    return plane.tolerance <= 64 * 0x1p-53 * double(reach.x + reach.y + reach.z);
+}
+
+/// What is projected, and onto what.
+struct Planes final : Built {
+    Planes(const Scene& of, const SceneFacts& its_facts, const Options& options)
+        : Built(of, its_facts),
+          occluders{&of, {}, std::vector(of.triangles.size(), Occluders::kNoPlane)},
+          group_of(of.triangles.size(), kNoGroup) {
+        const double area = area_of(facts);
+        for (const PlanarReceiver& plane : facts.planes) {
+            if (!is_receiver(plane, area, options)) continue;
+            const auto index = static_cast<std::uint32_t>(receivers.size() / 2);
+            for (const int side : {1, -1}) receivers.push_back(planar::make_receiver(scene, plane, index, side));
+            for (const TriangleId t : plane.triangles) {
+                occluders.plane_of[t] = index;
+                const dvec3 normal    = unit_normal(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+                group_of[t]           = 2 * index + (glm::dot(normal, receivers[2 * index].normal) < 0 ? 1 : 0);
+            }
+        }
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t)
+            if (scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
+                occluders.triangles.push_back(t);
+        if (options.edges == Edges::weighted && !receivers.empty()) edges.emplace(occluders);
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return receivers.size() * sizeof(Receiver) + occluders.plane_of.size() * sizeof(std::uint32_t) +
+               occluders.triangles.size() * sizeof(TriangleId) + group_of.size() * sizeof(std::uint32_t) +
+               (edges ? edges->memory_bytes() : 0);
+    }
+
+    Occluders occluders;
+    std::vector<Receiver> receivers;      ///< both sides of plane k at 2 k and 2 k + 1
+    std::vector<std::uint32_t> group_of;  ///< of each triangle: the receiver that its front belongs to, or kNoGroup
+    std::optional<OccluderEdges> edges;
+};
+
+/// The shadows of one light.
+struct Projected final : Aimed {
+    Projected(const Planes& planes, LightId at, int samples)
+        : Aimed(planes, at),
+          centre(planar::centre_of(source())),
+          sources(planar::sources_of(source(), samples)),
+          outlines(planar::project(planes.occluders, planes.edges ? &*planes.edges : nullptr, planes.receivers, sources,
+                                   kMemoryShare * usable_memory())) {}
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return sources.size() * sizeof(Source) + planar::memory_bytes(outlines);
+    }
+
+    const Source centre;  ///< the light as one source
+    const std::vector<Source> sources;
+    const planar::LightOutlines outlines;
+};
+
+/// Points, as indices into the batch.
+using Members = std::span<const std::uint32_t>;
+
+/// A point that is off the plane by its triangle's rounding is moved along its own ray to the light's centre, which
+/// leaves unchanged what that ray meets.
+Places places_of(const Scene& scene, const PointBatch& points, Members members, const Receiver& receiver,
+                 const LocalSource& centre) {
+    constexpr std::size_t kTogether = 16;  // points whose places are computed at once
+    Places places{RawVector<double>(members.size()), RawVector<double>(members.size())};
+    parallel_ranges((members.size() + kTogether - 1) / kTogether, 1024, [&](std::size_t first, std::size_t last) {
+        TriangleId before = kNoTriangle;
+        dvec3 a{0}, ab{0}, ac{0};
+        const auto stand_on = [&](TriangleId t) {  // neighbours are mostly on one triangle
+            if (t == before) return;
+            before = t;
+            a      = receiver.local(dvec3(scene.vertex(t, 0)));
+            ab     = receiver.local(dvec3(scene.vertex(t, 1))) - a;
+            ac     = receiver.local(dvec3(scene.vertex(t, 2))) - a;
+        };
+        for (std::size_t begin = first * kTogether; begin < std::min(last * kTogether, members.size());
+             begin += kTogether) {
+            const std::size_t count = std::min(kTogether, members.size() - begin);
+            // Of points in squares of 4 x 4 pixels, the first of each row: what follows in memory is another row.
+            if (begin + 5 * kTogether < members.size())
+                for (const std::size_t k : {0, 2, 8, 10}) {
+                    const std::uint32_t p = members[begin + 4 * kTogether + k];
+                    __builtin_prefetch(&points.triangle[p]);
+                    __builtin_prefetch(&points.u[p]);
+                    __builtin_prefetch(&points.v[p]);
+                }
+            double u[kTogether], v[kTogether];
+            bool one = count == kTogether;
+            for (std::size_t k = 0; k < count; ++k) {
+                const std::uint32_t p = members[begin + k];
+                u[k] = static_cast<double>(points.u[p]), v[k] = static_cast<double>(points.v[p]);
+                one &= points.triangle[p] == points.triangle[members[begin]];
+            }
+            for (std::size_t k = 0; k < count; k += one ? kTogether : 1) {
+                stand_on(points.triangle[members[begin + k]]);
+                for (std::size_t j = k; j < (one ? kTogether : k + 1); ++j) {
+                    const double x = a.x + u[j] * ab.x + v[j] * ac.x, y = a.y + u[j] * ab.y + v[j] * ac.y;
+                    const double z = a.z + u[j] * ab.z + v[j] * ac.z;
+                    // As LocalSource::project, where the light's centre is above the point.
+                    const double step   = centre.at_infinity          ? -z / centre.at.z
+                                          : centre.at.z > std::abs(z) ? z / (centre.at.z - z)
+                                                                      : 0;
+                    places.x[begin + j] = x + step * (centre.at_infinity ? centre.at.x : x - centre.at.x);
+                    places.y[begin + j] = y + step * (centre.at_infinity ? centre.at.y : y - centre.at.y);
+                }
+            }
+        }
+    });
+    return places;
+}
+
+/// The surface points on the receivers.
+struct OnPlanes final : Looked {
+    /// The points on one receiver, in an order in which neighbours are near.
+    struct Group {
+        RawVector<std::uint32_t> members;
+        std::optional<PlaneTree> tree;  ///< where no point is off the plane, so that none is moved for any light
+    };
+
+    OnPlanes(const Planes& planes, const PointBatch& at) : Looked(at), groups(planes.receivers.size()) {
+        auto members = grouped(points, groups.size(), [&](std::size_t i) -> std::size_t {
+            if (points.triangle[i] == kNoTriangle) return kNoGroup;
+            const std::uint32_t side = planes.group_of[points.triangle[i]];
+            return side == kNoGroup ? side : side ^ points.flipped[i];
+        });
+        for (std::size_t r = 0; r < groups.size(); ++r) {
+            groups[r].members        = std::move(members[r]);
+            const Receiver& receiver = planes.receivers[r];
+            const bool flat          = receiver.tolerance == 0;
+            if (groups[r].members.empty() || (!flat && points.raster)) continue;  // rasters are in order
+            const LocalSource above(receiver, {true, vec3(receiver.normal)});
+            Places places = places_of(planes.scene, points, groups[r].members, receiver, above);
+            if (!points.raster) planar::sort_in_plane(groups[r].members, places);
+            if (flat) groups[r].tree.emplace(std::move(places));
+        }
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        std::size_t bytes = 0;
+        for (const Group& group : groups)
+            bytes += group.members.size() * sizeof(std::uint32_t) + (group.tree ? group.tree->memory_bytes() : 0);
+        return bytes;
+    }
+
+    std::vector<Group> groups;  ///< one a receiver
+};
+
 class PlanarProjection final : public MethodWith<Options> {
 public:
-    Service serves(const SceneFacts& facts) const override {
-        double area = 0, served = 0;
+    explicit PlanarProjection(const Settings& settings) : MethodWith(settings) {}
+
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        const double area  = area_of(facts);
+        double served      = 0;
         std::size_t planes = 0;
         bool flat          = true;
-        for (const ObjectFacts& object : facts.objects) area += object.area;
         for (const PlanarReceiver& plane : facts.planes)
-            if (is_receiver(plane, area)) {
+            if (is_receiver(plane, area, options)) {
                 ++planes;
                 served += plane.area;
                 flat = flat && is_flat(plane, facts.box);
@@ -112,71 +278,46 @@ public:
                 fmt::format("lights with an area are taken at {} points; {}", options.light_samples, where)};
     }
 
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        receivers_.clear();
-        sources_.clear();
-        outlines_.clear();
-        edges_.reset();
-        group_of_.assign(scene.triangles.size(), kNoGroup);
-        occluders_  = {&scene, {}, std::vector(scene.triangles.size(), Occluders::kNoPlane)};
-        double area = 0;
-        for (const ObjectFacts& object : facts.objects) area += object.area;
-        for (const PlanarReceiver& plane : facts.planes) {
-            if (!is_receiver(plane, area)) continue;
-            const auto index = static_cast<std::uint32_t>(receivers_.size() / 2);
-            for (const int side : {1, -1}) receivers_.push_back(planar::make_receiver(scene, plane, index, side));
-            for (const TriangleId t : plane.triangles) {
-                occluders_.plane_of[t] = index;
-                const dvec3 normal     = unit_normal(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
-                group_of_[t]           = 2 * index + (glm::dot(normal, receivers_[2 * index].normal) < 0 ? 1 : 0);
-            }
-        }
-        for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-            if (scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
-                occluders_.triangles.push_back(t);
-        if (options.edges == Edges::weighted && !receivers_.empty()) edges_.emplace(occluders_);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<Planes>(scene, facts, options);
     }
 
-    void aim(LightId id) override {
-        const Light& light = occluders_.scene->lights[id];
-        centre_            = planar::centre_of(light);
-        sources_           = planar::sources_of(light, options.light_samples);
-        outlines_.clear();  // before new ones take memory
-        outlines_ = planar::project(occluders_, edges_ ? &*edges_ : nullptr, receivers_, sources_,
-                                    kMemoryShare * usable_memory());
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return std::make_unique<Projected>(as<Planes>(built), light, options.light_samples);
     }
 
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        parallel_ranges(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
-            const Facing* const facing = points.facing[light].data();
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        return std::make_unique<OnPlanes>(as<Planes>(built), points);
+    }
+
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const Planes& planes               = as<Planes>(aimed.built);
+        const Projected& light             = as<Projected>(aimed);
+        const std::vector<Source>& sources = light.sources;
+        parallel_ranges(looked.points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+            const Facing* const facing = looked.points.facing[aimed.light].data();
             for (std::size_t i = begin; i < end; ++i)
                 out.answer[i] = facing[i] >= Facing::partly ? Answer::undefined : out.answer[i];
         });
-        for_each_receiver(points, light, [&](std::size_t r, RawVector<std::uint32_t>& members) {
-            // A light that the point's own triangle faces, but that is not above the plane to which the triangle
-            // belongs up to rounding, leaves nothing to project.
-            if (std::ranges::none_of(sources_,
-                                     [&](const Source& s) { return LocalSource(receivers_[r], s).is_above(); }))
-                return;
-            const std::size_t count = members.size();
-            Places at               = positions(points, members, receivers_[r]);
-            DarkeningTree tree(std::move(members), std::move(at.x), std::move(at.y), points.raster.has_value());
-            std::vector<std::uint32_t> sources_seen(sources_.size() > 1 ? count : 0, 0);
-            for (std::size_t s = 0; s < sources_.size(); ++s) {
-                const LocalSource source(receivers_[r], sources_[s]);
+        for_each_receiver(light, looked, [&](std::size_t r, Members members, const PlaneTree& places) {
+            const Receiver& receiver = planes.receivers[r];
+            DarkeningTree tree(places);
+            std::vector<std::uint32_t> sources_seen(sources.size() > 1 ? members.size() : 0, 0);
+            for (std::size_t s = 0; s < sources.size(); ++s) {
+                const LocalSource source(receiver, sources[s]);
                 if (!source.is_above()) continue;  // the receiver does not see this part of the light
                 if (s > 0) tree.brighten();
-                const Outline& outline = outlines_[s][r];
-                darken(tree, receivers_[r], source, outline.rest);
-                darken_one_by_one(tree, tree.darken(outline), receivers_[r], sources_[s]);
+                const Outline& outline = light.outlines[s][r];
+                darken(tree, planes.scene, receiver, source, outline.rest);
+                darken_one_by_one(tree, places, tree.darken(outline), planes, receiver, sources[s]);
                 parallel_ranges(sources_seen.size(), 65536, [&](std::size_t begin, std::size_t end) {
                     for (std::size_t i = begin; i < end; ++i) sources_seen[i] += !tree.is_dark(i);
                 });
             }
-            const auto all = static_cast<float>(sources_.size());
-            parallel_ranges(count, 65536, [&](std::size_t begin, std::size_t end) {
+            const auto all = static_cast<float>(sources.size());
+            parallel_ranges(members.size(), 65536, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
-                    const std::uint32_t p = tree.points()[i];
+                    const std::uint32_t p = members[i];
                     out.s[p]              = sources_seen.empty() ? (tree.is_dark(i) ? 0.0f : 1.0f)
                                                                  : static_cast<float>(sources_seen[i]) / all;
                     out.answer[p]         = Answer::given;
@@ -186,146 +327,101 @@ public:
     }
 
     /// Tests every point against every shadow, since few are asked for: the first that holds one is named.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const Planes& planes   = as<Planes>(aimed.built);
+        const Projected& light = as<Projected>(aimed);
         std::ranges::fill(blockers, kNoTriangle);
-        for_each_receiver(points, light, [&](std::size_t r, const RawVector<std::uint32_t>& members) {
-            const Places at = positions(points, members, receivers_[r]);
-            for (const Source& from : sources_) {
-                const LocalSource source(receivers_[r], from);
-                const auto shadows = planar::project(occluders_, occluders_.triangles, receivers_[r], from);
+        for_each_receiver(light, looked, [&](std::size_t r, Members members, const PlaneTree& places) {
+            const Receiver& receiver = planes.receivers[r];
+            for (const Source& from : light.sources) {
+                const LocalSource source(receiver, from);
+                const auto shadows = planar::project(planes.occluders, planes.occluders.triangles, receiver, from);
                 parallel_ranges(members.size(), 16, [&](std::size_t begin, std::size_t end) {
                     for (std::size_t i = begin; i < end; ++i)
                         if (blockers[members[i]] == kNoTriangle)
-                            blockers[members[i]] = planar::first_over(*occluders_.scene, receivers_[r], source, shadows,
-                                                                      {at.x[i], at.y[i]});
+                            blockers[members[i]] =
+                                planar::first_over(planes.scene, receiver, source, shadows, places.at(i));
                 });
             }
         });
     }
 
-    std::size_t memory_bytes() const override {
-        return receivers_.size() * sizeof(Receiver) + occluders_.plane_of.size() * sizeof(std::uint32_t) +
-               occluders_.triangles.size() * sizeof(TriangleId) + group_of_.size() * sizeof(std::uint32_t) +
-               (edges_ ? edges_->memory_bytes() : 0) + sources_.size() * sizeof(Source) +
-               planar::memory_bytes(outlines_);
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason            = Method::explain(aimed, looked, i, given);
+        const Planes& planes     = as<Planes>(aimed.built);
+        const std::uint32_t side = planes.group_of[looked.points.triangle[i]];
+        if (side == kNoGroup) {
+            reason.evidence.push_back({"receiver", "no plane"});
+            return reason;
+        }
+        const Receiver& receiver = planes.receivers[side ^ looked.points.flipped[i]];
+        const LocalSource centre(receiver, as<Projected>(aimed).centre);
+        reason.evidence.push_back({"receiver", static_cast<double>((side ^ looked.points.flipped[i]) / 2)});
+        reason.evidence.push_back({"flatness of the receiver", receiver.tolerance, "world"});
+        reason.evidence.push_back(
+            {centre.at_infinity ? "slope of the light above the receiver" : "height of the light above the receiver",
+             centre.at.z, centre.at_infinity ? "" : "world"});
+        if (is_area(aimed.source().kind))
+            add_samples(reason, static_cast<int>(as<Projected>(aimed).sources.size()), given);
+        return reason;
     }
 
 private:
-    bool is_receiver(const PlanarReceiver& plane, double scene_area) const {
-        return plane.area >= options.plane_share * scene_area;
-    }
-
-    /// Whether all its corners lie in it, up to the arithmetic that found it, in double.
-    static bool is_flat(const PlanarReceiver& plane, const Box& box) {
-        const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
-        return plane.tolerance <= 64 * 0x1p-53 * double(reach.x + reach.y + reach.z);
-    }
-
-    /// Calls body(r, points) with the points on receivers_[r] that face the light, where there are any.
+    /// Calls body(r, points, where they lie) with the points on receiver r that ask for the light, where there are any.
     template <class Body>
-    void for_each_receiver(const PointBatch& points, LightId light, const Body& body) const {
-        auto groups = grouped(points, receivers_.size(), [&](std::size_t i) -> std::size_t {
-            if (!points.asks(light, i)) return kNoGroup;
-            const std::uint32_t side = group_of_[points.triangle[i]];
-            return side == kNoGroup ? side : side ^ points.flipped[i];
-        });
-        for (std::size_t r = 0; r < groups.size(); ++r)
-            if (!groups[r].empty()) body(r, groups[r]);
+    static void for_each_receiver(const Projected& light, const Looked& looked, const Body& body) {
+        const Planes& planes     = as<Planes>(light.built);
+        const PointBatch& points = looked.points;
+        const auto asks          = [&](std::uint32_t i) { return points.asks(light.light, i); };
+        for (std::size_t r = 0; r < planes.receivers.size(); ++r) {
+            const auto& [all, tree_of_all] = as<OnPlanes>(looked).groups[r];
+            std::atomic<std::size_t> asking{0};
+            parallel_ranges(all.size(), 65536, [&, &all = all](std::size_t begin, std::size_t end) {
+                asking += static_cast<std::size_t>(std::count_if(all.data() + begin, all.data() + end, asks));
+            });
+            if (asking == 0) continue;
+            // A light that the points' own triangles face, but that is not above the plane to which these belong up to
+            // rounding, leaves nothing to project.
+            if (std::ranges::none_of(light.sources,
+                                     [&](const Source& s) { return LocalSource(planes.receivers[r], s).is_above(); }))
+                continue;
+            const bool all_ask = asking == all.size();
+            RawVector<std::uint32_t> some;
+            if (!all_ask) std::ranges::copy_if(all, std::back_inserter(some), asks);
+            const Members members = all_ask ? Members(all) : Members(some);
+            if (all_ask && tree_of_all)
+                body(r, members, *tree_of_all);
+            else
+                body(r, members,
+                     PlaneTree(places_of(planes.scene, points, members, planes.receivers[r],
+                                         LocalSource(planes.receivers[r], light.centre))));
+        }
     }
 
     /// Darkens the points that lie in any of the shadows.
-    void darken(DarkeningTree& tree, const Receiver& receiver, const LocalSource& source,
-                const std::vector<Shadows>& runs) const {
+    static void darken(DarkeningTree& tree, const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                       const std::vector<Shadows>& runs) {
         parallel_ranges(runs.size(), 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t r = first; r < last; ++r)
                 for (const Shadow& shadow : runs[r].shadows)
-                    tree.darken(shadow, planar::sides_of(*occluders_.scene, receiver, source, runs[r], shadow));
+                    tree.darken(shadow, planar::sides_of(scene, receiver, source, runs[r], shadow));
         });
     }
 
     /// Darkens those of some points of the tree that lie in any shadow.
-    void darken_one_by_one(DarkeningTree& tree, const std::vector<std::uint32_t>& which, const Receiver& receiver,
-                           const Source& from) const {
+    static void darken_one_by_one(DarkeningTree& tree, const PlaneTree& places, std::vector<std::uint32_t> which,
+                                  const Planes& planes, const Receiver& receiver, const Source& from) {
         if (which.empty()) return;
-        RawVector<std::uint32_t> some(which.begin(), which.end());
-        RawVector<double> x, y;
-        for (const std::uint32_t i : some) x.push_back(tree.place(i).x), y.push_back(tree.place(i).y);
-        DarkeningTree few(std::move(some), std::move(x), std::move(y), false);
-        const auto shadows = planar::project(occluders_, occluders_.triangles, receiver, from);
-        darken(few, receiver, LocalSource(receiver, from), shadows);
-        for (std::size_t i = 0; i < few.points().size(); ++i)
-            if (few.is_dark(i)) tree.darken(few.points()[i]);
+        std::ranges::sort(which);  // the tree's order
+        Places some;
+        for (const std::uint32_t i : which) some.x.push_back(places.x[i]), some.y.push_back(places.y[i]);
+        const PlaneTree few_places(std::move(some));
+        DarkeningTree few(few_places);
+        const auto shadows = planar::project(planes.occluders, planes.occluders.triangles, receiver, from);
+        darken(few, planes.scene, receiver, LocalSource(receiver, from), shadows);
+        for (std::size_t i = 0; i < which.size(); ++i)
+            if (few.is_dark(i)) tree.darken(which[i]);
     }
-
-    static constexpr std::size_t kTogether = 16;  ///< points, whose places are computed at once
-
-    /// Where points lie in a plane.
-    struct Places {
-        RawVector<double> x, y;
-    };
-
-    /// A point that is off the plane by its triangle's rounding is moved along its own ray to the light's centre, which
-    /// leaves unchanged what that ray meets.
-    Places positions(const PointBatch& points, const RawVector<std::uint32_t>& members,
-                     const Receiver& receiver) const {
-        const LocalSource centre(receiver, centre_);
-        const Scene& scene = *occluders_.scene;
-        Places places{RawVector<double>(members.size()), RawVector<double>(members.size())};
-        parallel_ranges((members.size() + kTogether - 1) / kTogether, 1024, [&](std::size_t first, std::size_t last) {
-            TriangleId before = kNoTriangle;
-            dvec3 a{0}, ab{0}, ac{0};
-            const auto stand_on = [&](TriangleId t) {  // neighbours are mostly on one triangle
-                if (t == before) return;
-                before = t;
-                a      = receiver.local(dvec3(scene.vertex(t, 0)));
-                ab     = receiver.local(dvec3(scene.vertex(t, 1))) - a;
-                ac     = receiver.local(dvec3(scene.vertex(t, 2))) - a;
-            };
-            for (std::size_t begin = first * kTogether; begin < std::min(last * kTogether, members.size());
-                 begin += kTogether) {
-                const std::size_t count = std::min(kTogether, members.size() - begin);
-                // Of points in squares of 4 x 4 pixels, the first of each row: what follows in memory is another row.
-                if (begin + 5 * kTogether < members.size())
-                    for (const std::size_t k : {0, 2, 8, 10}) {
-                        const std::uint32_t p = members[begin + 4 * kTogether + k];
-                        __builtin_prefetch(&points.triangle[p]);
-                        __builtin_prefetch(&points.u[p]);
-                        __builtin_prefetch(&points.v[p]);
-                    }
-                double u[kTogether]{}, v[kTogether]{};
-                bool one = count == kTogether;
-                for (std::size_t k = 0; k < count; ++k) {
-                    const std::uint32_t p = members[begin + k];
-                    u[k] = static_cast<double>(points.u[p]), v[k] = static_cast<double>(points.v[p]);
-                    one &= points.triangle[p] == points.triangle[members[begin]];
-                }
-                for (std::size_t k = 0; k < count; k += one ? kTogether : 1) {
-                    stand_on(points.triangle[members[begin + k]]);
-                    for (std::size_t j = k; j < (one ? kTogether : k + 1); ++j) {
-                        const double x = a.x + u[j] * ab.x + v[j] * ac.x, y = a.y + u[j] * ab.y + v[j] * ac.y;
-                        const double z = a.z + u[j] * ab.z + v[j] * ac.z;
-                        // As LocalSource::project, where the light's centre is above the point.
-                        const double step   = centre.at_infinity          ? -z / centre.at.z
-                                              : centre.at.z > std::abs(z) ? z / (centre.at.z - z)
-                                                                          : 0;
-                        places.x[begin + j] = x + step * (centre.at_infinity ? centre.at.x : x - centre.at.x);
-                        places.y[begin + j] = y + step * (centre.at_infinity ? centre.at.y : y - centre.at.y);
-                    }
-                }
-            }
-        });
-        return places;
-    }
-
-    static constexpr std::uint32_t kNoGroup = 0xffffffffu;
-
-    Occluders occluders_;
-    std::vector<Receiver> receivers_;  ///< both sides of plane k at 2 k and 2 k + 1
-    std::vector<Source> sources_;
-    Source centre_;                        ///< the light as one source
-    std::vector<std::uint32_t> group_of_;  ///< of each triangle: the receiver that its front belongs to, or kNoGroup
-    std::optional<OccluderEdges> edges_;
-    planar::LightOutlines outlines_;
 };
 
 }  // namespace

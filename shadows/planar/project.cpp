@@ -7,8 +7,8 @@
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/render/light_points.h"
 #include "umbra/core/render/sampling.h"
-#include "umbra/shadows/shared/light_points.h"
 
 namespace umbra::planar {
 namespace {

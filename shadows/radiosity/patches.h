@@ -25,7 +25,6 @@ struct InPatch {
 
 class Patches {
 public:
-    Patches() = default;
     /// Edges no longer than `longest`, world units; longer where the scene would have more than kMost patches.
     Patches(const Scene& scene, double longest);
 

@@ -2,6 +2,11 @@
 // factor and the sight between them let through, and patches are cut where that changes. Between corners S_j is
 // interpolated. What surfaces send to one another is in exchange.h.
 //
+//     build        patches: triangles cut into equal parts; the tree of triangles that rays are traced in
+//     aim          S_j at the corners of each patch and, while it changes over it, of the four that it is cut into
+//     look         nothing: a point's patch is found again for each light
+//     visibility   the element of each point, and S_j between its corners
+//
 // This work is based on:
 // Cindy Goral, Kenneth Torrance, Donald Greenberg, Bennett Battaile. Modeling the Interaction of Light between Diffuse
 // Surfaces. 1984
@@ -17,10 +22,48 @@ namespace umbra {
 
 using namespace radiosity_detail;
 
+SurfacePoint RadiosityPatches::place(PatchId patch, bool flipped, dvec2 at) const {
+    // A corner of a triangle may touch a wall that stands on it: points are moved a little inside.
+    constexpr double inside = 0x1p-12;
+    const TriangleId t      = patches.triangle(patch);
+    const dvec3 a(scene.vertex(t, 0)), ab = dvec3(scene.vertex(t, 1)) - a, ac = dvec3(scene.vertex(t, 2)) - a;
+    const auto corner  = patches.corners(patch);
+    const dvec2 uv     = corner[0] + at.x * (corner[1] - corner[0]) + at.y * (corner[2] - corner[0]);
+    const dvec2 moved  = (1 - inside) * uv + dvec2(inside / 3);
+    const dvec3 normal = glm::normalize(glm::cross(ab, ac));
+    return {a + moved.x * ab + moved.y * ac, flipped ? -normal : normal, t};
+}
+
+RadiosityElements::ElementId RadiosityElements::element(const PointBatch& points, std::size_t i) const {
+    const InPatch at = surfaces.find(points, i);
+    return {at.patch, static_cast<std::uint32_t>(sides[points.flipped[i]][at.patch].leaf(at.u, at.v))};
+}
+
+std::size_t RadiosityElements::elements() const {
+    std::size_t count = 0;
+    for (const auto& side : sides)
+        for (const Elements& patch : side) count += patch.leaves();
+    return count;
+}
+
+std::size_t RadiosityElements::memory_bytes() const {
+    std::size_t bytes = 0;
+    for (const auto& side : sides)
+        for (const Elements& patch : side) bytes += sizeof(Elements) + patch.memory_bytes();
+    return bytes;
+}
+
 namespace {
 
-using Options       = RadiosityOptions;
-using Interpolation = RadiosityOptions::Interpolation;
+enum class Interpolation : std::uint8_t { linear, constant };
+
+struct Options {
+    double size                 = 0.03125;
+    int levels                  = 4;
+    double threshold            = 0.05;
+    int samples                 = 16;
+    Interpolation interpolation = Interpolation::linear;
+};
 
 const std::vector<Parameter> kParameters{
     parameter<&Options::size>({.name  = "size",
@@ -56,107 +99,103 @@ const std::vector<Parameter> kParameters{
                                         .choices = "linear|constant"}),
 };
 
-}  // namespace
+class Radiosity final : public MethodWith<Options> {
+public:
+    explicit Radiosity(const Settings& settings) : MethodWith(settings) {}
 
-Service Radiosity::serves(const SceneFacts&) const {
-    return {How::approximately, "S_j is known at the corners of patches, and interpolated between them"};
-}
+    [[nodiscard]] Measure measures() const override { return Measure::irradiance; }
 
-void Radiosity::build(const Scene& scene, const SceneFacts&) {
-    scene_    = &scene;
-    diagonal_ = static_cast<double>(bounds(scene).diagonal());
-    sight_.emplace(scene);
-    patches_ = Patches(scene, options.size * diagonal_);
-}
+    [[nodiscard]] Service serves(const SceneFacts&) const override {
+        return {How::approximately, "S_j is known at the corners of patches, and interpolated between them"};
+    }
 
-void Radiosity::aim(LightId light) {
-    light_ = &scene_->lights[light];
-    for (const bool flipped : {false, true}) {
-        std::vector<Elements>& elements = elements_[flipped ? 1 : 0];
-        elements.assign(patches_.size(), {});
-        parallel_ranges(patches_.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) grow(static_cast<PatchId>(k), flipped, elements[k]);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<RadiosityPatches>(scene, facts, options.size);
+    }
+
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        const auto& surfaces = as<RadiosityPatches>(built);
+        auto aimed           = std::make_unique<RadiosityElements>(surfaces, light);
+        for (const bool flipped : {false, true})
+            parallel_ranges(surfaces.patches.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t k = begin; k < end; ++k)
+                    grow(surfaces, aimed->source(), static_cast<PatchId>(k), flipped, aimed->sides[flipped ? 1 : 0][k]);
+            });
+        return aimed;
+    }
+
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const auto& light        = as<RadiosityElements>(aimed);
+        const PointBatch& points = looked.points;
+        const bool linear        = options.interpolation == Interpolation::linear;
+        parallel_ranges(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                if (!points.asks(aimed.light, i)) continue;
+                const InPatch at = light.surfaces.find(points, i);
+                out.s[i]         = light.sides[points.flipped[i]][at.patch].at(at.u, at.v, linear);
+            }
         });
     }
-}
 
-void Radiosity::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    const bool linear = options.interpolation == Interpolation::linear;
-    parallel_ranges(points.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!points.asks(light, i)) continue;
-            const InPatch at = patches_.find(points.triangle[i], points.u[i], points.v[i]);
-            out.s[i]         = elements_[points.flipped[i]][at.patch].at(at.u, at.v, linear);
-        }
-    });
-}
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason            = Method::explain(aimed, looked, i, given);
+        const auto& light        = as<RadiosityElements>(aimed);
+        const auto [patch, leaf] = light.element(looked.points, i);
+        reason.evidence.push_back({"patch", static_cast<double>(patch)});
+        reason.evidence.push_back({"element of the patch", static_cast<double>(leaf)});
+        reason.margin = static_cast<double>(given.s) - 0.5;
+        reason.unit   = "of the light";
+        return reason;
+    }
 
-void Radiosity::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
-    parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            blockers[i] = kNoTriangle;
-            if (!points.asks(light, i)) continue;
-            const SurfacePoint from{exact_position(*scene_, points, i), dvec3(points.normal(i)), points.triangle[i]};
-            blockers[i] = light_blocker(*sight_, from, *light_, options.samples);
-            if (blockers[i] != kNoTriangle) continue;
-            // Dark by what the corners of its element see: the nearest one first.
-            const bool flipped = points.flipped[i] != 0;
-            const InPatch at   = patches_.find(points.triangle[i], points.u[i], points.v[i]);
-            auto corners       = elements_[flipped ? 1 : 0][at.patch].corners(at.u, at.v);
-            std::ranges::sort(corners, {}, [&](dvec2 corner) {
-                return glm::length(place(at.patch, flipped, corner).position - from.position);
-            });
-            for (const dvec2 corner : corners)
-                if (blockers[i] == kNoTriangle)
-                    blockers[i] = light_blocker(*sight_, place(at.patch, flipped, corner), *light_, options.samples);
-        }
-    });
-}
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const auto& light                = as<RadiosityElements>(aimed);
+        const RadiosityPatches& surfaces = light.surfaces;
+        const PointBatch& points         = looked.points;
+        const auto blocker               = [&](const SurfacePoint& from) {
+            return light_blocker(surfaces.sight, from, aimed.source(), options.samples);
+        };
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                blockers[i] = kNoTriangle;
+                if (!points.asks(aimed.light, i)) continue;
+                const SurfacePoint from{exact_position(aimed.scene(), points, i), dvec3(points.normal(i)),
+                                        points.triangle[i]};
+                blockers[i] = blocker(from);
+                if (blockers[i] != kNoTriangle) continue;
+                // Dark by what the corners of its element see: the nearest one first.
+                const bool flipped = points.flipped[i] != 0;
+                const InPatch at   = surfaces.find(points, i);
+                auto corners       = light.sides[flipped ? 1 : 0][at.patch].corners(at.u, at.v);
+                std::ranges::sort(corners, {}, [&](dvec2 corner) {
+                    return glm::length(surfaces.place(at.patch, flipped, corner).position - from.position);
+                });
+                for (const dvec2 corner : corners)
+                    if (blockers[i] == kNoTriangle) blockers[i] = blocker(surfaces.place(at.patch, flipped, corner));
+            }
+        });
+    }
 
-Radiosity::ElementId Radiosity::element(const PointBatch& points, std::size_t i) const {
-    const InPatch at = patches_.find(points.triangle[i], points.u[i], points.v[i]);
-    return {at.patch, static_cast<std::uint32_t>(elements_[points.flipped[i]][at.patch].leaf(at.u, at.v))};
-}
+private:
+    /// Cuts one side of a patch where S_j of the light changes over it.
+    void grow(const RadiosityPatches& surfaces, const Light& light, PatchId patch, bool flipped,
+              Elements& elements) const {
+        const Scene& scene = surfaces.scene;
+        const TriangleId t = surfaces.patches.triangle(patch);
+        const bool seen    = glm::length(area_normal(scene, t)) > 0 && (!flipped || scene.material(t).two_sided);
+        // Small triangles are not cut to less than patches of large ones are.
+        const double longest = options.size * surfaces.diagonal;
+        int levels           = seen ? options.levels : 0;
+        for (double edge = surfaces.patches.longest_edge(patch); levels > 0 && edge < longest / 2; edge *= 2) --levels;
+        const auto fraction = [&](double u, double v) {
+            return seen ? light_share(surfaces.sight, surfaces.place(patch, flipped, {u, v}), light, options.samples)
+                        : 0.0f;
+        };
+        elements.grow(fraction, levels, static_cast<float>(options.threshold));
+    }
+};
 
-std::size_t Radiosity::elements() const {
-    std::size_t count = 0;
-    for (const auto& side : elements_)
-        for (const Elements& patch : side) count += patch.leaves();
-    return count;
-}
-
-std::size_t Radiosity::memory_bytes() const {
-    std::size_t bytes = (sight_ ? sight_->memory_bytes() : 0) + patches_.memory_bytes();
-    for (const auto& side : elements_)
-        for (const Elements& patch : side) bytes += sizeof(Elements) + patch.memory_bytes();
-    return bytes;
-}
-
-/// A place in a patch, seen from one side; `flipped`: from that which its winding does not face.
-SurfacePoint Radiosity::place(PatchId patch, bool flipped, dvec2 at) const {
-    // A corner of a triangle may touch a wall that stands on it: places are moved a little inside.
-    constexpr double inside = 0x1p-12;
-    const TriangleId t      = patches_.triangle(patch);
-    const dvec3 a(scene_->vertex(t, 0)), ab = dvec3(scene_->vertex(t, 1)) - a, ac = dvec3(scene_->vertex(t, 2)) - a;
-    const auto corner  = patches_.corners(patch);
-    const dvec2 uv     = corner[0] + at.x * (corner[1] - corner[0]) + at.y * (corner[2] - corner[0]);
-    const dvec2 moved  = (1 - inside) * uv + dvec2(inside / 3);
-    const dvec3 normal = glm::normalize(glm::cross(ab, ac));
-    return {a + moved.x * ab + moved.y * ac, flipped ? -normal : normal, t};
-}
-
-void Radiosity::grow(PatchId patch, bool flipped, Elements& elements) const {
-    const TriangleId t = patches_.triangle(patch);
-    const bool seen    = glm::length(area_normal(*scene_, t)) > 0 && (!flipped || scene_->material(t).two_sided);
-    // Small triangles are not cut to less than patches of large ones are.
-    int levels = seen ? options.levels : 0;
-    for (double edge = patches_.longest_edge(patch); levels > 0 && edge < options.size * diagonal_ / 2; edge *= 2)
-        --levels;
-    const auto share = [&](double u, double v) {
-        return seen ? light_share(*sight_, place(patch, flipped, {u, v}), *light_, options.samples) : 0.0f;
-    };
-    elements.grow(share, levels, static_cast<float>(options.threshold));
-}
+}  // namespace
 
 extern const MethodInfo radiosity;
 const MethodInfo radiosity{
@@ -177,7 +216,7 @@ const MethodInfo radiosity{
                    {"fast", "size=0.0625,levels=2", "Larger patches."},
                    {"best", "size=0.015625,levels=6,threshold=0.02,samples=64", "Smaller patches, more rays."}},
     .by_default = false,
-    .shown_on   = {"sun_on_plane", "umbra_penumbra", "closed_room"},
+    .shown      = true,
     .create     = create<Radiosity>};
 
 }  // namespace umbra

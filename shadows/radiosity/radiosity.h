@@ -1,8 +1,7 @@
-// The class of radiosity; radiosity.cpp has the recipe.
+// The values of radiosity; radiosity.cpp has the recipe.
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "umbra/shadows/method.h"
@@ -12,27 +11,32 @@
 
 namespace umbra {
 
-struct RadiosityOptions {
-    enum class Interpolation : std::uint8_t { linear, constant };
+/// What build makes: the patches of a scene, and rays between their points and lights.
+struct RadiosityPatches final : Built {
+    /// `size`: the longest edge, scene diagonals.
+    RadiosityPatches(const Scene& of, const SceneFacts& its_facts, double size)
+        : Built(of, its_facts), diagonal(bounds(of).diagonal()), sight(of), patches(of, size * diagonal) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return sight.memory_bytes() + patches.memory_bytes(); }
 
-    double size                 = 0.03125;
-    int levels                  = 4;
-    double threshold            = 0.05;
-    int samples                 = 16;
-    Interpolation interpolation = Interpolation::linear;
+    /// Where point i of a batch lies.
+    [[nodiscard]] radiosity_detail::InPatch find(const PointBatch& points, std::size_t i) const {
+        return patches.find(points.triangle[i], points.u[i], points.v[i]);
+    }
+    /// A point of a patch, seen from one side; `flipped`: from that which its winding does not face.
+    [[nodiscard]] radiosity_detail::SurfacePoint place(radiosity_detail::PatchId patch, bool flipped, dvec2 at) const;
+
+    const double diagonal;  ///< of the scene
+    const radiosity_detail::Sight sight;
+    const radiosity_detail::Patches patches;
 };
 
-class Radiosity final : public MethodWith<RadiosityOptions> {
-public:
-    [[nodiscard]] Measure measures() const override { return Measure::irradiance; }
-    [[nodiscard]] Service serves(const SceneFacts& facts) const override;
-    void build(const Scene& scene, const SceneFacts& facts) override;
-    void aim(LightId light) override;
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override;
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override;
+/// What aim makes: S_j of one light over all patches.
+struct RadiosityElements final : Aimed {
+    RadiosityElements(const RadiosityPatches& from, LightId at)
+        : Aimed(from, at), surfaces(from), sides{Side(from.patches.size()), Side(from.patches.size())} {}
     [[nodiscard]] std::size_t memory_bytes() const override;
 
-    /// After aim: the element that a point lies in, of its side.
+    /// The element that a point lies in, of its side.
     struct ElementId {
         radiosity_detail::PatchId patch = 0;
         std::uint32_t leaf              = 0;
@@ -41,17 +45,9 @@ public:
     /// Of both sides of all patches.
     [[nodiscard]] std::size_t elements() const;
 
-private:
-    [[nodiscard]] radiosity_detail::SurfacePoint place(radiosity_detail::PatchId patch, bool flipped, dvec2 at) const;
-    void grow(radiosity_detail::PatchId patch, bool flipped, radiosity_detail::Elements& elements) const;
-
-    const Scene* scene_ = nullptr;
-    const Light* light_ = nullptr;
-    double diagonal_    = 0;  ///< of the scene
-    std::optional<radiosity_detail::Sight> sight_;
-    radiosity_detail::Patches patches_;
-    /// One a patch: of the side that its winding faces, and of the other.
-    std::array<std::vector<radiosity_detail::Elements>, 2> elements_;
+    using Side = std::vector<radiosity_detail::Elements>;  ///< one a patch
+    const RadiosityPatches& surfaces;
+    std::array<Side, 2> sides;  ///< that which the winding faces, and the other
 };
 
 }  // namespace umbra

@@ -165,29 +165,23 @@ private:
     ShaftPlanes planes_;  ///< the same, and the floor
 };
 
+bool is_tree_worth_it(const Scene& scene, int samples) {
+    return samples >= kManySamples || scene.triangles.size() <= kFewTriangles;
+}
+
 std::array<dvec3, 3> LightShafts::corners(TriangleId t) const {
     const auto at = [&](int k) { return dvec3(space_.point(scene_->vertex(t, k))); };
     return {at(0), at(1), at(2)};
 }
 
-LightShafts::LightShafts(const Scene& scene, const RaySpace& space, int samples) : scene_(&scene), space_(space) {
-    if (samples >= kManySamples || scene.triangles.size() <= kFewTriangles) tree_.emplace(scene, space);
-}
-
-std::size_t LightShafts::memory_bytes() const { return tree_ ? tree_->memory_bytes() : 0; }
-
-void LightShafts::aim(const Target& target) {
-    usable_ = tree_ && is_area(target.kind) && target.unit == 1;
-    if (!usable_) return;
+LightShafts::LightShafts(const Scene& scene, const RaySpace& space, const ShaftTree& tree, const Target& target)
+    : scene_(&scene), space_(space), tree_(&tree) {
+    if (!is_area(target.kind) || target.unit != 1) return;
     if (target.kind == LightKind::sphere) {
-        axes_ = dmat3(1);
         low_ = target.sphere - target.radius, high_ = target.sphere + target.radius;
     } else {
         const dvec3 u(target.axis_u), v(target.axis_v), normal = glm::cross(u, v);
-        if (!(glm::length(u) > 0 && glm::length(normal) > 0)) {
-            usable_ = false;
-            return;
-        }
+        if (!(glm::length(u) > 0 && glm::length(normal) > 0)) return;
         axes_[0] = glm::normalize(u), axes_[2] = glm::normalize(normal), axes_[1] = glm::cross(axes_[2], axes_[0]);
         const dvec3 centre = glm::transpose(axes_) * dvec3(target.centre);
         const dvec3 reach  = glm::abs(glm::transpose(axes_) * u) + glm::abs(glm::transpose(axes_) * v);

@@ -33,24 +33,23 @@ inline constexpr std::size_t kRunsPerTile = PointTile::kPoints / 8;
 using TileStarts                          = std::array<Starts, kRunsPerTile>;
 using TileKnown                           = std::array<Known, kRunsPerTile>;
 
-/// Const members may be called from many threads.
+/// Whether the tree of a scene's triangles takes less time than the rays that it saves, of `samples` rays a point: not
+/// for few rays in a large scene.
+[[nodiscard]] bool is_tree_worth_it(const Scene& scene, int samples);
+
+/// Shafts to one light. Const members may be called from many threads.
 class LightShafts {
 public:
-    /// For `samples` rays a point. `scene` must outlive this object. Where the tree of its triangles would take longer
-    /// than the rays that it saves there is none, and nothing is ever known: for few rays in a large scene.
-    LightShafts(const Scene& scene, const RaySpace& space, int samples);
-
-    /// For rays to this light. Of lights without an area, and of those that are a million times as far away as the
-    /// scene is wide, nothing is known: a ray that meets nothing takes less time than a shaft.
-    void aim(const Target& target);
+    /// `scene` and `tree`, made of it, must outlive this object. Of lights without an area, and of those that are a
+    /// million times as far away as the scene is wide, nothing is known: a ray that meets nothing takes less time than
+    /// a shaft.
+    LightShafts(const Scene& scene, const RaySpace& space, const ShaftTree& tree, const Target& target);
 
     /// What is known of the runs of a tile, in their order. Rays start at `starts`, each on its own triangle, which it
     /// does not meet (OffsetPolicy::skip_triangle). Something is known only of runs whose points that ask lie in one
     /// plane and have all of the light well above it.
     [[nodiscard]] TileKnown known(const PointBatch& points, LightId light, const PointTile& tile,
                                   const TileStarts& starts) const;
-
-    [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     struct Run;
@@ -67,10 +66,10 @@ private:
 
     const Scene* scene_;
     RaySpace space_;
-    std::optional<ShaftTree> tree_;  ///< none: nothing is known
-    bool usable_ = false;            ///< for this light
-    dmat3 axes_{1};                  ///< of boxes, columns in ray space: those of the light, so that it fills its own
-    dvec3 low_{0}, high_{0};         ///< box around the light, along these axes
+    const ShaftTree* tree_;
+    bool usable_ = false;     ///< false: nothing is known
+    dmat3 axes_{1};           ///< of boxes, columns in ray space: those of the light, so that it fills its own
+    dvec3 low_{0}, high_{0};  ///< box around the light, along these axes
 };
 
 }  // namespace umbra::rays

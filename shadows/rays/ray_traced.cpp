@@ -1,6 +1,11 @@
 // Ray-traced shadows: a ray from the surface point to the light asks whether anything lies between; an area light is
 // asked at many of its points.
 //
+//     build        the tree of triangles that rays are traced in, and where some light has an area that of shafts
+//     aim          the light as rays see it, its samples, its box for shafts
+//     look         nothing
+//     visibility   tile by tile: shafts decide where they can, rays elsewhere
+//
 // This work is based on:
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
 // Turner Whitted. An Improved Illumination Model for Shaded Display. 1980
@@ -14,6 +19,7 @@
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/rays/light_shafts.h"
 #include "umbra/shadows/shared/light_rays.h"
+#include "umbra/shadows/shared/sample_options.h"
 
 namespace umbra {
 namespace {
@@ -23,12 +29,9 @@ using namespace rays;
 /// Which rays are not traced.
 enum class Cull : std::uint8_t { none, shafts };
 
-struct Options {
+struct Options : SampleOptions {
     OffsetPolicy offset = OffsetPolicy::skip_triangle;
     double epsilon      = 1e-4;
-    int samples         = 16;
-    Sampler sampler     = Sampler::sobol;
-    int seed            = 0;
     Measure measure     = Measure::area;
     Cull cull           = Cull::shafts;
 };
@@ -44,26 +47,10 @@ const std::vector<Parameter> kParameters{
                                   .phase = Phase::visibility,
                                   .min   = 0,
                                   .max   = 1}),
-    parameter<&Options::samples>({.name        = "samples",
-                                  .doc         = "Rays from a point to an area light; other lights take one.",
-                                  .unit        = "rays a point",
-                                  .phase       = Phase::aim,
-                                  .min         = 1,
-                                  .max         = 65536,
-                                  .sweep       = "1|4|16|64|256",
-                                  .area_lights = true}),
-    parameter<&Options::sampler>({.name    = "sampler",
-                                  .doc     = "How the samples of an area light are spread; sobol is Owen-scrambled.",
-                                  .phase   = Phase::aim,
-                                  .choices = kSamplers,
-                                  .sweep   = "random|stratified|sobol",
-                                  .area_lights = true}),
-    parameter<&Options::seed>({.name        = "seed",
-                               .doc         = "Picks the samples; equal seeds give equal bits.",
-                               .phase       = Phase::aim,
-                               .min         = 0,
-                               .max         = 2147483647,
-                               .area_lights = true}),
+    samples_parameter<Options>("Rays from a point to an area light; other lights take one.", "rays a point",
+                               "1|4|16|64|256"),
+    sampler_parameter<Options>(),
+    seed_parameter<Options>(),
     parameter<&Options::measure>({.name = "measure",
                                   .doc  = "Which fraction of an area light S_j is. area: of its area; irradiance: each "
                                           "sample counts by the irradiance it sends, as in most renderers.",
@@ -78,8 +65,39 @@ const std::vector<Parameter> kParameters{
                                .area_lights = true}),
 };
 
+/// The triangles that block light, as rays and shafts look for them.
+struct Occluders final : Built {
+    Occluders(const Scene& of, const SceneFacts& its_facts, const Options& options)
+        : Built(of, its_facts), diagonal(bounds(of).diagonal()), rays(of, Met::blocking) {
+        if (options.cull == Cull::shafts && !its_facts.hard_lights_only && is_tree_worth_it(of, options.samples))
+            shaft_tree.emplace(of, rays.space());
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return rays.memory_bytes() + (shaft_tree ? shaft_tree->memory_bytes() : 0);
+    }
+
+    const float diagonal;  ///< of the scene
+    const RayScene rays;
+    std::optional<ShaftTree> shaft_tree;  ///< none: all rays are traced
+};
+
+/// One light, as rays and shafts reach it.
+struct TracedLight final : Aimed {
+    TracedLight(const Occluders& from, LightId at, const Options& options)
+        : Aimed(from, at), occluders(from), rays(from.scene, from.rays, at, options) {
+        if (from.shaft_tree) shafts.emplace(from.scene, from.rays.space(), *from.shaft_tree, rays.target());
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override { return rays.memory_bytes(); }
+
+    const Occluders& occluders;
+    const LightRays rays;
+    std::optional<LightShafts> shafts;
+};
+
 class RayTraced final : public MethodWith<Options> {
 public:
+    explicit RayTraced(const Settings& settings) : MethodWith(settings) {}
+
     [[nodiscard]] Measure measures() const override { return options.measure; }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
@@ -93,123 +111,119 @@ public:
                 "one ray in float arithmetic decides each point: correct except for rounding at creases"};
     }
 
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        scene_    = &scene;
-        diagonal_ = bounds(scene).diagonal();
-        rays_.emplace(scene, Met::blocking);
-        shafts_.reset();
-        if (options.cull == Cull::shafts && !facts.hard_lights_only)
-            shafts_.emplace(scene, rays_->space(), options.samples);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<Occluders>(scene, facts, options);
     }
 
-    void aim(LightId light) override {
-        const LightKind kind = scene_->lights[light].kind;
-        light_.emplace(*scene_, *rays_, light, samples_of(light, kind, options.sampler, options.samples, options.seed));
-        if (shafts_) shafts_->aim(light_->target());
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return std::make_unique<TracedLight>(as<Occluders>(built), light, options);
     }
 
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override;
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const auto& traced       = as<TracedLight>(aimed);
+        const PointBatch& points = looked.points;
+        const StartPlaces places = start_places(traced.occluders);
+        for_each_tile(points, [&](const PointTile& tile) {
+            if (is_area(traced.rays.target().kind))
+                trace_area_light(traced, places, points, tile, out.s);
+            else
+                traced.rays.trace_hard_light(places, points, tile, out.s);
+        });
+        if (options.measure == Measure::area) return;
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (out.s[i] == kNoSample) out.s[i] = 0, out.answer[i] = Answer::undefined;
+    }
 
     /// Its rays differ from those of visibility, and are as good.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
-        light_->blame(start_places(), points, light, blockers);
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const auto& traced = as<TracedLight>(aimed);
+        traced.rays.blame(start_places(traced.occluders), looked.points, blockers);
     }
 
-    [[nodiscard]] std::size_t memory_bytes() const override {
-        return (rays_ ? rays_->memory_bytes() : 0) + (shafts_ ? shafts_->memory_bytes() : 0) +
-               (light_ ? light_->memory_bytes() : 0);
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason = Method::explain(aimed, looked, i, given);
+        if (is_area(aimed.source().kind)) {
+            if (options.measure == Measure::area) add_samples(reason, options.samples, given);
+            return reason;
+        }
+        Starts starts;
+        start_places(as<TracedLight>(aimed).occluders).load(looked.points, i, 1, starts);
+        reason.evidence.push_back(
+            {"start of the ray above its triangle", static_cast<double>(starts.height[0]), "world"});
+        return reason;
     }
 
 private:
-    [[nodiscard]] StartPlaces start_places() const {
-        return {*scene_, rays_->space(), options.offset, static_cast<float>(options.epsilon) * diagonal_};
+    /// Stands for S_j where the point's plane leaves so little of the light that no sample is in front of it: there is
+    /// no irradiance to take a fraction of.
+    static constexpr float kNoSample = -1;
+
+    [[nodiscard]] StartPlaces start_places(const Occluders& from) const {
+        return {from.scene, from.rays.space(), options.offset, static_cast<float>(options.epsilon) * from.diagonal};
     }
-    [[nodiscard]] float visible_irradiance(const Starts& starts, int lane, PointKey key) const;
-    [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const;
-    void trace_area_light(const PointBatch& points, LightId light, const PointTile& tile, std::span<float> s) const;
 
-    const Scene* scene_ = nullptr;
-    float diagonal_     = 0;  ///< of the scene
-    std::optional<RayScene> rays_;
-    std::optional<LightShafts> shafts_;
-    std::optional<LightRays> light_;
+    /// Area lights: eight rays of one point are a packet.
+    void trace_area_light(const TracedLight& traced, const StartPlaces& places, const PointBatch& points,
+                          const PointTile& tile, std::span<float> s) const {
+        const FlushDenormals flush;
+        const Facing* facing = points.facing[traced.light].data();
+        TileStarts starts;
+        std::size_t run = 0;
+        bool asks       = false;
+        tile.for_each_run([&](std::size_t first, std::size_t count) {
+            if (any_asks(facing + first, count)) places.load(points, first, count, starts[run]), asks = true;
+            ++run;
+        });
+        if (!asks) return;
+        // Shafts are for rays that start at their points.
+        TileKnown known{};
+        if (traced.shafts && options.offset == OffsetPolicy::skip_triangle)
+            known = traced.shafts->known(points, traced.light, tile, starts);
+        run = 0;
+        tile.for_each_run([&](std::size_t first, std::size_t count) {
+            const Known here = known[run];
+            for (std::size_t k = 0; k < count; ++k) {
+                if (!points.asks(traced.light, first + k)) continue;
+                s[first + k] = here != Known::nothing ? (here == Known::lit ? 1.0f : 0.0f)
+                                                      : visible_fraction(traced, starts[run], static_cast<int>(k),
+                                                                         traced.rays.samples().key(first + k));
+            }
+            ++run;
+        });
+    }
+
+    /// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
+    [[nodiscard]] float visible_fraction(const TracedLight& traced, const Starts& starts, int lane,
+                                         PointKey key) const {
+        return options.measure == Measure::irradiance ? visible_irradiance(traced, starts, lane, key)
+                                                      : traced.rays.visible_fraction(starts, lane, key);
+    }
+
+    /// The fraction of the light's irradiance that arrives at the point. Towards a flat light the cosine at the light
+    /// is the same height over the distance for all samples, so that one of direction d counts n.d / |d|^4; the disk
+    /// that a point sees of a sphere spans the directions that the sphere does.
+    [[nodiscard]] static float visible_irradiance(const TracedLight& traced, const Starts& starts, int lane,
+                                                  PointKey key) {
+        const vec3 n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
+        double seen = 0, all = 0;
+        const bool outside = traced.rays.for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
+            double weight[8];
+            for (int k = 0; k < 8; ++k) {
+                const dvec3 d(packet.dir_x[k], packet.dir_y[k], packet.dir_z[k]);
+                const double square = glm::dot(d, d);
+                weight[k]           = packet.valid[k] != 0 ? glm::dot(dvec3(n), d) / (square * square) : 0;
+            }
+            traced.occluders.rays.occluded(packet);
+            for (int k = 0; k < 8; ++k) {
+                all += weight[k];
+                if (packet.tfar[k] >= 0) seen += weight[k];
+            }
+            return true;
+        });
+        if (!outside) return 1;
+        return all > 0 ? static_cast<float>(seen / all) : kNoSample;
+    }
 };
-
-/// Stands for S_j where the point's plane leaves so little of the light that no sample is in front of it: there is no
-/// irradiance to take a fraction of.
-constexpr float kNoSample = -1;
-
-/// The fraction of the light's irradiance that arrives at the point. Towards a flat light the cosine at the light is
-/// the same height over the distance for all samples, so that one of direction d counts n.d / |d|^4; the disk that a
-/// point sees of a sphere spans the directions that the sphere does.
-float RayTraced::visible_irradiance(const Starts& starts, int lane, PointKey key) const {
-    const vec3 n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
-    double seen = 0, all = 0;
-    const bool outside = light_->for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
-        double weight[8];
-        for (int k = 0; k < 8; ++k) {
-            const dvec3 d(packet.dir_x[k], packet.dir_y[k], packet.dir_z[k]);
-            const double square = glm::dot(d, d);
-            weight[k]           = packet.valid[k] != 0 ? glm::dot(dvec3(n), d) / (square * square) : 0;
-        }
-        rays_->occluded(packet);
-        for (int k = 0; k < 8; ++k) {
-            all += weight[k];
-            if (packet.tfar[k] >= 0) seen += weight[k];
-        }
-        return true;
-    });
-    if (!outside) return 1;
-    return all > 0 ? static_cast<float>(seen / all) : kNoSample;
-}
-
-/// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
-float RayTraced::visible_fraction(const Starts& starts, int lane, PointKey key) const {
-    return options.measure == Measure::irradiance ? visible_irradiance(starts, lane, key)
-                                                  : light_->visible_fraction(starts, lane, key);
-}
-
-/// Area lights: eight rays of one point are a packet.
-void RayTraced::trace_area_light(const PointBatch& points, LightId light, const PointTile& tile,
-                                 std::span<float> s) const {
-    const FlushDenormals flush;
-    const StartPlaces places = start_places();
-    const Facing* facing     = points.facing[light].data();
-    TileStarts starts;
-    std::size_t run = 0;
-    bool asks       = false;
-    tile.for_each_run([&](std::size_t first, std::size_t count) {
-        if (any_asks(facing + first, count)) places.load(points, first, count, starts[run]), asks = true;
-        ++run;
-    });
-    if (!asks) return;
-    // Shafts are for rays that start at their points.
-    TileKnown known{};
-    if (shafts_ && options.offset == OffsetPolicy::skip_triangle) known = shafts_->known(points, light, tile, starts);
-    run = 0;
-    tile.for_each_run([&](std::size_t first, std::size_t count) {
-        const Known here = known[run];
-        for (std::size_t k = 0; k < count; ++k) {
-            if (!points.asks(light, first + k)) continue;
-            s[first + k] = here != Known::nothing
-                               ? (here == Known::lit ? 1.0f : 0.0f)
-                               : visible_fraction(starts[run], static_cast<int>(k), light_->samples().key(first + k));
-        }
-        ++run;
-    });
-}
-
-void RayTraced::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    for_each_tile(points, [&](const PointTile& tile) {
-        if (is_area(light_->target().kind))
-            trace_area_light(points, light, tile, out.s);
-        else
-            light_->trace_hard_light(start_places(), points, light, tile, out.s);
-    });
-    if (options.measure == Measure::area) return;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        if (out.s[i] == kNoSample) out.s[i] = 0, out.answer[i] = Answer::undefined;
-}
 
 }  // namespace
 
@@ -231,7 +245,6 @@ const MethodInfo ray_traced{
                    {"fast", "samples=4", "Four rays a point to an area light."},
                    {"best", "samples=256", "256 rays a point to an area light."}},
     .seed       = "seed",
-    .stand_in   = "samples=256",
     .create     = create<RayTraced>};
 
 }  // namespace umbra

@@ -3,6 +3,10 @@
 // that no pixel between them is tested. Which triangles can darken a span is looked up in a subdivision of space as the
 // light sees it.
 //
+//     aim         the subdivision: which triangles lie in each of its cells
+//     look        the spans, and how far their points lie beside the lines through their ends
+//     visibility  cuts each span by the shadows of the triangles in the cells that it passes through
+//
 // This work is based on:
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
 // W. Jack Bouknight, Karl C. Kelley. An Algorithm for Producing Half-Tone Computer Graphics Presentations with Shadows
@@ -30,6 +34,90 @@ struct Span {
     std::size_t first, last;
     dvec3 a, b;
     double depth_a, depth_b;
+    double shift = 0;  ///< how far points lie beside the line through the ends: their barycentrics are rounded
+};
+
+Span span_of(const Scene& scene, const PointBatch& points, std::size_t first, std::size_t last) {
+    const dvec3 a          = exact_position(scene, points, first);
+    const dvec3 b          = last > first ? exact_position(scene, points, last) : a;
+    const bool perspective = points.raster && points.raster->projection == Projection::perspective;
+    const auto depth       = [&](dvec3 p) {
+        return perspective ? glm::dot(p - points.raster->eye, points.raster->forward) : 1.0;
+    };
+    Span span{first, last, a, b, depth(a), depth(b)};
+    const auto pixels = static_cast<double>(last - first);
+    for (std::size_t i = first + 1; i < last; ++i) {
+        const double t        = static_cast<double>(i - first) / pixels;
+        const double weight_a = (1 - t) / span.depth_a, weight_b = t / span.depth_b;
+        const dvec3 on_line = (weight_a * a + weight_b * b) / (weight_a + weight_b);
+        span.shift          = std::max(span.shift, glm::length(exact_position(scene, points, i) - on_line));
+    }
+    return span;
+}
+
+/// The spans of all triangles, by rows. Without a raster 256 points are a row, and each point is a span.
+class Spans final : public Looked {
+public:
+    Spans(const Scene& scene, const PointBatch& at)
+        : Looked(at),
+          scene_(scene),
+          width_(at.raster ? static_cast<std::size_t>(std::max(at.raster->width, 1)) : 256),
+          known_((at.size() + width_ - 1) / width_) {
+        const auto is_surface = [&](std::size_t i) { return points.triangle[i] != kNoTriangle; };
+        parallel_ranges(known_.size(), 16, [&](std::size_t begin, std::size_t end) {
+            std::vector<Span> found;
+            for (std::size_t y = begin; y < end; ++y) {
+                found.clear();
+                for_each_run(y, is_surface, [&](std::size_t first, std::size_t last) {
+                    if (last - first >= kLeast) found.push_back(span_of(scene, points, first, last));
+                });
+                known_[y].assign(found.begin(), found.end());
+            }
+        });
+    }
+
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        std::size_t bytes = known_.size() * sizeof(known_[0]);
+        for (const std::vector<Span>& row : known_) bytes += row.size() * sizeof(Span);
+        return bytes;
+    }
+
+    [[nodiscard]] std::size_t rows() const { return known_.size(); }
+
+    /// Calls visit(span) for the spans of those points of row y that ask the light. Where a part of a kept span asks,
+    /// that part is a span of its own.
+    template <class Visit>
+    void for_each(LightId light, std::size_t y, const Visit& visit) const {
+        auto known      = known_[y].begin();
+        const auto asks = [&](std::size_t i) { return points.asks(light, i); };
+        for_each_run(y, asks, [&](std::size_t first, std::size_t last) {
+            while (known != known_[y].end() && known->last < first) ++known;
+            const bool is_known = known != known_[y].end() && known->first == first && known->last == last;
+            visit(is_known ? *known : span_of(scene_, points, first, last));
+        });
+    }
+
+private:
+    static constexpr std::size_t kLeast = 2;  ///< shorter spans have no points between their ends: they are not kept
+
+    /// Calls visit(first, last) for the longest runs of points of row y that show one triangle and for which takes(i)
+    /// is true.
+    template <class Takes, class Visit>
+    void for_each_run(std::size_t y, const Takes& takes, const Visit& visit) const {
+        const std::size_t end = std::min((y + 1) * width_, points.size());
+        for (std::size_t first = y * width_; first < end; ++first) {
+            if (!takes(first)) continue;
+            std::size_t last = first;
+            if (points.raster)
+                while (last + 1 < end && points.triangle[last + 1] == points.triangle[first] && takes(last + 1)) ++last;
+            visit(first, last);
+            first = last;
+        }
+    }
+
+    const Scene& scene_;
+    std::size_t width_;                     ///< points of a row
+    std::vector<std::vector<Span>> known_;  ///< of each row
 };
 
 /// What a triangle hides from the light: the positions where all four of these are positive.
@@ -52,124 +140,49 @@ struct Asked {
     std::uint32_t span = 0;
 };
 
-class ScanLine final : public Method {
+/// The shadows of all triangles for one light.
+class Shadows final : public Aimed {
 public:
-    void configure(const Settings&) override {}  // it has no parameters
+    Shadows(const Built& from, LightId at) : Aimed(from, at), cells_(scene(), source()) {}
 
-    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
-        if (!facts.hard_lights_only) return {How::not_at_all, "Spans have edges, and no penumbra: no area lights."};
-        return {How::to_rounding, "The ends of shadows on each span, in double."};
-    }
-
-    void build(const Scene& scene, const SceneFacts&) override { scene_ = &scene; }
-
-    void aim(LightId light) override {
-        light_ = &scene_->lights[light];
-        cells_.emplace(*scene_, *light_);
-    }
-
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        const std::size_t row  = points.raster ? static_cast<std::size_t>(points.raster->width) : points.size();
-        const std::size_t rows = row > 0 ? points.size() / row : 0;
-        const auto darken      = [&](std::size_t begin, std::size_t end, Asked& asked) {
-            while (begin < end) {
-                if (!points.asks(light, begin)) {
-                    ++begin;
-                    continue;
-                }
-                const Span span = span_from(points, light, begin, end);
-                std::fill(out.s.begin() + static_cast<std::ptrdiff_t>(span.first),
-                               out.s.begin() + static_cast<std::ptrdiff_t>(span.last) + 1, 1.0f);
-                darken_span(points, span, asked, out.s);
-                begin = span.last + 1;
-            }
-        };
-        if (points.raster)
-            parallel_ranges(rows, 16, [&](std::size_t first, std::size_t last) {
-                Asked asked{std::vector<std::uint32_t>(scene_->triangles.size(), 0)};
-                for (std::size_t y = first; y < last; ++y) darken(y * row, (y + 1) * row, asked);
-            });
-        else
-            parallel_ranges(points.size(), 4096, [&](std::size_t first, std::size_t last) {
-                Asked asked{std::vector<std::uint32_t>(scene_->triangles.size(), 0)};
-                darken(first, last, asked);
-            });
-    }
-
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                blockers[i] = kNoTriangle;
-                if (!points.asks(light, i)) continue;
-                const dvec3 p = exact_position(*scene_, points, i);
-                cells_->visit(p, p, [&](std::span<const TriangleId> triangles) {
-                    for (const TriangleId t : triangles) {
-                        if (t == points.triangle[i] || blockers[i] != kNoTriangle) continue;
-                        if (const auto shadow = shadow_of(t);
-                            shadow && shadow->holds(p) && rises(t, points.triangle[i]))
-                            blockers[i] = t;
-                    }
-                });
-            }
-        });
-    }
-
-    [[nodiscard]] std::size_t memory_bytes() const override { return cells_ ? cells_->memory_bytes() : 0; }
-
-private:
-    /// The longest span that begins at a point and ends before `end`. Without a raster, the point alone.
-    [[nodiscard]] Span span_from(const PointBatch& points, LightId light, std::size_t first, std::size_t end) const {
-        std::size_t last = first;
-        if (points.raster)
-            while (last + 1 < end && points.triangle[last + 1] == points.triangle[first] &&
-                   points.asks(light, last + 1))
-                ++last;
-        const dvec3 a          = exact_position(*scene_, points, first);
-        const dvec3 b          = last > first ? exact_position(*scene_, points, last) : a;
-        const bool perspective = points.raster && points.raster->projection == Projection::perspective;
-        const auto depth       = [&](dvec3 p) {
-            return perspective ? glm::dot(p - points.raster->eye, points.raster->forward) : 1.0;
-        };
-        return {first, last, a, b, depth(a), depth(b)};
-    }
+    [[nodiscard]] std::size_t memory_bytes() const override { return cells_.memory_bytes(); }
 
     /// Sets s to 0 wherever a triangle hides the span from the light. Each triangle is asked once a span.
-    void darken_span(const PointBatch& points, const Span& span, Asked& asked, std::span<float> s) const {
+    void darken(const PointBatch& points, const Span& span, Asked& asked, std::span<float> s) const {
         const TriangleId own = points.triangle[span.first];
-        const double shift   = largest_shift(points, span);
         ++asked.span;
-        cells_->visit(span.a, span.b, [&](std::span<const TriangleId> triangles) {
+        cells_.visit(span.a, span.b, [&](std::span<const TriangleId> triangles) {
             for (const TriangleId t : triangles) {
                 if (t == own || asked.last_span[t] == asked.span) continue;
                 asked.last_span[t] = asked.span;
-                darken_by(t, points, span, shift, s);
+                darken_by(t, points, span, s);
             }
         });
     }
 
-    /// How far the span's points lie beside the line through its ends: their barycentrics are rounded.
-    [[nodiscard]] double largest_shift(const PointBatch& points, const Span& span) const {
-        double largest    = 0;
-        const auto pixels = static_cast<double>(span.last - span.first);
-        for (std::size_t i = span.first + 1; i < span.last; ++i) {
-            const double t = static_cast<double>(i - span.first) / pixels;
-            const double a = (1 - t) / span.depth_a, b = t / span.depth_b;
-            largest = std::max(largest,
-                               glm::length(exact_position(*scene_, points, i) - (a * span.a + b * span.b) / (a + b)));
-        }
-        return largest;
+    /// The first triangle that hides a position of triangle `own`.
+    [[nodiscard]] TriangleId blocker(dvec3 p, TriangleId own) const {
+        TriangleId found = kNoTriangle;
+        cells_.visit(p, p, [&](std::span<const TriangleId> triangles) {
+            for (const TriangleId t : triangles) {
+                if (t == own || found != kNoTriangle) continue;
+                if (const auto shadow = shadow_of(t); shadow && shadow->holds(p) && rises(t, own)) found = t;
+            }
+        });
+        return found;
     }
 
-    /// Points lie beside the span's line by as much as `shift`. Between the pixels that a shadow holds in spite of that
-    /// and those that it cannot hold, each point is asked.
-    void darken_by(TriangleId t, const PointBatch& points, const Span& span, double shift, std::span<float> s) const {
+private:
+    /// Points lie beside the span's line by as much as its `shift`. Between the pixels that a shadow holds in spite of
+    /// that and those that it cannot hold, each point is asked.
+    void darken_by(TriangleId t, const PointBatch& points, const Span& span, std::span<float> s) const {
         const std::optional<Shadow> shadow = shadow_of(t);
         if (!shadow) return;
         Run sure{0, static_cast<double>(span.last - span.first)}, open = sure;
         for (const Shadow::Side& side : shadow->sides) {
             // Divided by depth, its value is linear along the row.
             const double a = side.at(span.a) / span.depth_a, b = side.at(span.b) / span.depth_b;
-            const double slack = glm::length(side.normal) * shift / std::min(span.depth_a, span.depth_b);
+            const double slack = glm::length(side.normal) * span.shift / std::min(span.depth_a, span.depth_b);
             open               = above(-slack, a, b, span, open);
             if (open.first > open.last) return;
             sure = above(slack, a, b, span, sure);
@@ -177,7 +190,7 @@ private:
         if (!rises(t, points.triangle[span.first])) return;
         for (double k = open.first; k <= open.last; ++k) {
             const std::size_t i = span.first + static_cast<std::size_t>(k);
-            if ((k >= sure.first && k <= sure.last) || shadow->holds(exact_position(*scene_, points, i))) s[i] = 0;
+            if ((k >= sure.first && k <= sure.last) || shadow->holds(exact_position(scene(), points, i))) s[i] = 0;
         }
     }
 
@@ -196,20 +209,20 @@ private:
 
     /// Whether some of triangle t is in front of the plane of the receiver, where the light is: else it hides nothing.
     [[nodiscard]] bool rises(TriangleId t, TriangleId own) const {
-        const vec3 a = scene_->vertex(own, 0), b = scene_->vertex(own, 1), c = scene_->vertex(own, 2);
-        const int front = side_of_light(*light_, a, b, c);
+        const vec3 a = scene().vertex(own, 0), b = scene().vertex(own, 1), c = scene().vertex(own, 2);
+        const int front = side_of_light(source(), a, b, c);
         for (int k = 0; k < 3; ++k)
-            if (side_of_plane(a, b, c, scene_->vertex(t, k)) == front) return true;
+            if (side_of_plane(a, b, c, scene().vertex(t, k)) == front) return true;
         return false;
     }
 
     /// None for a triangle that the light sees edge-on.
     [[nodiscard]] std::optional<Shadow> shadow_of(TriangleId t) const {
-        const bool infinite = light_->kind == LightKind::directional;
-        const dvec3 corner[3]{dvec3(scene_->vertex(t, 0)), dvec3(scene_->vertex(t, 1)), dvec3(scene_->vertex(t, 2))};
-        const dvec3 light   = infinite ? -dvec3(light_->direction) : dvec3(light_->position);
+        const bool infinite = source().kind == LightKind::directional;
+        const dvec3 corner[3]{dvec3(scene().vertex(t, 0)), dvec3(scene().vertex(t, 1)), dvec3(scene().vertex(t, 2))};
+        const dvec3 end     = infinite ? -dvec3(source().direction) : dvec3(source().position);
         const dvec3 normal  = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-        const double facing = glm::dot(normal, infinite ? light : light - corner[0]);
+        const double facing = glm::dot(normal, infinite ? end : end - corner[0]);
         if (facing == 0) return std::nullopt;
         const double turn = facing > 0 ? -1 : 1;
         Shadow shadow;
@@ -220,14 +233,55 @@ private:
             dvec3 p = corner[k], q = corner[(k + 1) % 3];
             double sign = turn;
             if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q), sign = -turn;
-            shadow.sides[k + 1] = {sign * glm::cross(q - p, infinite ? light : light - p), p};
+            shadow.sides[k + 1] = {sign * glm::cross(q - p, infinite ? end : end - p), p};
         }
         return shadow;
     }
 
-    const Scene* scene_ = nullptr;
-    const Light* light_ = nullptr;
-    std::optional<LightCells> cells_;
+    const LightCells cells_;
+};
+
+class ScanLine final : public Method {
+public:
+    explicit ScanLine(const Settings&) {}  // it has no parameters
+
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        if (!facts.hard_lights_only) return {How::not_at_all, "Spans have edges, and no penumbra: no area lights."};
+        return {How::to_rounding, "The ends of shadows on each span, in double."};
+    }
+
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return std::make_unique<Shadows>(built, light);
+    }
+
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        return std::make_unique<Spans>(built.scene, points);
+    }
+
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const auto& shadows = as<Shadows>(aimed);
+        const auto& spans   = as<Spans>(looked);
+        parallel_ranges(spans.rows(), 16, [&](std::size_t begin, std::size_t end) {
+            Asked asked{std::vector<std::uint32_t>(aimed.scene().triangles.size(), 0)};
+            for (std::size_t y = begin; y < end; ++y)
+                spans.for_each(aimed.light, y, [&](const Span& span) {
+                    std::fill_n(out.s.begin() + static_cast<std::ptrdiff_t>(span.first), span.last - span.first + 1,
+                                1.0f);
+                    shadows.darken(looked.points, span, asked, out.s);
+                });
+        });
+    }
+
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const auto& shadows      = as<Shadows>(aimed);
+        const PointBatch& points = looked.points;
+        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                blockers[i] = points.asks(aimed.light, i)
+                                  ? shadows.blocker(exact_position(aimed.scene(), points, i), points.triangle[i])
+                                  : kNoTriangle;
+        });
+    }
 };
 
 }  // namespace
@@ -244,7 +298,7 @@ const MethodInfo scan_line{
         "which are looked up in a subdivision of space as the light sees it. Exact to rounding for hard lights. Limit: "
         "no area lights; time grows with the spans and with the triangles behind one another.",
     .by_default = false,
-    .shown_on   = {"sun_on_plane", "stairs", "interpenetrating", "self_shadow"},
+    .shown      = true,
     .create     = create<ScanLine>};
 
 }  // namespace umbra

@@ -93,7 +93,7 @@ unsigned lanes_on(const Block& block, TriangleId t) {
 
 }  // namespace
 
-BinnedShadows::BinnedShadows(const Scene& scene) : scene_(&scene), casts_(scene.triangles.size()) {
+BinnedShadows::BinnedShadows(const Scene& scene) : scene_(scene), casts_(scene.triangles.size()) {
     parallel_ranges(casts_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t t = begin; t < end; ++t) casts_[t] = blocks(scene, static_cast<TriangleId>(t)) ? 1 : 0;
     });
@@ -155,8 +155,8 @@ void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<Tri
 }
 
 BinnedShadows::Picture BinnedShadows::bin(const PointBatch& points, LightId light) const {
-    const LightImage image(scene_->lights[light], centre_, reach_);
-    return {&scene_->lights[light], image, bin_points(*scene_, points, light, image, centre_)};
+    const LightImage image(scene_.lights[light], centre_, reach_);
+    return {&scene_.lights[light], image, bin_points(scene_, points, light, image, centre_)};
 }
 
 /// Points whose places are unknown against every triangle: calls met(i, t, meeting) until that is false.
@@ -165,11 +165,11 @@ void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch&
     parallel_ranges(picture.asking.next_to_light.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = picture.asking.next_to_light[k];
-            const ExactPoint point(*scene_, points.triangle[i], points.u[i], points.v[i]);
+            const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
             const Segment segment(point, *picture.light);
             for (TriangleId t = 0; t < casts_.size(); ++t)
                 if (casts_[t] != 0 && t != points.triangle[i] &&
-                    !met(i, t, segment.meeting(scene_->vertex(t, 0), scene_->vertex(t, 1), scene_->vertex(t, 2))))
+                    !met(i, t, segment.meeting(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2))))
                     break;
         }
     });
@@ -293,7 +293,7 @@ void BinnedShadows::test(const Group& group, const Picture& picture, const Point
                 const TriangleId t = group.triangles[k];
                 Met met;
                 if (lanes[k].unsure != 0)
-                    met = meet_exactly(*scene_, *picture.light, t, points, block,
+                    met = meet_exactly(scene_, *picture.light, t, points, block,
                                        lanes[k].unsure & ~hidden & ~lanes_on(block, t));
                 met.crossed |= lanes[k].inside;
                 all.crossed |= met.crossed, all.touched |= met.touched;

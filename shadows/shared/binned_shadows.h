@@ -25,7 +25,6 @@ class ShadowPlanes;
 /// Nothing is kept between calls.
 class BinnedShadows {
 public:
-    BinnedShadows() = default;
     /// The scene must outlive this object. Triangles block as Scene::blocks says.
     explicit BinnedShadows(const Scene& scene);
 
@@ -64,7 +63,7 @@ private:
     void test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed, bool once,
               const Search& search) const;
 
-    const Scene* scene_ = nullptr;
+    const Scene& scene_;
     dvec3 centre_{0};
     double reach_ = 0;                 ///< the largest magnitude of the coordinates of all corners
     std::vector<std::uint8_t> casts_;  ///< one a triangle: it blocks light

@@ -28,15 +28,15 @@ std::size_t LightRays::hard_light_rays(const Starts& starts, const Facing* facin
 }
 
 // All rays of a tile are one list, since neighbours meet the same triangles.
-void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& points, LightId light,
-                                 const PointTile& tile, std::span<float> s) const {
+void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& points, const PointTile& tile,
+                                 std::span<float> s) const {
     const FlushDenormals flush;
-    const Facing* facing = points.facing[light].data();
+    const Facing* facing = points.facing[light_].data();
     Starts starts;
     ShadowRay rays[PointTile::kPoints];
     std::size_t traced = 0;
     tile.load_next(points.triangle, points.px, points.py, points.pz, points.nx, points.ny, points.nz,
-                   points.facing[light]);
+                   points.facing[light_]);
     tile.load_for_writing(s);
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         if (!any_asks(facing + first, count)) return;
@@ -49,7 +49,7 @@ void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& po
     const bool has_near = !near_light_.empty();
     tile.for_each_run([&](std::size_t first, std::size_t count) {
         for (std::size_t i = first; i < first + count; ++i) {
-            if (!points.asks(light, i)) continue;
+            if (!points.asks(light_, i)) continue;
             const bool blocked = rays[next++].tfar < 0 || (has_near && near_light_.blocker(points, i) != kNoTriangle);
             s[i]               = blocked ? 0.0f : 1.0f;
         }
@@ -76,9 +76,8 @@ TriangleId LightRays::first_blocker(const Starts& starts, int lane, Facing facin
     return blocker;
 }
 
-void LightRays::blame(const StartPlaces& places, const PointBatch& points, LightId light,
-                      std::span<TriangleId> blockers) const {
-    const std::vector<Facing>& facing = points.facing[light];
+void LightRays::blame(const StartPlaces& places, const PointBatch& points, std::span<TriangleId> blockers) const {
+    const std::vector<Facing>& facing = points.facing[light_];
     parallel_ranges((points.size() + 7) / 8, 8, [&](std::size_t begin, std::size_t end) {
         const FlushDenormals flush;
         Starts starts;

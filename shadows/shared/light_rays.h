@@ -11,6 +11,7 @@
 #include "umbra/core/render/sampling.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/shared/near_light.h"
+#include "umbra/shadows/shared/sample_options.h"
 #include "umbra/shadows/shared/starts.h"
 #include "umbra/shadows/shared/target.h"
 
@@ -19,11 +20,6 @@ namespace umbra::rays {
 /// Whether any of `count` points asks for S_j, by their facing.
 [[nodiscard]] inline bool any_asks(const Facing* facing, std::size_t count) {
     return std::any_of(facing, facing + count, [](Facing f) { return f >= Facing::partly; });
-}
-
-/// The samples of every area light for one seed; other lights have one.
-[[nodiscard]] inline SampleSet samples_of(LightId light, LightKind kind, Sampler sampler, int count, int seed) {
-    return {sampler, is_area(kind) ? count : 1, static_cast<std::uint32_t>(seed) + 0x9e3779b9u * light};
 }
 
 /// An area light as one point sees it, in Target::unit of ray space: the light's points are to_centre + x axis_u +
@@ -37,11 +33,12 @@ struct SeenLight {
 class LightRays {
 public:
     /// `scene` and `rays` must outlive this object.
-    LightRays(const Scene& scene, const RayScene& rays, LightId light, SampleSet samples)
+    LightRays(const Scene& scene, const RayScene& rays, LightId light, const SampleOptions& options)
         : rays_(&rays),
+          light_(light),
           target_(make_target(scene.lights[light], rays.space())),
           near_light_(scene, rays, light),
-          samples_(std::move(samples)) {}
+          samples_(samples_of(light, target_.kind, options)) {}
 
     [[nodiscard]] const Target& target() const { return target_; }
     [[nodiscard]] const SampleSet& samples() const { return samples_; }
@@ -126,13 +123,12 @@ public:
     }
 
     /// Writes S_j of a light without an area for the points of a tile that ask for it: one ray each.
-    void trace_hard_light(const StartPlaces& places, const PointBatch& points, LightId light, const PointTile& tile,
+    void trace_hard_light(const StartPlaces& places, const PointBatch& points, const PointTile& tile,
                           std::span<float> s) const;
 
     /// What the ray to the light meets first; of an area light, the first ray that meets anything, in up to sixteen
     /// sets of samples. For Method::blame. Samples are keyed by the point's index in the batch.
-    void blame(const StartPlaces& places, const PointBatch& points, LightId light,
-               std::span<TriangleId> blockers) const;
+    void blame(const StartPlaces& places, const PointBatch& points, std::span<TriangleId> blockers) const;
 
     [[nodiscard]] std::size_t memory_bytes() const { return samples_.memory_bytes() + near_light_.memory_bytes(); }
 
@@ -141,6 +137,7 @@ private:
     [[nodiscard]] TriangleId first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const;
 
     const RayScene* rays_;
+    LightId light_;
     Target target_;
     NearLight near_light_;
     SampleSet samples_;

@@ -30,10 +30,10 @@ double NearLight::squared_distance(const Occluder& t) {
     return glm::dot(gap, gap);
 }
 
-NearLight::NearLight(const Scene& scene, const RayScene& rays, LightId light) : scene_(&scene) {
+NearLight::NearLight(const Scene& scene, const RayScene& rays, LightId light)
+    : scene_(&scene), light_(scene.lights[light].position) {
     const LightKind kind = scene.lights[light].kind;
     const vec3 position  = scene.lights[light].position;
-    light_               = dvec3(position);
     if (kind != LightKind::point && kind != LightKind::spot) return;
     if (!may_be_near(rays, position)) return;
     const Box box          = bounds(scene);

@@ -20,8 +20,6 @@ inline constexpr double kUntraced = 0x1p-16;
 /// Const members may be called from many threads.
 class NearLight {
 public:
-    NearLight() = default;
-
     /// The scene must outlive this object.
     NearLight(const Scene& scene, const RayScene& rays, LightId light);
 
@@ -44,8 +42,8 @@ private:
     static double squared_distance(const Occluder& t);
     static bool passes_through(const Occluder& t, dvec3 p);
 
-    const Scene* scene_ = nullptr;
-    dvec3 light_{0};
+    const Scene* scene_;
+    dvec3 light_;
     std::vector<Occluder> near_;
 };
 

@@ -16,7 +16,7 @@ enum class OffsetPolicy : std::uint8_t {
     integer_offset,  ///< moves the start along the normal by a few float steps
                      ///< [Carsten Waechter, Nikolaus Binder, A Fast and Robust Method for Avoiding Self-Intersection,
                      ///< 2019]
-    epsilon          ///< starts at a constant distance (a share of the scene's diagonal) along the normal
+    epsilon          ///< starts at a constant distance (a fraction of the scene's diagonal) along the normal
 };
 
 /// Where the rays of up to eight points start, in ray space.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/shadows/shared/light_points.h"
+#include "umbra/core/render/light_points.h"
 
 namespace umbra::rays {
 

@@ -30,7 +30,7 @@ ViewFrame looking_at(dvec3 target, dvec3 origin) {
     return view;
 }
 
-/// Limits of the coordinates of points that ask, and of their distances along a line of sight, in eight lanes.
+/// Limits of the coordinates of surface points, and of their distances along a line of sight, in eight lanes.
 struct EightExtents {
     using Floats  = float __attribute__((vector_size(8 * sizeof(float))));
     using Doubles = double __attribute__((vector_size(8 * sizeof(double))));
@@ -46,11 +46,12 @@ struct EightExtents {
     }
 
     /// Points i to i + 7.
-    void add(const PointBatch& points, LightId light, std::size_t i, const dvec3& eye, const dvec3& forward) {
-        Floats nowhere;  // 0 where a point asks, else infinite
+    void add(const PointBatch& points, std::size_t i, const dvec3& eye, const dvec3& forward) {
+        Floats nowhere;  // 0 where there is a point, else infinite
         for (int k = 0; k < 8; ++k)
-            nowhere[k] =
-                points.asks(light, i + static_cast<std::size_t>(k)) ? 0 : std::numeric_limits<float>::infinity();
+            nowhere[k] = points.triangle[i + static_cast<std::size_t>(k)] != kNoTriangle
+                             ? 0
+                             : std::numeric_limits<float>::infinity();
         Doubles ahead = __builtin_convertvector(nowhere, Doubles);
         for (int axis = 0; axis < 3; ++axis) {
             Floats at;
@@ -68,7 +69,7 @@ struct EightExtents {
 /// edge that contains the eye, as in scenes laid out on a grid, or a light at the eye, is no special case. A far eye
 /// comes nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye:
 /// they are looked at from outside their box.
-ViewFrame choose_view(const PointBatch& points, LightId light) {
+ViewFrame choose_view(const PointBatch& points) {
     const bool perspective = points.raster && points.raster->projection == Projection::perspective;
     struct Extent {
         Box box;
@@ -83,7 +84,7 @@ ViewFrame choose_view(const PointBatch& points, LightId light) {
             EightExtents eight;
             const std::size_t end = std::min(points.size(), (r + 1) * run);
             std::size_t i         = r * run;
-            for (; i + 8 <= end; i += 8) eight.add(points, light, i, eye, forward);
+            for (; i + 8 <= end; i += 8) eight.add(points, i, eye, forward);
             for (int k = 0; k < 8; ++k) {
                 extents[r].box.min =
                     glm::min(extents[r].box.min, vec3(eight.low[0][k], eight.low[1][k], eight.low[2][k]));
@@ -92,7 +93,7 @@ ViewFrame choose_view(const PointBatch& points, LightId light) {
                 extents[r].nearest = std::min(extents[r].nearest, eight.nearest[k]);
             }
             for (; i < end; ++i) {
-                if (!points.asks(light, i)) continue;
+                if (points.triangle[i] == kNoTriangle) continue;
                 extents[r].box     = extend(extents[r].box, points.position(i));
                 extents[r].nearest = std::min(extents[r].nearest, glm::dot(dvec3(points.position(i)) - eye, forward));
             }
@@ -179,92 +180,132 @@ dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, d
 
 // ---- the tree -------------------------------------------------------------------------------------------------------
 
-CountingTree::CountingTree(const Scene& scene, const PointBatch& points, LightId light)
-    // Blocks of 4 x 4 pixels are a leaf, where all of them ask.
-    : index_(std::move(grouped(points, 1, [&](std::size_t i) { return points.asks(light, i) ? 0u : 1u; })[0])) {
+CountingTree::CountingTree(const Scene& scene, const PointBatch& points)
+    // Blocks of 4 x 4 pixels are a leaf, where all of them see a surface.
+    : index_(std::move(
+          grouped(points, 1, [&](std::size_t i) { return points.triangle[i] != kNoTriangle ? 0u : 1u; })[0])) {
     if (index_.empty()) return;
-    view_ = choose_view(points, light);
+    view_ = choose_view(points);
     if (!points.raster) sort_by_projection(index_, points, view_);
     project(scene, points);
     build_nodes();
 }
 
+/// The points of the leaves, and their boxes. Boxes of leaves that are empty hold nothing.
 void CountingTree::project(const Scene& scene, const PointBatch& points) {
-    const std::size_t padded = (size() + kLeaf - 1) / kLeaf * kLeaf;
-    for (RawVector<double>* v : {&x_, &y_, &w_}) {
-        v->resize(padded);
-        std::fill(v->begin() + static_cast<std::ptrdiff_t>(size()), v->end(), 0.0);
-    }
-    count_.resize(padded, 0);
-    parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
+    for (RawVector<double>* v : {&x_, &y_, &w_}) v->resize(leaf_count() * kLeaf);
+    Level& boxes      = levels_.emplace_back(leaf_count() / kFanOut);
+    const dvec3 right = view_.right, down = view_.down, forward = view_.forward;
+    parallel_ranges(leaf_count(), 256, [&](std::size_t begin, std::size_t end) {
         TriangleId last = kNoTriangle;  // neighbours are mostly on one triangle
         dvec3 a{0}, b{0}, c{0};
-        for (std::size_t k = begin; k < end; ++k) {
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            const std::size_t from = std::min(leaf * kLeaf, size()), count = std::min(kLeaf, size() - from);
+            const std::uint32_t* const index = index_.data() + from;
             // What follows in memory is of other points: of blocks of 4 x 4 pixels, the first of each row.
-            if (k % 16 == 0 && k + 5 * 16 < size())
-                for (const std::size_t ahead : {k + 64, k + 66, k + 72, k + 74}) {
-                    __builtin_prefetch(&points.triangle[index_[ahead]]);
-                    __builtin_prefetch(&points.u[index_[ahead]]);
-                    __builtin_prefetch(&points.v[index_[ahead]]);
+            if (from + 5 * kLeaf < size())
+                for (const std::size_t ahead : {64, 66, 72, 74}) {
+                    __builtin_prefetch(&points.triangle[index[ahead]]);
+                    __builtin_prefetch(&points.u[index[ahead]]);
+                    __builtin_prefetch(&points.v[index[ahead]]);
                 }
-            const std::uint32_t i = index_[k];
-            if (points.triangle[i] != last) {
-                last = points.triangle[i];
-                a    = dvec3(scene.vertex(last, 0));
-                b = dvec3(scene.vertex(last, 1)) - a, c = dvec3(scene.vertex(last, 2)) - a, a -= view_.origin;
+            double u[kLeaf], v[kLeaf];
+            bool together      = count == kLeaf;
+            unsigned at_border = 0;  // a bit for each point that named_point moves
+            for (std::size_t k = 0; k < count; ++k) {
+                u[k] = points.u[index[k]], v[k] = points.v[index[k]];
+                together &= points.triangle[index[k]] == points.triangle[index[0]];
+                at_border |= static_cast<unsigned>(std::min({1 - u[k] - v[k], u[k], v[k]}) < kMostShare) << k;
             }
-            const double u = points.u[i], v = points.v[i];
-            const dvec3 p =
-                view_.turned(std::min({1 - u - v, u, v}) < kMostShare ? named_point(scene, points, i, view_.origin)
-                                                                      : a + u * b + v * c);
-            x_[k] = p.x / p.z, y_[k] = p.y / p.z, w_[k] = 1 / p.z;
+            double* __restrict const x = &x_[leaf * kLeaf];
+            double* __restrict const y = &y_[leaf * kLeaf];
+            double* __restrict const w = &w_[leaf * kLeaf];
+            for (std::size_t first = 0; first < count; first += together ? kLeaf : 1) {
+                if (const TriangleId t = points.triangle[index[first]]; t != last) {
+                    last = t;
+                    a    = dvec3(scene.vertex(t, 0));
+                    b = dvec3(scene.vertex(t, 1)) - a, c = dvec3(scene.vertex(t, 2)) - a, a -= view_.origin;
+                }
+                for (std::size_t k = first; k < (together ? kLeaf : first + 1); ++k) {
+                    const double px = a.x + u[k] * b.x + v[k] * c.x, py = a.y + u[k] * b.y + v[k] * c.y,
+                                 pz    = a.z + u[k] * b.z + v[k] * c.z;
+                    const double depth = forward.x * px + forward.y * py + forward.z * pz;
+                    x[k]               = (right.x * px + right.y * py + right.z * pz) / depth;
+                    y[k]               = (down.x * px + down.y * py + down.z * pz) / depth;
+                    w[k]               = 1 / depth;
+                }
+            }
+            for (; at_border != 0; at_border &= at_border - 1) {
+                const auto k  = static_cast<std::size_t>(std::countr_zero(at_border));
+                const dvec3 p = view_.turned(named_point(scene, points, index[k], view_.origin));
+                x[k] = p.x / p.z, y[k] = p.y / p.z, w[k] = 1 / p.z;
+            }
+            dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+            for (std::size_t k = 0; k < count; ++k)
+                low = glm::min(low, dvec3(x[k], y[k], w[k])), high = glm::max(high, dvec3(x[k], y[k], w[k]));
+            Siblings& nodes = boxes[leaf / kFanOut];
+            for (int axis = 0; axis < 3; ++axis)
+                nodes.min[axis][leaf % kFanOut] = low[axis], nodes.max[axis][leaf % kFanOut] = high[axis];
+            for (std::size_t k = count; k < kLeaf; ++k) x[k] = y[k] = w[k] = 0;
         }
     });
 }
 
+/// The levels over the leaves.
 void CountingTree::build_nodes() {
-    constexpr double far = std::numeric_limits<double>::infinity();
-    std::size_t size     = (this->size() + kLeaf - 1) / kLeaf;  // nodes of the level
-    const auto add_level = [&](const auto& box_of) {
-        Level level((size + kFanOut - 1) / kFanOut);
+    while (levels_.back().size() > 1) {
+        const Level& below = levels_.back();
+        Level level((below.size() + kFanOut - 1) / kFanOut);
         parallel_ranges(level.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t parent = begin; parent < end; ++parent) {
-                Siblings& nodes = level[parent];
-                nodes.size      = static_cast<std::uint32_t>(std::min(kFanOut, size - parent * kFanOut));
-                for (std::size_t k = 0; k < kFanOut; ++k) {
-                    dvec3 min(far), max(-far);
-                    if (k < nodes.size) box_of(parent * kFanOut + k, min, max);
-                    for (int axis = 0; axis < 3; ++axis) nodes.min[axis][k] = min[axis], nodes.max[axis][k] = max[axis];
-                    nodes.count[k] = 0;
+            for (std::size_t node = begin * kFanOut; node < end * kFanOut; ++node)
+                for (int axis = 0; axis < 3; ++axis) {
+                    double low = std::numeric_limits<double>::infinity(), high = -low;
+                    for (std::size_t k = 0; node < below.size() && k < kFanOut; ++k)
+                        low = std::min(low, below[node].min[axis][k]), high = std::max(high, below[node].max[axis][k]);
+                    level[node / kFanOut].min[axis][node % kFanOut] = low;
+                    level[node / kFanOut].max[axis][node % kFanOut] = high;
                 }
-            }
         });
         levels_.push_back(std::move(level));
-    };
-    add_level([&](std::size_t leaf, dvec3& min, dvec3& max) {
-        for (std::size_t k = leaf * kLeaf; k < std::min(this->size(), (leaf + 1) * kLeaf); ++k) {
-            const dvec3 at(x_[k], y_[k], w_[k]);
-            min = glm::min(min, at), max = glm::max(max, at);
-        }
-    });
-    while (levels_.back().size() > 1) {
-        size = levels_.back().size();
-        add_level([&](std::size_t node, dvec3& min, dvec3& max) {
-            const Siblings& children = levels_.back()[node];
-            for (int axis = 0; axis < 3; ++axis)
-                for (std::size_t k = 0; k < children.size; ++k)
-                    min[axis] = std::min(min[axis], children.min[axis][k]),
-                    max[axis] = std::max(max[axis], children.max[axis][k]);
-        });
     }
 }
 
-void CountingTree::add(const Region& region, std::int32_t weight) {
-    if (!levels_.empty()) descend(region, weight, levels_.size() - 1, 0, (1u << region.count) - 1);
+std::size_t CountingTree::memory_bytes() const {
+    std::size_t bytes = index_.size() * sizeof(std::uint32_t) + 3 * x_.size() * sizeof(double);
+    for (const Level& level : levels_) bytes += level.size() * sizeof(Siblings);
+    return bytes;
+}
+
+// ---- the counts -----------------------------------------------------------------------------------------------------
+
+PointCounts::PointCounts(const CountingTree& tree, const PointBatch& points, LightId light)
+    : tree_(tree), asks_(tree.leaf_count()), count_(tree.leaf_count() * kLeaf), levels_(tree.levels_.size()) {
+    const Facing* const facing = points.facing[light].data();
+    parallel_ranges(asks_.size(), 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            unsigned asks = 0;
+            for (std::size_t k = leaf * kLeaf; k < std::min(tree.size(), (leaf + 1) * kLeaf); ++k)
+                asks |= static_cast<unsigned>(facing[tree.index_[k]] >= Facing::partly) << k % kLeaf;
+            asks_[leaf] = static_cast<std::uint16_t>(asks);
+            if (asks != 0) std::fill_n(&count_[leaf * kLeaf], kLeaf, 0);
+        }
+    });
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+        levels_[l].count.resize(tree.levels_[l].size());
+        levels_[l].asks.resize(tree.levels_[l].size(), 0);
+        const std::size_t nodes = l == 0 ? asks_.size() : levels_[l - 1].asks.size();
+        for (std::size_t node = 0; node < nodes; ++node)
+            if (l == 0 ? asks_[node] != 0 : levels_[l - 1].asks[node] != 0)
+                levels_[l].asks[node / kFanOut] |= static_cast<std::uint8_t>(1u << node % kFanOut);
+    }
+}
+
+void PointCounts::add(const Region& region, std::int32_t weight) {
+    if (!empty()) descend(region, weight, levels_.size() - 1, 0, (1u << region.count) - 1);
 }
 
 /// Those that do not lie beside the region's box: one bit each.
-unsigned CountingTree::within(const Siblings& nodes, const Region& region) {
+unsigned PointCounts::within(const Siblings& nodes, const Region& region) {
     std::uint64_t bits = 0;
 #pragma GCC unroll 1
     for (std::size_t k = 0; k < kFanOut; ++k)
@@ -277,7 +318,7 @@ unsigned CountingTree::within(const Siblings& nodes, const Region& region) {
 }
 
 /// Whether all are so much larger than the region that its box alone rules out more than its faces do.
-bool CountingTree::are_large(const Siblings& nodes, const Region& region, unsigned which) {
+bool PointCounts::are_large(const Siblings& nodes, const Region& region, unsigned which) {
     const dvec3 size    = 2.0 * (region.box_max - region.box_min);
     std::uint64_t large = 0;
 #pragma GCC unroll 1
@@ -291,7 +332,7 @@ bool CountingTree::are_large(const Siblings& nodes, const Region& region, unsign
 /// Which nodes lie within no part of the half-space, and, four bits above these, which wholly. Certain answers only:
 /// what lies nearer to the plane than the rounding of f, at any point of the box, is neither, so that a point gets the
 /// same answer whether a box or the point itself is asked.
-unsigned CountingTree::cover(const HalfSpace& f, const Siblings& nodes) {
+unsigned PointCounts::cover(const HalfSpace& f, const Siblings& nodes) {
     // The corners of boxes at which f is least, and those at which it is most.
     const auto corners = [&](double n, int axis) {
         return n < 0 ? std::pair(nodes.max[axis], nodes.min[axis]) : std::pair(nodes.min[axis], nodes.max[axis]);
@@ -302,9 +343,9 @@ unsigned CountingTree::cover(const HalfSpace& f, const Siblings& nodes) {
     return cover(f, low_x, high_x, low_y, high_y, low_w, high_w);
 }
 
-unsigned CountingTree::cover(const HalfSpace& f, const double* __restrict low_x, const double* __restrict high_x,
-                             const double* __restrict low_y, const double* __restrict high_y,
-                             const double* __restrict low_w, const double* __restrict high_w) {
+unsigned PointCounts::cover(const HalfSpace& f, const double* __restrict low_x, const double* __restrict high_x,
+                            const double* __restrict low_y, const double* __restrict high_y,
+                            const double* __restrict low_w, const double* __restrict high_w) {
     const double nx = f.nx, ny = f.ny, nz = f.nz, nw = f.nw, size_z = std::abs(nz);
     std::uint64_t bits = 0;
 #pragma GCC unroll 1
@@ -321,10 +362,10 @@ unsigned CountingTree::cover(const HalfSpace& f, const double* __restrict low_x,
 }
 
 /// The four nodes below `parent`. `open` has a bit for each face that does not yet hold all of them.
-void CountingTree::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent,
-                           unsigned open) {
-    Siblings& nodes = levels_[level][parent];
-    unsigned which  = within(nodes, region) & ((1u << nodes.size) - 1);
+void PointCounts::descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent,
+                          unsigned open) {
+    const Siblings& nodes = tree_.levels_[level][parent];
+    unsigned which        = within(nodes, region) & levels_[level].asks[parent];
     if (which == 0) return;
     std::array<unsigned, kFanOut> still{open, open, open, open};  // of each node
     for (unsigned rest = level > 0 && are_large(nodes, region, which) ? 0 : open; rest != 0; rest &= rest - 1) {
@@ -338,7 +379,7 @@ void CountingTree::descend(const Region& region, std::int32_t weight, std::size_
         const auto k           = static_cast<std::size_t>(std::countr_zero(which));
         const std::size_t node = parent * kFanOut + k;
         if (still[k] == 0)
-            std::atomic_ref(nodes.count[k]).fetch_add(weight, std::memory_order_relaxed);
+            std::atomic_ref(levels_[level].count[parent][k]).fetch_add(weight, std::memory_order_relaxed);
         else if (level == 0)
             add_to_leaf(region, weight, node, still[k]);
         else
@@ -346,10 +387,10 @@ void CountingTree::descend(const Region& region, std::int32_t weight, std::size_
     }
 }
 
-void CountingTree::add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open) {
-    const double* x = &x_[leaf * kLeaf];
-    const double* y = &y_[leaf * kLeaf];
-    const double* w = &w_[leaf * kLeaf];
+void PointCounts::add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open) {
+    const double* x = &tree_.x_[leaf * kLeaf];
+    const double* y = &tree_.y_[leaf * kLeaf];
+    const double* w = &tree_.w_[leaf * kLeaf];
     alignas(64) std::array<double, kLeaf> least;
     least.fill(std::numeric_limits<double>::infinity());
     for (; open != 0; open &= open - 1) {
@@ -363,20 +404,21 @@ void CountingTree::add_to_leaf(const Region& region, std::int32_t weight, std::s
     unsigned within = 0;
 #pragma GCC unroll 1
     for (std::size_t k = 0; k < kLeaf; ++k) within |= static_cast<unsigned>(least[k] > 0) << k;
-    for (; within != 0; within &= within - 1) {
+    for (within &= asks_[leaf]; within != 0; within &= within - 1) {
         std::int32_t& count = count_[leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(within))];
         std::atomic_ref(count).fetch_add(weight, std::memory_order_relaxed);
     }
 }
 
 /// To the leaves.
-void CountingTree::push_down() {
+void PointCounts::push_down() {
     for (std::size_t level = levels_.size(); level-- > 1;)
-        parallel_ranges(levels_[level].size(), 256, [&](std::size_t begin, std::size_t end) {
+        parallel_ranges(levels_[level].count.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t parent = begin; parent < end; ++parent)
-                for (std::size_t k = 0; k < levels_[level][parent].size; ++k) {
-                    const std::int32_t count = levels_[level][parent].count[k];
-                    for (std::int32_t& below : levels_[level - 1][parent * kFanOut + k].count) below += count;
+                for (unsigned asks = levels_[level].asks[parent]; asks != 0; asks &= asks - 1) {
+                    const auto k = static_cast<std::size_t>(std::countr_zero(asks));
+                    for (std::int32_t& below : levels_[level - 1].count[parent * kFanOut + k])
+                        below += levels_[level].count[parent][k];
                 }
         });
 }

@@ -1,9 +1,11 @@
 // Surface points seen from one position, sorted into a tree so that all points within a cone of half-spaces can be
-// counted at once: what a stencil buffer does for pixels, for points anywhere between them.
+// counted at once: what a stencil buffer does for pixels, for points anywhere between them. All lights use one tree,
+// and each has counts of its own.
 #pragma once
 
 #include <array>
-#include <span>
+#include <bit>
+#include <limits>
 #include <vector>
 
 #include "umbra/core/base/parallel.h"
@@ -46,14 +48,47 @@ struct Region {
     void add(const HalfSpace& h) { faces[static_cast<std::size_t>(count++)] = h; }
 };
 
-/// The points of a batch that need an answer for one light, in a tree over (x, y, w).
+/// The surface points of a batch, in a tree over (x, y, w).
 class CountingTree {
 public:
-    /// Takes the points whose facing to the light is `front` or `partly`. All lie in front of the view.
-    CountingTree(const Scene& scene, const PointBatch& points, LightId light);
+    /// Takes the points that have a triangle. All lie in front of the view.
+    CountingTree(const Scene& scene, const PointBatch& points);
 
     [[nodiscard]] const ViewFrame& view() const { return view_; }
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    friend class PointCounts;
+    static constexpr std::size_t kLeaf   = 16;  // points in a leaf
+    static constexpr std::size_t kFanOut = 4;   // children of a node
+    /// The boxes in (x, y, w) of four nodes that have one parent; each at its index in every array.
+    struct alignas(32) Siblings {
+        double min[3][kFanOut], max[3][kFanOut];
+    };
+    using Level = RawVector<Siblings>;
+
+    /// Up to whole siblings: the last may be empty.
+    [[nodiscard]] std::size_t leaf_count() const {
+        return (size() + kFanOut * kLeaf - 1) / (kFanOut * kLeaf) * kFanOut;
+    }
     [[nodiscard]] std::size_t size() const { return index_.size(); }
+    void project(const Scene& scene, const PointBatch& points);
+    void build_nodes();
+
+    RawVector<std::uint32_t> index_;  // point of the batch
+    ViewFrame view_;
+    RawVector<double> x_, y_, w_;  // padded to whole leaves
+    std::vector<Level> levels_;    // leaves first; the children of node i are those at i, one level below
+};
+
+/// Counts at the points of a tree that need an answer for one light: those whose facing to it is `front` or `partly`.
+class PointCounts {
+public:
+    /// `points` are those of the tree, which must outlive this object.
+    PointCounts(const CountingTree& tree, const PointBatch& points, LightId light);
+
+    /// Whether no point needs an answer.
+    [[nodiscard]] bool empty() const { return levels_.empty() || levels_.back().asks[0] == 0; }
 
     /// Adds `weight` to every point within the region. From any number of threads at once; sums of integers are the
     /// same in any order.
@@ -65,18 +100,13 @@ public:
     void for_each(const Visit& visit);
 
 private:
-    static constexpr std::size_t kLeaf   = 16;  // points in a leaf
-    static constexpr std::size_t kFanOut = 4;   // children of a node
-    /// Four nodes that have one parent; each at its place in every array. Nodes beyond `size` hold nothing.
-    struct alignas(32) Siblings {
-        double min[3][kFanOut], max[3][kFanOut];  // boxes of (x, y, w)
-        std::int32_t count[kFanOut];
-        std::uint32_t size = 0;
+    static constexpr std::size_t kLeaf = CountingTree::kLeaf, kFanOut = CountingTree::kFanOut;
+    using Siblings = CountingTree::Siblings;
+    struct Level {
+        std::vector<std::array<std::int32_t, kFanOut>> count;  // of each node of the tree
+        RawVector<std::uint8_t> asks;  // a bit for each of four: some point below needs an answer
     };
-    using Level = std::vector<Siblings>;
 
-    void project(const Scene& scene, const PointBatch& points);
-    void build_nodes();
     void descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent, unsigned open);
     void add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open);
     void push_down();
@@ -86,11 +116,10 @@ private:
     static unsigned cover(const HalfSpace& f, const double* low_x, const double* high_x, const double* low_y,
                           const double* high_y, const double* low_w, const double* high_w);
 
-    ViewFrame view_;
-    RawVector<std::uint32_t> index_;   // point of the batch
-    RawVector<double> x_, y_, w_;      // padded to whole leaves
-    std::vector<std::int32_t> count_;  // padded to whole leaves
-    std::vector<Level> levels_;        // leaves first; the children of node i are those at i, one level below
+    const CountingTree& tree_;
+    RawVector<std::uint16_t> asks_;  // of each leaf: a bit for each point
+    RawVector<std::int32_t> count_;  // of each point; set in leaves where some point asks
+    std::vector<Level> levels_;
 };
 
 /// The point as it is named, less `origin`, in double: but where it is closer to its triangle's border than 2^-44 of
@@ -100,11 +129,16 @@ private:
 [[nodiscard]] dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin);
 
 template <class Visit>
-void CountingTree::for_each(const Visit& visit) {
+void PointCounts::for_each(const Visit& visit) {
     push_down();
-    parallel_ranges(size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k)
-            visit(index_[k], count_[k] + levels_[0][k / kLeaf / kFanOut].count[k / kLeaf % kFanOut]);
+    parallel_ranges(tree_.leaf_count(), 256, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            const std::int32_t all = levels_[0].count[leaf / kFanOut][leaf % kFanOut];
+            for (unsigned asks = asks_[leaf]; asks != 0; asks &= asks - 1) {
+                const std::size_t k = leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(asks));
+                visit(tree_.index_[k], count_[k] + all);
+            }
+        }
     });
 }
 

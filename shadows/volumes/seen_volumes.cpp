@@ -35,19 +35,24 @@ std::optional<SeenBox> box_of(const std::array<dvec3, 3>& corners) {
 
 }  // namespace
 
-SeenVolumes::SeenVolumes(const SilhouetteMeshes& meshes, const Light& light, const ViewFrame& view)
-    : meshes_(meshes), at_infinity_(light.kind == LightKind::directional) {
-    travel_ = at_infinity_ ? view.turned(dvec3(light.direction)) : -view.seen(dvec3(light.position));
-    vertices_.resize(meshes.vertices().size());
-    parallel_ranges(vertices_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) vertices_[v] = view.seen(dvec3(meshes.vertices()[v]));
+SeenVertices::SeenVertices(const SilhouetteMeshes& meshes, const ViewFrame& view) : at(meshes.vertices().size()) {
+    parallel_ranges(at.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) at[v] = view.seen(dvec3(meshes.vertices()[v]));
     });
     double radius2 = 0;
-    for (const dvec3& v : vertices_) radius2 = std::max(radius2, glm::dot(v, v));
-    radius_ = std::sqrt(radius2);
+    for (const dvec3& v : at) radius2 = std::max(radius2, glm::dot(v, v));
+    radius = std::sqrt(radius2);
 }
 
-void SeenVolumes::add_near_cap(CountingTree& tree, TriangleId t, int orientation, bool depth_fail) const {
+SeenVolumes::SeenVolumes(const SilhouetteMeshes& meshes, const SeenVertices& vertices, const Light& light,
+                         const ViewFrame& view)
+    : meshes_(meshes),
+      at_infinity_(light.kind == LightKind::directional),
+      travel_(at_infinity_ ? view.turned(dvec3(light.direction)) : -view.seen(dvec3(light.position))),
+      vertices_(vertices.at),
+      radius_(vertices.radius) {}
+
+void SeenVolumes::add_near_cap(PointCounts& counts, TriangleId t, int orientation, bool depth_fail) const {
     const Cap cap = near_cap(t, orientation);
     Region region;
     region.add(HalfSpace::side(cap.behind, cap.behind_offset, cap.origin_behind == depth_fail ? +1 : -1));
@@ -62,10 +67,10 @@ void SeenVolumes::add_near_cap(CountingTree& tree, TriangleId t, int orientation
         else
             region.box_min.z = -std::numeric_limits<double>::infinity();
     }
-    tree.add(region, cap.origin_behind == depth_fail ? +1 : -1);
+    counts.add(region, cap.origin_behind == depth_fail ? +1 : -1);
 }
 
-void SeenVolumes::add_far_cap(CountingTree& tree, TriangleId t, int orientation) const {
+void SeenVolumes::add_far_cap(PointCounts& counts, TriangleId t, int orientation) const {
     const uvec3 corners = oriented(meshes_.triangles()[t], orientation);
     const std::array<dvec3, 3> ends{far(corners[0]), far(corners[1]), far(corners[2])};
     if (std::ranges::all_of(ends, [](const dvec3& v) { return v.z < -least_depth(v); })) return;  // behind the view
@@ -78,10 +83,10 @@ void SeenVolumes::add_far_cap(CountingTree& tree, TriangleId t, int orientation)
         region.box_min = {box->low.x, box->low.y, region.box_min.z};
         region.box_max = {box->high.x, box->high.y, region.box_max.z};
     }
-    tree.add(region, +1);
+    counts.add(region, +1);
 }
 
-void SeenVolumes::add_side(CountingTree& tree, const SilhouetteEdge& e, bool depth_fail) const {
+void SeenVolumes::add_side(PointCounts& counts, const SilhouetteEdge& e, bool depth_fail) const {
     const Plane plane = side_plane(e.a, e.b);
     const int origin  = plane.origin_outside ? +1 : -1;
     Region region;
@@ -90,7 +95,7 @@ void SeenVolumes::add_side(CountingTree& tree, const SilhouetteEdge& e, bool dep
     region.add(HalfSpace::side(glm::cross(vertices_[e.b], travel_), 0, origin));
     region.add(HalfSpace::side(glm::cross(vertices_[e.a], travel_), 0, -origin));
     if (depth_fail && !at_infinity_) region.add(HalfSpace::side(far_edge(e.a, e.b).normal, 0, -origin));
-    tree.add(region, depth_fail ? -origin * e.weight : origin * e.weight);
+    counts.add(region, depth_fail ? -origin * e.weight : origin * e.weight);
 }
 
 std::int32_t SeenVolumes::count_at_origin(std::span<const std::int8_t> orientation) const {

@@ -1,4 +1,4 @@
-// The shadow volumes of one light, seen from a view: their faces as regions of a point tree.
+// The shadow volumes of one light, seen from a view: their faces as regions of a tree of points.
 #pragma once
 
 #include <span>
@@ -9,24 +9,33 @@
 
 namespace umbra {
 
+/// The vertices of meshes, seen from a view; all lights use them.
+struct SeenVertices {
+    SeenVertices(const SilhouetteMeshes& meshes, const ViewFrame& view);
+
+    std::vector<dvec3> at;
+    double radius = 0;  ///< of all, from O
+};
+
 /// Directions from the light are in the view's frame. Vertex v ends at infinity in direction `far(v)`: v less the
 /// light, or the light's direction. On its path there it stays in the plane through O, v and `travel`.
 ///
 /// `orientation`, in all functions: +1 for a triangle taken as wound, -1 for one taken turned over. Functions that add
-/// to a tree may run in several threads at once.
+/// to counts may run in several threads at once.
 class SeenVolumes {
 public:
-    /// `meshes` must outlive this object.
-    SeenVolumes(const SilhouetteMeshes& meshes, const Light& light, const ViewFrame& view);
+    /// `vertices` are those of `meshes`, seen from `view`; both must outlive this object.
+    SeenVolumes(const SilhouetteMeshes& meshes, const SeenVertices& vertices, const Light& light,
+                const ViewFrame& view);
 
     /// The near cap of a triangle: region and weight of its crossings.
-    void add_near_cap(CountingTree& tree, TriangleId t, int orientation, bool depth_fail) const;
+    void add_near_cap(PointCounts& counts, TriangleId t, int orientation, bool depth_fail) const;
 
     /// The far cap: directions in which a point at infinity lies in the triangle's volume.
-    void add_far_cap(CountingTree& tree, TriangleId t, int orientation) const;
+    void add_far_cap(PointCounts& counts, TriangleId t, int orientation) const;
 
     /// The side that an edge extrudes.
-    void add_side(CountingTree& tree, const SilhouetteEdge& e, bool depth_fail) const;
+    void add_side(PointCounts& counts, const SilhouetteEdge& e, bool depth_fail) const;
 
     /// In how many volumes the view's origin lies: by the same planes, and the same rule where it lies in one.
     /// `orientation`: of each triangle, 0 where it bounds no volume.
@@ -63,8 +72,8 @@ private:
     const SilhouetteMeshes& meshes_;
     bool at_infinity_;
     dvec3 travel_;
-    std::vector<dvec3> vertices_;
-    double radius_ = 0;  // of all vertices, from O
+    const std::vector<dvec3>& vertices_;
+    double radius_;
 };
 
 }  // namespace umbra

@@ -12,6 +12,10 @@
 // In the projection from O every edge, and every line that an edge's end runs away along, is one half-space that all
 // faces beside it share bit for bit, so that no point is lost or counted twice between two faces.
 //
+// build welds the objects' vertices and finds their edges. aim finds the triangles that bound a volume and the edges
+// that extrude a side. look chooses O, and sorts the surface points as seen from there into a tree. visibility adds the
+// faces of the volumes to counts in the tree, and reads them at the points that the light is in front of.
+//
 // This work is based on:
 // Frank Crow. Shadow Algorithms for Computer Graphics. 1977
 // Philippe Bergeron. A General Version of Crow's Shadow Volumes. 1986
@@ -22,6 +26,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <mutex>
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
@@ -60,9 +66,79 @@ const std::vector<Parameter> kParameters{
          .sweep   = "weighted|silhouette|per_triangle"}),
 };
 
+/// The objects as meshes that know their edges.
+struct Meshes final : Built {
+    Meshes(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), meshes(of, its_facts.objects) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return meshes.memory_bytes(); }
+    const SilhouetteMeshes meshes;
+};
+
+/// What bounds the volumes of one light.
+struct Volumes final : Aimed {
+    Volumes(const Meshes& from, LightId at, Edges which)
+        : Aimed(from, at), meshes(from.meshes), orientation(meshes.facing(source())) {
+        leave_out_transparent();
+        if (which == Edges::silhouette) leave_out_back_faces();
+        edges = which == Edges::per_triangle ? all_edges() : meshes.edges(orientation);
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return orientation.capacity() + edges.capacity() * sizeof(SilhouetteEdge);
+    }
+
+    const SilhouetteMeshes& meshes;
+    std::vector<std::int8_t> orientation;  ///< of each triangle: +1 taken as wound, -1 flipped, 0 no occluder
+    std::vector<SilhouetteEdge> edges;
+
+private:
+    void leave_out_transparent() {
+        for (const Object& object : scene().objects)
+            if (object.triangle_count > 0 && !scene().blocks(object.first_triangle))
+                std::fill_n(orientation.begin() + object.first_triangle, object.triangle_count, std::int8_t{0});
+    }
+
+    /// From a solid that the light is outside of, a line to the light leaves as often as it enters, or once more: the
+    /// triangles that face the light are enough.
+    void leave_out_back_faces() {
+        for (std::size_t o = 0; o < scene().objects.size(); ++o) {
+            const Object& object = scene().objects[o];
+            if (!built.facts.objects[o].solid) continue;
+            if (source().kind != LightKind::directional &&
+                std::abs(winding_number(scene(), object, dvec3(source().position))) > 1e-6)  // inside, or on it
+                continue;
+            for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
+                orientation[t] = std::max<std::int8_t>(orientation[t], 0);
+        }
+    }
+
+    [[nodiscard]] std::vector<SilhouetteEdge> all_edges() const {
+        std::vector<SilhouetteEdge> all;
+        for (std::size_t t = 0; t < orientation.size(); ++t) {
+            if (orientation[t] == 0) continue;
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t i = meshes.triangles()[t][k], j = meshes.triangles()[t][(k + 1) % 3];
+                all.push_back({std::min(i, j), std::max(i, j), i < j ? orientation[t] : -orientation[t]});
+            }
+        }
+        return all;
+    }
+};
+
+/// The surface points and the meshes' vertices, as seen from O.
+struct Seen final : Looked {
+    Seen(const Meshes& built, const PointBatch& at)
+        : Looked(at), tree(built.scene, at), vertices(built.meshes, tree.view()) {}
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return tree.memory_bytes() + vertices.at.size() * sizeof(dvec3);
+    }
+    const CountingTree tree;
+    const SeenVertices vertices;
+};
+
 class ShadowVolumes final : public MethodWith<Options> {
 public:
-    Service serves(const SceneFacts& facts) const override {
+    explicit ShadowVolumes(const Settings& settings) : MethodWith(settings) {}
+
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only)
             return {How::approximately, "area lights are taken as points at their centres: umbra only, no penumbra"};
         if (options.edges == Edges::silhouette && facts.closed_objects > 0)
@@ -73,118 +149,130 @@ public:
                 "non-manifold or inconsistently oriented meshes"};
     }
 
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        scene_  = &scene;
-        facts_  = &facts;
-        meshes_ = std::make_unique<SilhouetteMeshes>(scene, facts.objects);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<Meshes>(scene, facts);
     }
 
-    void aim(LightId light) override {
-        const Light& l = scene_->lights[light];
-        orientation_   = meshes_->facing(l);
-        leave_out_transparent();
-        if (options.edges == Edges::silhouette) leave_out_back_faces(l);
-        edges_ = options.edges == Edges::per_triangle ? all_edges() : meshes_->edges(orientation_);
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return std::make_unique<Volumes>(as<Meshes>(built), light, options.edges);
     }
 
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        const bool depth_fail = options.counting == Counting::depth_fail;
-        CountingTree tree(*scene_, points, light);
-        if (tree.size() == 0) return;
-        const Light& l = scene_->lights[light];
-        const SeenVolumes volumes(*meshes_, l, tree.view());
-        const std::int32_t origin = depth_fail ? 0 : volumes.count_at_origin(orientation_);
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        return std::make_unique<Seen>(as<Meshes>(built), points);
+    }
 
-        parallel_ranges(orientation_.size(), 256, [&](std::size_t begin, std::size_t end) {
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const Volumes& of = as<Volumes>(aimed);
+        const Seen& seen  = as<Seen>(looked);
+        const Light& l    = aimed.source();
+        PointCounts counts(seen.tree, looked.points, aimed.light);
+        if (counts.empty()) return;
+        const SeenVolumes volumes(of.meshes, seen.vertices, l, seen.tree.view());
+        const bool depth_fail     = options.counting == Counting::depth_fail;
+        const std::int32_t origin = depth_fail ? 0 : volumes.count_at_origin(of.orientation);
+
+        parallel_ranges(of.orientation.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
-                if (orientation_[t] == 0) continue;
-                volumes.add_near_cap(tree, static_cast<TriangleId>(t), orientation_[t], depth_fail);
+                const int orientation = of.orientation[t];
+                if (orientation == 0) continue;
+                volumes.add_near_cap(counts, static_cast<TriangleId>(t), orientation, depth_fail);
                 if (depth_fail && l.kind != LightKind::directional)
-                    volumes.add_far_cap(tree, static_cast<TriangleId>(t), orientation_[t]);
+                    volumes.add_far_cap(counts, static_cast<TriangleId>(t), orientation);
             }
         });
-        parallel_ranges(edges_.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t e = begin; e < end; ++e) volumes.add_side(tree, edges_[e], depth_fail);
+        parallel_ranges(of.edges.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t e = begin; e < end; ++e) volumes.add_side(counts, of.edges[e], depth_fail);
         });
-        tree.for_each([&](std::uint32_t i, std::int32_t count) {
-            out.s[i] = origin + count > 0 || centre_is_behind(*scene_, points, light, i) ? 0.0f : 1.0f;
+        const bool has_area = is_area(l.kind);
+        counts.for_each([&](std::uint32_t i, std::int32_t count) {
+            const bool behind = has_area && centre_is_behind(aimed.scene(), looked.points, aimed.light, i);
+            out.s[i]          = origin + count > 0 || behind ? 0.0f : 1.0f;
         });
     }
 
     /// A sum of crossings names no volume. So each volume is asked whether it holds the point, by its own planes, in
     /// double: the farthest triangle is named, which rounding at the point's own surface cannot be.
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
-        const TriangleTree tree(*scene_);
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                blockers[i] = points.asks(light, i) ? farthest_volume(tree, points, i, light) : kNoTriangle;
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const TriangleTree tree(aimed.scene());
+        parallel_ranges(looked.points.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                blockers[i] = kNoTriangle;
+                if (!looked.points.asks(aimed.light, i)) continue;
+                const Line line(as<Volumes>(aimed), looked.points, i);
+                Holding holding;
+                tree.visit({line.p, line.to_light, line.end, 0}, [&](TriangleId t) {
+                    holding.add(t, line);
+                    return true;
+                });
+                blockers[i] = holding.farthest;
+            }
         });
     }
 
-    std::size_t memory_bytes() const override {
-        return meshes_->memory_bytes() + orientation_.capacity() + edges_.capacity() * sizeof(SilhouetteEdge);
+    /// As blame, and counts the volumes. Every triangle is asked, since a tree for one point would take longer.
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        const Line line(as<Volumes>(aimed), looked.points, i);
+        Holding holding;
+        std::mutex mutex;
+        parallel_ranges(line.of.orientation.size(), 16384, [&](std::size_t begin, std::size_t end) {
+            Holding some;
+            for (std::size_t t = begin; t < end; ++t)
+                if (t != looked.points.triangle[i]) some.add(static_cast<TriangleId>(t), line);
+            const std::lock_guard lock(mutex);
+            holding.add(some);
+        });
+        const bool dark     = given.s < 1;
+        Reason reason       = reason_by_geometry(aimed.scene(), looked.points, i, aimed.light, given,
+                                           dark ? holding.farthest : kNoTriangle);
+        const double layers = std::max(1.0, static_cast<double>(holding.count)) - 0.5;
+        reason.margin       = dark ? -layers : 0.5;
+        reason.unit         = "layers";
+        reason.evidence.push_back({"volumes that hold the point", static_cast<double>(holding.count)});
+        if (centre_is_behind(aimed.scene(), looked.points, aimed.light, i))
+            reason.evidence.push_back({"the light's centre is behind the surface", 1.0});
+        return reason;
     }
 
 private:
-    void leave_out_transparent() {
-        for (const Object& object : scene_->objects)
-            if (object.triangle_count > 0 && !scene_->blocks(object.first_triangle))
-                std::fill_n(orientation_.begin() + object.first_triangle, object.triangle_count, std::int8_t{0});
-    }
-
-    /// From a solid that the light is outside of, a line to the light leaves as often as it enters, or once more: the
-    /// triangles that face the light are enough.
-    void leave_out_back_faces(const Light& light) {
-        for (std::size_t o = 0; o < scene_->objects.size(); ++o) {
-            const Object& object = scene_->objects[o];
-            if (!facts_->objects[o].solid) continue;
-            if (light.kind != LightKind::directional &&
-                std::abs(winding_number(*scene_, object, dvec3(light.position))) > 1e-6)  // inside, or on it
-                continue;
-            for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
-                orientation_[t] = std::max<std::int8_t>(orientation_[t], 0);
+    /// From a point to the light.
+    struct Line {
+        Line(const Volumes& volumes, const PointBatch& points, std::size_t i)
+            : of(volumes), p(named_point(of.scene(), points, i, dvec3(0))) {
+            const Light& light = of.source();
+            if (light.kind == LightKind::directional)
+                to_light = -dvec3(light.direction), end = std::numeric_limits<double>::infinity();
+            else
+                to_light = dvec3(light.position) - p;
         }
-    }
+        const Volumes& of;
+        dvec3 p, to_light{0};
+        double end = 1;
+    };
 
-    TriangleId farthest_volume(const TriangleTree& tree, const PointBatch& points, std::size_t i, LightId light) const {
-        const Light& l         = scene_->lights[light];
-        const bool at_infinity = l.kind == LightKind::directional;
-        const dvec3 p          = named_point(*scene_, points, i, dvec3(0));
-        const dvec3 to_light   = at_infinity ? -dvec3(l.direction) : dvec3(l.position) - p;
-        TriangleId farthest    = kNoTriangle;
-        double most            = 0;
-        tree.visit({p, to_light, at_infinity ? std::numeric_limits<double>::infinity() : 1.0, 0}, [&](TriangleId t) {
-            if (orientation_[t] == 0) return true;
+    /// The volumes that hold a point.
+    struct Holding {
+        std::size_t count   = 0;
+        TriangleId farthest = kNoTriangle;
+        double at           = 0;  ///< of `farthest`: fraction of the line
+
+        void add(TriangleId t, const Line& line) {
+            if (line.of.orientation[t] == 0) return;
             std::array<dvec3, 3> v;
-            for (int k = 0; k < 3; ++k) v[static_cast<std::size_t>(k)] = dvec3(scene_->vertex(t, k)) - p;
-            const dvec3 n      = glm::cross(v[1] - v[0], v[2] - v[0]);
-            const double share = glm::dot(n, v[0]) / glm::dot(n, to_light);  // of the segment to the light
-            int inside         = 0;
+            for (int k = 0; k < 3; ++k) v[static_cast<std::size_t>(k)] = dvec3(line.of.scene().vertex(t, k)) - line.p;
+            int inside = 0;
             for (std::size_t k = 0; k < 3; ++k)
-                inside += glm::dot(glm::cross(v[k], v[(k + 1) % 3]), to_light) >= 0 ? +1 : -1;
-            if (std::abs(inside) == 3 && share > most && (at_infinity || share < 1)) most = share, farthest = t;
-            return true;
-        });
-        return farthest;
-    }
-
-    std::vector<SilhouetteEdge> all_edges() const {
-        std::vector<SilhouetteEdge> edges;
-        for (std::size_t t = 0; t < orientation_.size(); ++t) {
-            if (orientation_[t] == 0) continue;
-            for (int k = 0; k < 3; ++k) {
-                const std::uint32_t i = meshes_->triangles()[t][k], j = meshes_->triangles()[t][(k + 1) % 3];
-                edges.push_back({std::min(i, j), std::max(i, j), i < j ? orientation_[t] : -orientation_[t]});
-            }
+                inside += glm::dot(glm::cross(v[k], v[(k + 1) % 3]), line.to_light) >= 0 ? +1 : -1;
+            if (std::abs(inside) != 3) return;
+            const dvec3 n       = glm::cross(v[1] - v[0], v[2] - v[0]);
+            const double across = glm::dot(n, v[0]) / glm::dot(n, line.to_light);
+            if (!(across > 0 && across < line.end)) return;
+            add({1, t, across});
         }
-        return edges;
-    }
-
-    const Scene* scene_      = nullptr;
-    const SceneFacts* facts_ = nullptr;
-    std::unique_ptr<SilhouetteMeshes> meshes_;
-    std::vector<std::int8_t> orientation_;  // of each triangle: +1 taken as wound, -1 turned over, 0 no occluder
-    std::vector<SilhouetteEdge> edges_;
+        void add(const Holding& other) {
+            count += other.count;
+            if (other.at > at) at = other.at, farthest = other.farthest;
+        }
+    };
 };
 
 }  // namespace

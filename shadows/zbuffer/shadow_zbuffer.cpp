@@ -3,6 +3,8 @@
 // build finds what can block a light (shadows/maps/casters.h).
 // aim fits frames to that as the light sees it, one map or six (light_views.h, light_frame.h), and rasterises its depth
 // into each (depth_map.h).
+// look notes which picture the points are seen in, and traces that picture where contact shadows need it and the points
+// have none (answers.h).
 // visibility takes each point to the view that covers it, projects it there, moves it towards the light by the bias,
 // and compares its depth with those that the filter asks for (kernels.h, depth_lookup.h): S_j is the fraction that does
 // not block. If it is asked to, it then looks for contacts in the picture (contact_march.h).
@@ -17,20 +19,34 @@
 // Yulan Wang, Steven Molnar. Second-Depth Shadow Mapping. 1994 (faces=back)
 // Christian Schueler. Eliminating Surface Acne with Gradient Shadow Mapping. 2005 (the receiver's plane as bias)
 // Daniel Holbert. Saying Goodbye to Shadow Acne. 2011 (normal offset)
-#include "umbra/shadows/zbuffer/shadow_zbuffer.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "umbra/core/base/error.h"
-#include "umbra/core/render/gbuffer.h"
 #include "umbra/shadows/maps/answers.h"
+#include "umbra/shadows/maps/map_options.h"
 #include "umbra/shadows/maps/penumbra.h"
+#include "umbra/shadows/method.h"
+#include "umbra/shadows/zbuffer/contact_march.h"
 
 namespace umbra {
 namespace {
 
-using Options = ZBufferOptions;
+enum class FilterKind : std::uint8_t { nearest, pcf, pcss };
+enum class KeptSurface : std::uint8_t { first, midpoint };
+
+struct Options : ComparingOptions, ViewOptions, SearchOptions {
+    DepthFormat depth        = DepthFormat::float32;
+    FilterKind filter        = FilterKind::nearest;
+    Kernel kernel            = Kernel::grid;
+    Rotation rotation        = Rotation::none;
+    int samples              = 32;
+    Faces faces              = Faces::all;
+    KeptSurface surface      = KeptSurface::first;
+    int contact_steps        = 0;
+    double contact_length    = 0.3;
+    double contact_thickness = 0.1;
+};
 
 const std::vector<Parameter> kParameters{
     resolution_parameter<Options>("Texels along each side of a map; a cube has six maps.",
@@ -93,7 +109,7 @@ const std::vector<Parameter> kParameters{
              "where a step lies just behind what the picture shows. 0: no march. Points without a picture have one of "
              "the scene traced.",
          .unit  = "steps",
-         .phase = Phase::visibility,
+         .phase = Phase::look,
          .min   = 0,
          .max   = 1024}),
     parameter<&Options::contact_length>({.name  = "contact_length",
@@ -113,137 +129,148 @@ const std::vector<Parameter> kParameters{
     surround_parameter<Options>(),
 };
 
-}  // namespace
-
-void ShadowZBuffer::configure(const Settings& settings) {
-    const Options o = settings.as<Options>();
-    bias_           = {o.bias, o.constant, o.slope, o.normal_offset};
-    contact_        = {o.contact_steps, o.contact_length, o.contact_thickness};
-    points_         = even_disk(o.samples);
-    rotation_       = o.rotation;
-    filter_         = {};
-    if (o.filter != FilterKind::nearest) filter_ = {kernel_radius(o.kernel, o.radius), o.bilinear, o.kernel, points_};
-    finds_blockers_ = o.filter == FilterKind::pcss;
-    // The light's size stays: aim is not repeated where only the bias changes.
-    soft_.points = points_;
-    soft_.texels = o.search * o.resolution;
-    if (finds_blockers_ && !profile(o.kernel).empty())
-        throw UsageError(
-            "shadow_zbuffer: filter=pcss filters as wide as the penumbra, and Castano's kernels have one width, "
-            "expected kernel=grid or kernel=disc");
-    const double reach    = std::max<double>(filter_.radius, finds_blockers_ ? soft_.texels : 0);
-    const MapMargins room = margins("shadow_zbuffer", o, filter_.radius, reach);
-    map_options_          = {.method         = "shadow_zbuffer",
-                             .resolution     = o.resolution,
-                             .format         = o.depth,
-                             .faces          = o.faces,
-                             .fit_to_casters = o.fit == Fit::casters,
-                             .all_depths     = finds_blockers_,
-                             .midpoints      = o.surface == KeptSurface::midpoint,
-                             .surround       = o.surround,
-                             .border         = room.border,
-                             .headroom       = room.headroom};
-    if (views_) views_->set_options(map_options_);
-}
-
-Service ShadowZBuffer::serves(const SceneFacts& facts) const {
-    std::string why = "any triangles and lights, through a map that samples depth";
-    if (!facts.hard_lights_only)
-        why += finds_blockers_ ? "; penumbrae are as wide as those behind one blocker that is parallel to the light"
-                               : "; area lights are taken as their centres, so that penumbrae are missing";
-    if (map_options_.faces != Faces::all && (facts.open_objects > 0 || facts.nonmanifold_objects > 0))
-        why += "; open meshes cast with one side only";
-    if (rotation_ == Rotation::gradient) why += "; samples depend on the pixel that the camera sees a point through";
-    if (contact_.steps > 0) why += "; contact shadows of what the camera sees";
-    return {How::approximately, why + "."};
-}
-
-void ShadowZBuffer::build(const Scene& scene, const SceneFacts& facts) { views_.emplace(scene, facts, map_options_); }
-
-void ShadowZBuffer::aim(LightId light) {
-    const Light& aimed = views_->scene().lights[light];
-    is_soft_           = finds_blockers_ && is_area(aimed.kind);
-    if (is_soft_) soft_.size = disk_radius(aimed);
-    views_->fit(light);
-    views_->rasterise();
-}
-
-Receiver ShadowZBuffer::rotated(Receiver receiver, const CameraFrame& camera, dvec3 p) const {
-    if (rotation_ == Rotation::noise) receiver.turn = noise_turn(receiver.x, receiver.y);
-    if (rotation_ != Rotation::gradient) return receiver;
-    // Behind a perspective eye there are no pixels.
-    const dvec3 pixel = camera.project(p);
-    if (pixel.z > 0 || camera.projection == Projection::orthographic)
-        receiver.turn = gradient_turn(std::floor(pixel.x), std::floor(pixel.y));
-    return receiver;
-}
-
-const PointBatch* ShadowZBuffer::picture(const PointBatch& points, PointBatch& traced) const {
-    if (contact_.steps == 0) return nullptr;
-    if (points.raster) return &points;
-    const Scene& scene       = views_->scene();
-    const CameraFrame camera = picture_of(scene, points);
-    try {
-        traced = primary_points(RayScene(scene), scene, scene.camera, camera.width, camera.height);
-    } catch (const InputError&) {  // an eye too far away for rays
-        return nullptr;
+class ShadowZBuffer final : public MethodWith<Options> {
+public:
+    explicit ShadowZBuffer(const Settings& settings) : MethodWith(settings) {
+        if (options.filter != FilterKind::nearest)
+            filter_ = {kernel_radius(options.kernel, options.radius), options.bilinear, options.kernel, disc_};
+        if (finds_blockers_ && !profile(options.kernel).empty())
+            throw UsageError(
+                "shadow_zbuffer: filter=pcss filters as wide as the penumbra, and Castano's kernels have one width, "
+                "expected kernel=grid or kernel=disc");
+        const double reach    = std::max<double>(filter_.radius, finds_blockers_ ? search_ : 0);
+        const MapMargins room = margins("shadow_zbuffer", options, filter_.radius, reach);
+        map_options_          = {.method     = "shadow_zbuffer",
+                                 .resolution = options.resolution,
+                                 .format     = options.depth,
+                                 .faces      = options.faces,
+                                 .all_depths = finds_blockers_,
+                                 .midpoints  = options.surface == KeptSurface::midpoint,
+                                 .surround   = options.surround,
+                                 .border     = room.border,
+                                 .headroom   = room.headroom};
     }
-    return &traced;
-}
 
-void ShadowZBuffer::visibility(const PointBatch& points, LightId light, Visibility out) const {
-    const CameraFrame camera = picture_of(views_->scene(), points);
-    const auto share         = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
-        const MapView& view = views_->views()[v];
-        return is_soft_ ? soft_share(view, receiver, view.frame.light_space(p).z, bias_.mode, soft_)
-                                : lit_share(view, receiver, bias_.mode, filter_);
-    };
-    const auto rotated_share = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
-        return share(v, rotated(receiver, camera, p), p);
-    };
-    const auto one_sample = [&](std::size_t v, const Receivers8& receivers, const FacetPoints8&, float(&s)[8]) {
-        const unsigned lit = lit_lanes(views_->views()[v], receivers, bias_.mode);
-        for (int k = 0; k < 8; ++k) s[k] = (lit >> k & 1) != 0 ? 1.0f : 0.0f;
-    };
-    if (filter_.is_one_sample() && !is_soft_ && !map_options_.midpoints)
-        look_up(*views_, points, light, bias_, filter_, out, one_sample);
-    else if (rotation_ == Rotation::none)
-        look_up(*views_, points, light, bias_, filter_, out, point_by_point(share));
-    else
-        look_up(*views_, points, light, bias_, filter_, out, point_by_point(rotated_share));
+    [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        std::string why = "any triangles and lights, through a map that samples depth";
+        if (!facts.hard_lights_only)
+            why += finds_blockers_ ? "; penumbrae are as wide as those behind one blocker that is parallel to the light"
+                                   : "; area lights are taken as their centres, so that penumbrae are missing";
+        if (options.faces != Faces::all && (facts.open_objects > 0 || facts.nonmanifold_objects > 0))
+            why += "; open meshes cast with one side only";
+        if (options.rotation == Rotation::gradient)
+            why += "; samples depend on the pixel that the camera sees a point through";
+        if (options.contact_steps > 0) why += "; contact shadows of what the camera sees";
+        return {How::approximately, why + "."};
+    }
 
-    PointBatch traced;
-    const PointBatch* const seen = picture(points, traced);
-    if (seen == nullptr) return;
-    const Light& lamp = views_->scene().lights[light];
-    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet&, dvec3 p) {
-        if (out.s[i] > 0 && march(*seen, p, lamp, contact_)) out.s[i] = 0;
-    });
-}
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<BuiltCasters>(scene, facts, options.fit == Fit::casters);
+    }
 
-void ShadowZBuffer::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
-    // What the search of pcss may find lies farther off; few points are asked.
-    const Filter asked       = is_soft_ ? Filter{static_cast<int>(std::ceil(soft_.texels)), false} : filter_;
-    const CameraFrame camera = picture_of(views_->scene(), points);
-    BlockingSamples samples(points.size());
-    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet& facet, dvec3 p) {
-        if (const auto found = receive(views_->views(), facet, p, bias_, filter_))
-            samples.find(i, found->view, views_->views()[found->view], rotated(found->receiver, camera, p), bias_.mode,
-                         asked);
-    });
-    samples.name(blockers, [&](std::size_t v) { return views_->owners(v); });
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return std::make_unique<LightViews>(built, light, map_options_);
+    }
 
-    PointBatch traced;
-    const PointBatch* const seen = picture(points, traced);
-    if (seen == nullptr) return;
-    const Light& lamp = views_->scene().lights[light];
-    for_each_facet(views_->scene(), points, light, [&](std::size_t i, const Facet&, dvec3 p) {
-        if (blockers[i] != kNoTriangle) return;
-        if (const auto pixel = march(*seen, p, lamp, contact_)) blockers[i] = seen->triangle[*pixel];
-    });
-}
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        return std::make_unique<SeenPicture>(built.scene, points, options.contact_steps > 0);
+    }
 
-std::size_t ShadowZBuffer::memory_bytes() const { return views_ ? views_->memory_bytes() : 0; }
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const auto& views = as<LightViews>(aimed);
+        const auto& seen  = as<SeenPicture>(looked);
+        const bool soft   = is_soft(aimed.source());
+        const SoftFilter soft_filter{disc_, soft ? disk_radius(aimed.source()) : 0, search_};
+        const auto share = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+            const MapView& view = views.views()[v];
+            return soft ? soft_share(view, receiver, view.frame.light_space(p).z, bias_.mode, soft_filter)
+                        : lit_share(view, receiver, bias_.mode, filter_);
+        };
+        const auto rotated_share = [&](std::size_t v, const Receiver& receiver, dvec3 p) {
+            return share(v, rotated(receiver, seen.camera, p), p);
+        };
+        const auto one_sample = [&](std::size_t v, const Receivers8& receivers, const FacetPoints8&, float(&s)[8]) {
+            const unsigned lit = lit_lanes(views.views()[v], receivers, bias_.mode);
+            for (int k = 0; k < 8; ++k) s[k] = (lit >> k & 1) != 0 ? 1.0f : 0.0f;
+        };
+        if (filter_.is_one_sample() && !soft && !map_options_.midpoints)
+            look_up(views, seen.points, bias_, filter_, out, one_sample);
+        else if (options.rotation == Rotation::none)
+            look_up(views, seen.points, bias_, filter_, out, point_by_point(share));
+        else
+            look_up(views, seen.points, bias_, filter_, out, point_by_point(rotated_share));
+        for_each_contact(
+            aimed, seen, [&](std::size_t i) { return out.s[i] > 0; }, [&](std::size_t i, TriangleId) { out.s[i] = 0; });
+    }
+
+    /// Whose depth the map holds in the texel that blocks the point, the nearest of several. Draws the maps again.
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const auto& views = as<LightViews>(aimed);
+        const auto& seen  = as<SeenPicture>(looked);
+        // What the search of pcss may find lies farther off; few points are asked.
+        const Filter asked = is_soft(aimed.source()) ? Filter{static_cast<int>(std::ceil(search_)), false} : filter_;
+        BlockingSamples samples(seen.points.size());
+        for_each_facet(aimed.scene(), seen.points, aimed.light, [&](std::size_t i, const Facet& facet, dvec3 p) {
+            if (const auto found = receive(views.views(), facet, p, bias_, filter_))
+                samples.find(i, found->view, views.views()[found->view], rotated(found->receiver, seen.camera, p),
+                             bias_.mode, asked);
+        });
+        samples.name(blockers, [&](std::size_t v) { return views.owners(v); });
+        for_each_contact(
+            aimed, seen, [&](std::size_t i) { return blockers[i] == kNoTriangle; },
+            [&](std::size_t i, TriangleId shown) { blockers[i] = shown; });
+    }
+
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        Reason reason            = Method::explain(aimed, looked, i, given);
+        const PointBatch& points = looked.points;
+        const auto& views        = as<LightViews>(aimed);
+        const Facet facet        = facet_of(aimed.scene(), points.triangle[i], points.flipped[i] != 0);
+        const dvec3 p            = exact_position(aimed.scene(), points, i);
+        if (const auto found = receive(views.views(), facet, p, bias_, filter_))
+            add_texel(reason, *found, views.views()[found->view], given);
+        else
+            reason.evidence.push_back({"map", "none shows the point"});
+        return reason;
+    }
+
+private:
+    /// Whether penumbrae of the light are filtered.
+    [[nodiscard]] bool is_soft(const Light& light) const { return finds_blockers_ && is_area(light.kind); }
+
+    /// With the angle that discs about a point at world position p are rotated by; `camera` has its pixel.
+    [[nodiscard]] Receiver rotated(Receiver receiver, const CameraFrame& camera, dvec3 p) const {
+        if (options.rotation == Rotation::noise) receiver.turn = noise_turn(receiver.x, receiver.y);
+        if (options.rotation != Rotation::gradient) return receiver;
+        // Behind a perspective eye there are no pixels.
+        const dvec3 pixel = camera.project(p);
+        if (pixel.z > 0 || camera.projection == Projection::orthographic)
+            receiver.turn = gradient_turn(std::floor(pixel.x), std::floor(pixel.y));
+        return receiver;
+    }
+
+    /// Calls found(i, triangle) for the points that `asks(i)` and that a triangle of the picture casts a contact shadow
+    /// on, in parallel.
+    template <class Asks, class Found>
+    void for_each_contact(const Aimed& aimed, const SeenPicture& seen, const Asks& asks, const Found& found) const {
+        const PointBatch* const picture = seen.shown();
+        if (options.contact_steps == 0 || picture == nullptr) return;
+        const ContactMarch contact{options.contact_steps, options.contact_length, options.contact_thickness};
+        for_each_facet(aimed.scene(), seen.points, aimed.light, [&](std::size_t i, const Facet&, dvec3 p) {
+            if (!asks(i)) return;
+            if (const auto pixel = march(*picture, p, aimed.source(), contact)) found(i, picture->triangle[*pixel]);
+        });
+    }
+
+    const Bias bias_{options.bias, options.constant, options.slope, options.normal_offset};
+    const bool finds_blockers_     = options.filter == FilterKind::pcss;
+    const double search_           = options.search * options.resolution;  ///< texels that the search of pcss reaches
+    const std::vector<dvec2> disc_ = even_disk(options.samples);
+    Filter filter_;
+    LightViews::Options map_options_;
+};
+
+}  // namespace
 
 extern const MethodInfo shadow_zbuffer;
 const MethodInfo shadow_zbuffer{

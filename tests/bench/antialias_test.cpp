@@ -118,8 +118,7 @@ TEST(Antialias, SmoothPenumbraeAreInterpolatedAndEdgesAsked) {
                                                  {160, 120}, 9);
     const MethodRun run =
         run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points, {1, 0});
-    VisibilityPlane right(prepared.subpixels.size());
-    run.method->visibility(prepared.subpixels, 0, right.out());
+    const VisibilityPlane right = run.work->ask(prepared.subpixels, 0);
     std::vector<std::uint32_t> ask;
     const VisibilityPlane got =
         between_centres(prepared.scene, prepared.points, run.planes[0], prepared.subpixels, 3, 0, ask);

@@ -176,30 +176,34 @@ TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
 }
 
 /// Lit everywhere, but fails where its parameter says.
-enum class Fails : std::uint8_t { never, build, aim, visibility, contract };
+enum class Fails : std::uint8_t { never, build, aim, look, visibility, contract };
 struct FailingOptions {
     Fails at = Fails::never;
 };
 class Failing : public MethodWith<FailingOptions> {
 public:
-    [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "for a test"}; }
-    void build(const Scene& scene, const SceneFacts&) override {
-        scene_ = &scene;
-        if (options.at == Fails::build) throw std::runtime_error("no stone left");
-    }
-    void aim(LightId light) override {
-        if (options.at == Fails::aim && scene_->lights[light].name == "panel")
-            throw UsageError("the panel is too large");
-    }
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        if (options.at == Fails::visibility && light == 1) throw std::bad_alloc();
-        for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.asks(light, i)) out.s[i] = options.at == Fails::contract ? 1.5f : 1;
-    }
-    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
+    explicit Failing(const Settings& settings) : MethodWith(settings) {}
 
-private:
-    const Scene* scene_ = nullptr;
+    [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "for a test"}; }
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        if (options.at == Fails::build) throw std::runtime_error("no stone left");
+        return Method::build(scene, facts);
+    }
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        if (options.at == Fails::aim && built.scene.lights[light].name == "panel")
+            throw UsageError("the panel is too large");
+        return Method::aim(built, light);
+    }
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        if (options.at == Fails::look) throw MethodError("it sees nothing");
+        return Method::look(built, points);
+    }
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const PointBatch& points = looked.points;
+        if (options.at == Fails::visibility && aimed.light == 1) throw std::bad_alloc();
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (points.asks(aimed.light, i)) out.s[i] = options.at == Fails::contract ? 1.5f : 1;
+    }
 };
 
 TEST_F(Compare, AMethodThatFailsLosesNoOther) {
@@ -207,7 +211,7 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     info.name       = "failing";
     info.title      = "Failing";
     info.parameters = {parameter<&FailingOptions::at>(
-        {.name = "at", .doc = "Where it fails.", .choices = "never|build|aim|visibility|contract"})};
+        {.name = "at", .doc = "Where it fails.", .choices = "never|build|aim|look|visibility|contract"})};
     info.create     = create<Failing>;
 
     options_.methods = {"shadow_zbuffer"};
@@ -216,6 +220,7 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     };
     const std::vector<Case> cases = {{"build", nullptr, "no stone left"},
                                      {"aim", "panel", "the panel is too large"},
+                                     {"look", nullptr, "it sees nothing"},
                                      {"visibility", "panel", "not enough memory"},
                                      {"contract", "lamp", "failing breaks its contract at point"},
                                      {"never", nullptr, ""}};
@@ -223,14 +228,14 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     const ScenesDone done = compare_scenes({scene_}, options_);
     ASSERT_EQ(done.names, std::vector<std::string>{"lamp_over_box"});
     EXPECT_TRUE(done.failed.empty());
-    ASSERT_EQ(done.stopped.size(), 4u);
+    ASSERT_EQ(done.stopped.size(), 5u);
     EXPECT_EQ(done.stopped[1], "lamp_over_box: failing:at=aim: It failed at light panel: the panel is too large");
 
     const Json record = Json::parse(text_of(options_.out / "lamp_over_box/results.json"));
     expect_valid(record);
-    ASSERT_EQ(record["methods"].size(), 6u);
+    ASSERT_EQ(record["methods"].size(), 7u);
     EXPECT_FALSE(record["methods"][0].contains("failed"));
-    for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t k = 0; k < 5; ++k) {
         const Json& method = record["methods"][k + 1];
         ASSERT_TRUE(method.contains("failed")) << cases[k].phase;
         EXPECT_EQ(method["failed"]["light"], cases[k].light ? Json(cases[k].light) : Json()) << cases[k].phase;
@@ -238,8 +243,8 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
         EXPECT_EQ(method["serves"]["how"], "not");
         EXPECT_FALSE(method.contains("errors"));
     }
-    EXPECT_EQ(record["methods"][5]["errors"].size(), 2u) << "the others go on";
-    EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box/failing-5.exr"));
+    EXPECT_EQ(record["methods"][6]["errors"].size(), 2u) << "the others go on";
+    EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box/failing-6.exr"));
 }
 
 TEST_F(Compare, SchemaRefusesWhatItShould) {

@@ -130,6 +130,14 @@ const GrowthFamily kPlanted{"planted",
                             [](double) { return find_growth_family("lights").scene(1); },
                             [](const Scene&, double x) { return x; }};
 
+TEST_F(PlantedGrowth, FramesAreSumsOfThePhasesThatTheyRepeat) {
+    GrowthPoint point{.times = {.choice = MethodChoice(info_)}};
+    point.times.build = {1}, point.times.aim = {2}, point.times.look = {4}, point.times.visibility = {8};
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::camera_frame), std::vector<double>{4 + 8});
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::light_frame), std::vector<double>{2 + 8});
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::object_frame), std::vector<double>{1 + 2 + 4 + 8});
+}
+
 TEST_F(PlantedGrowth, ExponentsAreFound) {
     const GrowthRun run = run_growth(kPlanted, choices(), 65536, options_);
     EXPECT_EQ(run.sizes, (std::vector<double>{256, 1024, 4096, 16384, 65536}));
@@ -143,21 +151,21 @@ TEST_F(PlantedGrowth, ExponentsAreFound) {
     };
     EXPECT_NEAR(exponent(0, Quantity::build), 1, 1e-6);
     EXPECT_NEAR(exponent(0, Quantity::aim), 0, 1e-6);
-    EXPECT_NEAR(exponent(0, Quantity::visibility), 0.5, 1e-6);
-    EXPECT_NEAR(exponent(1, Quantity::visibility), 1.5, 1e-6);
+    EXPECT_NEAR(exponent(0, Quantity::camera_frame), 0.5, 1e-6);
+    EXPECT_NEAR(exponent(1, Quantity::camera_frame), 1.5, 1e-6);
     EXPECT_NEAR(exponent(0, Quantity::memory), 0, 1e-6);
 }
 
 TEST_F(PlantedGrowth, CrossingsLieBetweenTheSizesAroundThem) {
     const GrowthRun run = run_growth(kPlanted, choices(), 65536, options_);
-    const auto found    = measured_crossings(run.series[0], run.series[1], Quantity::visibility);
+    const auto found    = measured_crossings(run.series[0], run.series[1], Quantity::camera_frame);
     ASSERT_EQ(found.size(), 1u);
     // They are equal at 4096, which counts for neither.
     EXPECT_EQ(found[0].between.low, 1024);
     EXPECT_EQ(found[0].between.high, 16384);
     EXPECT_NEAR(found[0].x, 4096, 1e-6);
     EXPECT_FALSE(found[0].first_is_faster_below) << "x^0.5 is more below";
-    EXPECT_TRUE(measured_crossings(run.series[0], run.series[0], Quantity::visibility).empty());
+    EXPECT_TRUE(measured_crossings(run.series[0], run.series[0], Quantity::camera_frame).empty());
     const Json json = growth_json(run);
     ASSERT_FALSE(json["crossings"].empty());
     EXPECT_EQ(json["crossings"][0]["below"], "planted:seed=1");

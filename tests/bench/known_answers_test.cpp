@@ -472,17 +472,19 @@ TEST_F(Wall, DiffFindsTheSameDifference) {
 // ---- times
 // -----------------------------------------------------------------------------------------------------------
 
-/// Each phase sleeps: build 150 ms, aim 50 at the sun, visibility 50 at "top". No time is less than its sleep, and the
-/// sum over lights is the sum.
+/// Each phase sleeps: build 150 ms, aim 50 at the sun, look 30, visibility 50 at "top". No time is less than its sleep,
+/// and the sum over lights is the sum.
 TEST_F(Wall, RecordTellsThePhasesApart) {
     planted_behaviour.work = [](Phase phase, LightId light) {
         if (phase == Phase::build) sleep_ms(150);
         if (phase == Phase::aim && light == kSun) sleep_ms(50);
+        if (phase == Phase::look) sleep_ms(30);
         if (phase == Phase::visibility && light == kTop) sleep_ms(50);
     };
     const json method = compare_wall()["methods"][0];
     const json &times = method["times"], &of = method["light_times"];
     EXPECT_GE(times["build_ms"]["median"], 150.0);
+    EXPECT_GE(times["look_ms"]["median"], 30.0);
     EXPECT_GE(of[0]["aim_ms"]["median"], 50.0);
     EXPECT_GE(of[1]["visibility_ms"]["median"], 50.0);
     for (const char* phase : {"aim_ms", "visibility_ms"}) {

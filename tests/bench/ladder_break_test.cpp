@@ -49,23 +49,17 @@ float truth(LightId light, std::size_t x) { return light == kTop || x >= kLit ? 
 /// Right in any smaller scene: so nothing can be dropped from this one.
 class WrongInTheWhole final : public Method {
 public:
-    void configure(const Settings&) override {}
+    explicit WrongInTheWhole(const Settings&) {}
     [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "planted"}; }
-    void build(const Scene& scene, const SceneFacts&) override {
-        whole_ = scene.lights.size() == 2 && scene.triangles.size() == 14;
-    }
-    void aim(LightId) override {}
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (!points.asks(light, i)) continue;
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const bool is_whole = aimed.scene().lights.size() == 2 && aimed.scene().triangles.size() == 14;
+        const LightId light = aimed.light;
+        for (std::size_t i = 0; i < looked.points.size(); ++i) {
+            if (!looked.points.asks(light, i)) continue;
             const std::size_t x = i % kWidth, y = i / kWidth;
-            out.s[i] = whole_ && is_wrong(light, x, y) ? 1 - truth(light, x) : truth(light, x);
+            out.s[i] = is_whole && is_wrong(light, x, y) ? 1 - truth(light, x) : truth(light, x);
         }
     }
-    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
-
-private:
-    bool whole_ = false;
 };
 const MethodInfo kPlanted{
     .name = "planted", .title = "Planted", .paper = "", .summary = "", .create = create<WrongInTheWhole>};

@@ -420,15 +420,12 @@ std::vector<MethodChoice> judged_methods() {
 template <int answer>
 class Constant final : public Method {
 public:
-    void configure(const Settings&) override {}
+    explicit Constant(const Settings&) {}
     [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "planted"}; }
-    void build(const Scene&, const SceneFacts&) override {}
-    void aim(LightId) override {}
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.asks(light, i)) out.s[i] = answer;
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        for (std::size_t i = 0; i < looked.points.size(); ++i)
+            if (looked.points.asks(aimed.light, i)) out.s[i] = answer;
     }
-    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
 };
 const MethodInfo kAlwaysLit{
     .name = "always_lit", .title = "Always lit", .paper = "", .summary = "", .create = create<Constant<1>>};

@@ -176,7 +176,7 @@ TEST(ViewFacts, AreThoseOfTheSceneAsItIs) {
 /// Runs with a planted method whose phases take known times by a clock of the test's own.
 class PlantedMotion : public testing::Test {
 protected:
-    static constexpr double kBuild = 7, kAim[2] = {3, 5}, kVisibility[2] = {2, 4};
+    static constexpr double kBuild = 7, kAim[2] = {3, 5}, kLook = 6, kVisibility[2] = {2, 4};
     using Calls = std::vector<std::pair<Phase, LightId>>;
 
     PlantedMotion() {
@@ -184,7 +184,10 @@ protected:
         planted_behaviour.answer = [](LightId, std::size_t, std::size_t, int) { return PlantedAnswer{0.5f}; };
         planted_behaviour.work   = [this](Phase phase, LightId light) {
             calls_[where_].emplace_back(phase, light);
-            now_ += phase == Phase::build ? kBuild : phase == Phase::aim ? kAim[light] : kVisibility[light];
+            now_ += phase == Phase::build  ? kBuild
+                      : phase == Phase::aim  ? kAim[light]
+                      : phase == Phase::look ? kLook
+                                             : kVisibility[light];
         };
         options_.frames       = 3;
         options_.still.rounds = 3;
@@ -204,10 +207,10 @@ protected:
 
 TEST_F(PlantedMotion, EachMovementRepeatsItsPhasesAndNoOther) {
     (void)run();
-    const Calls camera{{Phase::visibility, 0}, {Phase::visibility, 1}};
+    const Calls camera{{Phase::look, 0}, {Phase::visibility, 0}, {Phase::visibility, 1}};
     const Calls light{{Phase::aim, 0}, {Phase::visibility, 0}, {Phase::visibility, 1}};
-    const Calls object{{Phase::build, 0}, {Phase::build, 0},      {Phase::aim, 0},
-                       {Phase::aim, 1},   {Phase::visibility, 0}, {Phase::visibility, 1}};
+    const Calls object{{Phase::build, 0}, {Phase::aim, 0},        {Phase::aim, 1},
+                       {Phase::look, 0},  {Phase::visibility, 0}, {Phase::visibility, 1}};
     for (int frame = 1; frame <= 3; ++frame) {
         // What precedes the next movement is run under the last line of the one before.
         if (frame < 3) {
@@ -223,9 +226,9 @@ TEST_F(PlantedMotion, FramesCostWhatTheirPhasesCostAndTheModelAgrees) {
     const MethodMotion& method = motion.methods[0];
     ASSERT_FALSE(method.failed) << *method.failed;
     const double visibility = kVisibility[0] + kVisibility[1];
-    const std::map<Movement, double> expected{{Movement::camera, visibility},
+    const std::map<Movement, double> expected{{Movement::camera, kLook + visibility},
                                               {Movement::light, kAim[0] + visibility},
-                                              {Movement::object, kBuild + kAim[0] + kAim[1] + visibility}};
+                                              {Movement::object, kBuild + kAim[0] + kAim[1] + kLook + visibility}};
     for (const auto& [movement, ms] : expected) {
         EXPECT_EQ(frame_times(method, movement), std::vector<double>(3, ms)) << to_string(movement);
         EXPECT_EQ(model_ms(motion, method, movement), ms) << to_string(movement);
@@ -341,33 +344,34 @@ TEST(Motion, AreaLightsAreComparedAtASampleOfEachFrame) {
 
 // ---- Winners
 
-/// Two or more methods with these times at rest and a frame, always the same.
-SceneMotion made_up(const std::vector<std::array<double, 3>>& phases) {
+/// Two or more methods with these times of build, aim, look, visibility at rest and a frame, always the same.
+SceneMotion made_up(const std::vector<std::array<double, 4>>& phases) {
     static const MethodInfo info = planted_method();
     SceneMotion motion;
     motion.noise_bar = 0.05;
     motion.lights.resize(1);
-    for (const auto& [build, aim, visibility] : phases) {
+    for (const auto& [build, aim, look, visibility] : phases) {
         MethodMotion method{.still = {.choice = MethodChoice(info)}};
         method.still.build = std::vector<double>(4, build);
         method.still.aim = std::vector<double>(4, aim), method.still.light_aim = {method.still.aim};
+        method.still.look       = std::vector<double>(4, look);
         method.still.visibility = std::vector<double>(4, visibility);
-        method.frames[0].assign(6, {{0, {0}, {visibility}}, {}});
-        method.frames[1].assign(6, {{0, {aim}, {visibility}}, {}});
-        method.frames[2].assign(6, {{build, {aim}, {visibility}}, {}});
+        method.frames[0].assign(6, {{0, {0}, look, {visibility}}, {}});
+        method.frames[1].assign(6, {{0, {aim}, 0, {visibility}}, {}});
+        method.frames[2].assign(6, {{build, {aim}, look, {visibility}}, {}});
         motion.methods.push_back(std::move(method));
     }
     return motion;
 }
 
 TEST(MotionSummary, WinnersFollowWhatMoves) {
-    const SceneMotion motion = made_up({{10, 0, 1}, {0, 4, 2}, {0, 0, 3}});
+    const SceneMotion motion = made_up({{10, 0, 0.5, 0.5}, {0, 4, 0, 2}, {0, 0, 1, 2}});
     const auto first         = [&](const std::array<double, 3>& share) {
         const std::optional<Winner> won = winner(motion, complete(motion), {"", share});
         return std::pair(won->method, won->ms);
     };
     EXPECT_EQ(first({1, 0, 0}), std::pair(std::size_t{0}, 1.0));
-    EXPECT_EQ(first({0, 1, 0}), std::pair(std::size_t{0}, 1.0));
+    EXPECT_EQ(first({0, 1, 0}), std::pair(std::size_t{0}, 0.5)) << "a light that moves repeats no look";
     EXPECT_EQ(first({0, 0, 1}), std::pair(std::size_t{2}, 3.0));
     EXPECT_EQ(first({0.5, 0, 0.5}), std::pair(std::size_t{2}, 3.0));
     EXPECT_EQ(first({0.9, 0, 0.1}), std::pair(std::size_t{0}, 2.0));
@@ -380,7 +384,7 @@ TEST(MotionSummary, WinnersFollowWhatMoves) {
 
 TEST(MotionSummary, WhatTheNoiseBarCoversIsATie) {
     const auto ties = [](double other) {
-        const SceneMotion motion = made_up({{1, 1, 1}, {1, 1, other}});
+        const SceneMotion motion = made_up({{1, 1, 0.25, 0.75}, {1, 1, 0.25, other - 0.25}});
         return winner(motion, complete(motion), {"", {1, 0, 0}})->ties.size();
     };
     EXPECT_EQ(ties(1.04), 1u);
@@ -388,7 +392,7 @@ TEST(MotionSummary, WhatTheNoiseBarCoversIsATie) {
 }
 
 TEST(MotionSummary, ABuildPaysOffAfterItsFrames) {
-    const SceneMotion motion           = made_up({{10, 1, 1}, {0, 1, 3.5}, {20, 0, 4}});
+    const SceneMotion motion           = made_up({{10, 1, 0.5, 0.5}, {0, 1, 1.5, 2}, {20, 0, 0, 4}});
     const std::vector<BreakEven> pairs = break_evens(motion, complete(motion));
     ASSERT_EQ(pairs.size(), 1u) << "the third is behind the others in both";
     EXPECT_EQ(pairs[0].slow, 0u);
@@ -401,7 +405,7 @@ TEST(MotionSummary, ABuildPaysOffAfterItsFrames) {
 }
 
 TEST(MotionSummary, MixesOfAMovementThatCannotBeAreLeftOut) {
-    SceneMotion motion         = made_up({{1, 1, 1}});
+    SceneMotion motion         = made_up({{1, 1, 0, 1}});
     motion.movements[2].cannot = "no";
     std::size_t left           = 0;
     for (const Mix& mix : canonical_mixes()) {

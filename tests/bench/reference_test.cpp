@@ -7,6 +7,7 @@
 
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/stratified_sample.h"
+#include "umbra/tests/support/asked.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -29,22 +30,18 @@ TEST(AffordablePoints, AreAllUnlessTrianglesOrStepsPromiseMinutes) {
 }
 
 /// Answers 1, counts steps as a test says.
-struct NoOptions {
-    int unused = 0;
-};
-class CountingMethod final : public MethodWith<NoOptions> {
+class CountingMethod final : public Method {
 public:
     static inline std::uint64_t steps_of_a_point = 0;
 
+    explicit CountingMethod(const Settings&) {}
     [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::exactly, "It is planted."}; }
-    void build(const Scene&, const SceneFacts&) override {}
-    void aim(LightId) override {}
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const PointBatch& points = looked.points;
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (points.asks(light, i)) out.s[i] = 1;
+            if (points.asks(aimed.light, i)) out.s[i] = 1;
         if (out.steps != nullptr) *out.steps += steps_of_a_point * points.size();
     }
-    [[nodiscard]] std::size_t memory_bytes() const override { return 0; }
 };
 
 constexpr const char* kLampOverFloor = R"({
@@ -86,9 +83,9 @@ TEST(StepsOfExact, AreManyInRationalsAndWhereTrianglesPassThroughASphereLight) {
     const TemporaryFolder folder;
     const auto steps = [&](const char* scene, const char* method_text = "exact") {
         const PreparedScene p = prepare_scene(folder.write("scene.json", scene), {64, 48});
-        const auto method     = parse_method(method_text).make();
-        method->build(p.scene, p.facts);
-        method->aim(0);
+        Asked method(method_text);
+        method.build(p.scene, p.facts);
+        method.aim(0);
         const PointBatch points = pick(p.points, stratified_sample(p.points, 64));
         std::uint64_t counted   = 0;
         for (int run = 0; run < 2; ++run) {
@@ -96,7 +93,7 @@ TEST(StepsOfExact, AreManyInRationalsAndWhereTrianglesPassThroughASphereLight) {
             VisibilityPlane plane(points.size());
             Visibility out = plane.out();
             out.steps      = &now;
-            method->visibility(points, 0, out);
+            method.visibility(points, 0, out);
             EXPECT_EQ(run == 0 ? now.load() : counted, now);
             counted = now;
         }

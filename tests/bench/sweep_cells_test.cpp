@@ -350,21 +350,24 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
                              {"undefined", undefined},
                              {"errors", {e}}};
         const auto timing = [](double median) { return Json{{"median", median}}; };
-        return MeasuredSetting{parse_method(text),
-                               {c},
-                               {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"visibility_ms", timing(ms)}}};
+        return MeasuredSetting{
+            parse_method(text),
+            {c},
+            {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"look_ms", timing(3)}, {"visibility_ms", timing(ms)}}};
     };
     const std::vector<MeasuredSetting> settings = {
         swept("ray_traced:samples=1", 1, 0.1, 0), swept("ray_traced:samples=2", 2, 0.2, 0),
         swept("ray_traced:samples=4", 3, 0, 0), swept("ray_traced:samples=8", 0.5, 0, 0.5)};
     const Json record = sweep_json(settings, 1, {60, 0, 0}, {});
     EXPECT_EQ(record["fronts"]["rmse"], (Json{"ray_traced:samples=1", "ray_traced:samples=4"}));
-    EXPECT_EQ(record["settings"][0]["cost_ms"], 1);
+    EXPECT_EQ(record["settings"][0]["cost_ms"], 3 + 1);
     EXPECT_EQ(record["settings"][3]["excluded"], "it leaves 50 % of the points undefined");
     EXPECT_TRUE(record["settings"][0]["excluded"].is_null());
     // Half of the frames have a light that moved: aim is paid in half of them.
-    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0}, {})["settings"][1]["cost_ms"].get<double>(), 2 + 0.5 * 10, 1e-12);
-    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60}, {})["settings"][1]["cost_ms"].get<double>(), 2 + 10 + 100, 1e-12);
+    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0}, {})["settings"][1]["cost_ms"].get<double>(), 3 + 2 + 0.5 * 10,
+                1e-12);
+    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60}, {})["settings"][1]["cost_ms"].get<double>(), 3 + 2 + 10 + 100,
+                1e-12);
 }
 
 /// What a sweep says of a setting is its error in the view that is hardest for it.
@@ -547,7 +550,8 @@ TEST(Recommend, PassesOverWhatTheReferenceOutdoes) {
     EXPECT_FALSE(of("ray_traced").costs.empty());
     EXPECT_TRUE(of("shadow_zbuffer").costs.empty());
     const RunTimes run = lab.price(of("shadow_zbuffer").choice).value();
-    EXPECT_EQ(*of("shadow_zbuffer").cost, frame_cost_ms(o.workload, run.build, run.aim[0], run.visibility[0]));
+    EXPECT_EQ(*of("shadow_zbuffer").cost,
+              frame_cost_ms(o.workload, {run.build, run.aim[0], run.look, run.visibility[0]}));
     EXPECT_TRUE(outdone.tied.empty());
     ASSERT_TRUE(outdone.runner_up.has_value());
     EXPECT_GT(outdone.runner_up->ratio, 5);

@@ -16,13 +16,13 @@ namespace umbra {
 namespace {
 
 struct FakeOptions {
-    int tree = 1, map = 1, samples = 1;
+    int tree = 1, map = 1, grid = 0, samples = 1;
 };
 
-/// One call of a phase: which object, with which settings.
+/// One call of a phase: on which build, with which settings.
 struct Call {
     Phase phase;
-    int object;
+    int build;
     FakeOptions options;
     LightId light = 0;
 };
@@ -30,29 +30,61 @@ struct Call {
 struct Fake {
     double now = 0;
     std::vector<Call> calls;
-    int objects = 0;
+    int builds = 0;
     std::function<void(const Call&)> extra;  ///< may move the clock further, or throw
     bool serves = true;
 };
 Fake fake;
 
-/// Takes 100 `tree` to build, 10 `map` to aim, `samples` for visibility; the second light twice that of the last two.
+/// What is outside the clock.
+constexpr double kOutside = 1e6;
+
+/// Values end outside the clock.
+struct FakeBuilt final : Built {
+    using Built::Built;
+    ~FakeBuilt() override { fake.now += kOutside; }
+    int number = fake.builds++;
+};
+struct FakeAimed final : Aimed {
+    FakeAimed(const Built& from, LightId at, std::size_t size) : Aimed(from, at), bytes(size) {}
+    ~FakeAimed() override { fake.now += kOutside; }
+    [[nodiscard]] std::size_t memory_bytes() const override { return bytes; }
+    std::size_t bytes;
+};
+struct FakeLooked final : Looked {
+    using Looked::Looked;
+    ~FakeLooked() override { fake.now += kOutside; }
+};
+
+/// Takes 100 `tree` to build, 10 `map` to aim, 20 `grid` to look, `samples` for visibility; the second light twice that
+/// of aim and visibility.
 class FakeMethod final : public MethodWith<FakeOptions> {
 public:
-    FakeMethod() : object_(fake.objects++) { fake.now += 1e6; }  // construction is outside the clock
+    explicit FakeMethod(const Settings& settings) : MethodWith(settings) { fake.now += kOutside; }
     [[nodiscard]] Service serves(const SceneFacts&) const override {
         return {fake.serves ? How::approximately : How::not_at_all, "as the test says"};
     }
-    void build(const Scene&, const SceneFacts&) override {
-        spend({Phase::build, object_, options}, 100 * options.tree);
+    void warm_up(const Scene&, const SceneFacts&) const override { fake.now += kOutside; }
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        auto built = std::make_unique<FakeBuilt>(scene, facts);
+        spend({Phase::build, built->number, options}, 100 * options.tree);
+        return built;
     }
-    void aim(LightId light) override { spend({Phase::aim, object_, options, light}, 10.0 * options.map * (1 + light)); }
-    void visibility(const PointBatch&, LightId light, Visibility out) const override {
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        spend({Phase::aim, as<FakeBuilt>(built).number, options, light}, 10.0 * options.map * (1 + light));
+        return std::make_unique<FakeAimed>(built, light, 1000u * static_cast<unsigned>(options.map));
+    }
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        spend({Phase::look, as<FakeBuilt>(built).number, options}, 20.0 * options.grid);
+        return std::make_unique<FakeLooked>(points);
+    }
+    void visibility(const Aimed& aimed, const Looked&, Visibility out) const override {
         for (const float s : out.s) ASSERT_EQ(s, 0) << "the plane is not cleared";
         for (float& s : out.s) s = 1;
-        spend({Phase::visibility, object_, options, light}, 1.0 * options.samples * (1 + light));
+        const LightId light = aimed.light;
+        spend({Phase::visibility, as<FakeBuilt>(aimed.built).number, options, light},
+              1.0 * options.samples * (1 + light));
     }
-    [[nodiscard]] std::size_t memory_bytes() const override { return 1000u * static_cast<unsigned>(options.map); }
 
 private:
     static void spend(const Call& call, double ms) {
@@ -60,7 +92,6 @@ private:
         fake.calls.push_back(call);
         if (fake.extra) fake.extra(call);
     }
-    int object_;
 };
 
 MethodInfo fake_method(std::string_view name) {
@@ -70,6 +101,8 @@ MethodInfo fake_method(std::string_view name) {
         parameter<&FakeOptions::tree>(
             {.name = "tree", .doc = "A number.", .phase = Phase::build, .min = 0, .max = 1000}),
         parameter<&FakeOptions::map>({.name = "map", .doc = "A number.", .phase = Phase::aim, .min = 0, .max = 1000}),
+        parameter<&FakeOptions::grid>(
+            {.name = "grid", .doc = "A number.", .phase = Phase::look, .min = 0, .max = 1000}),
         parameter<&FakeOptions::samples>({.name = "samples", .doc = "A number.", .min = 0, .max = 1000})};
     info.create = create<FakeMethod>;
     return info;
@@ -93,11 +126,12 @@ protected:
         options_.calibration_loop = [] { fake.now += 20; };
     }
 
-    [[nodiscard]] static MethodChoice choice(const MethodInfo& info, int tree, int map, int samples) {
+    [[nodiscard]] static MethodChoice choice(const MethodInfo& info, int tree, int map, int samples, int grid = 0) {
         MethodChoice c(info);
         c.settings.set("tree", tree);
         c.settings.set("map", map);
         c.settings.set("samples", samples);
+        c.settings.set("grid", grid);
         return c;
     }
 
@@ -109,12 +143,13 @@ protected:
 /// What a choice's phases take by the fake's definition, over both lights.
 double build_ms(const MethodChoice& c) { return 100 * c.settings.value("tree"); }
 double aim_ms(const MethodChoice& c) { return 30 * c.settings.value("map"); }
+double look_ms(const MethodChoice& c) { return 20 * c.settings.value("grid"); }
 double visibility_ms(const MethodChoice& c) { return 3 * c.settings.value("samples"); }
 
 /// A setting that is slow is so under its own name, whatever the order; neighbours keep their times.
 TEST_F(TurnsTest, EachTimeIsRecordedUnderItsOwnSetting) {
     std::vector<MethodChoice> choices;
-    for (int k = 0; k < 12; ++k) choices.push_back(choice(k % 2 ? a_ : b_, 1 + k / 4, 1 + k % 5, 1 + 7 * k));
+    for (int k = 0; k < 12; ++k) choices.push_back(choice(k % 2 ? a_ : b_, 1 + k / 4, 1 + k % 5, 1 + 7 * k, k % 3));
     options_.rounds   = 5;
     const Turns turns = time_in_turns(prepared_, choices, options_);
     ASSERT_EQ(turns.settings.size(), choices.size());
@@ -125,12 +160,16 @@ TEST_F(TurnsTest, EachTimeIsRecordedUnderItsOwnSetting) {
         const std::vector<double> build(5, build_ms(c)), aim(5, aim_ms(c)), visibility(5, visibility_ms(c));
         EXPECT_EQ(t.build, build) << k;
         EXPECT_EQ(t.aim, aim) << k;
+        EXPECT_EQ(t.look, std::vector<double>(5, look_ms(c))) << k;
         EXPECT_EQ(t.visibility, visibility) << k;
         EXPECT_EQ(t.light_aim[1], std::vector<double>(5, aim_ms(c) * 2 / 3));
         EXPECT_EQ(t.light_visibility[0], std::vector<double>(5, visibility_ms(c) / 3));
-        EXPECT_EQ(t.cold_build, build_ms(c));
-        EXPECT_EQ(t.cold_aim, aim_ms(c));
-        EXPECT_EQ(t.cold_visibility, visibility_ms(c));
+        EXPECT_EQ(t.cold.build, build_ms(c));
+        EXPECT_EQ(t.cold.aim, (std::vector{aim_ms(c) / 3, aim_ms(c) * 2 / 3}));
+        EXPECT_EQ(t.cold.look, look_ms(c));
+        EXPECT_EQ(t.cold.visibility, (std::vector{visibility_ms(c) / 3, visibility_ms(c) * 2 / 3}));
+        EXPECT_EQ(t.cold.all(), build_ms(c) + aim_ms(c) + look_ms(c) + visibility_ms(c));
+        EXPECT_EQ(totals(t), std::vector<double>(5, t.cold.all()));
         EXPECT_EQ(t.memory_bytes, 1000 * c.settings.value("map"));
         EXPECT_FALSE(t.only_cold);
         EXPECT_EQ(t.failed, "");
@@ -139,31 +178,29 @@ TEST_F(TurnsTest, EachTimeIsRecordedUnderItsOwnSetting) {
     EXPECT_EQ(turns.calibration, std::vector<double>(5, 20));
 }
 
-/// In each round: a new object for each group, one build on it, and on that build every setting of the group, each with
-/// its own aim and visibility.
+/// In each round: one new build for each group, and on that build every setting of the group, each with its own look
+/// and, light after light, aim and visibility.
 TEST_F(TurnsTest, SettingsOfOneBuildShareIt) {
     const std::vector<MethodChoice> choices{choice(a_, 2, 1, 1), choice(a_, 3, 1, 1), choice(a_, 2, 5, 1),
                                             choice(b_, 2, 1, 1), choice(a_, 2, 1, 9), choice(b_, 2, 1, 3)};
     options_.rounds   = 4;
     const Turns turns = time_in_turns(prepared_, choices, options_);
 
-    std::map<int, std::vector<Call>> by_object;
-    for (const Call& call : fake.calls) by_object[call.object].push_back(call);
-    int builds = 0;
-    for (const auto& [object, calls] : by_object) {
+    std::map<int, std::vector<Call>> by_build;
+    for (const Call& call : fake.calls) by_build[call.build].push_back(call);
+    const std::pair<Phase, LightId> expected[] = {
+        {Phase::look, 0}, {Phase::aim, 0}, {Phase::visibility, 0}, {Phase::aim, 1}, {Phase::visibility, 1}};
+    for (const auto& [build, calls] : by_build) {
         EXPECT_EQ(calls[0].phase, Phase::build);
-        EXPECT_EQ(std::count_if(calls.begin(), calls.end(), [](const Call& c) { return c.phase == Phase::build; }), 1);
         for (std::size_t i = 1; i < calls.size(); ++i) {
             EXPECT_EQ(calls[i].options.tree, calls[0].options.tree);
-            EXPECT_EQ(calls[i].phase, i % 2 == 1 ? Phase::aim : Phase::visibility);
-            EXPECT_EQ(calls[i].light, (i - 1) / 2 % 2);
+            EXPECT_EQ(std::pair(calls[i].phase, calls[i].light), expected[(i - 1) % 5]) << i;
         }
-        ++builds;
     }
     // Three groups (a tree=2, a tree=3, b tree=2) in the cold round and four more, and the control's twin in four.
-    EXPECT_EQ(builds, 3 * 5 + 4);
-    // Six settings of two lights and two phases in five rounds, the twin's in four.
-    EXPECT_EQ(fake.calls.size(), static_cast<std::size_t>(builds) + 4 * (6 * 5 + 4));
+    EXPECT_EQ(by_build.size(), 3u * 5 + 4);
+    // Six settings in five rounds, the twin in four.
+    EXPECT_EQ(fake.calls.size(), by_build.size() + std::size(expected) * (6 * 5 + 4));
     for (const TurnTimes& t : turns.settings) EXPECT_EQ(t.build.size(), 4u);
 }
 
@@ -272,16 +309,17 @@ TEST_F(TurnsTest, FewerThanThreeRoundsWhereTheBudgetEnds) {
 
 /// Known first runs are kept as the cold ones and decide what is affordable.
 TEST_F(TurnsTest, FirstRunsThatAreKnownAreNotRepeated) {
-    options_.first     = {RunTimes{1, {2, 3}, {4, 5}}, RunTimes{1e9, {2, 3}, {4, 5}}};
+    options_.first     = {RunTimes{1, {2, 3}, 6, {4, 5}}, RunTimes{1e9, {2, 3}, 6, {4, 5}}};
     options_.budget_ms = 1e6;
     options_.rounds    = 2;
     const Turns turns  = time_in_turns(prepared_, std::vector{choice(a_, 1, 1, 1), choice(b_, 1, 1, 1)}, options_);
-    EXPECT_EQ(turns.settings[0].cold_build, 1);
-    EXPECT_EQ(turns.settings[0].cold_aim, 5);
-    EXPECT_EQ(turns.settings[0].cold_visibility, 9);
+    EXPECT_EQ(turns.settings[0].cold.build, 1);
+    EXPECT_EQ(turns.settings[0].cold.aim, (std::vector<double>{2, 3}));
+    EXPECT_EQ(turns.settings[0].cold.look, 6);
+    EXPECT_EQ(turns.settings[0].cold.visibility, (std::vector<double>{4, 5}));
     EXPECT_EQ(turns.settings[0].build.size(), 2u);
     EXPECT_EQ(turns.settings[1].build, std::vector<double>{1e9});
-    EXPECT_EQ(fake.calls.size(), 2u * 2 * 5) << "two rounds of the first setting and of its twin";
+    EXPECT_EQ(fake.calls.size(), 2u * 2 * 6) << "two rounds of the first setting and of its twin";
     options_.first.pop_back();
     EXPECT_THROW((void)time_in_turns(prepared_, std::vector{choice(a_, 1, 1, 1), choice(b_, 1, 1, 1)}, options_),
                  std::logic_error);
@@ -328,20 +366,21 @@ TEST_F(TurnsTest, WhatDoesNotServeIsNotRun) {
 
 TEST_F(TurnsTest, JsonKeepsSamplesAndOrder) {
     TurnTimes t{choice(a_, 1, 1, 1)};
-    t.build           = {3, 1, 2};
-    t.aim             = {6, 4, 5};
-    t.visibility      = {9, 8, 70};
-    t.order           = {2, 0, 1};
-    t.cold_build      = 30;
-    t.cold_aim        = 60;
-    t.cold_visibility = 90;
+    t.build      = {3, 1, 2};
+    t.aim        = {6, 4, 5};
+    t.look       = {0, 2, 1};
+    t.visibility = {9, 8, 70};
+    t.order      = {2, 0, 1};
+    t.cold       = {30, {20, 40}, 10, {90}};
     EXPECT_EQ(
         turn_times_json(t),
         Json::parse(R"({"build_ms": {"median": 2.0, "min": 1.0, "max": 3.0, "runs": 3, "samples": [3.0, 1.0, 2.0]},
                               "aim_ms": {"median": 5.0, "min": 4.0, "max": 6.0, "runs": 3, "samples": [6.0, 4.0, 5.0]},
+                              "look_ms": {"median": 1.0, "min": 0.0, "max": 2.0, "runs": 3,
+                                          "samples": [0.0, 2.0, 1.0]},
                               "visibility_ms": {"median": 9.0, "min": 8.0, "max": 70.0, "runs": 3,
                                                 "samples": [9.0, 8.0, 70.0]},
-                              "cold": {"build_ms": 30.0, "aim_ms": 60.0, "visibility_ms": 90.0},
+                              "cold": {"build_ms": 30.0, "aim_ms": 60.0, "look_ms": 10.0, "visibility_ms": 90.0},
                               "order": [2, 0, 1]})"));
 }
 

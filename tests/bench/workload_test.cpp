@@ -39,17 +39,18 @@ TEST(Workload, MessagesSayWhatWasFoundAndExpected) {
         EXPECT_NE(message_of(text), "no error") << text;
 }
 
-/// Build 100 ms, aim 10, visibility 1.
+/// Build 100 ms, aim 10, look 4, visibility 1.
 TEST(Workload, CostOfAFrameByHand) {
-    const auto cost = [](const char* text) { return frame_cost_ms(parse_workload(text), 100, 10, 1); };
-    EXPECT_DOUBLE_EQ(cost("camera=60"), 1);
-    EXPECT_DOUBLE_EQ(cost("light=60"), 11) << "a moving light repeats aim and visibility in every frame";
-    EXPECT_DOUBLE_EQ(cost("object=60"), 111) << "a moving object repeats all";
-    EXPECT_DOUBLE_EQ(cost("camera=60,light=6"), 1 + 0.1 * 10);
-    EXPECT_DOUBLE_EQ(cost("camera=60,object=6"), 1 + 0.1 * (10 + 100)) << "the light is aimed again as well";
-    EXPECT_DOUBLE_EQ(cost("camera=60,light=30,object=6"), 1 + 0.5 * 10 + 0.1 * 100);
-    EXPECT_DOUBLE_EQ(cost("camera=1,light=4,object=2"), 1 + 10 + 0.5 * 100) << "frames are as many as light events";
-    EXPECT_EQ(frame_cost_ms(parse_workload("camera=60"), std::numeric_limits<double>::infinity(), 10, 1), 1);
+    const auto cost = [](const char* text) { return frame_cost_ms(parse_workload(text), {100, 10, 4, 1}); };
+    EXPECT_DOUBLE_EQ(cost("camera=60"), 4 + 1) << "a moving camera repeats look and visibility in every frame";
+    EXPECT_DOUBLE_EQ(cost("light=60"), 11) << "a moving light repeats aim and visibility";
+    EXPECT_DOUBLE_EQ(cost("object=60"), 115) << "a moving object repeats all";
+    EXPECT_DOUBLE_EQ(cost("camera=60,light=6"), 5 + 0.1 * 10);
+    EXPECT_DOUBLE_EQ(cost("camera=60,object=6"), 5 + 0.1 * (10 + 100)) << "the light is aimed again as well";
+    EXPECT_DOUBLE_EQ(cost("camera=60,light=30,object=6"), 5 + 0.5 * 10 + 0.1 * 100);
+    EXPECT_DOUBLE_EQ(cost("camera=1,light=4,object=2"), 1 + 10 + 0.5 * (4 + 100))
+        << "frames are as many as light events; objects move more often than the camera";
+    EXPECT_EQ(frame_cost_ms(parse_workload("camera=60"), {std::numeric_limits<double>::infinity(), 10, 4, 1}), 5);
 }
 
 }  // namespace

@@ -63,6 +63,7 @@ TEST_F(Failures, CompareRecordsMethodLightAndMessageAndGoesOn) {
     const std::vector<Case> cases = {{"build - exception", nullptr, "a <planted> defect"},
                                      {"build - bad_alloc", nullptr, "not enough memory"},
                                      {"aim 1 worker", "panel", "a <planted> defect"},
+                                     {"look - worker", nullptr, "a <planted> defect"},
                                      {"visibility 0 unknown", "lamp", "an exception of unknown type"},
                                      {"visibility 1 worker", "panel", "a <planted> defect"},
                                      {"visibility 1 contract", "panel", "breaks its contract"},

@@ -1,10 +1,11 @@
 // The program `umbra` with a defect: every method that it makes is wrapped, and the wrapper throws where UMBRA_PLANT
-// says, "METHOD PHASE LIGHT HOW [SCENE]". PHASE is build, aim, visibility or blame; LIGHT a number from 0, or "-" for
-// any; SCENE names the only scene that is concerned. HOW: "exception"; "bad_alloc"; "worker" throws from a thread of a
-// parallel loop; "unknown" throws what is no std::exception; "contract" answers 1.5. The linker redirects
+// says, "METHOD PHASE LIGHT HOW [SCENE]". PHASE is build, aim, look, visibility or blame; LIGHT a number from 0, or "-"
+// for any; SCENE names the only scene that is concerned. HOW: "exception"; "bad_alloc"; "worker" throws from a thread
+// of a parallel loop; "unknown" throws what is no std::exception; "contract" answers 1.5. The linker redirects
 // MethodInfo::make to this file.
 #include <cstdlib>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -39,41 +40,48 @@ const Plant& plant() {
     throw std::runtime_error("a <planted> defect");
 }
 
+/// Its values are those of the method that it wraps.
 class Planted final : public Method {
 public:
-    explicit Planted(std::unique_ptr<Method> method) : method_(std::move(method)) {}
+    explicit Planted(std::unique_ptr<const Method> method) : method_(std::move(method)) {}
 
-    void configure(const Settings& settings) override { method_->configure(settings); }
     [[nodiscard]] Service serves(const SceneFacts& facts) const override { return method_->serves(facts); }
+    [[nodiscard]] bool multiplies() const override { return method_->multiplies(); }
     [[nodiscard]] Measure measures() const override { return method_->measures(); }
-    [[nodiscard]] std::size_t memory_bytes() const override { return method_->memory_bytes(); }
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        here_ = plant().scene.empty() || plant().scene == scene.name;
-        if (is("build", 0)) fail();
-        method_->build(scene, facts);
+    void warm_up(const Scene& scene, const SceneFacts& facts) const override { method_->warm_up(scene, facts); }
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        if (is("build", scene)) fail();
+        return method_->build(scene, facts);
     }
-    void aim(LightId light) override {
-        if (is("aim", light)) fail();
-        method_->aim(light);
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        if (is("aim", built.scene, light)) fail();
+        return method_->aim(built, light);
     }
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        const bool now = is("visibility", light);
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        if (is("look", built.scene)) fail();
+        return method_->look(built, points);
+    }
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const bool now = is("visibility", aimed.scene(), aimed.light);
         if (now && plant().how != "contract") fail();
-        method_->visibility(points, light, out);
+        method_->visibility(aimed, looked, out);
         if (now) std::fill(out.s.begin(), out.s.end(), 1.5f);
     }
-    void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const override {
-        if (is("blame", light)) fail();
-        method_->blame(points, light, blockers);
+    void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
+        if (is("blame", aimed.scene(), aimed.light)) fail();
+        method_->blame(aimed, looked, blockers);
+    }
+    [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
+        return method_->explain(aimed, looked, i, given);
     }
 
 private:
-    [[nodiscard]] bool is(std::string_view phase, LightId light) const {
-        return here_ && plant().phase == phase &&
-               (phase == "build" || plant().light == "-" || plant().light == std::to_string(light));
+    /// `light`: none in a phase that is about no light.
+    [[nodiscard]] static bool is(std::string_view phase, const Scene& scene, std::optional<LightId> light = {}) {
+        return plant().phase == phase && (plant().scene.empty() || plant().scene == scene.name) &&
+               (!light || plant().light == "-" || plant().light == std::to_string(*light));
     }
-    std::unique_ptr<Method> method_;
-    bool here_ = true;
+    std::unique_ptr<const Method> method_;
 };
 
 }  // namespace
@@ -82,11 +90,11 @@ private:
 #ifdef __clang__
 #pragma clang diagnostic ignored "-Wreturn-type-c-linkage"  // C++ calls it, by its mangled name
 #endif
-extern "C" std::unique_ptr<Method> __real__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(const MethodInfo*,
-                                                                                      const Settings&);
-extern "C" std::unique_ptr<Method> __wrap__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(const MethodInfo* info,
-                                                                                      const Settings& settings) {
-    std::unique_ptr<Method> method = __real__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(info, settings);
+extern "C" std::unique_ptr<const Method> __real__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(const MethodInfo*,
+                                                                                            const Settings&);
+extern "C" std::unique_ptr<const Method> __wrap__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(const MethodInfo* info,
+                                                                                            const Settings& settings) {
+    std::unique_ptr<const Method> method = __real__ZNK5umbra10MethodInfo4makeERKNS_8SettingsE(info, settings);
     if (info->name != plant().method) return method;
     return std::make_unique<Planted>(std::move(method));
 }

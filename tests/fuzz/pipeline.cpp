@@ -93,7 +93,7 @@ void run_pipeline(const std::filesystem::path& scene_file) {
         const Image linear = shade(scene, prepared.points, run.planes);
         expect_numbers(linear, choice.text());
         expect_numbers(displayed(linear, scene.tone, scene.exposure), choice.text() + ", displayed");
-        const MethodRun& truth = *reference[run.method->measures() == Measure::area ? 0 : 1];
+        const MethodRun& truth = *reference[run.work->method().measures() == Measure::area ? 0 : 1];
         for (LightId j = 0; j < scene.lights.size(); ++j) (void)explain(scene, prepared.points, j, run, truth);
     }
 }

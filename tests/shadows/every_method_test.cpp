@@ -3,13 +3,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <random>
+#include <set>
+#include <thread>
 
+#include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/method.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"
+#include "umbra/tests/support/phase_values.h"
 
 namespace umbra {
 namespace {
@@ -104,9 +110,9 @@ TEST_P(Matrix, IsRight) {
     if (!service) GTEST_SKIP() << service.why;
 
     const PointBatch points = primary(known.scene);
-    run.method->build(known.scene, run.facts);
+    run.build();
     for (LightId j = 0; j < known.scene.lights.size(); ++j) {
-        run.method->aim(j);
+        run.aim(j);
         const VisibilityPlane got = run.visibility(points, j), right = truth(known, points, j);
         const LightKind kind    = known.scene.lights[j].kind;
         const float tolerance   = visibility_tolerance(kind);
@@ -138,10 +144,77 @@ INSTANTIATE_TEST_SUITE_P(All, Matrix,
                                     std::string(std::get<1>(param.param).name);
                          });
 
+/// A box and a ball on a floor under two lights without an area, and under two with one.
+std::array<Scene, 2> scenes_of_two_lights() {
+    std::array scenes{known_scene("two_lights").scene, known_scene("two_lights").scene};
+    Light &panel = scenes[1].lights[0], &bulb = scenes[1].lights[1];
+    panel.kind     = LightKind::rectangle;
+    panel.position = {2.5f, 4, 1};
+    panel.edge_u = {1, 0, 0}, panel.edge_v = {0, 0, 1};
+    panel.direction = {0, -1, 0};
+    bulb.kind       = LightKind::sphere;
+    bulb.radius     = 0.4f;
+    return scenes;
+}
+
+void move_last_object(Scene& scene) {
+    const Object& object = scene.objects.back();
+    std::set<std::uint32_t> vertices;
+    for (TriangleId t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
+        for (int k = 0; k < 3; ++k) vertices.insert(scene.triangles[t][k]);
+    for (const std::uint32_t v : vertices) scene.positions[v] += vec3(0.3f, 0, 0.2f);
+}
+
+std::unique_ptr<const Built> build(const Method& method, const Scene& scene, const SceneFacts& facts) {
+    method.warm_up(scene, facts);
+    return method.build(scene, facts);
+}
+
+VisibilityPlane ask(const Method& method, const Aimed& aimed, const Looked& looked) {
+    VisibilityPlane plane(looked.points.size());
+    method.visibility(aimed, looked, plane.out());
+    return plane;
+}
+
+/// To the bit.
+void expect_same(const VisibilityPlane& got, const VisibilityPlane& expected, const std::string& what) {
+    EXPECT_EQ(got.s, expected.s) << what;
+    EXPECT_EQ(got.answer, expected.answer) << what;
+    EXPECT_EQ(got.half_width, expected.half_width) << what;
+}
+
+/// Calls work(0) to work(threads - 1), each in a thread of its own.
+void in_threads(std::size_t threads, const std::function<void(std::size_t)>& work) {
+    std::vector<std::thread> running;
+    for (std::size_t k = 0; k < threads; ++k) running.emplace_back(work, k);
+    for (std::thread& thread : running) thread.join();
+}
+
+/// Points of the batch that the plane calls dark, as a batch without a raster.
+PointBatch dark_points(const Scene& scene, const PointBatch& from, LightId light, const VisibilityPlane& plane) {
+    std::vector<std::size_t> dark;
+    for (std::size_t i = 0; i < from.size(); ++i)
+        if (is_open(from, light, i) && plane.answer[i] == Answer::given && plane.s[i] < 1) dark.push_back(i);
+    PointBatch points;
+    points.eye = from.eye;
+    points.resize(dark.size());
+    for (std::size_t k = 0; k < dark.size(); ++k)
+        set_point(points, k, scene, from.triangle[dark[k]], from.u[dark[k]], from.v[dark[k]]);
+    face_lights(points, scene);
+    return points;
+}
+
 /// What shadows/method.h promises, by each method, on scenes that every kind of method serves somehow.
 class Contract : public testing::TestWithParam<const MethodInfo*> {
 protected:
     const MethodInfo& info() const { return *GetParam(); }
+    /// The scenes of two lights that the method serves.
+    [[nodiscard]] std::vector<Scene> served() const {
+        std::vector<Scene> found;
+        for (const Scene& scene : scenes_of_two_lights())
+            if (MethodCase(info(), scene).verdict()) found.push_back(scene);
+        return found;
+    }
 };
 
 TEST_P(Contract, AnswersAreInRangeAndClosedPointsStayUntouched) {
@@ -225,40 +298,224 @@ TEST_P(Contract, ABatchWithoutARasterGetsTheSameAnswers) {
     }
 }
 
-TEST_P(Contract, PhasesMayBeCalledAgain) {
-    KnownScene known = known_scene("two_lights");
-    MethodCase run(info(), known.scene);
-    if (!run.serves()) GTEST_SKIP() << run.serves().why;
-    PointBatch points = primary(known.scene);
-    run.prepare(1);
-    const VisibilityPlane once = run.visibility(points, 1);
+TEST_P(Contract, RepeatedPhasesGiveTheSameBitsAndMemory) {
+    for (const Scene& scene : served()) {
+        const PointBatch points = primary(scene);
+        MethodCase run(info(), scene);
+        run.prepare(1);
+        const VisibilityPlane once = run.visibility(points, 1);
+        const std::size_t memory   = run.memory_bytes();
+        run.aim(0);
+        run.build();
+        run.aim(1);
+        expect_same(run.visibility(points, 1), once, "built again");
+        EXPECT_EQ(run.memory_bytes(), memory);
+    }
+}
 
-    const std::size_t memory = run.method->memory_bytes();
-    run.method->aim(0);
-    run.method->build(known.scene, run.facts);
-    run.method->aim(1);
-    EXPECT_EQ(run.visibility(points, 1).s, once.s) << "built again";
-    EXPECT_EQ(run.method->memory_bytes(), memory) << "built again";
+/// An aim and a look do not know of others, and one look serves all lights: in any order and from any thread.
+TEST_P(Contract, LightsAimedAtTogetherAnswerAsAlone) {
+    for (const Scene& scene : served()) {
+        const PointBatch points = primary(scene);
+        std::array<VisibilityPlane, 2> alone;
+        std::array<std::vector<TriangleId>, 2> blamed_alone;
+        std::array<std::size_t, 2> memory{};
+        std::array<PointBatch, 2> dark;
+        for (LightId j = 0; j < 2; ++j) {
+            MethodCase run(info(), scene);
+            run.prepare(j);
+            alone[j] = run.visibility(points, j);
+            dark[j]  = dark_points(scene, points, j, alone[j]);
+            blamed_alone[j].resize(dark[j].size());
+            run.blame(dark[j], j, blamed_alone[j]);
+            memory[j] = run.memory_bytes();
+        }
+        EXPECT_NE(alone[0].s, alone[1].s);
 
-    // A light moves: aim alone must do, and must give what a new start gives.
-    known.scene.lights[1].position += vec3(4, 0.5f, 0);
-    face_light(points, known.scene, 1);
-    run.method->aim(1);
-    const VisibilityPlane moved = run.visibility(points, 1);
-    EXPECT_NE(moved.s, once.s);
-    MethodCase fresh(info(), known.scene);
-    fresh.prepare(1);
-    EXPECT_EQ(moved.s, fresh.visibility(points, 1).s) << "aimed again";
+        const auto method      = info().make();
+        const SceneFacts facts = find_facts(scene);
+        const auto built       = build(*method, scene, facts);
+        const auto looked      = method->look(*built, points);
+        std::array<std::unique_ptr<const Aimed>, 2> aimed;
+        in_threads(2, [&](std::size_t j) { aimed[j] = method->aim(*built, LightId(j)); });
+        for (const LightId j : {1u, 0u, 1u}) {
+            expect_same(ask(*method, *aimed[j], *looked), alone[j], "one after the other");
+            EXPECT_EQ(built->memory_bytes() + aimed[j]->memory_bytes(), memory[j]);
+        }
+        std::array<VisibilityPlane, 4> together;
+        std::array<std::vector<TriangleId>, 4> blamed;
+        in_threads(4, [&](std::size_t k) {
+            const std::size_t j = k % 2;
+            together[k]         = ask(*method, *aimed[j], *looked);
+            blamed[k].resize(dark[j].size());
+            method->blame(*aimed[j], *method->look(*built, dark[j]), blamed[k]);
+        });
+        for (std::size_t k = 0; k < 4; ++k) {
+            expect_same(together[k], alone[k % 2], "together");
+            EXPECT_EQ(blamed[k], blamed_alone[k % 2]);
+        }
+    }
+}
 
-    // An object moves: build and aim.
-    for (std::size_t p = 4; p < 12; ++p) known.scene.positions[p] += vec3(0.3f, 0, 0.2f);
-    points                 = primary(known.scene);
-    const SceneFacts facts = find_facts(known.scene);
-    run.method->build(known.scene, facts);
-    run.method->aim(1);
-    MethodCase again(info(), known.scene);
-    again.prepare(1);
-    EXPECT_EQ(run.visibility(points, 1).s, again.visibility(points, 1).s) << "built again";
+/// One method, two scenes, made in two threads and asked in turns.
+TEST_P(Contract, ScenesLiveSideBySide) {
+    for (const Scene& scene : served()) {
+        Scene other = scene;
+        move_last_object(other);
+        const std::array<const Scene*, 2> scenes{&scene, &other};
+        std::array<VisibilityPlane, 2> alone;
+        std::array<PointBatch, 2> points;
+        std::array<SceneFacts, 2> facts;
+        for (std::size_t k = 0; k < 2; ++k) {
+            points[k] = primary(*scenes[k]);
+            facts[k]  = find_facts(*scenes[k]);
+            MethodCase run(info(), *scenes[k]);
+            run.prepare(1);
+            alone[k] = run.visibility(points[k], 1);
+        }
+        EXPECT_NE(alone[0].s, alone[1].s);
+
+        const auto method = info().make();
+        std::array<PhaseValues, 2> values;
+        in_threads(2, [&](std::size_t k) { values[k] = make_values(*method, {*scenes[k], facts[k], points[k], 1}); });
+        for (const std::size_t k : {0u, 1u, 0u})
+            expect_same(ask(*method, *values[k].aimed, *values[k].looked), alone[k], "in turns");
+        values[0] = {};
+        expect_same(ask(*method, *values[1].aimed, *values[1].looked), alone[1], "the other is gone");
+    }
+}
+
+/// What moves in the scene repeats its phases: what the others made serves as it is.
+TEST_P(Contract, MovementsRepeatNoMoreThanTheirPhases) {
+    for (Scene scene : served()) {
+        PointBatch points            = primary(scene);
+        const SceneFacts facts       = find_facts(scene);
+        const auto method            = info().make();
+        const auto built             = build(*method, scene, facts);
+        const auto still             = method->aim(*built, 0);
+        auto aimed                   = method->aim(*built, 1);
+        auto looked                  = method->look(*built, points);
+        const VisibilityPlane once[] = {ask(*method, *still, *looked), ask(*method, *aimed, *looked)};
+        const auto from_nothing      = [&](LightId j) {
+            MethodCase run(info(), scene);
+            run.prepare(j);
+            return run.visibility(points, j);
+        };
+
+        // A light: its own aim. The points were looked at before they faced it as they do now.
+        scene.lights[1].position += is_area(scene.lights[1].kind) ? vec3(0.5f, 0.5f, 0.2f) : vec3(4, 0.5f, 0);
+        face_light(points, scene, 1);
+        aimed                       = method->aim(*built, 1);
+        const VisibilityPlane moved = ask(*method, *aimed, *looked);
+        EXPECT_NE(moved.s, once[1].s);
+        expect_same(moved, from_nothing(1), "the light moved");
+        expect_same(ask(*method, *still, *looked), once[0], "the other light");
+
+        // The camera: look.
+        looked.reset();
+        scene.camera.eye += vec3(0.5f, 0.2f, -0.3f);
+        points = primary(scene);
+        looked = method->look(*built, points);
+        expect_same(ask(*method, *aimed, *looked), from_nothing(1), "the camera moved");
+        expect_same(ask(*method, *still, *looked), from_nothing(0), "the camera moved");
+
+        // An object: all.
+        move_last_object(scene);
+        points                 = primary(scene);
+        const SceneFacts after = find_facts(scene);
+        const PhaseValues all  = make_values(*method, {scene, after, points, 1});
+        expect_same(ask(*method, *all.aimed, *all.looked), from_nothing(1), "an object moved");
+    }
+}
+
+/// Other values of a parameter that are near to this one.
+std::vector<double> others(const Parameter& p, double value) {
+    std::vector<double> found;
+    const auto add = [&](double other) {
+        if (other != value && std::ranges::find(found, other) == found.end()) found.push_back(other);
+    };
+    switch (p.type) {
+        case Parameter::Type::boolean: add(1 - value); break;
+        case Parameter::Type::choice:
+            for (double k = 0; k <= static_cast<double>(std::ranges::count(p.choices, '|')); ++k) add(k);
+            break;
+        case Parameter::Type::integer:
+            add(value < p.max ? value + 1 : value - 1);
+            add(std::max(p.min, std::floor(value / 2)));
+            break;
+        case Parameter::Type::real:
+            add(value == 0 ? std::min(p.max, 0.5) : value / 2 >= p.min ? value / 2 : std::min(p.max, 2 * value));
+            break;
+        case Parameter::Type::text: break;
+    }
+    return found;
+}
+
+/// The default, the presets but the dearest, and the default with each other choice of one parameter. Maps are small
+/// and patches large, since many are made.
+std::vector<MethodChoice> settings_of(const MethodInfo& info) {
+    std::vector<MethodChoice> found{MethodChoice(info)};
+    for (const Preset& preset : info.presets)
+        if (preset.name != "best") found.push_back(parse_method(fmt::format("{}@{}", info.name, preset.name)));
+    for (const auto& [name, value] : {std::pair{"resolution", 128.0}, {"size", 0.25}})
+        if (std::ranges::find(info.parameters, name, &Parameter::name) != info.parameters.end())
+            for (MethodChoice& choice : found) choice.settings.set(name, value);
+    for (const Parameter& p : info.parameters) {
+        if (p.type != Parameter::Type::choice && p.type != Parameter::Type::boolean) continue;
+        for (const double other : others(p, p.fallback)) {
+            found.push_back(found.front());
+            found.back().settings.set(p.name, other);
+        }
+    }
+    return found;
+}
+
+/// Nothing where the settings contradict one another.
+std::unique_ptr<const Method> made(const MethodChoice& choice) {
+    try {
+        return choice.make();
+    } catch (const UsageError&) {
+        return nullptr;
+    }
+}
+
+/// A parameter names the first phase that depends on it: what the phases before it made serves every other value of it,
+/// with the bits and the memory of a new start, and without the method that made it.
+TEST_P(Contract, ParametersNameTheirFirstPhase) {
+    const ThreadLimit one(1);  // on which the memory of Embree's trees depends
+    for (const Scene& scene : served())
+        for (const LightId light : {0u, 1u}) {
+            if (light == 0 && is_area(scene.lights[0].kind)) continue;  // of its lights one is enough
+            const SceneFacts facts = find_facts(scene);
+            PointBatch points      = primary(scene);
+            if (!info().needs_raster) {
+                std::vector<std::uint32_t> some;
+                for (std::uint32_t i = 0; i < points.size(); i += 37) some.push_back(i);
+                points = pick(points, some);
+                face_lights(points, scene);
+            }
+            const PhaseInput input{scene, facts, points, light};
+            for (const MethodChoice& from : settings_of(info())) {
+                auto method = made(from);
+                if (!method || !verdict(*method, facts)) continue;
+                const PhaseValues kept = make_values(*method, input);
+                method.reset();
+                for (const Parameter& p : info().parameters) {
+                    if (p.phase == Phase::build) continue;
+                    for (const double other : others(p, from.settings.value(p.name))) {
+                        MethodChoice to = from;
+                        to.settings.set(p.name, other);
+                        ASSERT_EQ(first_changed_phase(from.settings, to.settings), p.phase);
+                        const auto changed = made(to);
+                        if (!changed || !verdict(*changed, facts)) continue;
+                        const PhaseAnswer fresh = answer_from(to, input), again = answer_from(to, input, p.phase, kept);
+                        const std::string what = fmt::format("{} from {}", to.text(), from.text());
+                        expect_same(again.plane, fresh.plane, what);
+                        EXPECT_EQ(again.memory_bytes, fresh.memory_bytes) << what;
+                    }
+                }
+            }
+        }
 }
 
 TEST_P(Contract, AnEmptyBatchIsServed) {
@@ -269,20 +526,7 @@ TEST_P(Contract, AnEmptyBatchIsServed) {
     PointBatch none;
     face_lights(none, known.scene);
     EXPECT_TRUE(run.visibility(none, 0).s.empty());
-}
-
-/// Points of the batch that the plane calls dark, as a batch without a raster.
-PointBatch dark_points(const Scene& scene, const PointBatch& from, LightId light, const VisibilityPlane& plane) {
-    std::vector<std::size_t> dark;
-    for (std::size_t i = 0; i < from.size(); ++i)
-        if (is_open(from, light, i) && plane.answer[i] == Answer::given && plane.s[i] < 1) dark.push_back(i);
-    PointBatch points;
-    points.eye = from.eye;
-    points.resize(dark.size());
-    for (std::size_t k = 0; k < dark.size(); ++k)
-        set_point(points, k, scene, from.triangle[dark[k]], from.u[dark[k]], from.v[dark[k]]);
-    face_lights(points, scene);
-    return points;
+    run.blame(none, 0, {});
 }
 
 /// How far the segment to the light passes outside the triangle, as a fraction of the scene: 0 where it crosses it.
@@ -310,7 +554,7 @@ TEST_P(Contract, BlamesATriangleThatBlocks) {
         const PointBatch raster = primary(known.scene);
         // What a method samples, as texels of a map, may lie off the segment to the light. One that answers by
         // irradiance interpolates between patches: near a shadow's edge points are dark that nothing hides.
-        const bool interpolates  = run.method->measures() == Measure::irradiance;
+        const bool interpolates  = run.measures() == Measure::irradiance;
         const double allowed     = run.serves().how >= How::to_rounding ? 1e-9 : 5e-3;
         const double at_most     = interpolates ? 0.05 : allowed;
         const std::size_t one_in = interpolates ? 5 : 100;
@@ -318,7 +562,7 @@ TEST_P(Contract, BlamesATriangleThatBlocks) {
             run.prepare(j);
             const PointBatch dark = dark_points(known.scene, raster, j, run.visibility(raster, j));
             std::vector<TriangleId> who(dark.size(), 12345);
-            run.method->blame(dark, j, who);
+            run.blame(dark, j, who);
             std::ptrdiff_t off = 0;
             for (std::size_t i = 0; i < who.size(); ++i) {
                 ASSERT_TRUE(who[i] == kNoTriangle || who[i] < known.scene.triangles.size());
@@ -343,7 +587,7 @@ TEST_P(Contract, BlamesSomeOccluderOfAnAreaLight) {
     const PointBatch raster = primary(known.scene);
     const PointBatch dark   = dark_points(known.scene, raster, 0, run.visibility(raster, 0));
     std::vector<TriangleId> who(dark.size(), 12345);
-    run.method->blame(dark, 0, who);
+    run.blame(dark, 0, who);
     std::size_t right = 0;
     for (std::size_t i = 0; i < who.size(); ++i) {
         ASSERT_TRUE(who[i] == kNoTriangle || who[i] < known.scene.triangles.size());

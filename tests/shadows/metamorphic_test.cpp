@@ -20,6 +20,7 @@
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/metamorphic.h"
 #include "umbra/tests/support/method_case.h"
@@ -91,8 +92,8 @@ enum class About : std::uint8_t { all, seeing_area, taking_centre };
 
 struct Relation {
     std::string_view name;
-    Changed (*change)(const Asked&);
-    Asked (*base)(const Asked&);  ///< what it starts from; null: the scene itself
+    Changed (*change)(const Question&);
+    Question (*base)(const Question&);  ///< what it starts from; null: the scene itself
     Same signs, doubles, map, floats;
     About about = About::all;
 };
@@ -112,11 +113,11 @@ constexpr Same bits = Same::bits, sides = Same::sides, rounded = Same::rounded, 
                nothing = Same::nothing, away = Same::away_from_edges;
 const Relation kRelations[] = {
     // Name, change, base; signs, doubles, map, floats; about.
-    {"scaled by 2^-30", [](const Asked& a) { return scaled(a, 0x1p-30); }, nullptr, bits, bits, bits, bits},
-    {"scaled by 2^11", [](const Asked& a) { return scaled(a, 0x1p11); }, nullptr, bits, bits, bits, bits},
-    {"scaled by 2^40", [](const Asked& a) { return scaled(a, 0x1p40); }, nullptr, bits, bits, bits, bits},
-    {"scaled by 3", [](const Asked& a) { return scaled(a, 3); }, nullptr, bits, sides, sides, sides},
-    {"scaled by 0.7", [](const Asked& a) { return scaled(a, 0.7); }, nullptr, rounded, rounded, map, rounded},
+    {"scaled by 2^-30", [](const Question& a) { return scaled(a, 0x1p-30); }, nullptr, bits, bits, bits, bits},
+    {"scaled by 2^11", [](const Question& a) { return scaled(a, 0x1p11); }, nullptr, bits, bits, bits, bits},
+    {"scaled by 2^40", [](const Question& a) { return scaled(a, 0x1p40); }, nullptr, bits, bits, bits, bits},
+    {"scaled by 3", [](const Question& a) { return scaled(a, 3); }, nullptr, bits, sides, sides, sides},
+    {"scaled by 0.7", [](const Question& a) { return scaled(a, 0.7); }, nullptr, rounded, rounded, map, rounded},
     {"axes cycled", axes_cycled, nullptr, bits, sides, map, sides},
     {"quarter turn", quarter_turn, nullptr, bits, sides, map, sides},
     {"moved", moved, nullptr, bits, sides, sides, sides},
@@ -128,9 +129,9 @@ const Relation kRelations[] = {
     {"triangles split", triangles_split, nullptr, sides, sides, map, sides},
     {"subdivided", subdivided, nullptr, sides, sides, map, sides},
     {"rectangles split", rectangles_split, with_rectangles, sides, sides, map, sides, About::seeing_area},
-    {"light shrunk", [](const Asked& a) { return lights_grown(a, 0x1p-20); }, with_point_lights, away, away, map, away,
-     About::seeing_area},
-    {"light grown", [](const Asked& a) { return lights_grown(a, 0x1p-3); }, with_point_lights, nothing, sides, map,
+    {"light shrunk", [](const Question& a) { return lights_grown(a, 0x1p-20); }, with_point_lights, away, away, map,
+     away, About::seeing_area},
+    {"light grown", [](const Question& a) { return lights_grown(a, 0x1p-3); }, with_point_lights, nothing, sides, map,
      sides, About::taking_centre},
 };
 
@@ -164,19 +165,13 @@ struct Answers {
 /// A method, built for a scene, where it serves it.
 class AskedMethod {
 public:
-    AskedMethod(const std::string& choice, const Asked& asked, const SceneFacts& facts) : asked_(&asked) {
-        const MethodChoice parsed = parse_method(choice);
-        method_                   = parsed.make();
-        serves_                   = bool(method_->serves(facts));
-        if (serves_) method_->build(asked.scene, facts);
+    AskedMethod(const std::string& choice, const Question& asked, const SceneFacts& facts)
+        : asked_(&asked), method_(choice), serves_(method_.serves(facts)) {
+        if (serves_) method_.build(asked.scene, facts);
     }
     [[nodiscard]] bool serves() const { return serves_; }
-    void aim(LightId j) { method_->aim(j); }
-    [[nodiscard]] Answers ask(const PointBatch& points, LightId j) const {
-        Answers answers{VisibilityPlane(points.size())};
-        method_->visibility(points, j, answers.plane.out());
-        return answers;
-    }
+    void aim(LightId j) { method_.aim(j); }
+    [[nodiscard]] Answers ask(const PointBatch& points, LightId j) const { return {method_.visibility(points, j)}; }
     [[nodiscard]] std::vector<Answers> all() {
         std::vector<Answers> answers;
         for (LightId j = 0; serves_ && j < asked_->scene.lights.size(); ++j) {
@@ -187,17 +182,17 @@ public:
     }
 
 private:
-    const Asked* asked_;
-    std::unique_ptr<Method> method_;
-    bool serves_ = false;
+    const Question* asked_;
+    Asked method_;
+    bool serves_;
 };
 
 /// A scene with the answers of all methods, each found when first asked for.
 class Answered {
 public:
-    explicit Answered(Asked asked) : asked_(std::move(asked)), facts_(find_facts(asked_.scene)) {}
+    explicit Answered(Question asked) : asked_(std::move(asked)), facts_(find_facts(asked_.scene)) {}
 
-    [[nodiscard]] const Asked& asked() const { return asked_; }
+    [[nodiscard]] const Question& asked() const { return asked_; }
     [[nodiscard]] const SceneFacts& facts() const { return facts_; }
     /// Empty where the method does not serve the scene.
     [[nodiscard]] const std::vector<Answers>& by(const std::string& choice) {
@@ -206,20 +201,19 @@ public:
         return found->second;
     }
     [[nodiscard]] bool serves_exactly(const std::string& choice) const {
-        const MethodChoice parsed = parse_method(choice);
-        return parsed.make()->serves(facts_).how == How::exactly;
+        return Asked(choice).serves(facts_).how == How::exactly;
     }
     /// Does the segment to the light (to an area light's centre) touch an edge or a vertex, and nothing more?
     [[nodiscard]] bool touches(LightId j, std::size_t i) {
         if (touching_.empty()) {
-            const Asked hard = with_point_lights(asked_);
-            touching_        = AskedMethod("exact", hard, find_facts(hard.scene)).all();
+            const Question hard = with_point_lights(asked_);
+            touching_           = AskedMethod("exact", hard, find_facts(hard.scene)).all();
         }
         return touching_[j].plane.answer[i] == Answer::on_boundary;
     }
 
 private:
-    Asked asked_;
+    Question asked_;
     SceneFacts facts_;
     std::map<std::string, std::vector<Answers>> answers_;
     std::vector<Answers> touching_;
@@ -447,14 +441,14 @@ Findings& findings() {
 class Metamorphic : public testing::TestWithParam<Source> {
 protected:
     /// Small pictures where CI waits for them: what a wrong sign or weight does shows in most of a shadow's points.
-    static Asked asked() {
+    static Question asked() {
         const int width = named_files() ? 96 : GetParam().is_file ? 48 : 64;
         return dyadic(GetParam().scene(), width, width * 9 / 16);
     }
 };
 
 TEST_P(Metamorphic, RelationsHold) {
-    std::map<Asked (*)(const Asked&), Answered> bases;
+    std::map<Question (*)(const Question&), Answered> bases;
     const auto plain = bases.try_emplace(nullptr, asked()).first;
     for (const Relation& relation : kRelations) {
         auto base = bases.find(relation.base);
@@ -517,7 +511,7 @@ TEST_P(Metamorphic, SameAnswerAloneAndTogether) {
             run.aim(j);
             const VisibilityPlane all = run.ask(points, j).plane;
             for (const auto& keep : chosen) {
-                const Asked some            = asked_for_some(scene.asked(), keep, false);
+                const Question some         = asked_for_some(scene.asked(), keep, false);
                 const VisibilityPlane alone = run.ask(some.points, j).plane;
                 for (std::size_t i = 0; i < keep.size(); ++i) {
                     if (!keep[i] || (method.batch == Batch::rounds && scene.touches(j, i))) continue;

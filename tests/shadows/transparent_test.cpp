@@ -63,7 +63,7 @@ TEST_P(EveryMethod, IgnoresWhatLetsLightThrough) {
     for (const LightKind kind : kKinds) {
         const Scene with = sheets(kind, TransparentOccluders::ignore), without = sheets(kind, {}, false);
         MethodCase run(*GetParam(), with), bare(*GetParam(), without);
-        if (!verdict(*run.method, run.facts)) continue;
+        if (!run.verdict()) continue;
         const PointBatch points = primary(with);
         // The floor below a sheet is not seen: the points of the scene without sheets, whose triangles come first.
         const PointBatch below = primary(without);
@@ -99,8 +99,8 @@ TEST_P(EveryMethod, BlocksAsAnOpaqueSurfaceWhereTheSceneSaysSo) {
         Scene opaque     = with;
         for (Material& m : opaque.materials) m.opacity = 1;
         MethodCase run(*GetParam(), with), plain(*GetParam(), opaque);
-        ASSERT_EQ(verdict(*run.method, run.facts).how, verdict(*plain.method, plain.facts).how);
-        if (!verdict(*run.method, run.facts)) continue;
+        ASSERT_EQ(run.verdict().how, plain.verdict().how);
+        if (!run.verdict()) continue;
         const PointBatch points = primary(with);
         run.prepare(0), plain.prepare(0);
         EXPECT_EQ(run.visibility(points, 0).s, plain.visibility(points, 0).s) << to_string(kind);
@@ -111,8 +111,8 @@ TEST_P(EveryMethod, MultipliesOrSaysThatItCannot) {
     for (const LightKind kind : kKinds) {
         const Scene scene = sheets(kind, TransparentOccluders::multiply);
         MethodCase run(*GetParam(), scene);
-        const Service service = verdict(*run.method, run.facts);
-        if (!run.method->multiplies()) {
+        const Service service = run.verdict();
+        if (!run.method().multiplies()) {
             EXPECT_EQ(service.how, How::not_at_all);
             if (!run.serves()) continue;  // for another reason
             EXPECT_NE(service.why.find("let a part of the light through"), std::string::npos) << service.why;
@@ -159,7 +159,7 @@ TEST(Transparent, ExactIsBruteForceWhereTransmittancesMultiply) {
     for (const LightKind kind : {LightKind::directional, LightKind::point}) {
         const Scene scene = sheets(kind, TransparentOccluders::multiply);
         MethodCase exact("exact", scene), force("brute_force", scene);
-        EXPECT_EQ(verdict(*exact.method, exact.facts).how, How::exactly);
+        EXPECT_EQ(exact.verdict().how, How::exactly);
         exact.prepare(0), force.prepare(0);
         const PointBatch points = primary(scene);
         const VisibilityPlane a = exact.visibility(points, 0), b = force.visibility(points, 0);
@@ -174,7 +174,7 @@ TEST(Transparent, ExactIsBruteForceWhereTransmittancesMultiply) {
     }
     const Scene area = sheets(LightKind::sphere, TransparentOccluders::multiply);
     const MethodCase exact("exact", area);
-    EXPECT_EQ(verdict(*exact.method, exact.facts).how, How::not_at_all);
+    EXPECT_EQ(exact.verdict().how, How::not_at_all);
 }
 
 /// The picture behind coloured sheets is that of the open floor times their colour; methods agree on it.
@@ -192,7 +192,7 @@ TEST(Transparent, ColouredSheetsThrowColouredLight) {
         MethodCase run(name, scene);
         run.prepare(0);
         VisibilityPlane& plane = planes.emplace_back(points.size(), true);
-        run.method->visibility(points, 0, plane.out());
+        run.visibility(points, 0, plane.out());
     }
     const Image picture     = shade(scene, points, std::span(planes).first(1)),
                 open        = shade(scene, points, lit_everywhere(scene, points));
@@ -214,7 +214,7 @@ TEST(Transparent, ColouredSheetsThrowColouredLight) {
 TEST(Transparent, TwoSheetsLetTheirProductThrough) {
     const Scene scene = load_scene(std::string(UMBRA_SCENES) + "/two_sheets.json");
     MethodCase exact("exact", scene);
-    ASSERT_EQ(verdict(*exact.method, exact.facts).how, How::exactly);
+    ASSERT_EQ(exact.verdict().how, How::exactly);
     exact.prepare(0);
     const PointBatch points     = primary(scene);
     const VisibilityPlane plane = exact.visibility(points, 0);

@@ -1,6 +1,8 @@
-// A method for tests that forgets to repeat a phase: what other methods do correctly, done once.
+// A method for tests that forgets to repeat a phase: what other methods do correctly, done once. Against the contract,
+// it keeps what its phases made, and answers from that.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 
@@ -15,29 +17,30 @@ struct LazyBehaviour {
 };
 inline LazyBehaviour lazy_behaviour;
 
-struct LazyOptions {
-    int unused = 0;
-};
-
-class LazyMethod final : public MethodWith<LazyOptions> {
+/// One caller at a time. All that is built is kept, since an old aim refers to it.
+class LazyMethod final : public Method {
 public:
+    explicit LazyMethod(const Settings&) {}
+
     [[nodiscard]] Service serves(const SceneFacts& facts) const override { return method_->serves(facts); }
-    void build(const Scene& scene, const SceneFacts& facts) override {
-        if (!built_ || !lazy_behaviour.builds_once) method_->build(scene, facts);
-        built_ = true;
+    void warm_up(const Scene& scene, const SceneFacts& facts) const override { method_->warm_up(scene, facts); }
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        if (built_.empty() || !lazy_behaviour.builds_once) built_.push_back(method_->build(scene, facts));
+        return std::make_unique<Built>(scene, facts);
     }
-    void aim(LightId light) override {
-        if (!aimed_ || !lazy_behaviour.aims_once) method_->aim(light);
-        aimed_ = true;
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        if (!aimed_[light] || !lazy_behaviour.aims_once) aimed_[light] = method_->aim(*built_.back(), light);
+        return std::make_unique<Aimed>(built, light);
     }
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        method_->visibility(points, light, out);
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        const Aimed& kept = *aimed_.at(aimed.light);
+        method_->visibility(kept, *method_->look(kept.built, looked.points), out);
     }
-    [[nodiscard]] std::size_t memory_bytes() const override { return method_->memory_bytes(); }
 
 private:
-    std::unique_ptr<Method> method_ = parse_method(lazy_behaviour.method).make();
-    bool built_ = false, aimed_ = false;
+    std::unique_ptr<const Method> method_ = parse_method(lazy_behaviour.method).make();
+    mutable std::vector<std::unique_ptr<const Built>> built_;
+    mutable std::map<LightId, std::unique_ptr<const Aimed>> aimed_;
 };
 
 /// A method of this name that works as lazy_behaviour says.

@@ -28,7 +28,7 @@ double largest_coordinate(const Scene& scene) {
 }
 
 /// Barycentrics as odd multiples of 2^-13, the third weight neither 0 nor one half. (It is an even multiple.)
-void set_dyadic_point(Asked& asked, std::size_t i) {
+void set_dyadic_point(Question& asked, std::size_t i) {
     constexpr int kOne   = 1 << 13;
     constexpr auto kHalf = static_cast<float>(kOne) / 2;
     const auto odd       = [](float x) { return 2 * static_cast<int>(std::floor(x * kHalf)) + 1; };
@@ -68,7 +68,7 @@ struct Draft {
     std::vector<std::vector<Changed::Part>> lights;
     bool exact = true;
 
-    explicit Draft(const Asked& from)
+    explicit Draft(const Question& from)
         : scene(from.scene),
           names{from.points.triangle, from.points.u, from.points.v},
           point(from.points.size()),
@@ -77,7 +77,7 @@ struct Draft {
         for (LightId j = 0; j < lights.size(); ++j) lights[j] = {{j, 1}};
     }
 
-    [[nodiscard]] Changed finished(const Asked& from) && {
+    [[nodiscard]] Changed finished(const Question& from) && {
         PointBatch points = named(scene, names, from.points);
         return {{std::move(scene), std::move(points)}, std::move(point), std::move(lights), exact};
     }
@@ -114,7 +114,7 @@ void apply(const Map& map, Light& light, bool mirror, bool& exact) {
     light.range  = static_cast<float>(map.scale * static_cast<double>(light.range));
 }
 
-Changed mapped(const Asked& from, const Map& map) {
+Changed mapped(const Question& from, const Map& map) {
     Draft d(from);
     const bool mirror = glm::determinant(map.turn) < 0;
     const auto place  = [&](vec3 p) { return map.scale * (map.turn * dvec3(p)) + map.move; };
@@ -154,7 +154,7 @@ using Part    = std::array<Weights, 3>;
 
 /// Cuts every triangle into the parts that `parts_of` gives for it (themselves wound as it is), and renames the points.
 template <class PartsOf>
-Changed cut(const Asked& from, const PartsOf& parts_of) {
+Changed cut(const Question& from, const PartsOf& parts_of) {
     Draft d(from);
     const Scene& old = from.scene;
     Scene& scene     = d.scene;
@@ -234,7 +234,7 @@ double distance_to_scene(const Scene& scene, vec3 p) {
 
 // ---- what all start from -------------------------------------------------------------------------------------------
 
-Asked dyadic(Scene scene, int width, int height) {
+Question dyadic(Scene scene, int width, int height) {
     const double size = above(largest_coordinate(scene));
     for (vec3& p : scene.positions) p = coarse(p, 0x1p-22 * size);
     for (Light& light : scene.lights) {
@@ -246,7 +246,7 @@ Asked dyadic(Scene scene, int width, int height) {
         light.edge_v        = coarse(light.edge_v, step);
         light.direction     = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
     }
-    Asked asked{std::move(scene), {}};
+    Question asked{std::move(scene), {}};
     // A batch without a raster is of a picture of the scene's own size, for methods that ask what the camera sees.
     asked.scene.width  = width;
     asked.scene.height = height;
@@ -257,16 +257,16 @@ Asked dyadic(Scene scene, int width, int height) {
     return asked;
 }
 
-Asked with_point_lights(const Asked& from) {
-    Asked asked = from;
+Question with_point_lights(const Question& from) {
+    Question asked = from;
     for (Light& light : asked.scene.lights)
         if (is_area(light.kind)) light.kind = LightKind::point;
     face_lights(asked.points, asked.scene);
     return asked;
 }
 
-Asked with_rectangles(const Asked& from) {
-    Asked asked = from;
+Question with_rectangles(const Question& from) {
+    Question asked = from;
     for (Light& light : asked.scene.lights) {
         if (!is_local(light.kind)) continue;
         const dvec3 towards = dvec3(bounds(from.scene).centre()) - dvec3(light.position);
@@ -278,26 +278,26 @@ Asked with_rectangles(const Asked& from) {
 
 // ---- rigid motion, scale -------------------------------------------------------------------------------------------
 
-Changed axes_cycled(const Asked& from) {
+Changed axes_cycled(const Question& from) {
     Map map;
     map.turn = dmat3(dvec3(0, 1, 0), dvec3(0, 0, 1), dvec3(1, 0, 0));  // columns: where x, y and z go
     return mapped(from, map);
 }
 
-Changed quarter_turn(const Asked& from) {
+Changed quarter_turn(const Question& from) {
     Map map;
     map.turn = dmat3(dvec3(0, 0, -1), dvec3(0, 1, 0), dvec3(1, 0, 0));
     return mapped(from, map);
 }
 
-Changed moved(const Asked& from) {
+Changed moved(const Question& from) {
     Map map;
     const double size = above(largest_coordinate(from.scene));
     map.move          = size * dvec3(0.75, -0.5, 0.25);
     return mapped(from, map);
 }
 
-Changed turned_and_moved(const Asked& from) {
+Changed turned_and_moved(const Question& from) {
     const dvec3 axis = glm::normalize(dvec3(0.36, 0.8, -0.48));
     const double c = std::cos(0.7), s = std::sin(0.7);
     Map map;  // Rodrigues' formula
@@ -310,13 +310,13 @@ Changed turned_and_moved(const Asked& from) {
     return mapped(from, map);
 }
 
-Changed scaled(const Asked& from, double factor) {
+Changed scaled(const Question& from, double factor) {
     Map map;
     map.scale = factor;
     return mapped(from, map);
 }
 
-Changed mirrored(const Asked& from) {
+Changed mirrored(const Question& from) {
     Map map;
     map.turn[0][0] = -1;
     return mapped(from, map);
@@ -324,7 +324,7 @@ Changed mirrored(const Asked& from) {
 
 // ---- order ---------------------------------------------------------------------------------------------------------
 
-Changed triangles_shuffled(const Asked& from) {
+Changed triangles_shuffled(const Question& from) {
     Draft d(from);
     std::mt19937 random(7);
     std::vector<TriangleId> now(from.scene.triangles.size());
@@ -346,7 +346,7 @@ Changed triangles_shuffled(const Asked& from) {
     return std::move(d).finished(from);
 }
 
-Changed objects_reversed(const Asked& from) {
+Changed objects_reversed(const Question& from) {
     Draft d(from);
     const Scene& old = from.scene;
     std::vector<TriangleId> now(old.triangles.size());
@@ -368,7 +368,7 @@ Changed objects_reversed(const Asked& from) {
     return std::move(d).finished(from);
 }
 
-Changed lights_reversed(const Asked& from) {
+Changed lights_reversed(const Question& from) {
     Draft d(from);
     std::reverse(d.scene.lights.begin(), d.scene.lights.end());
     std::reverse(d.lights.begin(), d.lights.end());
@@ -377,7 +377,7 @@ Changed lights_reversed(const Asked& from) {
 
 // ---- parts ---------------------------------------------------------------------------------------------------------
 
-Changed triangles_split(const Asked& from) {
+Changed triangles_split(const Question& from) {
     return cut(from, [](TriangleId t) -> std::vector<Part> {
         const std::array<Weights, 3> corner{kA, kB, kC};
         const Weights &a = corner[t / 3 % 3], &b = corner[(t / 3 + 1) % 3], &c = corner[(t / 3 + 2) % 3];
@@ -388,14 +388,14 @@ Changed triangles_split(const Asked& from) {
     });
 }
 
-Changed subdivided(const Asked& from) {
+Changed subdivided(const Question& from) {
     return cut(from, [](TriangleId) -> std::vector<Part> {
         const Weights ab = 0.5 * (kA + kB), bc = 0.5 * (kB + kC), ca = 0.5 * (kC + kA);
         return {{kA, ab, ca}, {ab, kB, bc}, {ca, bc, kC}, {bc, ca, ab}};
     });
 }
 
-Changed rectangles_split(const Asked& from) {
+Changed rectangles_split(const Question& from) {
     Draft d(from);
     d.scene.lights.clear();
     for (std::size_t j = 0; j < from.scene.lights.size(); ++j) {
@@ -420,7 +420,7 @@ Changed rectangles_split(const Asked& from) {
 
 // ---- size of lights ------------------------------------------------------------------------------------------------
 
-Changed lights_grown(const Asked& from, double share) {
+Changed lights_grown(const Question& from, double share) {
     Draft d(from);
     constexpr std::array kKinds{LightKind::rectangle, LightKind::disk, LightKind::sphere};
     for (std::size_t j = 0; j < d.scene.lights.size(); ++j) {
@@ -434,8 +434,8 @@ Changed lights_grown(const Asked& from, double share) {
     return std::move(d).finished(from);
 }
 
-Asked asked_for_some(const Asked& from, const std::vector<std::uint8_t>& keep, bool with_raster) {
-    Asked some = from;
+Question asked_for_some(const Question& from, const std::vector<std::uint8_t>& keep, bool with_raster) {
+    Question some = from;
     if (!with_raster) some.points.raster.reset();
     for (std::size_t i = 0; i < keep.size(); ++i)
         if (!keep[i]) some.points.triangle[i] = kNoTriangle;

@@ -14,7 +14,7 @@
 namespace umbra {
 
 /// A scene and the points that S_j is asked for.
-struct Asked {
+struct Question {
     Scene scene;
     PointBatch points;
 };
@@ -22,7 +22,7 @@ struct Asked {
 /// A changed scene, and where everything went. S_j of light j at point i before is, afterwards, the sum of
 /// weight * S at point[i] over lights[j].
 struct Changed {
-    Asked after;
+    Question after;
     std::vector<std::size_t> point;
     struct Part {
         LightId light = 0;
@@ -39,44 +39,44 @@ struct Changed {
 ///   lights              positions and edges likewise, of 2^-18
 ///   barycentrics        odd multiples of 2^-13 for u and v, none of the three 0 or one half: no point lies on an edge
 ///                       of its triangle, nor of the parts that the triangle is split into
-[[nodiscard]] Asked dyadic(Scene scene, int width, int height);
+[[nodiscard]] Question dyadic(Scene scene, int width, int height);
 
 /// The same with all lights taken as points: area lights at their centres, spots as they are.
-[[nodiscard]] Asked with_point_lights(const Asked& from);
+[[nodiscard]] Question with_point_lights(const Question& from);
 /// The same with every point or spot light made a rectangle that faces the scene, an eighth of its distance wide.
-[[nodiscard]] Asked with_rectangles(const Asked& from);
+[[nodiscard]] Question with_rectangles(const Question& from);
 
 // ---- rigid motion, scale -------------------------------------------------------------------------------------------
-[[nodiscard]] Changed axes_cycled(const Asked& from);   ///< (x, y, z) becomes (z, x, y): a turn by 120 degrees. Exact
-[[nodiscard]] Changed quarter_turn(const Asked& from);  ///< about y. Exact
-[[nodiscard]] Changed moved(const Asked& from);         ///< by about its own size. Exact unless a light is far away
-[[nodiscard]] Changed turned_and_moved(const Asked& from);       ///< by angles and lengths that round every vertex
-[[nodiscard]] Changed scaled(const Asked& from, double factor);  ///< exact for powers of two and for 3
+[[nodiscard]] Changed axes_cycled(const Question& from);  ///< (x, y, z) becomes (z, x, y): a turn by 120 degrees. Exact
+[[nodiscard]] Changed quarter_turn(const Question& from);  ///< about y. Exact
+[[nodiscard]] Changed moved(const Question& from);         ///< by about its own size. Exact unless a light is far away
+[[nodiscard]] Changed turned_and_moved(const Question& from);       ///< by angles and lengths that round every vertex
+[[nodiscard]] Changed scaled(const Question& from, double factor);  ///< exact for powers of two and for 3
 [[nodiscard]] Changed mirrored(
-    const Asked& from);  ///< in x; triangles keep their outside, the picture turns over. Exact
+    const Question& from);  ///< in x; triangles keep their outside, the picture turns over. Exact
 
 // ---- order ---------------------------------------------------------------------------------------------------------
-[[nodiscard]] Changed triangles_shuffled(const Asked& from);  ///< within their objects, positions too. Exact
-[[nodiscard]] Changed objects_reversed(const Asked& from);    ///< exact
-[[nodiscard]] Changed lights_reversed(const Asked& from);     ///< exact
+[[nodiscard]] Changed triangles_shuffled(const Question& from);  ///< within their objects, positions too. Exact
+[[nodiscard]] Changed objects_reversed(const Question& from);    ///< exact
+[[nodiscard]] Changed lights_reversed(const Question& from);     ///< exact
 
 // ---- parts ---------------------------------------------------------------------------------------------------------
 /// Of three triangles one is cut in two from the middle of an edge, its neighbours not (T-junctions), one in three from
 /// a point within. Exact.
-[[nodiscard]] Changed triangles_split(const Asked& from);
+[[nodiscard]] Changed triangles_split(const Question& from);
 /// Each triangle in four, by the middles of its edges. Exact.
-[[nodiscard]] Changed subdivided(const Asked& from);
+[[nodiscard]] Changed subdivided(const Question& from);
 /// Each rectangle light in four parts, a quarter and three quarters one way, halves the other way. Other lights stay.
 /// Exact unless a light is far away.
-[[nodiscard]] Changed rectangles_split(const Asked& from);
+[[nodiscard]] Changed rectangles_split(const Question& from);
 
 // ---- size of lights ------------------------------------------------------------------------------------------------
 /// Point and spot lights become rectangles, disks and spheres in turn, `share` of their distance from the scene's
 /// centre wide. Others stay.
-[[nodiscard]] Changed lights_grown(const Asked& from, double share);
+[[nodiscard]] Changed lights_grown(const Question& from, double share);
 
 /// The same scene, asked for only the points for which `keep` says so, each at its old index among entries that are no
 /// point. With the raster or without.
-[[nodiscard]] Asked asked_for_some(const Asked& from, const std::vector<std::uint8_t>& keep, bool with_raster);
+[[nodiscard]] Question asked_for_some(const Question& from, const std::vector<std::uint8_t>& keep, bool with_raster);
 
 }  // namespace umbra

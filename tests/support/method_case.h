@@ -1,37 +1,29 @@
 // One method on one scene, as tests run it.
 #pragma once
 
-#include <memory>
 #include <string_view>
-#include <vector>
 
 #include "umbra/core/errors/visibility_error.h"
 #include "umbra/core/render/gbuffer.h"
-#include "umbra/core/scene/facts.h"
-#include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 
 namespace umbra {
 
-struct MethodCase {
+struct MethodCase : Asked {
     const Scene& scene;
     SceneFacts facts = find_facts(scene);
-    std::unique_ptr<Method> method;
 
-    MethodCase(const MethodInfo& info, const Scene& s) : scene(s), method(info.make()) {}
-    MethodCase(std::string_view choice, const Scene& s) : scene(s) {
-        const MethodChoice parsed = parse_method(choice);
-        method                    = parsed.make();
-    }
+    /// `method`: an info, a choice or text, as Asked takes it.
+    template <class Choice>
+    MethodCase(const Choice& method, const Scene& s) : Asked(method), scene(s) {}
 
-    [[nodiscard]] Service serves() const { return method->serves(facts); }
+    [[nodiscard]] Service serves() const { return Asked::serves(facts); }
+    [[nodiscard]] Service verdict() const { return umbra::verdict(method(), facts); }
+    using Asked::build;
+    void build() { build(scene, facts); }
     void prepare(LightId light) {
-        method->build(scene, facts);
-        method->aim(light);
-    }
-    [[nodiscard]] VisibilityPlane visibility(const PointBatch& points, LightId light) const {
-        VisibilityPlane plane(points.size());
-        method->visibility(points, light, plane.out());
-        return plane;
+        build();
+        aim(light);
     }
 };
 

@@ -20,7 +20,8 @@ struct PlantedAnswer {
 struct PlantedBehaviour {
     /// At the pixel in column x, row y from the top.
     std::function<PlantedAnswer(LightId light, std::size_t x, std::size_t y, int seed)> answer;
-    std::function<void(Phase phase, LightId light)> work;  ///< called in each phase; may be empty
+    std::function<void(Phase phase, LightId light)> work;  ///< called in each phase, light 0 where it is about none;
+                                                           ///< may be empty
     std::function<bool(vec3 position)> blames_own;         ///< its shadow there comes from the point's own triangle
     TriangleId blamed        = kNoTriangle;                ///< for its shadow elsewhere
     std::size_t memory_bytes = 0;
@@ -33,12 +34,26 @@ struct PlantedOptions {
 
 class PlantedMethod final : public MethodWith<PlantedOptions> {
 public:
+    explicit PlantedMethod(const Settings& settings) : MethodWith(settings) {}
+
     [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "planted"}; }
-    void build(const Scene&, const SceneFacts&) override { work(Phase::build, 0); }
-    void aim(LightId light) override { work(Phase::aim, light); }
-    void visibility(const PointBatch& points, LightId light, Visibility out) const override {
-        work(Phase::visibility, light);
-        const auto width = static_cast<std::size_t>(points.raster->width);
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        work(Phase::build, 0);
+        return std::make_unique<Geometry>(scene, facts);
+    }
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        work(Phase::aim, light);
+        return Method::aim(built, light);
+    }
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        work(Phase::look, 0);
+        return Method::look(built, points);
+    }
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        work(Phase::visibility, aimed.light);
+        const PointBatch& points = looked.points;
+        const LightId light      = aimed.light;
+        const auto width         = static_cast<std::size_t>(points.raster->width);
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (!points.asks(light, i)) continue;
             const PlantedAnswer a = planted_behaviour.answer(light, i % width, i / width, options.seed);
@@ -49,15 +64,19 @@ public:
                 out.s[i] = a.s;
         }
     }
-    void blame(const PointBatch& points, LightId, std::span<TriangleId> blockers) const override {
+    void blame(const Aimed&, const Looked& looked, std::span<TriangleId> blockers) const override {
+        const PointBatch& points = looked.points;
         for (std::size_t i = 0; i < points.size(); ++i)
             blockers[i] = planted_behaviour.blames_own && planted_behaviour.blames_own(points.position(i))
                               ? points.triangle[i]
                               : planted_behaviour.blamed;
     }
-    [[nodiscard]] std::size_t memory_bytes() const override { return planted_behaviour.memory_bytes; }
 
 private:
+    struct Geometry final : Built {
+        using Built::Built;
+        [[nodiscard]] std::size_t memory_bytes() const override { return planted_behaviour.memory_bytes; }
+    };
     static void work(Phase phase, LightId light) {
         if (planted_behaviour.work) planted_behaviour.work(phase, light);
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string>
 
+#include "umbra/tests/support/asked.h"
+
 namespace umbra {
 namespace {
 
@@ -88,12 +90,10 @@ std::function<VisibilityPlane(int seed)> seeded_planes(const MethodChoice& choic
     return [&, choice, light](int seed) {
         Settings settings = choice.settings;
         settings.set(choice.info->seed, seed);
-        const std::unique_ptr<Method> method = choice.info->make(settings);
-        method->build(scene, facts);
-        method->aim(light);
-        VisibilityPlane plane(points.size());
-        method->visibility(points, light, plane.out());
-        return plane;
+        Asked method(choice.info->make(settings));
+        method.build(scene, facts);
+        method.aim(light);
+        return method.visibility(points, light);
     };
 }
 

@@ -20,7 +20,7 @@ struct PolygonsLine {
 
 int polygons(const PolygonsLine& line, const Common& common) {
     const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});
-    if (const Service service = verdict(AthertonWeiler(), prepared.facts); !service) {
+    if (const Service service = verdict(*atherton_weiler.make(), prepared.facts); !service) {
         print_error("no lit polygons of this scene: {}\n", service.why);
         return kNo;
     }

@@ -326,7 +326,7 @@ TEST(PlantedDefects, NoiseIsNeitherLeakNorAcne) {
     expect_none(interior(once.error), "penumbra");
     EXPECT_EQ(once.error.noise_error.false_shadow + once.error.noise_error.false_light, 0u) << "nobody asked";
 
-    const auto meters  = noise_runs(method, stage.scene, stage.facts, stage.points);
+    const auto meters  = noise_runs(*run.work, stage.scene, stage.points);
     const Explained e  = explain(stage.scene, stage.points, 0, run, stage.truth, &*meters[0]);
     const Interior bad = interior(e.error);
     expect_none(bad, "penumbra");

@@ -8,7 +8,7 @@
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
-#include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 
 namespace umbra {
 namespace {
@@ -137,12 +137,11 @@ TEST(FarLight, IsSeenByEveryMethodThatServesIt) {
                 const SceneFacts facts = find_facts(scene);
                 for (const MethodInfo* info : methods()) {
                     if (info->reference) continue;
-                    const auto method = info->make();
-                    if (!method->serves(facts)) continue;
-                    method->build(scene, facts);
-                    method->aim(0);
-                    VisibilityPlane plane(lit.size());
-                    method->visibility(lit, 0, plane.out());
+                    Asked method(*info);
+                    if (!method.serves(facts)) continue;
+                    method.build(scene, facts);
+                    method.aim(0);
+                    const VisibilityPlane plane = method.visibility(lit, 0);
                     std::size_t top = 0, wrong = 0;
                     for (std::size_t i = 0; i < lit.size(); ++i) {
                         if (lit.facing[0][i] != Facing::front || !plane.defined(i)) continue;

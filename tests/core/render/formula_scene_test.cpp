@@ -12,7 +12,7 @@
 #include "umbra/core/render/whitted.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
-#include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 #include "umbra/tests/support/lit_everywhere.h"
 
 namespace umbra {
@@ -99,17 +99,14 @@ TEST(FormulaScene, WithoutBodiesIsTheTreeOfTriangles) {
         EXPECT_EQ(a.total, b.total);
         EXPECT_EQ(a.too_deep, b.too_deep);
     }
-    const auto method = find_method("brute_force").make();
-    method->build(scene, find_facts(scene));
-    method->aim(0);
-    const Image expected  = gather(scene, triangles,
-                                   light_of_rays(scene, triangles,
-                                                 [&](const PointBatch& points) {
-                                                    VisibilityPlane plane(points.size());
-                                                    method->visibility(points, 0, plane.out());
-                                                    return std::vector<VisibilityPlane>{plane};
-                                                }),
-                                   5);
+    Asked method("brute_force");
+    method.build(scene);
+    method.aim(0);
+    const Image expected =
+        gather(scene, triangles,
+               light_of_rays(scene, triangles,
+                             [&](const PointBatch& points) { return std::vector{method.visibility(points, 0)}; }),
+               5);
     std::size_t different = 0;
     for (std::size_t k = 0; k < expected.data.size(); ++k)
         different += std::abs(expected.data[k] - formula.image.data[k]) > 1e-5f ? 1 : 0;

@@ -12,7 +12,7 @@
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/off_pixel.h"
 #include "umbra/core/scene/facts.h"
-#include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 
 namespace umbra {
 namespace {
@@ -61,13 +61,13 @@ std::vector<VisibilityPlane> answers_with(const std::string& instructions, const
                                           const PointBatch& points) {
     const Limit limit(instructions);
     const SceneFacts facts = find_facts(scene);
-    const auto method      = info.make();
+    Asked method(info);
     std::vector<VisibilityPlane> planes;
-    if (!method->serves(facts)) return planes;
-    method->build(scene, facts);
+    if (!method.serves(facts)) return planes;
+    method.build(scene, facts);
     for (LightId light = 0; light < scene.lights.size(); ++light) {
-        method->aim(light);
-        method->visibility(points, light, planes.emplace_back(points.size()).out());
+        method.aim(light);
+        planes.push_back(method.visibility(points, light));
     }
     return planes;
 }

@@ -59,7 +59,7 @@ TEST(LectureScenes, TheHollowIsDarkForThreeReasons) {
         run.prepare(light);
         const VisibilityPlane plane = run.visibility(asked, light);
         std::vector<TriangleId> who(asked.size(), kNoTriangle);
-        run.method->blame(asked, light, who);
+        run.blame(asked, light, who);
         for (std::size_t i = 0; i < asked.size(); ++i) {
             if (asked.facing[light][i] == Facing::away) {
                 EXPECT_EQ(reasons[light], "faces away");

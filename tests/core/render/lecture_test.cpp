@@ -80,7 +80,7 @@ TEST_P(Lecture, PointLightsGiveUmbraOnly) {
     EXPECT_GT(t.lit, 500u);
     // One that answers by irradiance interpolates between patches, and one that filters a map mixes texels: both blur
     // edges, the latter no further than the edge band.
-    if (run.method->measures() == Measure::irradiance) {
+    if (run.measures() == Measure::irradiance) {
         EXPECT_LE(t.penumbra, t.umbra / 5);
         return;
     }
@@ -220,7 +220,7 @@ TEST_P(Lecture, AShadowHasThreeReasons) {
         EXPECT_EQ(plane.s[0], blocker.empty() ? 1 : 0) << "light " << light;
         if (blocker.empty()) continue;
         TriangleId who = kNoTriangle;
-        run.method->blame(point, light, std::span(&who, 1));
+        run.blame(point, light, std::span(&who, 1));
         if (who != kNoTriangle) {
             EXPECT_EQ(scene.objects[scene.triangle_object[who]].name, blocker);
         }

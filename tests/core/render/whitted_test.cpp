@@ -14,7 +14,7 @@
 #include "umbra/core/render/shade.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
-#include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 #include "umbra/tests/support/lit_everywhere.h"
 
 namespace umbra {
@@ -560,21 +560,16 @@ TEST(Whitted, LightByWayOfAMirrorIsNotSeen) {
     const RayTree tree     = tree_of(scene);
     std::size_t asked      = 0;
     for (const MethodInfo* info : methods()) {
-        const auto method = info->make();
-        if (!verdict(*method, facts)) continue;
-        method->build(scene, facts);
-        method->aim(0);
-        VisibilityPlane plane(1);
-        method->visibility(tree.levels[0].points, 0, plane.out());
-        EXPECT_LT(plane.s[0], 0.5f) << info->name;
-        const Image image = gather(scene, tree,
-                                   light_of_rays(scene, tree,
-                                                 [&](const PointBatch& points) {
-                                                     VisibilityPlane here(points.size());
-                                                     method->visibility(points, 0, here.out());
-                                                     return std::vector<VisibilityPlane>{here};
-                                                 }),
-                                   5);
+        Asked method(*info);
+        if (!verdict(method.method(), facts)) continue;
+        method.build(scene, facts);
+        method.aim(0);
+        EXPECT_LT(method.visibility(tree.levels[0].points, 0).s[0], 0.5f) << info->name;
+        const Image image =
+            gather(scene, tree,
+                   light_of_rays(scene, tree,
+                                 [&](const PointBatch& points) { return std::vector{method.visibility(points, 0)}; }),
+                   5);
         EXPECT_FLOAT_EQ(image.at(0, 0), 0.1f) << info->name;  // the ambient term alone
         ++asked;
     }

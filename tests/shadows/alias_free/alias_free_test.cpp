@@ -28,7 +28,7 @@ Compared against_exact(const Scene& scene) {
     const PointBatch points = primary(scene);
     Compared compared;
     MethodCase binned("alias_free", scene), exact("exact:hard_lights=segments", scene), either("exact", scene);
-    EXPECT_EQ(verdict(*binned.method, binned.facts).how, How::exactly);
+    EXPECT_EQ(binned.verdict().how, How::exactly);
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         binned.prepare(light);
         exact.prepare(light), either.prepare(light);

@@ -47,11 +47,11 @@ double area(const std::vector<dvec2>& loop) {
     return twice / 2;
 }
 
-double lit_area(const AthertonWeiler& method, TriangleId t) {
-    if (method.seen(t) == AthertonWeiler::Seen::lit) return 0.5;
-    if (method.seen(t) != AthertonWeiler::Seen::parts) return 0;
+double lit_area(const LitPolygons& polygons, TriangleId t) {
+    if (polygons.seen(t) == LitPolygons::Seen::lit) return 0.5;
+    if (polygons.seen(t) != LitPolygons::Seen::parts) return 0;
     double sum = 0;
-    for (const auto& loop : method.lit_loops(t)) sum += area(loop);
+    for (const auto& loop : polygons.lit_loops(t)) sum += area(loop);
     return sum;
 }
 
@@ -67,13 +67,13 @@ TEST(LitPolygons, HaveTheAreasThatAreKnownByHand) {
              {Case{sun({0, -side, 0}), 1.0 / 16, 0.125, 0.125}, Case{sun({0.5f, -side, 0}), 1.0 / 16, 0.125, 0.25},
               Case{lamp({1, 2 * side, 1}), 4.0 / 16, 0, 0}}) {
             const Scene scene = sheet_over_floor(side, known.light);
-            AthertonWeiler method;
-            method.build(scene, find_facts(scene));
-            method.aim(0);
-            ASSERT_EQ(method.seen(0), AthertonWeiler::Seen::parts);
-            EXPECT_NEAR(lit_area(method, 0), 0.5 - known.hidden, 1e-15);
+            MethodCase method("atherton_weiler", scene);
+            method.prepare(0);
+            const auto& polygons = as<LitPolygons>(method.aimed());
+            ASSERT_EQ(polygons.seen(0), LitPolygons::Seen::parts);
+            EXPECT_NEAR(lit_area(polygons, 0), 0.5 - known.hidden, 1e-15);
             double low_u = 1, low_v = 1;
-            const auto& loops = method.lit_loops(0);
+            const auto& loops = polygons.lit_loops(0);
             const auto hole   = std::ranges::min_element(loops, {}, [](const auto& loop) { return area(loop); });
             for (const dvec2 p : *hole) low_u = std::min(low_u, p.x), low_v = std::min(low_v, p.y);
             if (known.hidden < 0.1) {
@@ -81,7 +81,7 @@ TEST(LitPolygons, HaveTheAreasThatAreKnownByHand) {
                 EXPECT_NEAR(low_u, known.u, 1e-15);
                 EXPECT_NEAR(low_v, known.v, 1e-15);
             }
-            EXPECT_EQ(method.seen(1), AthertonWeiler::Seen::lit);
+            EXPECT_EQ(polygons.seen(1), LitPolygons::Seen::lit);
         }
     }
 }
@@ -94,10 +94,10 @@ TEST(LitPolygons, BeginWhereOccludersMeetTheReceiver) {
         add_object(scene, "floor", {{0, 0, 0}, {0, 0, 8}, {8, 0, 0}}, {}, {{0, 1, 2}}, 0);
         add_object(scene, "wall", {{1, foot, 1}, {1, foot, 3}, {1, 1, 3}, {1, 1, 1}}, {}, {{0, 1, 2}, {0, 2, 3}}, 0);
         scene.lights.push_back(sun({1, -1, 0}));
-        AthertonWeiler method;
-        method.build(scene, find_facts(scene));
-        method.aim(0);
-        EXPECT_NEAR(lit_area(method, 0), 0.5 - 2.0 / 64, 1e-15) << foot;
+        MethodCase method("atherton_weiler", scene);
+        method.prepare(0);
+        const auto& polygons = as<LitPolygons>(method.aimed());
+        EXPECT_NEAR(lit_area(polygons, 0), 0.5 - 2.0 / 64, 1e-15) << foot;
     }
 }
 

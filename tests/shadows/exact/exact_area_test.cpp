@@ -192,11 +192,11 @@ TEST(ExactArea, AgreesWithBruteForceInRationals) {
         const Scene scene      = random_scene(seed);
         const PointBatch batch = random_points(scene, 150, seed);
         for (const char* choice : {"exact", "exact:arithmetic=rational"}) {
-            const MethodCase run(choice, scene);
+            MethodCase run(choice, scene);
             EXPECT_EQ(run.serves().how, How::exactly);
-            run.method->build(scene, run.facts);
+            run.build();
             for (LightId j = 0; j < scene.lights.size(); ++j) {
-                run.method->aim(j);
+                run.aim(j);
                 const VisibilityPlane got = run.visibility(batch, j);
                 for (std::size_t i = 0; i < batch.size(); ++i) {
                     if (!is_open(batch, j, i) || got.answer[i] != Answer::given) continue;
@@ -221,9 +221,9 @@ TEST(ExactArea, OfASliverThatIsFoldedOverATriangle) {
     add(scene, make_plane(6, 6));
     scene.lights.push_back(rectangle(vec3(0.5f, 2, 0.25f), vec3(0.5f, 0, 0), vec3(0, 0, 0.5f)));
     const PointBatch points = random_points(scene, 400, 2, vec3(0.5f, 6, 0.3f));
-    const MethodCase run("exact", scene);
-    run.method->build(scene, run.facts);
-    run.method->aim(0);
+    MethodCase run("exact", scene);
+    run.build();
+    run.aim(0);
     const VisibilityPlane got = run.visibility(points, 0);
     std::size_t penumbra      = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -300,10 +300,10 @@ TEST(ExactArea, MeetsTheClosedFormOfAHalfPlaneOverRectangles) {
     scene.lights.push_back(rectangle(vec3(0, 4, 0), vec3(3, 0, 0), vec3(0, 0, 0.125f)));
     for (const char* choice : {"exact", "exact:arithmetic=rational"}) {
         const PointBatch points = floor_points(scene);
-        const MethodCase run(choice, scene);
-        run.method->build(scene, run.facts);
+        MethodCase run(choice, scene);
+        run.build();
         for (LightId j = 0; j < scene.lights.size(); ++j) {
-            run.method->aim(j);
+            run.aim(j);
             const VisibilityPlane got = run.visibility(points, j);
             const double a            = double(scene.lights[j].edge_u.x) / 2;
             std::size_t penumbra      = 0;

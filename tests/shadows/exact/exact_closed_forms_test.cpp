@@ -134,14 +134,14 @@ struct Found {
 Found expect_meets(const Scene& scene, const PointBatch& points, const Formula& formula) {
     Found found;
     for (const char* choice : {"exact", "exact:arithmetic=rational"}) {
-        const MethodCase run(choice, scene);
-        run.method->build(scene, run.facts);
+        MethodCase run(choice, scene);
+        run.build();
         found = {};
         std::string where;
         double worst      = 0;
         std::size_t wrong = 0;
         for (LightId j = 0; j < scene.lights.size(); ++j) {
-            run.method->aim(j);
+            run.aim(j);
             const VisibilityPlane got = run.visibility(points, j);
             for (std::size_t i = 0; i < points.size(); ++i) {
                 if (!is_open(points, j, i)) continue;

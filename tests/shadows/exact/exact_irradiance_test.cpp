@@ -16,6 +16,8 @@
 namespace umbra {
 namespace {
 
+using exact_detail::AimedLight;
+using exact_detail::AreaOccluders;
 using exact_detail::ExactArea;
 using Arithmetic = ExactArea::Arithmetic;
 using Real       = long double;
@@ -75,9 +77,9 @@ Light light_of(LightKind kind, vec3 centre, float radius, vec3 edge_u = vec3(1, 
 template <class Body>
 std::uint64_t ask(const Scene& scene, const PointBatch& points, Arithmetic arithmetic, const Body& body) {
     const TriangleTree tree(scene);
-    ExactArea area(arithmetic, Measure::irradiance);
-    area.build(scene, tree);
-    area.aim(scene.lights[0]);
+    const AreaOccluders among(scene, tree);
+    const AimedLight light(scene.lights[0], among.occluders);
+    const ExactArea area(among, light, arithmetic, Measure::irradiance);
     ExactArea::Workspace work;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (is_open(points, 0, i))

@@ -13,6 +13,8 @@
 namespace umbra {
 namespace {
 
+using exact_detail::AimedLight;
+using exact_detail::AreaOccluders;
 using exact_detail::ExactArea;
 using Arithmetic = ExactArea::Arithmetic;
 
@@ -48,10 +50,10 @@ PointBatch points_anywhere(const Scene& scene, std::size_t count) {
 template <class Body>
 void ask(const Scene& scene, const PointBatch& points, const Body& body) {
     const TriangleTree tree(scene);
+    const AreaOccluders among(scene, tree);
+    const AimedLight light(scene.lights[0], among.occluders);
     for (const Arithmetic arithmetic : {Arithmetic::filtered, Arithmetic::rational}) {
-        ExactArea area(arithmetic);
-        area.build(scene, tree);
-        area.aim(scene.lights[0]);
+        const ExactArea area(among, light, arithmetic);
         ExactArea::Workspace work;
         for (std::size_t i = 0; i < points.size(); ++i)
             if (is_open(points, 0, i))
@@ -140,10 +142,10 @@ TEST(ExactRoughLight, NextToTheSurfaceOfALargeSphere) {
     add(scene, Mesh{{{-1, -5e-7f, -1}, {1, -5e-7f, -1}, {0, -5e-7f, 1}}, {}, {{0, 1, 2}}});
     add_sphere_light(scene, vec3(0, r, 0), r);
     const TriangleTree tree(scene);
+    const AreaOccluders among(scene, tree);
+    const AimedLight light(scene.lights[0], among.occluders);
     for (const Arithmetic arithmetic : {Arithmetic::filtered, Arithmetic::rational}) {
-        ExactArea area(arithmetic);
-        area.build(scene, tree);
-        area.aim(scene.lights[0]);
+        const ExactArea area(among, light, arithmetic);
         ExactArea::Workspace work;
         const ExactArea::Answer got = area.seen(0, 0.5f, 0.25f, false, 1, work);  // under the other's middle
         EXPECT_LT(double(got.visibility) - double(got.half_width), 0.5);

@@ -18,6 +18,8 @@
 namespace umbra {
 namespace {
 
+using exact_detail::AimedLight;
+using exact_detail::AreaOccluders;
 using exact_detail::ExactArea;
 
 /// Half an ulp of a float, and twice what each arithmetic may be off.
@@ -86,11 +88,12 @@ TEST_P(AreaLights, FloatingPointAgreesWithRationals) {
     const std::size_t wanted = said ? std::strtoull(said, nullptr, 10) : 300;
     const Scene scene        = load_scene(fmt::format("{}/{}.json", UMBRA_SCENES, GetParam()));
     const TriangleTree tree(scene);
-    ExactArea fast(ExactArea::Arithmetic::filtered), slow(ExactArea::Arithmetic::rational);
-    fast.build(scene, tree), slow.build(scene, tree);
+    const AreaOccluders among(scene, tree);
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         ASSERT_TRUE(is_area(scene.lights[j].kind));
-        fast.aim(scene.lights[j]), slow.aim(scene.lights[j]);
+        const AimedLight light(scene.lights[j], among.occluders);
+        const ExactArea fast(among, light, ExactArea::Arithmetic::filtered),
+            slow(among, light, ExactArea::Arithmetic::rational);
         RandomPoints source(scene, j + 1);
         std::size_t asked = 0, compared = 0;
         std::uint64_t fallen_back = 0, fallen_back_in_penumbra = 0;

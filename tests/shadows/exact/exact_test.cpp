@@ -9,6 +9,7 @@
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 
 namespace umbra {
 namespace {
@@ -114,18 +115,17 @@ Counts compare_with_brute_force(unsigned seed, std::string_view choice) {
     }
     face_lights(batch, scene);
 
-    const std::unique_ptr<Method> method = parse_method(choice).make();
-    const SceneFacts facts               = find_facts(scene);
-    EXPECT_EQ(method->serves(facts).how, How::exactly);
-    method->build(scene, facts);
+    Asked method(choice);
+    const SceneFacts facts = find_facts(scene);
+    EXPECT_EQ(method.serves(facts).how, How::exactly);
+    method.build(scene, facts);
     Counts counts;
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const Light& light = scene.lights[j];
-        method->aim(j);
-        VisibilityPlane plane(batch.size());
+        method.aim(j);
+        const VisibilityPlane plane = method.visibility(batch, j);
         const std::vector<float>& s = plane.s;
-        method->visibility(batch, j, plane.out());
-        const bool infinite = light.kind == LightKind::directional;
+        const bool infinite         = light.kind == LightKind::directional;
         for (std::size_t i = 0; i < batch.size(); ++i) {
             if (batch.facing[j][i] != Facing::front) {
                 EXPECT_EQ(s[i], 0.0f);
@@ -199,11 +199,10 @@ TEST(Exact, MovesWithTheSceneByPowersOfTwo) {
             set_point(batch, i, scene, t, u(random), u(random));
         }
         face_lights(batch, scene);
-        const std::unique_ptr<Method> method = parse_method("exact").make();
-        method->build(scene, find_facts(scene));
-        VisibilityPlane answers(batch.size());
-        method->visibility(batch, 0, answers.out());
-        return answers.s;
+        Asked method("exact");
+        method.build(scene);
+        method.aim(0);
+        return method.visibility(batch, 0).s;
     };
     const std::vector<float> here = plane(1, vec3(0));
     EXPECT_EQ(here, plane(0x1p-60f, vec3(0)));

@@ -48,14 +48,11 @@ PointBatch floor_points(const Scene& scene, std::uint32_t step = 1) {
 }
 
 VisibilityPlane answers(const char* method, const Scene& scene, const PointBatch& points, bool is_coloured = false) {
-    const MethodChoice choice     = parse_method(method);
-    std::unique_ptr<Method> asked = choice.make();
-    const SceneFacts facts        = find_facts(scene);
-    EXPECT_TRUE(verdict(*asked, facts)) << verdict(*asked, facts).why;
-    asked->build(scene, facts);
-    asked->aim(0);
+    MethodCase run(method, scene);
+    EXPECT_TRUE(run.verdict()) << run.verdict().why;
+    run.prepare(0);
     VisibilityPlane plane(points.size(), is_coloured);
-    asked->visibility(points, 0, plane.out());
+    run.visibility(points, 0, plane.out());
     return plane;
 }
 
@@ -173,9 +170,7 @@ TEST(FilteredLight, WhatIsBelowThePlaneIsNoLight) {
 
 TEST(FilteredLight, DisksAndIrradianceAreRefused) {
     Scene scene           = obstacles(0.5f);
-    const auto service_of = [&](const char* method) {
-        return verdict(*parse_method(method).make(), find_facts(scene));
-    };
+    const auto service_of = [&](const char* method) { return MethodCase(method, scene).verdict(); };
     EXPECT_EQ(service_of("exact").how, How::exactly);
     EXPECT_EQ(service_of("exact:measure=irradiance").how, How::not_at_all);
     scene.lights[0].kind = LightKind::disk, scene.lights[0].radius = 1;

@@ -13,9 +13,11 @@
 #include "umbra/shadows/filtered/moment_map.h"
 #include "umbra/shadows/maps/depth_lookup.h"
 #include "umbra/shadows/maps/facets.h"
+#include "umbra/tests/support/drawn_views.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
+#include "umbra/tests/support/phase_values.h"
 
 namespace umbra {
 namespace {
@@ -45,19 +47,16 @@ VisibilityPlane look_up(const Scene& scene, const PointBatch& points, const std:
 }
 
 /// The views that filtered_map makes of light 0.
-LightViews drawn_views(const Scene& scene, int resolution, int radius, bool fit_to_casters, double constant = 0) {
-    LightViews views(scene, find_facts(scene),
-                     {.resolution     = resolution,
-                      .fit_to_casters = fit_to_casters,
-                      .border         = radius + 2.0,
-                      .headroom       = std::max(0.25 * resolution, kMostAutomatic * (4 * radius + 2)) + constant});
-    views.fit(0);
-    views.rasterise();
-    return views;
+DrawnViews drawn_views(const Scene& scene, int resolution, int radius, bool fit_to_casters, double constant = 0) {
+    return DrawnViews(scene,
+                      {.resolution = resolution,
+                       .border     = radius + 2.0,
+                       .headroom   = std::max(0.25 * resolution, kMostAutomatic * (4 * radius + 2)) + constant},
+                      fit_to_casters);
 }
 
 /// PCF with the kernel that filtered_map has: a box of 2 radius + 1 samples that moves with the point.
-std::vector<float> pcf(const Scene& scene, const PointBatch& points, const LightViews& views, int radius,
+std::vector<float> pcf(const Scene& scene, const PointBatch& points, const DrawnViews& views, int radius,
                        double constant) {
     std::vector<float> s(points.size(), 1);
     const Bias bias{.mode = BiasMode::manual, .constant = constant};
@@ -266,7 +265,7 @@ TEST(FilteredMap, OnlyLetsLightThroughAgainstPcfOfTheSameMap) {
         for (const int radius : {0, 1, 3})
             for (const char* fit : {"casters", "scene"}) {
                 const Scene scene      = clutter(light);
-                const LightViews views = drawn_views(scene, 128, radius, std::string_view(fit) == "casters", 0.01);
+                const DrawnViews views = drawn_views(scene, 128, radius, std::string_view(fit) == "casters", 0.01);
                 for (const char* empty : {"far", "apart"})
                     for (const char* kind : kKinds) {
                         const std::string settings = fmt::format(
@@ -344,7 +343,7 @@ TEST(FilteredMap, IsTheBoxFiltersShareBehindOneOccluder) {
     const Scene scene       = half_plane();
     const PointBatch points = line_across(scene);
     for (const char* fit : {"scene", "casters"}) {
-        const LightViews views = drawn_views(scene, kResolution, kRadius, std::string_view(fit) == "casters");
+        const DrawnViews views = drawn_views(scene, kResolution, kRadius, std::string_view(fit) == "casters");
         const MapView& view    = views.views().at(0);
         for (const char* empty : {"far", "apart"})
             for (const char* kind : {"vsm", "esm", "evsm2", "evsm4", "msm"}) {
@@ -376,7 +375,7 @@ TEST(FilteredMap, ExponentialsLeakByTheirExponent) {
     // E exp(2 c (z - z_floor)) = share + (1 - share) exp(-2 c D), with D the sheet's height in depths of the map.
     const Scene scene       = half_plane();
     const PointBatch points = line_across(scene);
-    const LightViews views  = drawn_views(scene, kResolution, kRadius, false);
+    const DrawnViews views  = drawn_views(scene, kResolution, kRadius, false);
     const MapView& view     = views.views().at(0);
     const double height     = 1 / (view.frame.far - view.frame.near);
     for (const double c : {0.5, 2.0}) {
@@ -398,7 +397,7 @@ TEST(FilteredMap, EmptyTexelsTakeNoLightFromWhatIsDrawnAndGiveNone) {
     add_sheet(scene, "sheet", -4, 0, 1);
     add_mesh(scene, "block", make_box({0.4f, 0.4f, 0.4f}), {3, 0.2f, 3.5f});
     const PointBatch points = line_across(scene);
-    const LightViews views  = drawn_views(scene, kResolution, kRadius, true);
+    const DrawnViews views  = drawn_views(scene, kResolution, kRadius, true);
     const auto want         = pcf(scene, points, views, kRadius, 0.1);
     for (const char* kind : kKinds) {
         const auto error = [&](const char* empty) {
@@ -433,7 +432,7 @@ Scene two_occluders() {
 TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
     const Scene scene       = two_occluders();
     const PointBatch points = line_across(scene);
-    const LightViews views  = drawn_views(scene, kResolution, kRadius, false);
+    const DrawnViews views  = drawn_views(scene, kResolution, kRadius, false);
     const MapView& view     = views.views().at(0);
     const auto lit          = [&](const char* settings) {
         return look_up(scene, points,
@@ -528,7 +527,7 @@ TEST(FilteredMap, SameForAnyNumberOfThreads) {
 TEST(MomentMap, SamplesAreMeansOverTheirBox) {
     // Against sums over the depth map, sample by sample, across borders of tiles and of the map.
     const Scene scene      = clutter(directional_light({0.3f, -1, 0.2f}));
-    const LightViews views = drawn_views(scene, 200, 3, true);
+    const DrawnViews views = drawn_views(scene, 200, 3, true);
     const MapView& view    = views.views().at(0);
     const MomentBound vsm{MomentKind::vsm};
     const MomentMap far(view, vsm, 3, EmptySamples::far, MomentPrecision::twofold),
@@ -615,7 +614,7 @@ TEST(FilteredMap, BiasesMoveThePointTowardsTheLight) {
     Scene scene = floor_under(directional_light(glm::normalize(vec3(1, -1, 0))));
     add_sheet(scene, "sheet", -1, 1, 0.5f);
     const PointBatch points = line_across(scene);
-    const LightViews views  = drawn_views(scene, 512, 1, false);
+    const DrawnViews views  = drawn_views(scene, 512, 1, false);
     const LightFrame& frame = views.views().at(0).frame;
     const double width      = 2 * std::max(frame.half.x, frame.half.y) / 512;
     const double away       = 0.5 * std::sqrt(2.0) / width;  // along the light, in widths of a texel
@@ -651,21 +650,13 @@ TEST(FilteredMap, ParametersRepeatThePhasesThatTheyName) {
             const std::string_view text(change);
             to.settings.set(text.substr(0, text.find('=')), text.substr(text.find('=') + 1));
             const SceneFacts facts = find_facts(scene);
-            const auto run         = [&](Method& method, Phase first) {
-                if (first == Phase::build) method.build(scene, facts);
-                if (first <= Phase::aim) method.aim(0);
-                VisibilityPlane plane(points.size());
-                method.visibility(points, 0, plane.out());
-                return plane;
-            };
-            const auto fresh = to.make(), kept = from.make();
-            run(*kept, Phase::build);
-            kept->configure(to.settings);
-            const VisibilityPlane again = run(*kept, first_changed_phase(from.settings, to.settings));
-            const VisibilityPlane once  = run(*fresh, Phase::build);
-            EXPECT_EQ(again.s, once.s) << kind << ' ' << change;
-            EXPECT_EQ(again.answer, once.answer) << kind << ' ' << change;
-            EXPECT_EQ(kept->memory_bytes(), fresh->memory_bytes()) << kind << ' ' << change;
+            const PhaseInput input{scene, facts, points};
+            const Phase first       = first_changed_phase(from.settings, to.settings);
+            const PhaseAnswer again = answer_from(to, input, first, make_values(*from.make(), input));
+            const PhaseAnswer once  = answer_from(to, input);
+            EXPECT_EQ(again.plane.s, once.plane.s) << kind << ' ' << change;
+            EXPECT_EQ(again.plane.answer, once.plane.answer) << kind << ' ' << change;
+            EXPECT_EQ(again.memory_bytes, once.memory_bytes) << kind << ' ' << change;
         }
 }
 
@@ -674,7 +665,7 @@ TEST(FilteredMap, CountsMomentsAndTheDepthThatItKeeps) {
     const auto bytes  = [&](const char* settings) {
         MethodCase run(fmt::format("filtered_map:resolution=64,fit=scene,{}", settings), scene);
         run.prepare(0);
-        return run.method->memory_bytes();
+        return run.memory_bytes();
     };
     const std::size_t texels = 64 * 64, depth = drawn_views(scene, 64, 1, false).memory_bytes();
     EXPECT_EQ(bytes("kind=vsm,empty=far"), depth + texels * 2 * 4);
@@ -690,7 +681,7 @@ TEST(FilteredMap, BlamesTheNearestTexelThatBlocks) {
     run.prepare(0);
     const PointBatch points = line_across(scene);
     std::vector<TriangleId> who(points.size(), 12345);
-    run.method->blame(points, 0, who);
+    run.blame(points, 0, who);
     for (std::size_t i = 0; i < points.size(); ++i) {
         ASSERT_NE(who[i], kNoTriangle);
         if (std::abs(points.px[i]) < 0.1f) continue;
@@ -702,11 +693,11 @@ TEST(FilteredMap, BlamesTheNearestTexelThatBlocks) {
     MethodCase lit("filtered_map:resolution=128,radius=2,fit=scene", open);
     lit.prepare(0);
     who.assign(lone.size(), 12345);
-    lit.method->blame(lone, 0, who);
+    lit.blame(lone, 0, who);
     EXPECT_EQ(std::ranges::count(who, kNoTriangle), std::ssize(who));
     MethodCase bare("filtered_map:resolution=128,radius=2,fit=scene,bias=manual", open);
     bare.prepare(0);
-    bare.method->blame(lone, 0, who);
+    bare.blame(lone, 0, who);
     EXPECT_LT(std::ranges::count(who, kNoTriangle), std::ssize(who) / 10);
 }
 

@@ -13,8 +13,10 @@
 #include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/filtered/summed_moments.h"
 #include "umbra/shadows/maps/penumbra.h"
+#include "umbra/tests/support/drawn_views.h"
 #include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
+#include "umbra/tests/support/phase_values.h"
 
 namespace umbra {
 namespace {
@@ -41,19 +43,15 @@ Scene clutter() {
     return scene;
 }
 
-LightViews drawn(const Scene& scene, int resolution, bool fit_to_casters = true) {
-    LightViews views(scene, find_facts(scene),
-                     {.resolution = resolution, .fit_to_casters = fit_to_casters, .all_depths = true});
-    views.fit(0);
-    views.rasterise();
-    return views;
+DrawnViews drawn(const Scene& scene, int resolution, bool fit_to_casters = true) {
+    return DrawnViews(scene, {.resolution = resolution, .all_depths = true}, fit_to_casters);
 }
 
 MomentBound bound_of(MomentKind kind) { return {kind, 5, 5, 0, 0}; }
 
 TEST(SummedMoments, WholeWindowsAreSumsOfIntegersToTheLastBit) {
     const Scene scene      = clutter();
-    const LightViews views = drawn(scene, 150);
+    const DrawnViews views = drawn(scene, 150);
     const MapView& view    = views.views().at(0);
     std::mt19937 random(1);
     const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
@@ -95,7 +93,7 @@ TEST(SummedMoments, WholeWindowsAreSumsOfIntegersToTheLastBit) {
 
 TEST(SummedMoments, AnyWindowIsTheMeanOfWhatItCovers) {
     const Scene scene      = clutter();
-    const LightViews views = drawn(scene, 90);
+    const DrawnViews views = drawn(scene, 90);
     const MapView& view    = views.views().at(0);
     std::mt19937 random(2);
     std::uniform_real_distribution<double> place(-10, 100), size(0.2, 30);
@@ -141,7 +139,7 @@ TEST(SummedMoments, AnyWindowIsTheMeanOfWhatItCovers) {
 TEST(SummedMoments, NoWindowIsDarkerThanItsSamples) {
     // What PCF over all samples of the window finds is never more light: the bounds err to one side.
     const Scene scene      = clutter();
-    const LightViews views = drawn(scene, 100, false);
+    const DrawnViews views = drawn(scene, 100, false);
     const MapView& view    = views.views().at(0);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(0, 1);
@@ -450,21 +448,14 @@ TEST(SoftWindows, ParametersRepeatThePhasesThatTheyName) {
             MethodChoice to         = from;
             const std::string_view text(change);
             to.settings.set(text.substr(0, text.find('=')), text.substr(text.find('=') + 1));
-            const auto run = [&](Method& method, Phase first) {
-                if (first == Phase::build) method.build(scene, facts);
-                if (first <= Phase::aim) method.aim(0);
-                VisibilityPlane plane(points.size());
-                method.visibility(points, 0, plane.out());
-                return plane;
-            };
-            const auto fresh = to.make(), kept = from.make();
-            const VisibilityPlane before = run(*kept, Phase::build);
-            kept->configure(to.settings);
-            EXPECT_EQ(run(*kept, first_changed_phase(from.settings, to.settings)).s, run(*fresh, Phase::build).s)
-                << change;
-            EXPECT_EQ(kept->memory_bytes(), fresh->memory_bytes()) << change;
+            const PhaseInput input{scene, facts, points};
+            const Phase first       = first_changed_phase(from.settings, to.settings);
+            const PhaseAnswer again = answer_from(to, input, first, make_values(*from.make(), input));
+            const PhaseAnswer once  = answer_from(to, input);
+            EXPECT_EQ(again.plane.s, once.plane.s) << change;
+            EXPECT_EQ(again.memory_bytes, once.memory_bytes) << change;
             if (text.starts_with("parts") || text.starts_with("search")) {
-                EXPECT_NE(run(*fresh, Phase::visibility).s, before.s) << change;
+                EXPECT_NE(once.plane.s, answer_from(from, input).plane.s) << change;
             }
         }
 }
@@ -474,7 +465,7 @@ TEST(SoftWindows, CountsItsTables) {
     const auto bytes = [&](const char* settings) {
         MethodCase run(fmt::format("filtered_map@soft:resolution=64,{}", settings), scene);
         run.prepare(0);
-        return run.method->memory_bytes();
+        return run.memory_bytes();
     };
     const std::size_t entries = 65 * 65 * 8, depth = drawn(scene, 64).memory_bytes();
     EXPECT_EQ(bytes("kind=vsm,empty=far"), depth + entries * 2);
@@ -493,7 +484,7 @@ TEST(SoftWindows, BlameWhatLiesInTheWindow) {
     run.prepare(0);
     const auto s = run.visibility(points, 0).s;
     std::vector<TriangleId> who(points.size(), 12345);
-    run.method->blame(points, 0, who);
+    run.blame(points, 0, who);
     int in_penumbra = 0;
     for (std::size_t i = 0; i < s.size(); ++i) {
         if (s[i] == 1) continue;

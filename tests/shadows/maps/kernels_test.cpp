@@ -516,9 +516,11 @@ TEST(Kernels, ALightsSizeStaysWhereOnlyTheBiasChanges) {
     const PointBatch points = primary(scene);
     MethodCase run("shadow_zbuffer:resolution=256,filter=pcss,constant=3", scene);
     run.prepare(0);
-    // A parameter of the phase visibility: neither build nor aim is called again.
-    run.method->configure(parse_method("shadow_zbuffer:resolution=256,filter=pcss,constant=3,slope=1").settings);
-    EXPECT_EQ(run.visibility(points, 0).s, answers(scene, points, "resolution=256,filter=pcss,constant=3,slope=1"));
+    // A parameter of the phase visibility: what build and aim made serves.
+    const auto sloped = parse_method("shadow_zbuffer:resolution=256,filter=pcss,constant=3,slope=1").make();
+    VisibilityPlane plane(points.size());
+    sloped->visibility(run.aimed(), *run.look(points), plane.out());
+    EXPECT_EQ(plane.s, answers(scene, points, "resolution=256,filter=pcss,constant=3,slope=1"));
 }
 
 TEST(Kernels, WhatContradictsItselfIsRefused) {

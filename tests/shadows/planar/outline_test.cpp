@@ -292,13 +292,13 @@ TEST(Outline, NamesPointsOnEdges) {
     const BoxOverFloor box;
     const planar::Outline outline = box.outline({0, 4, 0});
     const auto doubtful           = [&](double x, double z) {
-        RawVector<std::uint32_t> points;
-        RawVector<double> xs, ys;
+        planar::Places places;
         for (std::uint32_t i = 0; i < 20; ++i) {
             const dvec3 at = box.receivers[0].local({x + (i == 7 ? 0 : 0.1 * i + 1), 0, z});
-            points.push_back(i), xs.push_back(at.x), ys.push_back(at.y);
+            places.x.push_back(at.x), places.y.push_back(at.y);
         }
-        planar::DarkeningTree tree(std::move(points), std::move(xs), std::move(ys), true);
+        const planar::PlaneTree points(std::move(places));
+        planar::DarkeningTree tree(points);
         const auto which = tree.darken(outline);
         EXPECT_LE(which.size(), 1u);
         return which.size() == 1 && which[0] == 7;

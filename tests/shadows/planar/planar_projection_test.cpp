@@ -309,12 +309,12 @@ TEST(PlanarProjection, AimHoldsTheShadowsOfEverySample) {
     const PointBatch points = primary(scene);
     const auto bytes        = [&](int samples) {
         MethodCase run("planar_projection:light_samples=" + std::to_string(samples), scene);
-        run.method->build(scene, run.facts);
-        const std::size_t built = run.method->memory_bytes();
-        run.method->aim(0);
-        const std::size_t aimed = run.method->memory_bytes();
+        run.build();
+        const std::size_t built = run.memory_bytes();
+        run.aim(0);
+        const std::size_t aimed = run.memory_bytes();
         (void)run.visibility(points, 0);
-        EXPECT_EQ(run.method->memory_bytes(), aimed);
+        EXPECT_EQ(run.memory_bytes(), aimed);
         return aimed - built;
     };
     EXPECT_GT(bytes(16), 16 * sizeof(planar::Shadow));
@@ -331,10 +331,10 @@ TEST(PlanarProjection, ProjectsTheEdgesThatTheSettingNames) {
     scene.lights.push_back(light_at({0, 4, 0}));
     const auto bytes = [&](const std::string& edges) {
         MethodCase run("planar_projection:edges=" + edges, scene);
-        run.method->build(scene, run.facts);
-        const std::size_t built = run.method->memory_bytes();
-        run.method->aim(0);
-        return std::pair(built, run.method->memory_bytes() - built);
+        run.build();
+        const std::size_t built = run.memory_bytes();
+        run.aim(0);
+        return std::pair(built, run.memory_bytes() - built);
     };
     const auto [weighted_build, weighted_aim] = bytes("weighted");
     const auto [single_build, single_aim]     = bytes("per_triangle");

@@ -249,8 +249,8 @@ TEST(Radiosity, CutsPatchesOnlyWherePenumbraeAre) {
     const PointBatch points = primary(scene);
     MethodCase run("radiosity:levels=4", scene), whole("radiosity:levels=0", scene);
     run.prepare(0), whole.prepare(0);
-    const auto& cut   = dynamic_cast<const Radiosity&>(*run.method);
-    const auto& uncut = dynamic_cast<const Radiosity&>(*whole.method);
+    const auto& cut   = as<RadiosityElements>(run.aimed());
+    const auto& uncut = as<RadiosityElements>(whole.aimed());
     EXPECT_GT(cut.elements(), 4 * uncut.elements());
     EXPECT_LT(cut.elements(), 100 * uncut.elements());
     const VisibilityPlane found = run.visibility(points, 0);

@@ -71,8 +71,9 @@ Count ask(const Scene& scene, const PointBatch& points, int samples = 1) {
     constexpr LightId light = 0;
     const RayScene rays(scene, Met::blocking);
     const StartPlaces places(scene, rays.space(), OffsetPolicy::skip_triangle, 0);
-    LightShafts shafts(scene, rays.space(), samples);
-    shafts.aim(make_target(scene.lights[light], rays.space()));
+    if (!is_tree_worth_it(scene, samples)) return {.nothing = kRunsPerTile};
+    const ShaftTree tree(scene, rays.space());
+    const LightShafts shafts(scene, rays.space(), tree, make_target(scene.lights[light], rays.space()));
     const PointTile tile{0, 0, PointTile::kWidth, PointTile::kHeight, points.size()};
     TileStarts starts;
     std::size_t run = 0;
@@ -204,8 +205,7 @@ TEST(LightShafts, KnowLargeMeshesInAnyOrderButForFewRaysNoLargeOnes) {
         const PointBatch points = tile_at(scene, 8, -5, 0);
         EXPECT_EQ(ask(scene, points, 16), kLit) << side;
         EXPECT_EQ(ask(scene, points, 1), side == 150 ? kLit : kNothing) << side;
-        const RayScene rays(scene);
-        EXPECT_EQ(LightShafts(scene, rays.space(), 1).memory_bytes() > 0, side == 150);
+        EXPECT_EQ(is_tree_worth_it(scene, 1), side == 150);
     }
 }
 
@@ -301,7 +301,7 @@ TEST(LightShafts, AreThereForAreaLightsAlone) {
     const auto memory = [&](const char* settings) {
         MethodCase rays(settings, scene);
         rays.prepare(0);
-        return rays.method->memory_bytes();
+        return rays.memory_bytes();
     };
     EXPECT_GT(memory("ray_traced"), memory("ray_traced:cull=none"));
     scene.lights[0].kind = LightKind::point;

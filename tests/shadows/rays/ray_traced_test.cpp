@@ -8,22 +8,20 @@
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 
 namespace umbra {
 namespace {
 
 VisibilityPlane trace(const Scene& scene, const PointBatch& points, const std::string& settings = "",
                       LightId light = 0) {
-    const MethodChoice choice            = parse_method(settings.empty() ? "ray_traced" : "ray_traced:" + settings);
-    const std::unique_ptr<Method> method = choice.make();
+    Asked method(settings.empty() ? "ray_traced" : "ray_traced:" + settings);
     SceneFacts facts;
     facts.hard_lights_only = !is_area(scene.lights[light].kind);
-    method->build(scene, facts);
-    method->aim(light);
-    VisibilityPlane answer(points.size());
-    method->visibility(points, light, answer.out());
-    EXPECT_GT(method->memory_bytes(), 0u);
-    return answer;
+    method.build(scene, facts);
+    method.aim(light);
+    EXPECT_GT(method.memory_bytes(), 0u);
+    return method.visibility(points, light);
 }
 
 void add_quad(Scene& scene, vec3 a, vec3 b, vec3 c, vec3 d) {
@@ -468,10 +466,7 @@ TEST(RayTraced, SameBitsForAnyNumberOfThreads) {
 TEST(RayTraced, SaysHowItServes) {
     // Never exactly: rays are floats.
     SceneFacts facts;
-    const auto service = [&](const char* text) {
-        const MethodChoice choice = parse_method(text);
-        return choice.make()->serves(facts);
-    };
+    const auto service = [&](const char* text) { return Asked(text).serves(facts); };
     const Service hard = service("ray_traced"), lifted = service("ray_traced:offset=epsilon");
     facts.hard_lights_only = false;
     const Service soft     = service("ray_traced:samples=9");

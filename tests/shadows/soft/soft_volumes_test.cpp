@@ -369,12 +369,11 @@ TEST_P(AreaLight, PhasesMayBeCalledAgainAndBatchesNeedNoRaster) {
     scene.lights.push_back(area_light(LightKind::sphere, {0, 2, 0}));
     const PointBatch points = picture(scene, {0, 0.5f, 3}, {0, -0.5f, 0});
     MethodCase run("soft_volumes:samples=32", scene);
-    const SceneFacts other_facts = find_facts(other);
-    run.method->build(other, other_facts);
-    run.method->aim(0);
-    run.method->build(scene, run.facts);
-    run.method->aim(1);
-    run.method->aim(0);
+    run.build(other);
+    run.aim(0);
+    run.build();
+    run.aim(1);
+    run.aim(0);
     const std::vector<float> want = answer("soft_volumes:samples=32", scene, points, 0).s;
     EXPECT_EQ(run.visibility(points, 0).s, want);
     PointBatch list = points;
@@ -472,11 +471,10 @@ TEST(SoftVolumes, SeesTheSamplesThatRaysSeeInCanonicalScenes) {
 
 TEST(SoftVolumes, ServesScenesThatHaveAnAreaLight) {
     SceneFacts facts;
-    const MethodInfo& info             = find_method("soft_volumes");
-    const std::unique_ptr<Method> made = info.make();
-    EXPECT_EQ(made->serves(facts).how, How::not_at_all);
+    const Asked method("soft_volumes");
+    EXPECT_EQ(method.serves(facts).how, How::not_at_all);
     facts.hard_lights_only = false;
-    EXPECT_EQ(made->serves(facts).how, How::approximately);
+    EXPECT_EQ(method.serves(facts).how, How::approximately);
 }
 
 TEST(SoftVolumes, ALightWithoutAnAreaTakesTheRayOfRayTraced) {
@@ -508,12 +506,12 @@ TEST(SoftVolumes, BlamesATriangleThatBlocksAndCountsItsMemory) {
         if (is_open(points, 0, i) && plane.s[i] < 1) dark.push_back(i);
     const PointBatch asked = pick(points, dark);
     std::vector<TriangleId> blamed(asked.size()), by_rays(asked.size());
-    run.method->blame(asked, 0, blamed);
-    rays.method->blame(asked, 0, by_rays);
+    run.blame(asked, 0, blamed);
+    rays.blame(asked, 0, by_rays);
     EXPECT_EQ(blamed, by_rays);
     EXPECT_GT(std::count_if(blamed.begin(), blamed.end(), [](TriangleId t) { return t != kNoTriangle; }), 1000);
     // The trees and the samples of ray_traced, and an edge or more a triangle.
-    EXPECT_GT(run.method->memory_bytes(), rays.method->memory_bytes() + 200 * sizeof(float) * 6);
+    EXPECT_GT(run.memory_bytes(), rays.memory_bytes() + 200 * sizeof(float) * 6);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/asked.h"
 
 namespace umbra {
 namespace {
@@ -209,15 +210,13 @@ Checked check(const Scene& scene, const PointBatch& points, const std::string& w
         }
         for (const char* settings : kSettings) {
             const MethodChoice choice = parse_method(std::string("shadow_volumes:") + settings);
-            const auto method         = choice.make();
+            Asked method(choice);
             const bool proven =
                 choice.text().find("edges=silhouette") == std::string::npos || facts.closed_objects == 0;
-            EXPECT_EQ(method->serves(facts).how, proven ? How::to_rounding : How::approximately);
-            method->build(scene, facts);
-            method->aim(j);
-            VisibilityPlane plane(points.size());
-            const std::vector<float>& s = plane.s;
-            method->visibility(points, j, plane.out());
+            EXPECT_EQ(method.serves(facts).how, proven ? How::to_rounding : How::approximately);
+            method.build(scene, facts);
+            method.aim(j);
+            const std::vector<float> s = method.visibility(points, j).s;
             std::size_t wrong = 0, first = 0;
             for (std::size_t i = points.size(); i-- > 0;) {
                 if (points.facing[j][i] != Facing::front) {
@@ -305,13 +304,10 @@ TEST(ShadowVolumes, TheSameForAnyNumberOfThreads) {
     const PointBatch points = scattered_points(scene, 20000, random, {3, 3, 3});
     const SceneFacts facts  = find_facts(scene);
     const auto visibility   = [&] {
-        const MethodChoice choice = parse_method("shadow_volumes");
-        const auto method         = choice.make();
-        method->build(scene, facts);
-        method->aim(0);
-        VisibilityPlane plane(points.size());
-        method->visibility(points, 0, plane.out());
-        return plane.s;
+        Asked method("shadow_volumes");
+        method.build(scene, facts);
+        method.aim(0);
+        return method.visibility(points, 0).s;
     };
     const auto many = visibility();
     const ThreadLimit one(1);
@@ -320,22 +316,19 @@ TEST(ShadowVolumes, TheSameForAnyNumberOfThreads) {
 
 TEST(ShadowVolumes, AreaLightsAreServedThroughTheirCentres) {
     Random random(5);
-    Scene scene               = random_scene(random, Fault::none, true);
-    scene.lights              = {point({0, 4, 0}), point({0, 4, 0})};
-    scene.lights[1].kind      = LightKind::sphere;
-    scene.lights[1].radius    = 0.5f;
-    const SceneFacts facts    = find_facts(scene);
-    const MethodChoice choice = parse_method("shadow_volumes");
-    const auto method         = choice.make();
-    EXPECT_EQ(method->serves(facts).how, How::approximately);
+    Scene scene            = random_scene(random, Fault::none, true);
+    scene.lights           = {point({0, 4, 0}), point({0, 4, 0})};
+    scene.lights[1].kind   = LightKind::sphere;
+    scene.lights[1].radius = 0.5f;
+    const SceneFacts facts = find_facts(scene);
+    Asked method("shadow_volumes");
+    EXPECT_EQ(method.serves(facts).how, How::approximately);
     const PointBatch points = scattered_points(scene, 2000, random, {3, 3, 3});
-    std::vector<std::vector<float>> s(2, std::vector<float>(points.size(), 0));
-    method->build(scene, facts);
+    std::vector<std::vector<float>> s(2);
+    method.build(scene, facts);
     for (LightId j = 0; j < 2; ++j) {
-        method->aim(j);
-        VisibilityPlane plane(points.size());
-        method->visibility(points, j, plane.out());
-        s[j] = plane.s;
+        method.aim(j);
+        s[j] = method.visibility(points, j).s;
     }
     std::size_t both = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -368,10 +361,10 @@ TEST(ShadowVolumes, EdgesAreThoseThatTheSettingNames) {
     scene.lights           = {light};
     const SceneFacts facts = find_facts(scene);
     const auto held        = [&](const char* settings) {
-        const auto method = parse_method(std::string("shadow_volumes:") + settings).make();
-        method->build(scene, facts);
-        method->aim(0);
-        return method->memory_bytes();
+        Asked method(std::string("shadow_volumes:") + settings);
+        method.build(scene, facts);
+        method.aim(0);
+        return method.memory_bytes();
     };
     EXPECT_GT(held("edges=per_triangle"), held("edges=weighted"));
     EXPECT_GT(held("edges=per_triangle"), held("edges=silhouette"));
@@ -393,14 +386,12 @@ TEST(ShadowVolumes, ACentreBehindThePointsPlaneIsNotSeen) {
     points.resize(1);
     set_point(points, 0, scene, 0, 0.25f, 0.25f);
     face_lights(points, scene);
-    const auto method = parse_method("shadow_volumes").make();
-    method->build(scene, find_facts(scene));
+    Asked method("shadow_volumes");
+    method.build(scene);
     for (const LightId j : {0u, 1u}) {
         ASSERT_EQ(points.facing[j][0], Facing::partly);
-        method->aim(j);
-        VisibilityPlane plane(1);
-        method->visibility(points, j, plane.out());
-        EXPECT_EQ(plane.s[0], j == 0 ? 0.0f : 1.0f);
+        method.aim(j);
+        EXPECT_EQ(method.visibility(points, j).s[0], j == 0 ? 0.0f : 1.0f);
     }
 }
 

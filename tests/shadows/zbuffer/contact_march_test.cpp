@@ -163,7 +163,7 @@ TEST(ContactMarch, BlamesWhatThePictureShows) {
         if (is_open(points, 0, i) && s[i] == 0 && map[i] == 1) which.push_back(i);
     ASSERT_GT(which.size(), 300u);
     std::vector<TriangleId> blockers(which.size());
-    run.method->blame(pick(points, which), 0, blockers);
+    run.blame(pick(points, which), 0, blockers);
     for (const TriangleId t : blockers) {
         ASSERT_NE(t, kNoTriangle);
         EXPECT_GE(t, scene.objects[1].first_triangle) << "a box, not the floor";

@@ -9,7 +9,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/shadows/maps/light_views.h"
+#include "umbra/tests/support/drawn_views.h"
 #include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -88,16 +88,11 @@ TEST(Midpoint, IsHalfwayInDepth) {
     for (const bool is_point : {false, true}) {
         const Scene scene = sheets(is_point ? point_light({0, 5, 0}) : directional_light({0, -1, 0}));
         for (const DepthFormat format : {DepthFormat::float32, DepthFormat::unorm24}) {
-            LightViews views(scene, find_facts(scene),
-                             {.resolution = 64, .format = format, .fit_to_casters = false, .midpoints = true});
-            views.fit(0);
-            views.rasterise();
+            const DrawnViews views(scene, {.resolution = 64, .format = format, .midpoints = true}, false);
             ASSERT_EQ(views.views().size(), 1u);
             const MapView& view = views.views()[0];
             EXPECT_EQ(views.memory_bytes(), [&] {
-                LightViews alone(scene, find_facts(scene),
-                                 {.resolution = 64, .format = format, .fit_to_casters = false});
-                alone.fit(0);
+                const DrawnViews alone(scene, {.resolution = 64, .format = format}, false);
                 return alone.memory_bytes() + view.map.memory_bytes();
             }());
             // Light space has its origin at the light, or in the middle of the scene, at height 1.
@@ -252,12 +247,10 @@ TEST(Midpoint, WhatIsNotFittedToShadesWhatIs) {
 TEST(Midpoint, MemoryForBothMapsIsAskedFor) {
     const Scene scene = box_on_floor(directional_light({1, -1, 0.4f}));
     LightViews::Options options{.resolution = 256, .midpoints = true};
-    LightViews both(scene, find_facts(scene), options);
-    both.fit(0);
-    options.memory_limit = static_cast<double>(both.memory_bytes());
-    EXPECT_NO_THROW(LightViews(scene, find_facts(scene), options).fit(0));
+    options.memory_limit = static_cast<double>(DrawnViews(scene, options).memory_bytes());
+    EXPECT_NO_THROW(DrawnViews(scene, options));
     options.memory_limit -= 1;
-    EXPECT_THROW(LightViews(scene, find_facts(scene), options).fit(0), UsageError);
+    EXPECT_THROW(DrawnViews(scene, options), UsageError);
 }
 
 TEST(Midpoint, SameForAnyNumberOfThreadsAndInUsedMemory) {
@@ -270,7 +263,7 @@ TEST(Midpoint, SameForAnyNumberOfThreadsAndInUsedMemory) {
     }
     MethodCase again("shadow_zbuffer:surface=midpoint,resolution=256,filter=pcf", scene);
     again.prepare(0);
-    again.method->aim(0);
+    again.aim(0);
     EXPECT_EQ(again.visibility(floor, 0).s, expected);
 }
 

@@ -7,7 +7,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/shadows/maps/light_views.h"
+#include "umbra/tests/support/drawn_views.h"
 #include "umbra/tests/support/map_scenes.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -185,11 +185,8 @@ TEST(ShadowZBuffer, AutomaticBiasDetachesByNoMoreThanItStates) {
             scene.camera.eye = {0, 10, 0};
             return scene;
         };
-        const Scene flat       = scene_with(1e-4);
-        const SceneFacts facts = find_facts(flat);
-        LightViews views(flat, facts, {.fit_to_casters = false});
-        views.fit(0);
-        views.rasterise();
+        const Scene flat = scene_with(1e-4);
+        const DrawnViews views(flat, {}, false);
         const MapView& view = views.views().at(0);
         const double width  = 2 * std::max(view.frame.half.x, view.frame.half.y) / view.map.width();
 
@@ -263,17 +260,15 @@ TEST(ShadowZBuffer, ARoofThatIsNotFittedToShadesWhatIs) {
 }
 
 TEST(ShadowZBuffer, MapsThatDoNotFitIntoMemoryAreRefused) {
-    const Scene scene      = square_over_floor(point_light({0.1f, 1.5f, 0.1f}));
-    const SceneFacts facts = find_facts(scene);
-    LightViews::Options options{.resolution = 512, .fit_to_casters = false};
-    LightViews all(scene, facts, options);
-    all.fit(0);
+    const Scene scene = square_over_floor(point_light({0.1f, 1.5f, 0.1f}));
+    LightViews::Options options{.resolution = 512};
+    const DrawnViews all(scene, options, false);
     ASSERT_EQ(all.views().size(), 5u);  // above the light there is nothing
     options.memory_limit = static_cast<double>(all.memory_bytes());
-    EXPECT_NO_THROW(LightViews(scene, facts, options).fit(0));
+    EXPECT_NO_THROW(DrawnViews(scene, options, false));
     options.memory_limit -= 1;
     try {
-        LightViews(scene, facts, options).fit(0);
+        const DrawnViews less(scene, options, false);
         FAIL() << "five maps in the memory of less";
     } catch (const UsageError& e) {
         EXPECT_NE(std::string(e.what()).find("resolution=512"), std::string::npos) << e.what();
@@ -286,13 +281,13 @@ TEST(ShadowZBuffer, MapsInUsedMemoryAreAsNewOnes) {
     scene.lights.push_back(point_light({0.9f, 1.2f, -0.6f}));
     scene.lights.push_back(directional_light({0.1f, -1, 0.2f}));
     const SceneFacts facts = find_facts(scene);
-    const LightViews::Options options{.resolution = 64, .fit_to_casters = false};
-    LightViews used(scene, facts, options);
+    const LightViews::Options options{.resolution = 64};
+    const BuiltCasters built(scene, facts, false);
     for (const LightId light : {0u, 1u, 2u, 1u, 0u}) {
-        LightViews fresh(scene, facts, options);
-        for (LightViews* views : {&used, &fresh}) views->fit(light), views->rasterise();
+        const LightViews used(built, light, options);  // in the memory of the one before
+        const DrawnViews fresh(scene, options, false, light);
         ASSERT_EQ(used.views().size(), fresh.views().size());
-        EXPECT_EQ(used.memory_bytes(), fresh.memory_bytes());
+        EXPECT_EQ(used.memory_bytes(), fresh.aimed.memory_bytes());
         std::size_t drawn = 0;
         for (std::size_t v = 0; v < fresh.views().size(); ++v)
             for (int y = 0; y < options.resolution; ++y)
@@ -302,6 +297,7 @@ TEST(ShadowZBuffer, MapsInUsedMemoryAreAsNewOnes) {
                 }
         EXPECT_GT(drawn, 500u);
     }
+    EXPECT_FALSE(built.spare->exchange({}).empty()) << "else no memory was used again";
 }
 
 TEST(ShadowZBuffer, NothingLeaksThroughACubesSeams) {
@@ -390,11 +386,12 @@ TEST(ShadowZBuffer, WindowsHaveAWidthWhateverTheyAreFittedTo) {
     add_object(scene, "floor", {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
     add_object(scene, "point", {{0, 1, 0}}, {}, {{0, 0, 0}}, 0);
     Light sun;
-    sun.kind      = LightKind::directional;
-    sun.direction = {0, -1, 0};
-    scene.lights  = {sun};
-    Casters casters(scene, find_facts(scene), true);
-    casters.select(sun);
+    sun.kind               = LightKind::directional;
+    sun.direction          = {0, -1, 0};
+    scene.lights           = {sun};
+    const SceneFacts facts = find_facts(scene);
+    const Casters all(scene, facts, true);
+    const SelectedCasters casters(all, sun);
     LightFrame frame = looking_along({0, 0, 0}, {0, -1, 0}, false);
     ASSERT_TRUE(fit_to_scene(frame, casters, 1));
     EXPECT_EQ(casters.box().size(), vec3(0)) << "else the floor is fitted to, and this tests nothing";

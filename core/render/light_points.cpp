@@ -1,4 +1,4 @@
-#include "umbra/shadows/shared/light_points.h"
+#include "umbra/core/render/light_points.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // Points of area lights fill them evenly: parts whose area is known have their part of the points.
-#include "umbra/shadows/shared/light_points.h"
+#include "umbra/core/render/light_points.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,31 @@
+// A method in a shared library: UMBRA_PLUGIN(NAME) at the end of its file, outside of namespaces, and the file's path
+// in the environment variable UMBRA_PLUGINS (several with ':' between) when the program starts.
+//
+// A plugin is C++ and is compiled with the program's own compiler, options and headers: the stamp refuses others. It is
+// code that runs in the program, with all of its rights.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// What both sides must have in common: the compiler, and the sizes of what the contract hands over.
+struct PluginStamp {
+    std::string_view compiler = __VERSION__;
+    std::size_t sizes[6]      = {sizeof(MethodInfo), sizeof(Parameter),  sizeof(PointBatch),
+                                 sizeof(Scene),      sizeof(SceneFacts), sizeof(Visibility)};
+    [[nodiscard]] bool operator==(const PluginStamp&) const = default;
+};
+
+/// The file that the method came from; empty for those of methods.def.
+[[nodiscard]] std::string plugin_file(const MethodInfo& method);
+
+}  // namespace umbra
+
+#define UMBRA_PLUGIN(method)                                                              \
+    extern "C" const umbra::MethodInfo* umbra_plugin(const umbra::PluginStamp& program) { \
+        return program == umbra::PluginStamp{} ? &umbra::method : nullptr;                \
+    }
