@@ -227,9 +227,8 @@ public:
     /// Whose depth the map holds in the texel under the filter that blocks the point, the nearest of several. Draws the
     /// maps again.
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const auto& of = as<FilteredViews>(aimed);
-        // What a window shows may lie farther off; few points are asked.
-        const Filter asked = of.tables.empty() ? filter_ : Filter{static_cast<int>(std::ceil(search_)), false};
+        const auto& of     = as<FilteredViews>(aimed);
+        const Filter asked = searched(of);
         BlockingSamples samples(looked.points.size());
         for_each_facet(of.scene(), looked.points, of.light, [&](std::size_t i, const Facet& facet, dvec3 p) {
             if (auto found = receive(of.views(), facet, p, bias_, compared(of))) {
@@ -241,11 +240,18 @@ public:
     }
 
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
-        Reason reason            = Method::explain(aimed, looked, i, given);
         const PointBatch& points = looked.points;
         const auto& of           = as<FilteredViews>(aimed);
         const Facet facet        = facet_of(of.scene(), points.triangle[i], points.flipped[i] != 0);
-        const auto found = receive(of.views(), facet, exact_position(of.scene(), points, i), bias_, compared(of));
+        const auto found   = receive(of.views(), facet, exact_position(of.scene(), points, i), bias_, compared(of));
+        TriangleId blocker = kNoTriangle;
+        if (found && given.answer == Answer::given && given.s < 1) {
+            Receiver biased = found->receiver;
+            biased.bias     = total_bias(biased);
+            if (const auto sample = blocked_sample(of.views()[found->view], biased, BiasMode::manual, searched(of)))
+                blocker = of.owner(found->view, *sample);
+        }
+        Reason reason = reason_by_geometry(of.scene(), points, i, aimed.light, given, blocker);
         if (!found) {
             reason.evidence.push_back({"map", "none shows the point"});
             return reason;
@@ -262,6 +268,11 @@ public:
     }
 
 private:
+    /// Which samples may have darkened a point: what a window shows may lie farther away.
+    [[nodiscard]] Filter searched(const FilteredViews& of) const {
+        return of.tables.empty() ? filter_ : Filter{static_cast<int>(std::ceil(search_)), false};
+    }
+
     /// What the automatic bias is for: the parts of a window follow the receiver's plane, however wide it is.
     [[nodiscard]] Filter compared(const FilteredViews& of) const { return of.tables.empty() ? filter_ : Filter{}; }
 

@@ -161,6 +161,25 @@ std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& caste
     return view.map.owners(clip_from_world, scene.positions, scene.triangles, casters.seen_by(clip_from_world), faces);
 }
 
+TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample) {
+    // A map of the same samples' width that shows this one at (4, 4).
+    constexpr int kSize = 8, kAt = 4;
+    constexpr double kPlace = (2.0 * kAt + 1) / kSize - 1;
+    const dvec2 samples(view.map.width(), view.map.height());
+    const dvec2 place = (2.0 * dvec2(sample) + 1.0) / samples - 1.0, scale = samples / static_cast<double>(kSize);
+    dmat4 clip_from_world = view.frame.clip_from_world();
+    for (int column = 0; column < 4; ++column) {
+        dvec4& c = clip_from_world[column];
+        c.x      = (c.x - place.x * c.w) * scale.x + kPlace * c.w;
+        c.y      = (c.y - place.y * c.w) * scale.y + kPlace * c.w;
+    }
+    DepthMap around(kSize, kSize, view.map.format());
+    const Scene& scene   = casters.scene();
+    const auto triangles = casters.seen_by(clip_from_world);
+    around.draw(clip_from_world, scene.positions, triangles, faces);
+    return around.owners(clip_from_world, scene.positions, scene.triangles, triangles, faces)[kAt * kSize + kAt];
+}
+
 LightViews::LightViews(const Built& from, LightId at, const Options& options)
     : Aimed(from, at),
       casters_(as<BuiltCasters>(from).casters, source()),

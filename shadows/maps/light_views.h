@@ -29,6 +29,8 @@ struct MapView {
 /// Which triangle each sample of a view's map shows that `faces` of `casters` were drawn into, kNoTriangle where none.
 /// Draws the map again.
 [[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces);
+/// The same of one sample: draws a few samples around it.
+[[nodiscard]] TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample);
 
 /// Keeps the maps of a LightViews that ends, so that the next one draws in their memory: the system clears new memory
 /// page by page, which takes longer than drawing a small scene.
@@ -84,6 +86,9 @@ public:
     /// Which triangle each sample of view k's map shows, kNoTriangle where none. Draws the map again.
     [[nodiscard]] std::vector<TriangleId> owners(std::size_t k) const {
         return umbra::owners(views_[k], casters_, faces_);
+    }
+    [[nodiscard]] TriangleId owner(std::size_t k, ivec2 sample) const {
+        return umbra::owner(views_[k], casters_, faces_, sample);
     }
     /// False where what lies outside a spot's cone was left out; else nothing that casts lies where no view looks.
     [[nodiscard]] bool cover_all() const { return cover_all_; }

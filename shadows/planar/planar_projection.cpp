@@ -354,9 +354,10 @@ public:
             reason.evidence.push_back({"receiver", "no plane"});
             return reason;
         }
-        const Receiver& receiver = planes.receivers[side ^ looked.points.flipped[i]];
+        const std::uint32_t index = side ^ looked.points.flipped[i], plane = index / 2;
+        const Receiver& receiver = planes.receivers[index];
         const LocalSource centre(receiver, as<Projected>(aimed).centre);
-        reason.evidence.push_back({"receiver", static_cast<double>((side ^ looked.points.flipped[i]) / 2)});
+        reason.evidence.push_back({"receiver", static_cast<double>(plane)});
         reason.evidence.push_back({"flatness of the receiver", receiver.tolerance, "world"});
         reason.evidence.push_back(
             {centre.at_infinity ? "slope of the light above the receiver" : "height of the light above the receiver",

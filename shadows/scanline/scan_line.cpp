@@ -77,7 +77,7 @@ public:
     }
 
     [[nodiscard]] std::size_t memory_bytes() const override {
-        std::size_t bytes = known_.size() * sizeof(known_[0]);
+        std::size_t bytes = known_.size() * sizeof(std::vector<Span>);
         for (const std::vector<Span>& row : known_) bytes += row.size() * sizeof(Span);
         return bytes;
     }

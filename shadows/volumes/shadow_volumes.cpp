@@ -173,11 +173,10 @@ public:
 
         parallel_ranges(of.orientation.size(), 256, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
-                const int orientation = of.orientation[t];
-                if (orientation == 0) continue;
-                volumes.add_near_cap(counts, static_cast<TriangleId>(t), orientation, depth_fail);
+                if (of.orientation[t] == 0) continue;
+                volumes.add_near_cap(counts, static_cast<TriangleId>(t), of.orientation[t], depth_fail);
                 if (depth_fail && l.kind != LightKind::directional)
-                    volumes.add_far_cap(counts, static_cast<TriangleId>(t), orientation);
+                    volumes.add_far_cap(counts, static_cast<TriangleId>(t), of.orientation[t]);
             }
         });
         parallel_ranges(of.edges.size(), 64, [&](std::size_t begin, std::size_t end) {

@@ -205,10 +205,9 @@ public:
 
     /// Whose depth the map holds in the texel that blocks the point, the nearest of several. Draws the maps again.
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const auto& views = as<LightViews>(aimed);
-        const auto& seen  = as<SeenPicture>(looked);
-        // What the search of pcss may find lies farther off; few points are asked.
-        const Filter asked = is_soft(aimed.source()) ? Filter{static_cast<int>(std::ceil(search_)), false} : filter_;
+        const auto& views  = as<LightViews>(aimed);
+        const auto& seen   = as<SeenPicture>(looked);
+        const Filter asked = searched(aimed.source());
         BlockingSamples samples(seen.points.size());
         for_each_facet(aimed.scene(), seen.points, aimed.light, [&](std::size_t i, const Facet& facet, dvec3 p) {
             if (const auto found = receive(views.views(), facet, p, bias_, filter_))
@@ -222,12 +221,21 @@ public:
     }
 
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
-        Reason reason            = Method::explain(aimed, looked, i, given);
         const PointBatch& points = looked.points;
         const auto& views        = as<LightViews>(aimed);
         const Facet facet        = facet_of(aimed.scene(), points.triangle[i], points.flipped[i] != 0);
         const dvec3 p            = exact_position(aimed.scene(), points, i);
-        if (const auto found = receive(views.views(), facet, p, bias_, filter_))
+        const auto found         = receive(views.views(), facet, p, bias_, filter_);
+        std::optional<ivec2> sample;
+        if (found && given.answer == Answer::given && given.s < 1)
+            sample =
+                blocked_sample(views.views()[found->view], rotated(found->receiver, as<SeenPicture>(looked).camera, p),
+                               bias_.mode, searched(aimed.source()));
+        // Without such a sample it is a contact in the picture that blocks, or nothing.
+        Reason reason =
+            sample ? reason_by_geometry(aimed.scene(), points, i, aimed.light, given, views.owner(found->view, *sample))
+                   : Method::explain(aimed, looked, i, given);
+        if (found)
             add_texel(reason, *found, views.views()[found->view], given);
         else
             reason.evidence.push_back({"map", "none shows the point"});
@@ -237,6 +245,11 @@ public:
 private:
     /// Whether penumbrae of the light are filtered.
     [[nodiscard]] bool is_soft(const Light& light) const { return finds_blockers_ && is_area(light.kind); }
+
+    /// Which samples may have darkened a point: what the search of pcss finds lies farther away.
+    [[nodiscard]] Filter searched(const Light& light) const {
+        return is_soft(light) ? Filter{static_cast<int>(std::ceil(search_)), false} : filter_;
+    }
 
     /// With the angle that discs about a point at world position p are rotated by; `camera` has its pixel.
     [[nodiscard]] Receiver rotated(Receiver receiver, const CameraFrame& camera, dvec3 p) const {

@@ -81,6 +81,12 @@ void check(const MethodInfo& info, const Scene& scene, const PointBatch& points,
             EXPECT_GE(reason.margin * (given.s - 0.5), 0) << where;
         }
         if (hard && given.s == 0) ++tally.blocked;
+        if (given.s < 1) {  // the same triangle as for many points at once
+            const auto which   = static_cast<std::uint32_t>(i);
+            TriangleId blocker = kNoTriangle;
+            method.blame(pick(points, {&which, 1}), light, {&blocker, 1});
+            EXPECT_EQ(reason.blocker, blocker) << where;
+        }
         if (reason.blocker == kNoTriangle) {
             EXPECT_FALSE(reason.at) << where;
             continue;
