@@ -218,6 +218,7 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
     OIIO::ImageSpec spec(image.width, image.height, int(channels),
                          is_png ? OIIO::TypeDesc::UINT8 : OIIO::TypeDesc::FLOAT);
     spec.channelnames.assign(image.channels.begin(), image.channels.begin() + std::ptrdiff_t(channels));
+    spec.attribute("DateTime", "");  // the library writes the time of day otherwise: other bytes each second
     for (const auto& [key, value] : image.metadata) spec.attribute(key, value);
     if (is_png) {
         spec.attribute("oiio:ColorSpace", "sRGB");
