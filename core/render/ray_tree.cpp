@@ -30,7 +30,7 @@ constexpr float kScreenDoor[4][4] = {{0.5f / 16, 8.5f / 16, 2.5f / 16, 10.5f / 1
                                      {15.5f / 16, 7.5f / 16, 13.5f / 16, 5.5f / 16}};
 
 /// How far a start in ray space may lie off its triangle's plane, and that of a neighbour in this plane, by rounding to
-/// float: see StartPlaces::load in shadows/shared, which derives the bound.
+/// float: see StartPlaces::load in shadows/light_rays, which derives the bound.
 float start_height(vec3 o, vec3 n) {
     constexpr float u = 0x1p-24f, least = 0x1p-30f;
     float height = least;

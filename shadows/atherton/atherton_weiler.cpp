@@ -26,16 +26,16 @@
 #include "umbra/core/render/facing.h"
 #include "umbra/shadows/atherton/lit_part.h"
 #include "umbra/shadows/atherton/receiver.h"
-#include "umbra/shadows/shared/exact_segment.h"
-#include "umbra/shadows/shared/triangle_tree.h"
+#include "umbra/shadows/geometry/exact_segment.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 
 namespace umbra {
 
-using namespace atherton_detail;
-using exact_detail::ExactPoint;
-using exact_detail::Segment;
+using namespace atherton;
+using exact_visibility::ExactPoint;
+using exact_visibility::Segment;
 
-struct atherton_detail::WeldedTriangles final : Built {
+struct atherton::WeldedTriangles final : Built {
     WeldedTriangles(const Scene& of, const SceneFacts& its_facts)
         : Built(of, its_facts),
           topology(find_topology(of, 0, static_cast<std::uint32_t>(of.triangles.size()))),

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "umbra/shadows/atherton/outlines.h"
+#include "umbra/shadows/geometry/box_tree.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/shared/box_tree.h"
 
 namespace umbra {
 
-namespace atherton_detail {  // complete in atherton_weiler.cpp alone, which has CGAL
+namespace atherton {  // complete in atherton_weiler.cpp alone, which has CGAL
 class LitPart;
 class Receiver;
 struct OutlinePiece;
 struct WeldedTriangles;
-}  // namespace atherton_detail
+}  // namespace atherton
 
 /// What atherton_weiler aims.
 class LitPolygons final : public Aimed {
@@ -30,13 +30,13 @@ public:
         parts  ///< both
     };
 
-    LitPolygons(const atherton_detail::WeldedTriangles& among, LightId at);
+    LitPolygons(const atherton::WeldedTriangles& among, LightId at);
     ~LitPolygons() override;
     [[nodiscard]] std::size_t memory_bytes() const override;
 
     [[nodiscard]] Seen seen(TriangleId t) const { return seen_[t]; }
     /// The lit polygons of a triangle that is Seen::parts, as what the next two return.
-    [[nodiscard]] const atherton_detail::LitPart& part(TriangleId t) const { return *parts_[t]; }
+    [[nodiscard]] const atherton::LitPart& part(TriangleId t) const { return *parts_[t]; }
     /// Their outlines in the triangle's barycentric coordinates, rounded: outer ones counterclockwise, holes
     /// clockwise.
     [[nodiscard]] const std::vector<std::vector<dvec2>>& lit_loops(TriangleId t) const;
@@ -44,7 +44,7 @@ public:
     [[nodiscard]] std::vector<std::array<dvec2, 3>> lit_triangles(TriangleId t) const;
 
 private:
-    using Pieces = std::vector<atherton_detail::OutlinePiece>;
+    using Pieces = std::vector<atherton::OutlinePiece>;
     /// A point of a receiver, and how many triangles are over it.
     struct Probe {
         float u, v;
@@ -53,18 +53,18 @@ private:
 
     void cut(TriangleId t);
     [[nodiscard]] std::optional<Probe> find_probe(TriangleId t) const;
-    void add_outlines(const atherton_detail::Receiver& receiver, Pieces& pieces) const;
-    void add_cuts(TriangleId own, const atherton_detail::Receiver& receiver, Pieces& pieces) const;
-    void add_cut(TriangleId own, TriangleId t, const atherton_detail::Receiver& receiver, Pieces& pieces) const;
+    void add_outlines(const atherton::Receiver& receiver, Pieces& pieces) const;
+    void add_cuts(TriangleId own, const atherton::Receiver& receiver, Pieces& pieces) const;
+    void add_cut(TriangleId own, TriangleId t, const atherton::Receiver& receiver, Pieces& pieces) const;
 
-    const atherton_detail::WeldedTriangles& triangles_;
+    const atherton::WeldedTriangles& triangles_;
     /// One a triangle: +1 if it faces the light, -1 if it faces away, 0 if edge-on.
     const std::vector<std::int8_t> sides_;
     const std::vector<std::int8_t> covers_;  ///< the same, 0 for triangles that do not block
-    const std::vector<atherton_detail::OutlineEdge> outlines_;
+    const std::vector<atherton::OutlineEdge> outlines_;
     const BoxTree outline_tree_;
-    std::vector<Seen> seen_;                                        ///< one a triangle
-    std::vector<std::unique_ptr<atherton_detail::LitPart>> parts_;  ///< one a triangle; null where not Seen::parts
+    std::vector<Seen> seen_;                                 ///< one a triangle
+    std::vector<std::unique_ptr<atherton::LitPart>> parts_;  ///< one a triangle; null where not Seen::parts
 };
 
 extern const MethodInfo atherton_weiler;

@@ -21,7 +21,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace umbra::atherton_detail {
+namespace umbra::atherton {
 namespace {
 
 using Kernel      = CGAL::Exact_predicates_exact_constructions_kernel;
@@ -248,4 +248,4 @@ std::size_t LitPart::memory_bytes() const {
     return bytes;
 }
 
-}  // namespace umbra::atherton_detail
+}  // namespace umbra::atherton

@@ -7,7 +7,7 @@
 
 #include "umbra/shadows/atherton/receiver.h"
 
-namespace umbra::atherton_detail {
+namespace umbra::atherton {
 
 /// A piece of the projected outlines, from one point of the receiver to another in barycentric coordinates. `change`:
 /// by how many more triangles lie over the points to its left than over those to its right, in these coordinates.
@@ -60,4 +60,4 @@ private:
     bool divides_ = false;
 };
 
-}  // namespace umbra::atherton_detail
+}  // namespace umbra::atherton

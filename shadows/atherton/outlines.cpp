@@ -1,6 +1,6 @@
 #include "umbra/shadows/atherton/outlines.h"
 
-namespace umbra::atherton_detail {
+namespace umbra::atherton {
 
 std::vector<OutlineEdge> find_outlines(const Scene& scene, const Topology& topology,
                                        const std::vector<std::int8_t>& lights) {
@@ -18,4 +18,4 @@ std::vector<OutlineEdge> find_outlines(const Scene& scene, const Topology& topol
     return outlines;
 }
 
-}  // namespace umbra::atherton_detail
+}  // namespace umbra::atherton

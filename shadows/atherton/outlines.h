@@ -7,7 +7,7 @@
 
 #include "umbra/core/scene/topology.h"
 
-namespace umbra::atherton_detail {
+namespace umbra::atherton {
 
 /// From one position to another; `change`, not 0: by how many more triangles lie to its left than to its right, as the
 /// light sees it.
@@ -21,4 +21,4 @@ struct OutlineEdge {
 [[nodiscard]] std::vector<OutlineEdge> find_outlines(const Scene& scene, const Topology& topology,
                                                      const std::vector<std::int8_t>& lights);
 
-}  // namespace umbra::atherton_detail
+}  // namespace umbra::atherton

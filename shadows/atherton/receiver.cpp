@@ -12,12 +12,12 @@
 
 #include "umbra/core/base/predicates.h"
 #include "umbra/core/render/facing.h"
-#include "umbra/shadows/shared/exact_point.h"
+#include "umbra/shadows/geometry/exact_point.h"
 
-namespace umbra::atherton_detail {
+namespace umbra::atherton {
 
-using exact_detail::kUnit;
-using exact_detail::largest;
+using exact_visibility::kUnit;
+using exact_visibility::largest;
 
 namespace {
 
@@ -166,4 +166,4 @@ std::optional<std::pair<Projected, Projected>> clip(const Projected& a, const Pr
     return std::pair{first > 0 ? between(a, b, first) : a, last < 1 ? between(a, b, last) : b};
 }
 
-}  // namespace umbra::atherton_detail
+}  // namespace umbra::atherton

@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "umbra/core/scene/scene.h"
-#include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/geometry/box_tree.h"
 
-namespace umbra::atherton_detail {
+namespace umbra::atherton {
 
 using Exact  = CGAL::Exact_predicates_exact_constructions_kernel::FT;  ///< of one thread at a time
 using Exact3 = std::array<Exact, 3>;
@@ -89,4 +89,4 @@ private:
 /// a + t (b - a).
 [[nodiscard]] Projected between(const Projected& a, const Projected& b, const Exact& t);
 
-}  // namespace umbra::atherton_detail
+}  // namespace umbra::atherton

@@ -17,7 +17,7 @@
 
 #include "umbra/shadows/exact/edge_lanes.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 template <class T>
 struct PlanePoint {
@@ -314,4 +314,4 @@ void ActiveEdges<T>::remove(Slot s) {
     if constexpr (kLanes) high_y_[last] = kNever;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

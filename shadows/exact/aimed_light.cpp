@@ -3,7 +3,7 @@
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/exact/light_space.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 /// How far a point that lies within the reach of edges (kCutReach, 1.0625) may be from the light's centre along an
@@ -81,4 +81,4 @@ std::vector<TriangleId> AimedLight::those_across(const Occluders& occluders) con
     return across;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -6,7 +6,7 @@
 #include "umbra/shadows/exact/light_plane.h"
 #include "umbra/shadows/exact/occluders.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 class AimedLight {
 public:
@@ -45,4 +45,4 @@ private:
     std::vector<TriangleId> across_;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -31,7 +31,7 @@
 #include "umbra/shadows/exact/active_edges.h"
 #include "umbra/shadows/exact/whole_light.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// A corner of the light, anticlockwise. `cap`: the number of the chord that runs from here to the next corner, or -1.
 template <class T>
@@ -544,4 +544,4 @@ std::pair<double, double> Covering<T>::uncovered_of(int layers, const std::optio
     return {area, rounded + static_cast<double>(rows + inside_.size())};
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -6,7 +6,7 @@
 #include "umbra/shadows/exact/edge_clip.h"
 #include "umbra/shadows/exact/sight.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 template <class Space>
 class CoveringEdges {
@@ -100,4 +100,4 @@ bool CoveringEdges<Space>::add_clipped(const Numerators<T>& a, const Numerators<
     return true;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

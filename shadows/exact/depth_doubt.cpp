@@ -4,7 +4,7 @@
 
 #include "umbra/core/base/math.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 constexpr double kAround = 1.1;  ///< radii of a disk that holds the light with all rounding of its rim
@@ -92,4 +92,4 @@ double area_in_doubt(const Sight& sight) {
     return std::min(area, kPi * kAround * kAround);
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

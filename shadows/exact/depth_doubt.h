@@ -9,7 +9,7 @@
 
 #include "umbra/shadows/exact/sight.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Bound of the area of the light, in half axes, over which that is so of any triangle. 0 for flat lights, whose plane
 /// is exact.
@@ -18,4 +18,4 @@ namespace umbra::exact_detail {
 /// Whether all of triangle t is before the light's plane wherever rounding may have moved that.
 [[nodiscard]] bool surely_before_light(const Sight& sight, TriangleId t);
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 constexpr double kStep = 2 * kPi / DiskCaps::kChords;  ///< radians
@@ -63,4 +63,4 @@ DiskCaps::Area DiskCaps::with_caps(double polygon) const {
     return area;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -15,7 +15,7 @@
 #include "umbra/core/base/math.h"
 #include "umbra/shadows/exact/covering.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 class DiskCaps {
 public:
@@ -62,4 +62,4 @@ private:
     std::vector<std::uint8_t> open_;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 struct Displacement {
     double swept    = 0;  ///< area that the edges pass over
@@ -26,4 +26,4 @@ struct Displacement {
     }
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

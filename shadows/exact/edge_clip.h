@@ -11,7 +11,7 @@
 #include "umbra/shadows/exact/covering.h"
 #include "umbra/shadows/exact/numerators.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Chosen: so far outside the light, |x|, |y| <= 1, that no rounding of a cut reaches it.
 inline constexpr double kCutReach = 1 + 1.0 / 16;
@@ -79,4 +79,4 @@ Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerat
         false, {low.x / low.w, low.y / low.w}, {high.x / high.w, high.y / high.w}, cut_from == 0, cut_to == 0, off};
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

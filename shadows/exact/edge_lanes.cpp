@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 /// Where an edge has just been set, a load of several of its neighbours with it waits longer than they take one by one.
@@ -61,4 +61,4 @@ void ends_at(const double* high_y, std::size_t n, double y, std::vector<std::uin
     }
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

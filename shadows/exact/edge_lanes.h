@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Lists of edges are filled up to a multiple of this.
 inline constexpr std::size_t kEdgeLanes = 8;
@@ -25,4 +25,4 @@ void edges_at(const EdgeLists& edges, std::size_t n, double y, double* x);
 /// Appends those of n, likewise, that end at `y` or below.
 void ends_at(const double* high_y, std::size_t n, double y, std::vector<std::uint32_t>& ended);
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

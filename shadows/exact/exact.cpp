@@ -19,16 +19,16 @@
 #include "umbra/core/render/light_points.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/shadows/bins/binned_shadows.h"
 #include "umbra/shadows/exact/exact_area.h"
+#include "umbra/shadows/geometry/exact_segment.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/shared/binned_shadows.h"
-#include "umbra/shadows/shared/exact_segment.h"
-#include "umbra/shadows/shared/triangle_tree.h"
 
 namespace umbra {
 namespace {
 
-using namespace exact_detail;
+using namespace exact_visibility;
 
 enum class HardLights : std::uint8_t { automatic, segments, bins };
 

@@ -2,7 +2,7 @@
 
 #include "umbra/shadows/exact/filtered_light.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 using Answer = ExactArea::Answer;
@@ -182,4 +182,4 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
     return vec3(glm::clamp(*passed, 0.0, 1.0));
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

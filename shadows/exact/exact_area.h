@@ -6,7 +6,7 @@
 #include "umbra/core/render/points.h"
 #include "umbra/shadows/exact/visible_part.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// The geometry, whatever the light.
 struct AreaOccluders {
@@ -102,4 +102,4 @@ private:
     Measure measure_;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 /// What it takes to project a triangle, to cut a cell, and to look at one, in steps of ExactArea::Workspace.
@@ -202,4 +202,4 @@ std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpa
     return passed;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

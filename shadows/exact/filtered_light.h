@@ -10,7 +10,7 @@
 #include "umbra/shadows/exact/light_space.h"
 #include "umbra/shadows/exact/sight.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Into more cells than that no light is cut: it would take seconds a point.
 inline constexpr std::size_t kMostCells = 4096;
@@ -22,4 +22,4 @@ inline constexpr std::size_t kMostCells = 4096;
 [[nodiscard]] std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpace& space,
                                                          std::span<const TriangleId> between, std::uint64_t& steps);
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -1,6 +1,6 @@
 #include "umbra/shadows/exact/horizon.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 template <>
 Horizon<double> horizon_of(const Sight& sight) {
@@ -33,4 +33,4 @@ Horizon<Rational> horizon_of(const Sight& sight) {
     return {turn * dot(m, u), turn * dot(m, v), turn * dot(m, centre), 0, length};
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

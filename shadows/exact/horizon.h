@@ -5,7 +5,7 @@
 #include "umbra/shadows/exact/disk_caps.h"
 #include "umbra/shadows/exact/sight.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// The point (x, y) of the light is at height lx x + ly y + l over the plane, in some positive unit.
 template <class T>
@@ -62,4 +62,4 @@ void touch_caps(const Horizon<T>& horizon, DiskCaps& caps) {
     caps.touch(distance * nx - 2 * ny, distance * ny + 2 * nx, distance * nx + 2 * ny, distance * ny - 2 * nx);
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -3,7 +3,7 @@
 
 #include "umbra/shadows/exact/sight.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 template <class Space>
 class LayerCount {
@@ -127,4 +127,4 @@ Filtered<int> LayerCount<Space>::at(double x, double y, TriangleId& blocker) con
     return layers;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

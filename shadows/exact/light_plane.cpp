@@ -2,7 +2,7 @@
 
 #include "umbra/core/render/sampling.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 /// The centre of the light less the first corner of the point's triangle: one rounding.
@@ -69,4 +69,4 @@ std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoi
                       .depth_error        = 4 * off};
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -4,9 +4,9 @@
 
 #include "umbra/core/render/light_points.h"
 #include "umbra/core/scene/lights.h"
-#include "umbra/shadows/shared/exact_point.h"
+#include "umbra/shadows/geometry/exact_point.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Half axes of a rectangle, perpendicular radii of a disk; of a sphere nothing, since its disk differs from point to
 /// point.
@@ -40,4 +40,4 @@ struct LightPlane {
 /// Of a sphere. Nothing where p is surely within it; a plane of infinite `rounding` where rounding hides whether it is.
 [[nodiscard]] std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoint& p);
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -10,9 +10,9 @@
 
 #include "umbra/shadows/exact/light_plane.h"
 #include "umbra/shadows/exact/numerators.h"
-#include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/geometry/box_tree.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 class FloatSpace {
 public:
@@ -156,4 +156,4 @@ private:
     int orientation_ = 0;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 constexpr float kWidest   = 1.5f;      ///< a little less than a right angle, from which on nothing can be said
@@ -46,4 +46,4 @@ bool NormalCone::one_sided(const Box& box, dvec3 p, double around) const {
     return across > sine * rest + cosine * radius + kDoubt * distance;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

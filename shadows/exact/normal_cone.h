@@ -6,7 +6,7 @@
 
 #include "umbra/core/base/math.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Axis and half angle. The default one holds every direction; so does each of more than kWidest, whose other members
 /// mean nothing.
@@ -22,4 +22,4 @@ struct NormalCone {
     [[nodiscard]] bool one_sided(const Box& box, dvec3 p, double around = 0) const;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

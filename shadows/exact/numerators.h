@@ -1,9 +1,9 @@
 // Points in the numerators of light space (light_space.h), in either arithmetic, and what is computed of them.
 #pragma once
 
-#include "umbra/shadows/shared/exact_point.h"
+#include "umbra/shadows/geometry/exact_point.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// A point in numerators: (X, Y, W) times a positive number, the same for all points.
 template <class T>
@@ -65,4 +65,4 @@ inline Filtered<Numerators<Rational>> at_plane(const Numerators<Rational>& a, co
     return between(a, b, Rational((height - a.w) / (b.w - a.w)));
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -1,6 +1,6 @@
 #include "umbra/shadows/exact/occluders.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 Occluders::Occluders(const Scene& of, const BoxTree& tree)
     : scene(of),
@@ -17,4 +17,4 @@ std::size_t Occluders::memory_bytes() const {
            bytes(topology.degenerate) + bytes(casts_nothing);
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "umbra/core/scene/topology.h"
-#include "umbra/shadows/shared/box_tree.h"
+#include "umbra/shadows/geometry/box_tree.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 struct Occluders {
     /// `tree`: of the boxes of the scene's triangles. Both must outlive this object.
@@ -20,4 +20,4 @@ struct Occluders {
     [[nodiscard]] std::size_t memory_bytes() const;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

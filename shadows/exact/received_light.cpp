@@ -2,7 +2,7 @@
 
 #include <boost/math/quadrature/gauss.hpp>
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 double squared(double x) { return x * x; }
@@ -132,4 +132,4 @@ Bracket fraction(const Bracket& visible, const Bracket& whole) {
     return {std::clamp(visible.low / whole.high, 0.0, 1.0), std::clamp(visible.high / whole.low, 0.0, 1.0)};
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -24,7 +24,7 @@
 #include "umbra/shadows/exact/disk_caps.h"
 #include "umbra/shadows/exact/horizon.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// A proven range.
 struct Bracket {
@@ -74,4 +74,4 @@ private:
 /// Light that is visible over all light that arrives, given by what of both is known.
 [[nodiscard]] Bracket fraction(const Bracket& visible, const Bracket& whole);
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -5,7 +5,7 @@
 #include "umbra/shadows/exact/silhouette_edges.h"
 #include "umbra/shadows/exact/triangles_over.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 struct Sight {
     const Occluders& occluders;
@@ -49,4 +49,4 @@ private:
     int orientation_;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

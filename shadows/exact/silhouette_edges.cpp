@@ -2,7 +2,7 @@
 
 #include "umbra/core/base/predicates.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 constexpr double kThin = 1e-6;  ///< sine of a triangle's angle below which its normal, a difference of products, may
@@ -249,4 +249,4 @@ std::size_t SilhouetteEdges::memory_bytes() const {
            tree_.memory_bytes();
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -16,7 +16,7 @@
 #include "umbra/shadows/exact/occluders.h"
 #include "umbra/shadows/exact/viewpoint.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// An edge that may be a silhouette edge.
 struct CandidateEdge {
@@ -86,4 +86,4 @@ private:
                                      ///< whose two triangles see the point from one side is no silhouette edge
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -1,6 +1,6 @@
 #include "umbra/shadows/exact/triangles_over.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 constexpr std::size_t kMost = 512;  ///< triangles: where there are more, each point asks the tree
@@ -102,4 +102,4 @@ bool TrianglesOver::find_out(dvec3 moved, dvec3 to_place, double off, double bes
     return true;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

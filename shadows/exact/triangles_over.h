@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "umbra/shadows/exact/occluders.h"
-#include "umbra/shadows/shared/exact_point.h"
+#include "umbra/shadows/geometry/exact_point.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 class TrianglesOver {
 public:
@@ -34,4 +34,4 @@ private:
     std::vector<std::int32_t> out_;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

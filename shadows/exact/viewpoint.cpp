@@ -4,7 +4,7 @@
 
 #include "umbra/core/base/predicates.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 bool Viewpoint::surely_coplanar(TriangleId t) const {
     return coplanar_.own == own_ && std::any_of(coplanar_.known.begin(), coplanar_.known.end(),
@@ -29,4 +29,4 @@ int Viewpoint::side_of(TriangleId t) const {
     return coplanar ? 0 : point_.exact_side(a, b, c);
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

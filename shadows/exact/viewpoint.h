@@ -4,9 +4,9 @@
 #include <utility>
 #include <vector>
 
-#include "umbra/shadows/shared/exact_point.h"
+#include "umbra/shadows/geometry/exact_point.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Which triangles lie in the plane of one triangle, as far as it was asked. One thread's.
 struct CoplanarTriangles {
@@ -37,4 +37,4 @@ private:
     CoplanarTriangles& coplanar_;
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -33,7 +33,7 @@
 #include "umbra/shadows/exact/layer_count.h"
 #include "umbra/shadows/exact/received_light.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// In area, of a light of 4: below 1e-9 of it, and far below half an ulp of a float.
 inline constexpr double kTrusted = 0x1p-28;
@@ -238,4 +238,4 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     return result;
 }
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

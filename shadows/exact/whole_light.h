@@ -12,7 +12,7 @@
 
 #include "umbra/shadows/exact/active_edges.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 
 /// Part of a segment, from 0 at its lower end to 1 at its upper one; nothing where from >= to.
 struct PartWithin {
@@ -63,4 +63,4 @@ struct WholeDisk {
     }
 };
 
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

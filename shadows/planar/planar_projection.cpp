@@ -27,11 +27,11 @@
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/shadows/geometry/point_groups.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/planar/darkening_tree.h"
 #include "umbra/shadows/planar/outline.h"
 #include "umbra/shadows/planar/project.h"
-#include "umbra/shadows/shared/point_groups.h"
 
 namespace umbra {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "umbra/core/base/math.h"
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 class Elements {
 public:
@@ -111,4 +111,4 @@ private:
     std::vector<Node> nodes_;
 };
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

@@ -11,7 +11,7 @@
 
 namespace umbra {
 
-using namespace radiosity_detail;
+using namespace patches;
 
 namespace {
 
@@ -85,7 +85,7 @@ double Exchange::form_factor(const Side& from, const std::array<dvec3, 3>& polyg
     if (from.area == 0 || to.area == 0) return 0;
     const dvec3 p = from.centre.position;
     if (!(glm::dot(to.centre.normal, p - to.centre.position) > 0)) return 0;
-    const double whole = radiosity_detail::form_factor(p, from.centre.normal, polygon);
+    const double whole = patches::form_factor(p, from.centre.normal, polygon);
     if (!(whole > 0)) return 0;
     const auto& [a, b, c] = polygon;
     const dvec3 m         = to.centre.position;

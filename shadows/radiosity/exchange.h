@@ -60,19 +60,19 @@ public:
 
 private:
     struct Side {
-        radiosity_detail::SurfacePoint centre;
+        patches::SurfacePoint centre;
         double area = 0;  ///< 0: it sends and receives nothing
         dvec3 reflects{0}, direct{0}, indirect{0}, unshot{0};
     };
-    void place(radiosity_detail::PatchId patch);
+    void place(patches::PatchId patch);
     [[nodiscard]] dvec3 find_direct(const Side& side, const Material& material) const;
     [[nodiscard]] double form_factor(const Side& from, const std::array<dvec3, 3>& polygon, const Side& to) const;
-    [[nodiscard]] std::array<dvec3, 3> polygon(radiosity_detail::PatchId patch) const;
+    [[nodiscard]] std::array<dvec3, 3> polygon(patches::PatchId patch) const;
 
     const Scene* scene_ = nullptr;
     Options options_;
-    radiosity_detail::Sight sight_;
-    radiosity_detail::Patches patches_;
+    patches::Sight sight_;
+    patches::Patches patches_;
     std::vector<Side> sides_;
     double first_ = 0, sent_ = 0, arrived_ = 0;
 };

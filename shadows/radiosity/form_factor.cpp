@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 double form_factor(dvec3 p, dvec3 n, std::span<const dvec3> polygon) {
     // What is behind p's plane does not count; a convex polygon gains one corner there.
@@ -25,4 +25,4 @@ double form_factor(dvec3 p, dvec3 n, std::span<const dvec3> polygon) {
     return std::clamp(std::abs(sum) / (2 * kPi), 0.0, 1.0);
 }
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

@@ -10,11 +10,11 @@
 
 #include "umbra/core/base/math.h"
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 /// The form factor from a point p of a surface with the unit normal n to a plane polygon, of whichever winding, that
 /// nothing hides: the integral of cos(a) cos(b) / (pi r^2) over the part of it that is in front of p, in [0, 1].
 /// Lambert's contour integral, in double. 0 where p lies in the polygon's plane. At most 14 corners.
 [[nodiscard]] double form_factor(dvec3 p, dvec3 n, std::span<const dvec3> polygon);
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

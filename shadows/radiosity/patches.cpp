@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 Patches::Patches(const Scene& scene, double longest) {
     const std::size_t triangles = scene.triangles.size();
@@ -57,4 +57,4 @@ std::size_t Patches::memory_bytes() const {
            parts_.size() * sizeof(std::uint32_t) + longest_.size() * sizeof(double);
 }
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

@@ -13,7 +13,7 @@
 
 #include "umbra/core/scene/scene.h"
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 using PatchId = std::uint32_t;
 
@@ -49,4 +49,4 @@ private:
     std::vector<double> longest_;       ///< edge; one a triangle
 };
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

@@ -20,7 +20,7 @@
 
 namespace umbra {
 
-using namespace radiosity_detail;
+using namespace patches;
 
 SurfacePoint RadiosityPatches::place(PatchId patch, bool flipped, dvec2 at) const {
     // A corner of a triangle may touch a wall that stands on it: points are moved a little inside.

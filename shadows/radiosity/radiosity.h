@@ -19,15 +19,15 @@ struct RadiosityPatches final : Built {
     [[nodiscard]] std::size_t memory_bytes() const override { return sight.memory_bytes() + patches.memory_bytes(); }
 
     /// Where point i of a batch lies.
-    [[nodiscard]] radiosity_detail::InPatch find(const PointBatch& points, std::size_t i) const {
+    [[nodiscard]] patches::InPatch find(const PointBatch& points, std::size_t i) const {
         return patches.find(points.triangle[i], points.u[i], points.v[i]);
     }
     /// A point of a patch, seen from one side; `flipped`: from that which its winding does not face.
-    [[nodiscard]] radiosity_detail::SurfacePoint place(radiosity_detail::PatchId patch, bool flipped, dvec2 at) const;
+    [[nodiscard]] patches::SurfacePoint place(patches::PatchId patch, bool flipped, dvec2 at) const;
 
     const double diagonal;  ///< of the scene
-    const radiosity_detail::Sight sight;
-    const radiosity_detail::Patches patches;
+    const patches::Sight sight;
+    const patches::Patches patches;
 };
 
 /// What aim makes: S_j of one light over all patches.
@@ -38,14 +38,14 @@ struct RadiosityElements final : Aimed {
 
     /// The element that a point lies in, of its side.
     struct ElementId {
-        radiosity_detail::PatchId patch = 0;
-        std::uint32_t leaf              = 0;
+        patches::PatchId patch = 0;
+        std::uint32_t leaf     = 0;
     };
     [[nodiscard]] ElementId element(const PointBatch& points, std::size_t i) const;
     /// Of both sides of all patches.
     [[nodiscard]] std::size_t elements() const;
 
-    using Side = std::vector<radiosity_detail::Elements>;  ///< one a patch
+    using Side = std::vector<patches::Elements>;  ///< one a patch
     const RadiosityPatches& surfaces;
     std::array<Side, 2> sides;  ///< that which the winding faces, and the other
 };

@@ -5,7 +5,7 @@
 
 #include "umbra/core/render/light_points.h"
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 namespace {
 
@@ -111,4 +111,4 @@ TriangleId light_blocker(const Sight& sight, const SurfacePoint& from, const Lig
     return blocker;
 }
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

@@ -6,7 +6,7 @@
 #include "umbra/core/render/ray.h"
 #include "umbra/core/scene/scene.h"
 
-namespace umbra::radiosity_detail {
+namespace umbra::patches {
 
 /// A point of a surface, world space; rays from it do not meet its own triangle.
 struct SurfacePoint {
@@ -40,4 +40,4 @@ private:
 /// A triangle that hides the light, or one of these points of it, from the point; kNoTriangle where none does.
 [[nodiscard]] TriangleId light_blocker(const Sight& sight, const SurfacePoint& from, const Light& light, int samples);
 
-}  // namespace umbra::radiosity_detail
+}  // namespace umbra::patches

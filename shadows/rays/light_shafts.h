@@ -16,9 +16,9 @@
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/tiles.h"
+#include "umbra/shadows/light_rays/starts.h"
+#include "umbra/shadows/light_rays/target.h"
 #include "umbra/shadows/rays/shaft_tree.h"
-#include "umbra/shadows/shared/starts.h"
-#include "umbra/shadows/shared/target.h"
 
 namespace umbra::rays {
 

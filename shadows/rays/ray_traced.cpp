@@ -16,10 +16,10 @@
 #include <optional>
 
 #include "umbra/core/render/tiles.h"
+#include "umbra/shadows/light_rays/light_rays.h"
+#include "umbra/shadows/light_rays/sample_options.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/rays/light_shafts.h"
-#include "umbra/shadows/shared/light_rays.h"
-#include "umbra/shadows/shared/sample_options.h"
 
 namespace umbra {
 namespace {

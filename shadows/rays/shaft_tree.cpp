@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/shadows/shared/coherent_order.h"
+#include "umbra/shadows/geometry/coherent_order.h"
 
 namespace umbra::rays {
 namespace {
@@ -38,7 +38,7 @@ unsigned zeros(const Masks& masks) {
 std::vector<TriangleId> ordered(const Scene& scene) {
     std::vector<std::uint8_t> blocks(scene.triangles.size());
     for (TriangleId t = 0; t < blocks.size(); ++t) blocks[t] = scene.blocks(t) ? 1 : 0;
-    return binned_shadows_detail::coherent_order(scene, blocks);
+    return coherent_order(scene, blocks);
 }
 
 /// Boxes of `count` things, eight a node; of(k) is the box of thing k.

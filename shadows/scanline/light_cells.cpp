@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace umbra::scanline_detail {
+namespace umbra::scanline {
 namespace {
 
 constexpr double kWide = 1e-9;  ///< boxes are widened by far more than what is rounded, relative to a face
@@ -129,4 +129,4 @@ std::pair<double, double> LightCells::across(const Outline& segment, int row) co
 
 template std::optional<LightCells::Outline> LightCells::outline(int, const std::array<dvec3, 2>&) const;
 
-}  // namespace umbra::scanline_detail
+}  // namespace umbra::scanline

@@ -16,7 +16,7 @@
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/scene/scene.h"
 
-namespace umbra::scanline_detail {
+namespace umbra::scanline {
 
 class LightCells {
 public:
@@ -73,4 +73,4 @@ private:
     std::vector<TriangleId> triangles_;
 };
 
-}  // namespace umbra::scanline_detail
+}  // namespace umbra::scanline

@@ -26,7 +26,7 @@
 namespace umbra {
 namespace {
 
-using scanline_detail::LightCells;
+using scanline::LightCells;
 
 /// Pixels [first, last] of one row that show one triangle; both ends in world space, and their depths before the eye (1
 /// where the view is orthographic).

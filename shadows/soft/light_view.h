@@ -7,7 +7,7 @@
 
 #include <optional>
 
-#include "umbra/shadows/shared/light_rays.h"
+#include "umbra/shadows/light_rays/light_rays.h"
 #include "umbra/shadows/soft/occluder_edges.h"
 
 namespace umbra::soft {

@@ -22,8 +22,8 @@
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/scene/topology.h"
-#include "umbra/shadows/shared/box_tree.h"
-#include "umbra/shadows/shared/target.h"
+#include "umbra/shadows/geometry/box_tree.h"
+#include "umbra/shadows/light_rays/target.h"
 #include "umbra/shadows/soft/shafts.h"
 
 namespace umbra::soft {

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "umbra/shadows/shared/light_rays.h"
+#include "umbra/shadows/light_rays/light_rays.h"
 #include "umbra/shadows/soft/light_view.h"
 
 namespace umbra::soft {

@@ -8,7 +8,7 @@
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel_sort.h"
-#include "umbra/shadows/shared/point_groups.h"
+#include "umbra/shadows/geometry/point_groups.h"
 
 // Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
 namespace umbra {

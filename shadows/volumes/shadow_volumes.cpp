@@ -32,8 +32,8 @@
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/scene/winding.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/shared/triangle_tree.h"
 #include "umbra/shadows/volumes/seen_volumes.h"
 
 namespace umbra {

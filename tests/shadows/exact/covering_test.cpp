@@ -6,7 +6,7 @@
 
 #include "umbra/shadows/exact/horizon.h"
 
-namespace umbra::exact_detail {
+namespace umbra::exact_visibility {
 namespace {
 
 template <class T>
@@ -170,4 +170,4 @@ TEST(Covering, WhatWasCutOffAtTheLeftCounts) {
 }
 
 }  // namespace
-}  // namespace umbra::exact_detail
+}  // namespace umbra::exact_visibility

@@ -10,15 +10,15 @@
 #include "umbra/core/render/sampling.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/exact/exact_area.h"
-#include "umbra/shadows/shared/triangle_tree.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
 namespace {
 
-using exact_detail::AimedLight;
-using exact_detail::AreaOccluders;
-using exact_detail::ExactArea;
+using exact_visibility::AimedLight;
+using exact_visibility::AreaOccluders;
+using exact_visibility::ExactArea;
 using Arithmetic = ExactArea::Arithmetic;
 using Real       = long double;
 using Real3      = glm::vec<3, Real>;

@@ -12,15 +12,15 @@
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/exact/exact_area.h"
-#include "umbra/shadows/shared/triangle_tree.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
 namespace {
 
-using exact_detail::AimedLight;
-using exact_detail::AreaOccluders;
-using exact_detail::ExactArea;
+using exact_visibility::AimedLight;
+using exact_visibility::AreaOccluders;
+using exact_visibility::ExactArea;
 
 /// Half an ulp of a float, and twice what each arithmetic may be off.
 constexpr double kAgree = 0x1p-24 + 4e-9;

@@ -8,7 +8,7 @@
 namespace umbra {
 namespace {
 
-using exact_detail::NormalCone;
+using exact_visibility::NormalCone;
 
 /// Two planes through the origin at all angles, those of nearly flat meshes among them, and points at which they turn
 /// different sides: no cone of both may say that the point is on one side.

@@ -21,11 +21,11 @@
 namespace umbra {
 namespace {
 
-using radiosity_detail::Elements;
-using radiosity_detail::form_factor;
-using radiosity_detail::InPatch;
-using radiosity_detail::Patches;
-using radiosity_detail::PatchId;
+using patches::Elements;
+using patches::form_factor;
+using patches::InPatch;
+using patches::Patches;
+using patches::PatchId;
 
 /// A box whose faces look inwards, of one material.
 Scene room(float k_d, float emission) {

@@ -1,0 +1,314 @@
+#include "umbra/shadows/bins/binned_shadows.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <optional>
+
+#include "umbra/core/base/geometry.h"
+#include "umbra/core/base/parallel.h"
+#include "umbra/core/render/facing.h"
+#include "umbra/core/scene/topology.h"
+#include "umbra/shadows/bins/binned_points.h"
+#include "umbra/shadows/bins/shadow_planes.h"
+#include "umbra/shadows/geometry/coherent_order.h"
+#include "umbra/shadows/geometry/exact_segment.h"
+
+namespace umbra {
+namespace {
+
+using namespace bins;
+using exact_visibility::ExactPoint;
+using exact_visibility::Segment;
+
+/// Blocks are requested from memory this many before they are tested.
+constexpr std::size_t kAhead = 4;
+
+/// Blocks that are enough for several threads.
+constexpr std::size_t kMany = 8192;
+
+/// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
+bool blocks(const Scene& scene, TriangleId t) {
+    return scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+}
+
+}  // namespace
+
+/// Eight triangles that follow one another in order_, or as many as there are.
+struct BinnedShadows::Group {
+    std::span<const TriangleId> triangles{};
+    LightImage::Corners corners;
+    LightImage::Windings windings{};
+    Extents extents;
+    unsigned within = 0;  ///< those that have an extent, because they lie in one face
+
+    [[nodiscard]] unsigned all() const { return (1u << triangles.size()) - 1; }
+    /// At least half of them do.
+    [[nodiscard]] bool faces_light() const {
+        return 2 * static_cast<std::size_t>(std::popcount(windings.towards & all())) >= triangles.size();
+    }
+};
+
+/// What is found, and kept for its memory.
+struct BinnedShadows::Search {
+    PointBins::Start start{};
+    std::vector<PointBins::Found> found{};
+};
+
+/// The points that ask, in the light's image.
+struct BinnedShadows::Picture {
+    const Light* light;
+    LightImage image;
+    BinnedPoints asking;
+};
+
+namespace {
+
+/// Which of the lanes in `unsure` triangle t hides, and which segments touch it.
+struct Met {
+    unsigned crossed = 0, touched = 0;
+};
+Met meet_exactly(const Scene& scene, const Light& light, TriangleId t, const PointBatch& points, const Block& block,
+                 unsigned unsure) {
+    Met met;
+    for (unsigned rest = unsure; rest != 0; rest &= rest - 1) {
+        const auto lane       = static_cast<std::size_t>(std::countr_zero(rest));
+        const std::uint32_t i = block.index[lane];
+        const ExactPoint point(scene, points.triangle[i], points.u[i], points.v[i]);
+        const auto meeting = Segment(point, light).meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+        if (meeting == Segment::Meeting::crosses) met.crossed |= 1u << lane;
+        if (meeting == Segment::Meeting::touches) met.touched |= 1u << lane;
+    }
+    return met;
+}
+
+/// The lanes of points that lie on the triangle, whose segments start there: floats are unsure of each of them, and
+/// exact predicates would only say that they do not meet it.
+unsigned lanes_on(const Block& block, TriangleId t) {
+    unsigned lanes = 0;
+    for (std::size_t i = 0; i < kLanes; ++i) lanes |= static_cast<unsigned>(block.triangle[i] == t) << i;
+    return lanes;
+}
+
+}  // namespace
+
+BinnedShadows::BinnedShadows(const Scene& scene) : scene_(scene), casts_(scene.triangles.size()) {
+    parallel_ranges(casts_.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t t = begin; t < end; ++t) casts_[t] = blocks(scene, static_cast<TriangleId>(t)) ? 1 : 0;
+    });
+    if (scene.triangles.empty()) return;
+    order_ = coherent_order(scene, casts_);
+    eights_.resize((order_.size() + kLanes - 1) / kLanes);
+    parallel_ranges(eights_.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = kLanes * begin; k < std::min(kLanes * end, order_.size()); ++k)
+            for (int c = 0; c < 3; ++c)
+                for (int axis = 0; axis < 3; ++axis)
+                    eights_[k / kLanes].corner[c][axis][k % kLanes] = scene.vertex(order_[k], c)[axis];
+    });
+    const Box box       = bounds(scene);
+    centre_             = 0.5 * (dvec3(box.min) + dvec3(box.max));
+    const dvec3 corners = glm::max(glm::abs(dvec3(box.min)), glm::abs(dvec3(box.max)));
+    reach_              = std::max({corners.x, corners.y, corners.z});
+}
+
+void BinnedShadows::visibility(const PointBatch& points, LightId light, Visibility out) const {
+    Picture picture = bin(points, light);
+    cast_all(picture, points, [](std::uint32_t, TriangleId) {});
+    const PointBins& bins = picture.asking.bins;
+    parallel_ranges(bins.tiles(), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t tile = begin; tile < end; ++tile)
+            for (std::size_t b = bins.first(tile); b < bins.last(tile); ++b) {
+                const unsigned crossed = bins.marks(b).crossed, touched = bins.marks(b).touched;
+                for (std::size_t lane = 0; lane < kLanes; ++lane) {
+                    const std::uint32_t i = bins.block(b).index[lane];
+                    out.s[i]              = (crossed >> lane & 1u) != 0 ? 0.0f : 1.0f;
+                    if ((touched & ~crossed) >> lane & 1u) out.answer[i] = Answer::on_boundary;
+                }
+            }
+    });
+    for (const std::uint32_t i : picture.asking.next_to_light) out.s[i] = 1;
+    each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId, Segment::Meeting meeting) {
+        if (meeting == Segment::Meeting::crosses) out.s[i] = 0, out.answer[i] = Answer::given;
+        if (meeting == Segment::Meeting::touches) out.answer[i] = Answer::on_boundary;
+        return meeting != Segment::Meeting::crosses;
+    });
+}
+
+void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
+    std::vector<std::atomic<TriangleId>> lowest(points.size());
+    for (auto& t : lowest) t = kNoTriangle;
+    Picture picture = bin(points, light);
+    cast_all(
+        picture, points,
+        [&](std::uint32_t i, TriangleId t) {
+            TriangleId known = lowest[i];
+            while (t < known && !lowest[i].compare_exchange_weak(known, t)) {
+            }
+        },
+        false);
+    for (std::size_t i = 0; i < points.size(); ++i) blockers[i] = lowest[i];
+    each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId t, Segment::Meeting meeting) {
+        if (meeting == Segment::Meeting::crosses) blockers[i] = t;
+        return meeting != Segment::Meeting::crosses;
+    });
+}
+
+BinnedShadows::Picture BinnedShadows::bin(const PointBatch& points, LightId light) const {
+    const LightImage image(scene_.lights[light], centre_, reach_);
+    return {&scene_.lights[light], image, bin_points(scene_, points, light, image, centre_)};
+}
+
+/// Points whose places are unknown against every triangle: calls met(i, t, meeting) until that is false.
+template <class Met>
+void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch& points, const Met& met) const {
+    parallel_ranges(picture.asking.next_to_light.size(), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t i = picture.asking.next_to_light[k];
+            const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
+            const Segment segment(point, *picture.light);
+            for (TriangleId t = 0; t < casts_.size(); ++t)
+                if (casts_[t] != 0 && t != points.triangle[i] &&
+                    !met(i, t, segment.meeting(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2))))
+                    break;
+        }
+    });
+}
+
+/// Tests every triangle against the points that may be behind it. Calls crossed(i, t) where t hides point i.
+/// `once`: points that are hidden already need not be tested again. Then triangles that face the light go first: what
+/// is behind a closed surface is hidden by them, and the others, which are behind the points that are still lit, find
+/// few.
+template <class Crossed>
+void BinnedShadows::cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once) const {
+    std::vector<std::uint8_t> later(eights_.size());
+    const auto cast = [&](Which which) {
+        parallel_ranges(eights_.size(), 64, [&](std::size_t begin, std::size_t end) {
+            std::vector<Group> groups;
+            Search search;
+            for (std::size_t first = begin; first < end; first += kLanes) {
+                groups.clear();
+                for (std::size_t g = first; g < std::min(first + kLanes, end); ++g) {
+                    if (which == Which::later && later[g] == 0) continue;
+                    groups.push_back(group(g, picture));
+                    if (which != Which::facing_light) continue;
+                    later[g] = groups.back().faces_light() ? 0 : 1;
+                    if (later[g] != 0) groups.pop_back();
+                }
+                if (!groups.empty()) cast_groups(groups, picture, points, crossed, once, search);
+            }
+        });
+    };
+    cast(once ? Which::facing_light : Which::all);
+    if (!once) return;
+    picture.asking.bins.drop_hidden();
+    cast(Which::later);
+}
+
+BinnedShadows::Group BinnedShadows::group(std::size_t g, const Picture& picture) const {
+    const std::size_t first = g * kLanes;
+    Group made;
+    made.triangles = std::span(order_).subspan(first, std::min(kLanes, order_.size() - first));
+    for (std::size_t c = 0; c < 3; ++c)
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            std::copy_n(eights_[g].corner[c][axis], kLanes, made.corners[c][axis]);
+    made.windings = picture.image.windings(made.corners);
+    made.within   = picture.image.extents(made.corners, made.extents) & made.all();
+    return made;
+}
+
+/// Of groups that follow one another: their searches begin together.
+template <class Crossed>
+void BinnedShadows::cast_groups(std::span<const Group> groups, const Picture& picture, const PointBatch& points,
+                                const Crossed& crossed, bool once, Search& search) const {
+    Extent around = Extent::nothing();
+    for (const Group& group : groups)
+        for (unsigned rest = group.within; rest != 0; rest &= rest - 1)
+            around.add(group.extents.at(static_cast<std::size_t>(std::countr_zero(rest))));
+    picture.asking.bins.start(around, search.start);
+    for (const Group& group : groups) {
+        find(group, picture, search);
+        if (!search.found.empty()) test(group, picture, points, crossed, once, search);
+    }
+}
+
+void BinnedShadows::find(const Group& group, const Picture& picture, Search& search) const {
+    const PointBins& bins = picture.asking.bins;
+    search.found.clear();
+    bins.find(group.extents, group.within, search.start, search.found);
+    for (unsigned rest = group.all() & ~group.within; rest != 0; rest &= rest - 1) {
+        const auto lane = static_cast<std::size_t>(std::countr_zero(rest));
+        std::array<dvec3, 3> corners;
+        for (std::size_t c = 0; c < 3; ++c)
+            corners[c] = {group.corners[c][0][lane], group.corners[c][1][lane], group.corners[c][2][lane]};
+        for (int f = 0; f < picture.image.faces(); ++f) {
+            const auto extent = picture.image.extent(f, corners);
+            if (!extent) continue;
+            Extents one;
+            for (std::size_t k = 0; k < kLanes; ++k) one.clear(k);
+            one.set(lane, *extent);
+            bins.find(one, 1u << lane, search.found);
+        }
+    }
+}
+
+ShadowPlanes BinnedShadows::planes(const Group& group, const Picture& picture) const {
+    LightImage::Corners near, travel;
+    double turn[kLanes];
+    for (std::size_t c = 0; c < 3; ++c)
+        for (int axis = 0; axis < 3; ++axis)
+            for (std::size_t i = 0; i < kLanes; ++i) near[c][axis][i] = group.corners[c][axis][i] - centre_[axis];
+    picture.image.travel(group.corners, travel);
+    for (std::size_t i = 0; i < kLanes; ++i) {
+        const auto vertex = [&](std::size_t c) {
+            return vec3(dvec3(group.corners[c][0][i], group.corners[c][1][i], group.corners[c][2][i]));
+        };
+        turn[i] = (group.windings.away >> i & 1u) != 0 ? 1.0
+                  : (group.windings.towards >> i & 1u) != 0
+                      ? -1.0
+                      : -side_of_light(*picture.light, vertex(0), vertex(1), vertex(2));
+    }
+    return {near, travel, turn, picture.asking.reach};
+}
+
+/// Tests the triangles against the blocks that were found; where these are many, as behind a wall, from all threads.
+template <class Crossed>
+void BinnedShadows::test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed,
+                         bool once, const Search& search) const {
+    const PointBins& bins = picture.asking.bins;
+    std::optional<ShadowPlanes> shadows;
+    const auto test_found = [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const PointBins::Found found = search.found[f];
+            if (f + kAhead < search.found.size()) bins.prefetch(search.found[f + kAhead].block);
+            Marks& marks          = bins.marks(found.block);
+            const unsigned hidden = once ? marks.crossed.load(std::memory_order_relaxed) : 0u;
+            if (hidden == 0xff) continue;
+            if (!shadows) shadows.emplace(planes(group, picture));
+            const Block& block = bins.block(found.block);
+            ShadowPlanes::Lanes lanes[kLanes];
+            Met all;
+            for (unsigned rest = shadows->test(found.triangles, block, lanes); rest != 0; rest &= rest - 1) {
+                const auto k       = static_cast<std::size_t>(std::countr_zero(rest));
+                const TriangleId t = group.triangles[k];
+                Met met;
+                if (lanes[k].unsure != 0)
+                    met = meet_exactly(scene_, *picture.light, t, points, block,
+                                       lanes[k].unsure & ~hidden & ~lanes_on(block, t));
+                met.crossed |= lanes[k].inside;
+                all.crossed |= met.crossed, all.touched |= met.touched;
+                for (unsigned hit = met.crossed; hit != 0; hit &= hit - 1)
+                    crossed(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
+            }
+            if ((all.crossed & ~hidden) != 0)
+                marks.crossed.fetch_or(static_cast<std::uint8_t>(all.crossed), std::memory_order_relaxed);
+            if (all.touched != 0)
+                marks.touched.fetch_or(static_cast<std::uint8_t>(all.touched), std::memory_order_relaxed);
+        }
+    };
+    if (search.found.size() < kMany) return test_found(0, search.found.size());
+    shadows.emplace(planes(group, picture));
+    parallel_ranges(search.found.size(), kMany / 4, test_found);
+}
+
+}  // namespace umbra

@@ -1,0 +1,38 @@
+// Exact visibility of hard lights: the segment from the exact surface point to the light against triangles.
+#pragma once
+
+#include "umbra/core/scene/lights.h"
+#include "umbra/shadows/geometry/box_tree.h"
+#include "umbra/shadows/geometry/exact_point.h"
+
+namespace umbra::exact_visibility {
+
+/// The segment from a named surface point to a hard light. The end is a position, or a direction at infinity.
+class Segment {
+public:
+    Segment(const ExactPoint& start, const Light& light);
+
+    [[nodiscard]] BoxTree::Piece piece() const;
+
+    /// `crosses`: passes through the inside of the triangle, from one of its sides to the other. `touches`: meets an
+    /// edge or a corner, lies in the triangle's plane, or begins on the triangle. Not counted is what lies in or behind
+    /// the plane of the surface point's own triangle, and what is met in the light alone: no movement of the surface
+    /// point in that plane would make the segment cross it.
+    enum class Meeting : std::uint8_t { none, touches, crosses };
+    /// With a triangle that has an area. The light is in front of the surface point.
+    [[nodiscard]] Meeting meeting(vec3 x, vec3 y, vec3 z) const;
+
+private:
+    [[nodiscard]] int end_side(vec3 x, vec3 y, vec3 z) const;
+    [[nodiscard]] Filtered<int> quick_edge_side(vec3 x, vec3 y) const;
+    [[nodiscard]] int edge_side(vec3 x, vec3 y) const;
+    [[nodiscard]] bool rises(vec3 x, vec3 y, vec3 z) const;
+    [[nodiscard]] Meeting meeting_from_plane(vec3 x, vec3 y, vec3 z, bool ends_in_plane) const;
+
+    const ExactPoint& start_;
+    bool infinite_;
+    vec3 end_;
+    Entries to_;
+};
+
+}  // namespace umbra::exact_visibility
