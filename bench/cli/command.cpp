@@ -50,6 +50,14 @@ std::string explain(const CLI::App& app, const CLI::App& command, const CLI::Par
     return text;
 }
 
+/// A value that is given and empty is a script's unset variable.
+void refuse_empty_values(const CLI::App& app) {
+    for (const CLI::Option* option : app.get_options())
+        if (option->get_expected_min() > 0)
+            for (const std::string& value : option->results())
+                if (value.empty()) throw UsageError(fmt::format("{}: the value is empty", option->get_name()));
+}
+
 int parse_and_run(int argc, const char* const* argv, std::string& help) {
     CLI::App app;
     Common common;
@@ -69,6 +77,7 @@ int parse_and_run(int argc, const char* const* argv, std::string& help) {
     const ThreadLimit limit(common.threads);
     const std::string name = app.get_subcommands().front()->get_name();
     help                   = name + " --help";
+    refuse_empty_values(*app.get_subcommands().front());
     for (std::size_t i = 0; i < kCommands.size(); ++i)
         if (kCommands[i].name == name) return actions[i]();
     return kInternal;

@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/canonical.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
@@ -146,6 +147,21 @@ CLI::Validator number_in(double low, double high, const std::string& expected) {
         return fmt::format("\"{}\" is not {}", text, expected);
     };
     return {check, "", "number"};
+}
+
+CLI::Validator pixel_samples() {
+    const auto check = [](const std::string& text) -> std::string {
+        int samples             = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), samples);
+        if (error != std::errc() || end != text.data() + text.size()) samples = 0;
+        try {
+            static_cast<void>(samples_along_side(samples));
+        } catch (const UsageError&) {
+            return fmt::format("\"{}\" is not 1, 4, 9, 16, 25, 36, 49 or 64", text);
+        }
+        return "";
+    };
+    return {check, "", "samples"};
 }
 
 }  // namespace umbra

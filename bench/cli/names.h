@@ -35,5 +35,7 @@ void return_ladders(std::vector<std::string>& methods, std::vector<std::string>&
 
 /// Checks that an option's value is a finite number in [low, high]; `expected` says so in words.
 [[nodiscard]] CLI::Validator number_in(double low, double high, const std::string& expected);
+/// Checks that it is a number of samples a pixel: a square from 1 to 64.
+[[nodiscard]] CLI::Validator pixel_samples();
 
 }  // namespace umbra

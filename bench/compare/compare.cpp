@@ -234,6 +234,8 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
             for (std::string& message : failures(last)) done.stopped.push_back(std::move(message));
         } catch (const MissingMesh& e) {
             done.missing.emplace_back(e.what());
+        } catch (const UsageError&) {  // of an option, whatever the scene
+            throw;
         } catch (const InputError& e) {
             done.failed.emplace_back(e.what());
         } catch (...) {

@@ -21,17 +21,34 @@ std::vector<std::string> missing(const std::vector<std::string>& a, const std::v
     return names;
 }
 
+/// Names of the integers.
+std::vector<std::string> integers_of(const Image& image) {
+    std::vector<std::string> names;
+    for (const auto& integer : image.integers) names.push_back(integer.first);
+    return names;
+}
+
+/// Names of all channels, integers last.
+std::vector<std::string> names_of(const Image& image) {
+    std::vector<std::string> names = image.channels;
+    for (std::string& name : integers_of(image)) names.push_back(std::move(name));
+    return names;
+}
+
 /// Why the two cannot be compared pixel by pixel; empty if they can.
 std::vector<std::string> find_unlike(const LoadedImage& a, const LoadedImage& b) {
-    std::vector<std::string> reasons;
-    if (a.image.width != b.image.width || a.image.height != b.image.height)
-        reasons.push_back(fmt::format("sizes differ: {}x{} against {}x{}", a.image.width, a.image.height, b.image.width,
-                                      b.image.height));
-    if (a.x != b.x || a.y != b.y)
-        reasons.push_back(fmt::format("data windows differ: begin at ({}, {}) against ({}, {})", a.x, a.y, b.x, b.y));
-    const auto only_a = missing(a.image.channels, b.image.channels);
-    const auto only_b = missing(b.image.channels, a.image.channels);
-    const auto common = missing(a.image.channels, only_a);
+    std::vector<std::string> reasons = layout_differences(a, b);
+    const auto only_in               = [](const Image& x, const Image& y) {
+        std::vector<std::string> names = missing(x.channels, y.channels);
+        for (const std::string& name : missing(integers_of(x), integers_of(y))) names.push_back(name + " in integers");
+        return names;
+    };
+    const auto only_a = only_in(a.image, b.image), only_b = only_in(b.image, a.image);
+    std::vector<std::string> common = names_of(a.image);
+    std::erase_if(common, [&](const std::string& name) {
+        return !missing({name}, names_of(b.image)).empty() ||
+               a.image.integers.contains(name) != b.image.integers.contains(name);
+    });
     if (!only_a.empty() || !only_b.empty())
         reasons.push_back(fmt::format(
             "channels differ: only the first has [{}], only the second [{}], both [{}]{}", fmt::join(only_a, " "),
@@ -46,7 +63,7 @@ bool matches(const std::string& name, const std::vector<std::string>& patterns) 
                        [&](const std::string& p) { return fnmatch(p.c_str(), name.c_str(), 0) == 0; });
 }
 
-/// The image's channels `names`, in that order; it must have them.
+/// The image's channels of floats `names`, in that order; it must have them.
 Image select(const Image& image, const std::vector<std::string>& names) {
     Image selected(image.width, image.height, names);
     for (std::size_t c = 0; c < names.size(); ++c) {
@@ -61,17 +78,19 @@ Image select(const Image& image, const std::vector<std::string>& names) {
 std::string keep_matching(LoadedImage& a, LoadedImage& b, const std::vector<std::string>& patterns) {
     std::vector<std::string> unused = patterns;
     for (LoadedImage* loaded : {&a, &b})
-        std::erase_if(unused, [&](const std::string& pattern) {
-            const auto& names = loaded->image.channels;
+        std::erase_if(unused, [names = names_of(loaded->image)](const std::string& pattern) {
             return std::any_of(names.begin(), names.end(), [&](const auto& name) { return matches(name, {pattern}); });
         });
     if (!unused.empty())
         return fmt::format("no channel is called {}: the first has [{}], the second [{}]", fmt::join(unused, " or "),
-                           fmt::join(a.image.channels, " "), fmt::join(b.image.channels, " "));
+                           fmt::join(names_of(a.image), " "), fmt::join(names_of(b.image), " "));
     for (LoadedImage* loaded : {&a, &b}) {
         std::vector<std::string> names = loaded->image.channels;
         std::erase_if(names, [&](const std::string& name) { return !matches(name, patterns); });
-        loaded->image = select(loaded->image, names);
+        auto integers = std::move(loaded->image.integers);
+        std::erase_if(integers, [&](const auto& integer) { return !matches(integer.first, patterns); });
+        loaded->image          = select(loaded->image, names);
+        loaded->image.integers = std::move(integers);
     }
     return "";
 }
@@ -80,13 +99,36 @@ std::string keep_matching(LoadedImage& a, LoadedImage& b, const std::vector<std:
 void encode(Image& image) {
     const std::size_t n = image.channels.size();
     for (std::size_t c = 0; c < n; ++c) {
-        if (image.channels[c] == "A") continue;
+        if (image.channels[c] == "A" || image.channels[c].ends_with(".A")) continue;
         for (std::size_t i = 0; i < image.pixels(); ++i)
             image.at(i, c) = srgb_from_linear(std::clamp(image.at(i, c), 0.0f, 1.0f));
     }
 }
 
 Image one_channel(const Image& image, std::size_t c) { return select(image, {image.channels[c]}); }
+
+/// The picture that is one of the image's layers.
+Image layer_of(const Image& image, const Layer& layer) {
+    Image picture(image.width, image.height, {"R", "G", "B"});
+    for (std::size_t i = 0; i < image.pixels(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) picture.at(i, c) = image.at(i, layer.channels[c]);
+    return picture;
+}
+
+/// The integers of both.
+std::vector<IntegerDiff> integer_differences(const Image& a, const Image& b) {
+    std::vector<IntegerDiff> found;
+    for (const auto& [name, in_a] : a.integers) {
+        const std::vector<std::uint32_t>& in_b = b.integers.at(name);
+        IntegerDiff d{name};
+        for (std::size_t i = in_a.size(); i-- > 0;)
+            if (in_a[i] != in_b[i])
+                d = {name,    d.differing + 1, int(i % std::size_t(a.width)), int(i / std::size_t(a.width)),
+                     in_a[i], in_b[i]};
+        found.push_back(d);
+    }
+    return found;
+}
 
 /// Where the largest difference is, or the first value that is not finite in one image only.
 void find_worst(DiffResult& result, const Image& a, const Image& b) {
@@ -113,22 +155,48 @@ void measure(DiffResult& result, const Image& a, const Image& b, double fail) {
     result.error    = image_error(a, b, fail);
     for (std::size_t c = 0; c < a.channels.size(); ++c)
         result.channel_error.push_back(image_error(one_channel(a, c), one_channel(b, c), fail));
+    result.integers = integer_differences(a, b);
     find_worst(result, a, b);
-    if (result.error.differing == 0) {  // nothing to see, and FLIP takes its time over it
-        result.flip.map.resize(a.pixels());
-        return;
+    result.flip.map.resize(a.pixels());
+    const auto differs          = [&](std::size_t c) { return result.channel_error[c].differing > 0; };
+    const std::vector<Layer> of = layers(a);
+    std::vector<bool> shown(a.channels.size());
+    bool any = false;
+    for (const Layer& layer : of) {
+        result.layers.push_back({layer.name.empty() ? "R G B" : layer.name});
+        for (const std::size_t c : layer.channels) shown[c] = true;
+        // Where there is nothing to see, FLIP takes its time over it.
+        if (std::none_of(layer.channels.begin(), layer.channels.end(), differs)) continue;
+        const Image in_a = layer_of(a, layer), in_b = layer_of(b, layer);
+        Flip flip                 = result.hdr ? flip_hdr(in_a, in_b) : flip_ldr(in_a, in_b);
+        result.layers.back().ssim = ssim(in_a, in_b);
+        result.layers.back().flip = flip.mean;
+        result.ssim               = std::min(result.ssim, result.layers.back().ssim);
+        if (any && flip.mean <= result.flip.mean) continue;
+        any                = true;
+        result.worst_layer = result.layers.size() - 1;
+        result.flip        = std::move(flip);
     }
-    result.ssim = ssim(a, b);
-    result.flip = result.hdr ? flip_hdr(a, b) : flip_ldr(a, b);
+    std::vector<std::string> unseen;
+    for (std::size_t c = 0; c < a.channels.size(); ++c)
+        if (!shown[c] && differs(c)) unseen.push_back(a.channels[c]);
+    if (!unseen.empty())
+        result.notes.push_back(fmt::format("SSIM and FLIP are of the layers of R, G, B; {} differ and are in neither",
+                                           fmt::join(unseen, " ")));
 }
 
 /// Same, close or differs; and why.
 void judge(DiffResult& result, const DiffOptions& options, double fail, bool asks_fail) {
     const ImageError& e = result.error;
-    if (e.unlike_not_finite == 0 && e.max <= options.warn) return;  // same
+    if (e.unlike_not_finite == 0 && e.max <= options.warn &&
+        std::none_of(result.integers.begin(), result.integers.end(), [](const auto& d) { return d.differing > 0; }))
+        return;  // same
     const auto limit = [&](bool missed, std::string reason) {
         if (missed) result.reasons.push_back(std::move(reason));
     };
+    for (const IntegerDiff& d : result.integers)
+        limit(d.differing > 0, fmt::format("whole numbers {} differ at {} pixels, the first ({}, {}): A {}, B {}",
+                                           d.name, d.differing, d.x, d.y, d.a, d.b));
     limit(e.unlike_not_finite > 0,
           fmt::format("{} values are not finite in one image and another in the other", e.unlike_not_finite));
     const double percent = 100 * double(e.over) / double(result.flip.map.size());
@@ -146,9 +214,10 @@ void judge(DiffResult& result, const DiffOptions& options, double fail, bool ask
     result.verdict = result.reasons.empty() ? Verdict::close : Verdict::differs;
 }
 
-/// FLIP, and B - A of every channel.
+/// FLIP of the layer where it is largest, and B - A of every channel.
 Image all_differences(const DiffResult& result, const Image& a, const Image& b) {
-    std::vector<std::string> names{"FLIP"};
+    const bool one = result.layers.size() == 1;
+    std::vector<std::string> names{one ? "FLIP" : "FLIP." + result.layers.at(result.worst_layer).name};
     for (const std::string& name : a.channels) names.push_back("difference." + name);
     Image map(a.width, a.height, names);
     map.metadata = {{"umbra:difference", result.b + " minus " + result.a}};
@@ -160,15 +229,16 @@ Image all_differences(const DiffResult& result, const Image& a, const Image& b) 
 }
 
 void write_pictures(DiffResult& result, const Image& a, const Image& b, const DiffOptions& options) {
-    const bool colours = options.map.extension() == ".png" || !options.pictures.empty();
+    const bool colours      = options.map.extension() == ".png" || !options.pictures.empty();
+    const std::size_t layer = result.worst_layer;
     DifferenceMap map;
-    if (colours) map = difference_map(a, b, result.hdr), result.map_range = map.range;
+    if (colours) map = difference_map(a, b, result.hdr, layer), result.map_range = map.range;
     if (!options.map.empty())
         write_image(options.map, options.map.extension() == ".png" ? map.picture : all_differences(result, a, b));
     if (options.pictures.empty() || result.verdict == Verdict::same) return;
     const auto name = [&](const char* ending) { return options.pictures.string() + ending; };
-    write_image(name(".a.png"), shown_picture(a, result.hdr));
-    write_image(name(".b.png"), shown_picture(b, result.hdr));
+    write_image(name(".a.png"), shown_picture(a, result.hdr, layer));
+    write_image(name(".b.png"), shown_picture(b, result.hdr, layer));
     write_image(name(".map.png"), map.picture);
 }
 
@@ -203,6 +273,8 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
         result.verdict = Verdict::unreadable;
         return result;
     }
+    for (Image* image : {&a.image, &b.image})  // integers that are floats as well are compared as integers
+        if (image->integers.contains(image->channels.front())) image->channels.clear(), image->data.clear();
     if (!options.channels.empty())
         if (std::string reason = keep_matching(a, b, options.channels); !reason.empty())
             result.reasons.push_back(std::move(reason));
@@ -218,7 +290,10 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
             fmt::format("{} holds linear light, the other sRGB: clamped and encoded before comparing",
                         first ? result.a : result.b));
     }
-    b.image    = select(b.image, a.image.channels);
+    auto integers    = std::move(b.image.integers);
+    b.image          = select(b.image, a.image.channels);
+    b.image.integers = std::move(integers);
+    for (LoadedImage* loaded : {&a, &b}) spread_integers(loaded->image);
     result.hdr = a.encoding == Encoding::linear && b.encoding == Encoding::linear;
 
     const bool asks_else = options.fail_rmse || options.fail_flip || options.fail_psnr || options.fail_ssim;

@@ -1,6 +1,7 @@
 // Two image files: how far they differ, and whether that is within given limits. Behind `umbra diff`.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -16,7 +17,7 @@ enum class Verdict : std::uint8_t {
     same       = 0,  ///< all values equal, or none differs by more than `warn`
     close      = 1,  ///< not the same, but within every limit that was given
     differs    = 2,  ///< beyond a limit, or a value that is not finite in one image and another in the other
-    unlike     = 3,  ///< not comparable: sizes, channels or data windows differ
+    unlike     = 3,  ///< not comparable: sizes, channels, windows or what the files say about colours differ
     unreadable = 4
 };
 [[nodiscard]] std::string_view to_string(Verdict verdict);
@@ -26,9 +27,9 @@ struct DiffOptions {
     std::optional<double> fail{};       ///< largest difference of a value
     double fail_percent = 0;            ///< this share of all pixels may be beyond `fail`
     std::optional<double> fail_rmse{};  ///< root mean square difference over all values
-    std::optional<double> fail_flip{};  ///< mean FLIP
+    std::optional<double> fail_flip{};  ///< mean FLIP of any layer
     std::optional<double> fail_psnr{};  ///< dB against a peak of 1; less is too little
-    std::optional<double> fail_ssim{};  ///< less is too little
+    std::optional<double> fail_ssim{};  ///< of any layer; less is too little
     double warn = 0;                    ///< largest difference of a value that still counts as the same
     /// Compare only channels of these names, shell patterns allowed ("S.*"); empty: all.
     std::vector<std::string> channels{};
@@ -38,6 +39,21 @@ struct DiffOptions {
     std::filesystem::path pictures{};
 };
 inline constexpr double kDefaultFail = 1e-6;
+
+/// What the pictures of an image (layers() of core/image/image.h) differ by.
+struct LayerDiff {
+    std::string name;  ///< "R G B" of that without a name
+    double ssim = 1;   ///< of the luminance, values as stored
+    double flip = 0;   ///< mean
+};
+
+/// A channel of whole numbers: names of things, which no distance is between.
+struct IntegerDiff {
+    std::string name;
+    std::size_t differing = 0;  ///< pixels
+    int x = 0, y = 0;           ///< the first of them
+    std::uint32_t a = 0, b = 0;
+};
 
 struct DiffResult {
     Verdict verdict = Verdict::same;
@@ -51,9 +67,12 @@ struct DiffResult {
     std::vector<std::string> channels;      ///< of A; B has the same, perhaps in another order
     std::vector<ImageError> channel_error;  ///< one a channel
     ImageError error;                       ///< over all of them; `over` counts pixels beyond `fail`
-    double ssim = 1;                        ///< of R, G, B's luminance, or of the first channel, values as stored
-    Flip flip;                              ///< of R, G, B, or of the first channel
-    bool hdr = false;                       ///< HDR-FLIP: both files hold linear light; LDR-FLIP otherwise
+    std::vector<IntegerDiff> integers;      ///< in no other figure; no limit allows one that differs
+    std::vector<LayerDiff> layers;          ///< all pictures
+    double ssim = 1;                        ///< smallest of the layers
+    Flip flip;                              ///< of the layer whose mean is largest
+    std::size_t worst_layer = 0;            ///< that one
+    bool hdr                = false;        ///< HDR-FLIP: both files hold linear light; LDR-FLIP otherwise
     struct {
         int x = 0, y = 0;
         std::size_t channel = 0;  ///< index into `channels`
@@ -62,12 +81,15 @@ struct DiffResult {
     double map_range = 0;  ///< of the difference map, if written: its darkest colours are +-this
 
     [[nodiscard]] bool comparable() const { return width > 0; }
-    [[nodiscard]] bool any_difference() const { return error.differing > 0; }
+    [[nodiscard]] bool any_difference() const {
+        return error.differing > 0 ||
+               std::any_of(integers.begin(), integers.end(), [](const IntegerDiff& d) { return d.differing > 0; });
+    }
 };
 
-/// Compares value by value as the files store them (integer formats scaled to [0, 1]), channels by name. Where one file
-/// holds sRGB and the other linear light, the linear one is clamped and encoded first, and a note says so. Never throws
-/// for what is wrong with the files; throws InputError where the map cannot be written.
+/// Compares all parts and channels value by value as the files store them (integer formats scaled to [0, 1]), channels
+/// by name. Where one file holds sRGB and the other linear light, the linear one is clamped and encoded first, and a
+/// note says so. Never throws for what is wrong with the files; throws InputError where the map cannot be written.
 [[nodiscard]] DiffResult diff(const std::filesystem::path& a, const std::filesystem::path& b,
                               const DiffOptions& options);
 

@@ -39,10 +39,11 @@ json image_view(const DiffResult& image, std::size_t index, const fs::path& pict
                             {"psnr", std::isfinite(e.psnr) ? fmt::format("{:.2f} dB", e.psnr) : "∞"},
                             {"ssim", fmt::format("{:.4f}", image.ssim)},
                             {"flip", score(image.flip.mean)},
+                            {"layer", utf8(layer_of_flip(image))},
                             {"pixels", count(double(e.differing))},
                             {"over", count(double(e.over))},
                             {"size", fmt::format("{} × {}", image.width, image.height)},
-                            {"channels", fmt::format("{}", fmt::join(image.channels, " "))}};
+                            {"channels", utf8(fmt::format("{}", fmt::join(all_channels(image), " ")))}};
     if (image.verdict == Verdict::same) return view;
     const std::string source = (pictures / image.name).string();
     view["pictures"]         = json{{"a", url(source + ".a.png")},

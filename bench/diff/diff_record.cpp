@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace umbra {
@@ -14,9 +15,26 @@ std::string number(double x) { return fmt::format("{:.6g}", x); }
 
 std::string worst_pixel(const DiffResult& result) {
     if (!result.comparable() || !result.any_difference()) return "";
+    if (result.error.differing == 0) {
+        const IntegerDiff& d = *std::find_if(result.integers.begin(), result.integers.end(),
+                                             [](const IntegerDiff& i) { return i.differing > 0; });
+        return fmt::format("({}, {}), channel {}: A {}, B {}", d.x, d.y, d.name, d.a, d.b);
+    }
     const auto& w = result.worst;
     return fmt::format("({}, {}), channel {}: A {}, B {}", w.x, w.y, result.channels[w.channel], number(w.a),
                        number(w.b));
+}
+
+std::string layer_of_flip(const DiffResult& result) {
+    if (result.layers.size() < 2) return "";
+    return fmt::format("{}, worst of {} layers", result.layers[result.worst_layer].name, result.layers.size());
+}
+
+std::vector<std::string> all_channels(const DiffResult& result) {
+    std::vector<std::string> names = result.channels;
+    for (const IntegerDiff& integer : result.integers)
+        if (std::find(names.begin(), names.end(), integer.name) == names.end()) names.push_back(integer.name);
+    return names;
 }
 
 std::string diff_text(const DiffResult& result) {
@@ -28,16 +46,18 @@ std::string diff_text(const DiffResult& result) {
         const ImageError& e = result.error;
         const double pixels = double(result.flip.map.size());
         line("{} against {}: {}x{}, {}", result.a, result.b, result.width, result.height,
-             fmt::join(result.channels, " "));
+             fmt::join(all_channels(result), " "));
         line("  MAE     {}", number(e.mae));
         line("  RMSE    {}", number(e.rmse));
         line("  PSNR    {}", std::isfinite(e.psnr) ? number(e.psnr) + " dB" : "infinite");
         line("  max     {}", number(e.max));
         if (const std::string worst = worst_pixel(result); !worst.empty()) line("  worst   {}", worst);
-        line("  SSIM    {}", number(result.ssim));
-        line("  FLIP    {} (mean, {}), weighted median {}, quartiles {} and {}, max {}", number(result.flip.mean),
-             result.hdr ? "HDR" : "LDR", number(result.flip.weighted_median), number(result.flip.first_quartile),
-             number(result.flip.third_quartile), number(result.flip.max));
+        const std::string of_layer = layer_of_flip(result);
+        line("  SSIM    {}{}", number(result.ssim),
+             of_layer.empty() ? "" : fmt::format(" (least of {} layers)", result.layers.size()));
+        line("  FLIP    {} (mean, {}{}), weighted median {}, quartiles {} and {}, max {}", number(result.flip.mean),
+             result.hdr ? "HDR" : "LDR", of_layer.empty() ? "" : "; " + of_layer, number(result.flip.weighted_median),
+             number(result.flip.first_quartile), number(result.flip.third_quartile), number(result.flip.max));
         line("  pixels  {} differ ({:.3g} %), {} beyond the limit ({:.3g} %)", e.differing,
              100 * double(e.differing) / pixels, e.over, 100 * double(e.over) / pixels);
         if (e.not_finite > 0)
@@ -47,6 +67,10 @@ std::string diff_text(const DiffResult& result) {
                 if (const ImageError& of = result.channel_error[c]; of.differing > 0)
                     line("  {}: MAE {}, RMSE {}, max {} at ({}, {})", result.channels[c], number(of.mae),
                          number(of.rmse), number(of.max), of.worst.x, of.worst.y);
+        if (result.layers.size() > 1)
+            for (const LayerDiff& layer : result.layers)
+                if (layer.flip > 0 || layer.ssim < 1)
+                    line("  layer {}: SSIM {}, FLIP {}", layer.name, number(layer.ssim), number(layer.flip));
     }
     if (result.map_range > 0)
         line(
@@ -98,7 +122,13 @@ nlohmann::json diff_json(const DiffResult& result) {
     json["pixels_over"]       = e.over;
     json["not_finite"]        = e.not_finite;
     json["unlike_not_finite"] = e.unlike_not_finite;
-    json["channels"]          = nlohmann::json::array();
+    json["layers"]            = nlohmann::json::array();
+    for (const LayerDiff& of : result.layers)
+        json["layers"].push_back({{"name", of.name}, {"ssim", of.ssim}, {"flip", of.flip}});
+    json["integers"] = nlohmann::json::array();
+    for (const IntegerDiff& of : result.integers)
+        json["integers"].push_back({{"name", of.name}, {"differing_pixels", of.differing}});
+    json["channels"] = nlohmann::json::array();
     for (std::size_t c = 0; c < result.channels.size(); ++c) {
         const ImageError& of = result.channel_error[c];
         json["channels"].push_back({{"name", result.channels[c]}, {"mae", of.mae}, {"rmse", of.rmse}, {"max", of.max}});

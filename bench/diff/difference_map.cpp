@@ -15,7 +15,8 @@ constexpr float kGroundMin = 0.86f;  // grey of black pixels of A
 constexpr int kCell        = 16;     // pixels: differing pixels in neighbouring cells are one group
 constexpr int kRinged      = 24;     // pixels: groups up to this size are ringed
 
-/// B - A of the channel where it is largest; NaN where a value is not finite in one image only.
+/// B - A of the channel where it is largest; NaN where a value is not finite in one image only, or where the integers
+/// alone differ.
 float signed_difference(const Image& a, const Image& b, std::size_t i) {
     float largest = 0;
     for (std::size_t c = 0; c < a.channels.size(); ++c) {
@@ -24,6 +25,9 @@ float signed_difference(const Image& a, const Image& b, std::size_t i) {
         if (!std::isfinite(x) || !std::isfinite(y)) return std::numeric_limits<float>::quiet_NaN();
         if (std::abs(y - x) > std::abs(largest)) largest = y - x;
     }
+    if (largest == 0)
+        for (const auto& [name, in_a] : a.integers)
+            if (in_a[i] != b.integers.at(name)[i]) return std::numeric_limits<float>::quiet_NaN();
     return largest;
 }
 
@@ -103,14 +107,14 @@ void draw_ring(Image& picture, const Group& group, const std::vector<float>& dif
 
 }  // namespace
 
-DifferenceMap difference_map(const Image& a, const Image& b, bool linear) {
+DifferenceMap difference_map(const Image& a, const Image& b, bool linear, std::size_t layer) {
     std::vector<float> difference(a.pixels());
     double largest = 0;
     for (std::size_t i = 0; i < a.pixels(); ++i) {
         difference[i] = signed_difference(a, b, i);
         if (!std::isnan(difference[i])) largest = std::max(largest, std::abs(double(difference[i])));
     }
-    DifferenceMap map{shown_picture(a, linear), round_up(largest)};
+    DifferenceMap map{shown_picture(a, linear, layer), round_up(largest)};
     for (std::size_t i = 0; i < a.pixels(); ++i) {
         const vec3 shown(map.picture.at(i, 0), map.picture.at(i, 1), map.picture.at(i, 2));
         const float grey = kGroundMin + (1 - kGroundMin) * glm::dot(shown, vec3(0.2126f, 0.7152f, 0.0722f));
@@ -121,8 +125,8 @@ DifferenceMap difference_map(const Image& a, const Image& b, bool linear) {
     return map;
 }
 
-Image shown_picture(const Image& image, bool linear) {
-    const std::array<std::size_t, 3> from = colour_channels(image);
+Image shown_picture(const Image& image, bool linear, std::size_t layer) {
+    const std::array<std::size_t, 3> from = layers(image).at(layer).channels;
     Image shown(image.width, image.height, {"R", "G", "B"});
     for (std::size_t i = 0; i < image.pixels(); ++i)
         for (std::size_t c = 0; c < 3; ++c) {

@@ -69,11 +69,20 @@ double arriving(const Scene& scene, const PointBatch& points, LightId j, std::si
     return luminance(light.diffuse) * arriving_share(scene, light, p) * cosine;
 }
 
+/// What follows from the sums; nothing where the method answers no point that a light reaches.
 Json energy_json(const ReceivedEnergy& e) {
     return {{"area", number(e.area)},
-            {"irradiance", number(e.irradiance)},
-            {"unshadowed", number(e.unshadowed)},
-            {"fraction", e.unshadowed > 0 ? number(e.irradiance / e.unshadowed) : Json()}};
+            {"irradiance", e.answered() ? number(e.irradiance) : Json()},
+            {"unshadowed", e.answered() ? number(e.unshadowed) : Json()},
+            {"fraction", e.unshadowed > 0 ? number(e.irradiance / e.unshadowed) : Json()},
+            {"coverage", e.asked > 0 ? number(e.unshadowed / e.asked) : Json()}};
+}
+
+/// The last fields of a row, as in the record: area, irradiance, unshadowed, coverage; empty where that has null.
+std::string csv_figures(const ReceivedEnergy& e) {
+    std::string fields = fmt::format("{:g}", e.area);
+    fields += e.answered() ? fmt::format(",{:g},{:g}", e.irradiance, e.unshadowed) : ",,";
+    return fields + (e.asked > 0 ? fmt::format(",{:g}", e.unshadowed / e.asked) : ",");
 }
 
 /// A field of a CSV file.
@@ -84,23 +93,27 @@ std::string csv_field(const std::string& text) {
 }
 
 /// The mean of all frames, by object.
-Json mean_of(const Json& frames) {
+Json mean_of(const std::vector<std::vector<ReceivedEnergy>>& frames, const std::vector<std::string>& names) {
     Json mean = Json::array();
-    for (std::size_t o = 0; !frames.empty() && o < frames[0]["objects"].size(); ++o) {
+    for (std::size_t o = 0; o < names.size(); ++o) {
         ReceivedEnergy sum;
         const auto n = static_cast<double>(frames.size());
-        for (const Json& frame : frames) {
-            const Json& object = frame["objects"][o];
-            sum.area += object["area"].get<double>() / n;
-            sum.irradiance += object["irradiance"].get<double>() / n;
-            sum.unshadowed += object["unshadowed"].get<double>() / n;
+        for (const std::vector<ReceivedEnergy>& objects : frames) {
+            sum.area += objects[o].area / n;
+            sum.irradiance += objects[o].irradiance / n;
+            sum.unshadowed += objects[o].unshadowed / n;
+            sum.asked += objects[o].asked / n;
         }
         Json entry    = energy_json(sum);
-        entry["name"] = frames[0]["objects"][o]["name"];
+        entry["name"] = names[o];
         mean.push_back(std::move(entry));
     }
     return mean;
 }
+
+std::string fixed(const Json& value) { return value.is_null() ? "-" : fmt::format("{:.3f}", value.get<double>()); }
+
+std::string general(const Json& value) { return value.is_null() ? "-" : fmt::format("{:.4g}", value.get<double>()); }
 
 }  // namespace
 
@@ -119,11 +132,13 @@ std::vector<ReceivedEnergy> received_by_faces(const Scene& scene, const SceneFac
             for (LightId j = 0; j < scene.lights.size(); ++j) {
                 if (points.triangle[i] == kNoTriangle || !points.asks(j, i)) continue;
                 const double all = arriving(scene, points, j, i);
+                face.asked += all;
+                if (!visibility[j].defined(i)) continue;
                 face.unshadowed += all;
-                face.irradiance += all * (visibility[j].defined(i) ? static_cast<double>(visibility[j].s[i]) : 1);
+                face.irradiance += all * static_cast<double>(visibility[j].s[i]);
             }
         const auto n = static_cast<double>(std::max<std::size_t>(1, spread.first[t + 1] - spread.first[t]));
-        face.irradiance /= n, face.unshadowed /= n;
+        face.irradiance /= n, face.unshadowed /= n, face.asked /= n;
     }
     return faces;
 }
@@ -135,17 +150,20 @@ std::vector<ReceivedEnergy> received_by_objects(const Scene& scene, std::span<co
         object.area += faces[t].area;
         object.irradiance += faces[t].area * faces[t].irradiance;
         object.unshadowed += faces[t].area * faces[t].unshadowed;
+        object.asked += faces[t].area * faces[t].asked;
     }
     for (ReceivedEnergy& object : objects)
-        if (object.area > 0) object.irradiance /= object.area, object.unshadowed /= object.area;
+        if (object.area > 0)
+            object.irradiance /= object.area, object.unshadowed /= object.area, object.asked /= object.area;
     return objects;
 }
 
 Json measure_energy(std::span<const fs::path> scenes, const EnergyOptions& options, const fs::path& folder) {
     Json frames = Json::array();
+    std::vector<std::vector<ReceivedEnergy>> received;
     std::vector<std::string> names;
-    std::string face_rows = "scene,object,triangle,area,irradiance,unshadowed\n",
-                rows      = "scene,object,area,irradiance,unshadowed\n";
+    std::string face_rows = "scene,object,triangle,area,irradiance,unshadowed,coverage\n",
+                rows      = "scene,object,area,irradiance,unshadowed,coverage\n";
     for (const fs::path& file : scenes) {
         const Scene scene = load_scene(file);
         if (options.progress) options.progress(scene.name);
@@ -161,23 +179,23 @@ Json measure_energy(std::span<const fs::path> scenes, const EnergyOptions& optio
             throw UsageError(fmt::format("{} has other objects than {}, expected frames of one scene", scene.name,
                                          frames[0]["scene"].get<std::string>()));
         const std::vector<ReceivedEnergy> faces = received_by_faces(scene, facts, options);
-        Json by_object                          = Json::array();
-        for (const ReceivedEnergy& e : received_by_objects(scene, faces)) {
+        received.push_back(received_by_objects(scene, faces));
+        Json by_object = Json::array();
+        for (const ReceivedEnergy& e : received.back()) {
             Json entry    = energy_json(e);
             entry["name"] = names[by_object.size()];
-            rows += fmt::format("{},{},{:g},{:g},{:g}\n", csv_field(scene.name), csv_field(names[by_object.size()]),
-                                e.area, e.irradiance, e.unshadowed);
+            rows +=
+                fmt::format("{},{},{}\n", csv_field(scene.name), csv_field(names[by_object.size()]), csv_figures(e));
             by_object.push_back(std::move(entry));
         }
         for (TriangleId t = 0; t < faces.size(); ++t)
-            face_rows += fmt::format("{},{},{},{:g},{:g},{:g}\n", csv_field(scene.name),
-                                     csv_field(names[scene.triangle_object[t]]), t, faces[t].area, faces[t].irradiance,
-                                     faces[t].unshadowed);
+            face_rows += fmt::format("{},{},{},{}\n", csv_field(scene.name), csv_field(names[scene.triangle_object[t]]),
+                                     t, csv_figures(faces[t]));
         frames.push_back({{"scene", scene.name}, {"title", scene.title}, {"objects", std::move(by_object)}});
     }
     write_text(folder / "objects.csv", rows);
     write_text(folder / "faces.csv", face_rows);
-    Json mean = mean_of(frames);
+    Json mean = mean_of(received, names);
     return {{"schema", kResultsSchema},   {"version", version()},
             {"command", options.command}, {"method", options.method ? Json(options.method->text()) : Json()},
             {"points", options.points},   {"frames", std::move(frames)},
@@ -186,16 +204,21 @@ Json measure_energy(std::span<const fs::path> scenes, const EnergyOptions& optio
 
 std::string energy_text(const Json& record) {
     std::size_t widest = 8;
-    for (const Json& object : record["mean"])
-        widest = std::max(widest, object["name"].get_ref<const std::string&>().size());
+    bool in_part       = false;
+    for (const Json& object : record["mean"]) {
+        widest  = std::max(widest, object["name"].get_ref<const std::string&>().size());
+        in_part = in_part || (object["coverage"].is_number() && object["coverage"] < 1);
+    }
     std::string text =
         fmt::format("irradiance without shadows, with shadows, and their quotient; means of {} frame{}\n",
                     record["frames"].size(), record["frames"].size() == 1 ? "" : "s");
+    if (in_part)
+        text += fmt::format("of the part that {} answers; last column: that part of what arrives without shadows\n",
+                            record["method"].get_ref<const std::string&>());
     for (const Json& object : record["mean"])
-        text +=
-            fmt::format("{:<{}} {:>10.4g} {:>10.4g} {:>6}\n", object["name"].get_ref<const std::string&>(), widest,
-                        object["unshadowed"].get<double>(), object["irradiance"].get<double>(),
-                        object["fraction"].is_null() ? "-" : fmt::format("{:.3f}", object["fraction"].get<double>()));
+        text += fmt::format("{:<{}} {:>10} {:>10} {:>6}{}\n", object["name"].get_ref<const std::string&>(), widest,
+                            general(object["unshadowed"]), general(object["irradiance"]), fixed(object["fraction"]),
+                            in_part ? fmt::format(" {:>6}", fixed(object["coverage"])) : "");
     return text;
 }
 

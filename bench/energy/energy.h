@@ -27,12 +27,18 @@ struct EnergyOptions {
 /// A face, or an object: all of its faces. Of the side of the winding.
 struct ReceivedEnergy {
     double area       = 0;
-    double irradiance = 0;  ///< mean over the area of sum_j S_j f_att,j I_j max(N.L_j, 0), I_j by its luminance
+    double irradiance = 0;  ///< mean over the area of sum_j S_j f_att,j I_j max(N.L_j, 0), I_j by its luminance, where
+                            ///< the method answers for light j; 0 elsewhere
     double unshadowed = 0;  ///< the same with S_j = 1 where the light is in front
+    double asked      = 0;  ///< the same wherever a light is in front, whether the method answers or not
+
+    /// Whether the method answers any point that a light reaches, or no light reaches any: the sums mean something.
+    [[nodiscard]] bool answered() const { return unshadowed > 0 || asked == 0; }
 };
 
 /// One a triangle: what arrives there, from points that are spread evenly over it, the more the larger it is. Points
-/// whose S_j the method leaves undefined count as lit. The method must serve the scene. Throws what it throws.
+/// whose S_j the method leaves undefined are neither lit nor dark: they are in `asked` alone. The method must serve the
+/// scene. Throws what it throws.
 [[nodiscard]] std::vector<ReceivedEnergy> received_by_faces(const Scene& scene, const SceneFacts& facts,
                                                             const EnergyOptions& options);
 
@@ -41,9 +47,10 @@ struct ReceivedEnergy {
                                                               std::span<const ReceivedEnergy> faces);
 
 /// Scenes or frames of one, in their order: all have the same objects. Writes faces.csv and objects.csv into `folder`,
-/// one row a face (or object) and frame, and returns the record: by frame and object, area, irradiance, unshadowed and
-/// their quotient; `mean`: of all frames. Throws InputError, and UsageError where a scene is not served or has other
-/// objects than the first.
+/// one row a face (or object) and frame, and returns the record: by frame and object, area, irradiance, unshadowed,
+/// their quotient, and the coverage, unshadowed over asked; `mean`: of all frames. null, in CSV an empty field: the
+/// method answers nothing there, or no light arrives. Throws InputError, and UsageError where a scene is not served or
+/// has other objects than the first.
 [[nodiscard]] Json measure_energy(std::span<const std::filesystem::path> scenes, const EnergyOptions& options,
                                   const std::filesystem::path& folder);
 

@@ -105,7 +105,9 @@ Json external_json(const GrowthRun& run) {
             const Ratio ratio = paired_ratio(GrowthSeries::rounds(p, Quantity::light_frame),
                                              GrowthSeries::rounds(q, Quantity::light_frame));
             j["ours"].push_back(
-                {{"pixels", p.x}, {"ratio", number(ratio.median)}, {"interval", interval_json(ratio.interval)}});
+                {{"pixels", p.x},
+                 {"ratio", number(ratio.median)},
+                 {"interval", ratio.has_interval() ? interval_json(ratio.interval) : Json{nullptr, nullptr}}});
         }
     for (const MeasuredCrossing& c : measured_crossings(*silhouettes, *triangles, Quantity::light_frame))
         j["our_crossings"].push_back(interval_json(c.between));

@@ -12,6 +12,7 @@
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 namespace {
@@ -47,7 +48,7 @@ std::vector<Competitor> competitors(const Json& scene, double max_rmse) {
             const std::string name(to_string(kMovements[k]));
             if (!method["movements"].contains(name)) return {};  // the scene has no such corner
             const Json& m = method["movements"][name];
-            c.times[k]    = m["mean_ms"].get<double>();
+            c.times[k]    = m["median_ms"].get<double>();
             competes =
                 competes && m["undefined"].get<std::uint64_t>() == 0 && m["worst_rmse"].get<double>() <= max_rmse;
         }
@@ -95,14 +96,22 @@ json winner_view(const Json& winner) {
             {"next", next}};
 }
 
+/// "1.07 to 1.20"; of fewer than five frames, which is no 95 %, with their number; of one there is none.
+std::string interval_in_words(const Json& ratio) {
+    const int pairs = ratio["pairs"].get<int>();
+    if (pairs < 2) return "one frame";
+    const Json& interval = ratio["interval"];
+    return fmt::format("{} to {}{}", score(value(interval[0])), score(value(interval[1])),
+                       pairs < 5 ? fmt::format(", {} frames", pairs) : "");
+}
+
 json movement_cells(const Json& method, const std::string& movement) {
     if (!method["movements"].contains(movement)) return {{"absent", true}};
-    const Json& m        = method["movements"][movement];
-    const Json& interval = m["frame_over_model"]["interval"];
+    const Json& m = method["movements"][movement];
     return {{"absent", false},
-            {"ms", milliseconds(value(m["mean_ms"]))},
-            {"ratio", score(value(m["measured_over_model"]))},
-            {"interval", fmt::format("{} to {}", score(value(interval[0])), score(value(interval[1])))},
+            {"ms", milliseconds(value(m["median_ms"]))},
+            {"ratio", score(value(m["frame_over_model"]["median"]))},
+            {"interval", interval_in_words(m["frame_over_model"])},
             {"rmse", score(value(m["worst_rmse"]))},
             {"undefined", m["undefined"].get<std::uint64_t>() > 0}};
 }
@@ -125,6 +134,13 @@ json method_view(const Json& method) {
     return view;
 }
 
+/// "Differences below ... are noise of this machine."
+std::string noise_in_words(const Json& noise_bar) {
+    if (noise_bar.is_null()) return "an unknown bar";
+    const std::string bar = percent(value(noise_bar)) + " %";
+    return noise_bar.get<double>() <= kMostNoise ? bar : bar + " (too much to say which method is fastest where)";
+}
+
 json scene_view(const Json& record, const Json& scene, std::size_t number) {
     json movements = json::array(), methods = json::array(), winners = json::array(), pairs = json::array();
     for (const Json& m : scene["movements"])
@@ -141,14 +157,17 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
              {"setup", milliseconds(value(pair["setup_ms"]))},
              {"saves", milliseconds(value(pair["saves_ms"]))},
              {"frames", count(value(pair["frames"]))},
-             {"rounds", fmt::format("{} to {}", count(value(pair["rounds"][0])),
-                                    pair["rounds"][1].is_null() ? "never" : count(value(pair["rounds"][1])))}});
+             {"rounds", pair["rounds"][0] == pair["rounds"][1]
+                            ? ""
+                            : fmt::format("{} to {}", count(value(pair["rounds"][0])),
+                                          pair["rounds"][1].is_null() ? "never" : count(value(pair["rounds"][1])))}});
     const double max_rmse = record["max_rmse"].get<double>();
     json triangles        = json::array();
+    const bool quiet      = !scene["noise_bar"].is_null() && scene["noise_bar"].get<double>() <= kMostNoise;
     for (const auto& [bound, caption] :
          {std::pair{1e300, std::string("of all that answer every point")},
           {max_rmse, fmt::format("with an RMSE of at most {:g} in every frame", max_rmse)}})
-        if (json triangle = triangle_view(scene, bound, caption); triangle["any"].get<bool>())
+        if (json triangle = triangle_view(scene, bound, caption); quiet && triangle["any"].get<bool>())
             triangles.push_back(std::move(triangle));
     std::string lights;
     for (const Json& light : scene["lights"]) lights += (lights.empty() ? "" : ", ") + text(light["name"]);
@@ -162,7 +181,7 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
                                           ? fmt::format(", at about {} stratified points for lights with an area",
                                                         record["area_points"].get<std::uint64_t>())
                                           : ", at every point")},
-            {"noise", scene["noise_bar"].is_null() ? "unknown" : percent(value(scene["noise_bar"])) + " %"},
+            {"noise", noise_in_words(scene["noise_bar"])},
             {"movements", std::move(movements)},
             {"methods", std::move(methods)},
             {"winners", std::move(winners)},

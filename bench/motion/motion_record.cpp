@@ -7,7 +7,9 @@ namespace {
 Json interval_json(const Interval& interval) { return {number(interval.low), number(interval.high)}; }
 
 Json ratio_json(const Ratio& ratio) {
-    return {{"median", number(ratio.median)}, {"interval", interval_json(ratio.interval)}, {"pairs", ratio.pairs}};
+    return {{"median", number(ratio.median)},
+            {"interval", ratio.has_interval() ? interval_json(ratio.interval) : Json{nullptr, nullptr}},
+            {"pairs", ratio.pairs}};
 }
 
 Json frame_json(const MotionFrame& frame) {
@@ -34,6 +36,7 @@ Json method_movement_json(const SceneMotion& motion, const MethodMotion& method,
     Json j = {{"frames", Json::array()},
               {"sum_ms", number(sum)},
               {"mean_ms", number(sum / static_cast<double>(times.size()))},
+              {"median_ms", number(median(times))},
               {"model_ms", number(model * static_cast<double>(times.size()))},
               {"measured_over_model", number(sum / (model * static_cast<double>(times.size())))},
               {"frame_over_model", ratio_json(paired_ratio(times, std::vector<double>(times.size(), model)))},

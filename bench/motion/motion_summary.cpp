@@ -11,10 +11,6 @@
 namespace umbra {
 namespace {
 
-double mean(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
 std::size_t index(Movement movement) { return static_cast<std::size_t>(movement); }
 
 bool ran_all_frames(const SceneMotion& motion, const MethodMotion& method) {
@@ -82,16 +78,12 @@ bool has(const SceneMotion& motion, const Mix& mix) {
     });
 }
 
-std::vector<double> mix_times(const MethodMotion& method, const Mix& mix) {
-    std::vector<double> sums;
-    for (const Movement movement : kMovements) {
-        const double share = mix.share[index(movement)];
-        if (share == 0) continue;
-        const std::vector<double> times = frame_times(method, movement);
-        sums.resize(times.size());
-        for (std::size_t k = 0; k < times.size(); ++k) sums[k] += share * times[k];
-    }
-    return sums;
+double mix_ms(const MethodMotion& method, const Mix& mix) {
+    double ms = 0;
+    for (const Movement movement : kMovements)
+        if (const double share = mix.share[index(movement)]; share > 0)
+            ms += share * median(frame_times(method, movement));
+    return ms;
 }
 
 std::vector<std::size_t> complete(const SceneMotion& motion) {
@@ -105,20 +97,24 @@ std::vector<std::size_t> within(const SceneMotion& motion, double max_rmse) {
 std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors, const Mix& mix) {
     struct Entry {
         std::size_t method;
-        std::vector<double> times;
         double ms;
+        std::vector<std::vector<double>> times;  // of each movement of the mix
     };
+    std::vector<double> shares;
+    for (const double share : mix.share)
+        if (share > 0) shares.push_back(share);
     std::vector<Entry> entries;
     for (const std::size_t m : competitors) {
-        std::vector<double> times = mix_times(motion.methods[m], mix);
-        const double ms           = mean(times);
-        entries.push_back({m, std::move(times), ms});
+        Entry entry{m, mix_ms(motion.methods[m], mix), {}};
+        for (const Movement movement : kMovements)
+            if (mix.share[index(movement)] > 0) entry.times.push_back(frame_times(motion.methods[m], movement));
+        entries.push_back(std::move(entry));
     }
     if (entries.empty()) return std::nullopt;
     std::ranges::stable_sort(entries, {}, &Entry::ms);
     Winner won{entries[0].method, entries[0].ms, {}, {}, {}};
     for (std::size_t k = 1; k < entries.size(); ++k) {
-        const Ratio ratio = paired_ratio(entries[k].times, entries[0].times);
+        const Ratio ratio = ratio_of_medians(entries[k].times, entries[0].times, shares);
         if (k == 1) won.runner_up = entries[k].method, won.behind = ratio;
         if (!differs(ratio, motion.noise_bar)) won.ties.push_back(entries[k].method);
     }
@@ -135,7 +131,8 @@ std::vector<BreakEven> break_evens(const SceneMotion& motion, const std::vector<
             const auto frame   = [](const TurnTimes& t) { return median(t.look) + median(t.visibility); };
             const double saves = frame(b) - frame(a);
             if (!(setup > 0 && saves > 0)) continue;
-            BreakEven pair{slow, fast, setup, saves, std::ceil(setup / saves), {never, 0}};
+            BreakEven pair{slow, fast, setup, saves, std::ceil(setup / saves), {}};
+            pair.interval = {pair.frames, pair.frames};
             for (std::size_t r = 0; r < std::min(a.build.size(), b.build.size()); ++r) {
                 const double longer  = a.build[r] + a.aim[r] - b.build[r] - b.aim[r];
                 const double shorter = b.look[r] + b.visibility[r] - a.look[r] - a.visibility[r];

@@ -36,21 +36,21 @@ struct Mix {
 /// Whether the scene has every movement that the mix asks for.
 [[nodiscard]] bool has(const SceneMotion& motion, const Mix& mix);
 
-/// Milliseconds of each frame of the mix: the weighted sums of the frames with one index of its movements.
-[[nodiscard]] std::vector<double> mix_times(const MethodMotion& method, const Mix& mix);
+/// Milliseconds of a frame of the mix: the weighted sum of the medians of its movements' frames.
+[[nodiscard]] double mix_ms(const MethodMotion& method, const Mix& mix);
 
 /// Which methods compete: those that ran all frames and answered at every point; those of them whose RMSE stayed within
 /// a bound in every frame of every movement.
 [[nodiscard]] std::vector<std::size_t> complete(const SceneMotion& motion);
 [[nodiscard]] std::vector<std::size_t> within(const SceneMotion& motion, double max_rmse);
 
-/// The method with the least mean time of a mix.
+/// The method with the least mix_ms.
 struct Winner {
     std::size_t method = 0;
     double ms          = 0;
-    std::vector<std::size_t> ties;         ///< others whose paired ratio to it says no difference
+    std::vector<std::size_t> ties;         ///< others whose ratio to it says no difference
     std::optional<std::size_t> runner_up;  ///< the next fastest, if any
-    Ratio behind;                          ///< its frames over the winner's
+    Ratio behind;                          ///< its mix_ms over the winner's
 };
 /// Nothing where nobody competes.
 [[nodiscard]] std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors,
@@ -62,7 +62,7 @@ struct BreakEven {
     std::size_t slow = 0, fast = 0;
     double setup_ms = 0, saves_ms = 0;  ///< longer setup (build and all aims); shorter visibility of all lights
     double frames = 0;
-    Interval interval;  ///< of the frames, least and largest over the rounds; infinite where one saves nothing
+    Interval interval;  ///< of `frames` and those of each round, least and largest; infinite where one saves nothing
 };
 /// For each pair of methods where neither is first in both, at rest.
 [[nodiscard]] std::vector<BreakEven> break_evens(const SceneMotion& motion,

@@ -1,14 +1,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "umbra/bench/motion/motion.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 namespace {
 
 std::string number_text(const Json& value, int digits = 2) {
     return value.is_null() ? "-" : fmt::format("{:.{}f}", value.get<double>(), digits);
+}
+
+std::string noise_text(const Json& noise_bar) {
+    if (noise_bar.is_null()) return "without a control no two times differ";
+    const double bar = noise_bar.get<double>();
+    return fmt::format("times that differ by less than {:.0f} % are equal{}", std::ceil(100 * bar),
+                       bar > kMostNoise ? ": the machine is too busy to compare" : "");
 }
 
 std::string winner_text(const Json& winner) {
@@ -21,10 +30,12 @@ std::string winner_text(const Json& winner) {
     return text;
 }
 
-std::string method_rows(const Json& scene) {
+/// Of fewer than five frames an interval is that of the frames, of one there is none.
+std::string method_rows(const Json& scene, int frames_of_each) {
+    const char* const interval_head = frames_of_each >= 5 ? "95 %" : "of the frames";
     std::string text =
         fmt::format("  {:34} {:8} {:>10} {:>10} {:>8}  {:>17} {:>10} {:>10} {:>10} {:>10}\n", "method", "moves",
-                    "ms/frame", "model", "ratio", "95 %", "mean rmse", "worst", "interior", "undefined");
+                    "median ms", "model", "ratio", interval_head, "mean rmse", "worst", "interior", "undefined");
     for (const Json& method : scene["methods"]) {
         const std::string name = method["text"];
         if (method.contains("failed"))
@@ -37,9 +48,9 @@ std::string method_rows(const Json& scene) {
             const Json& interval = m["frame_over_model"]["interval"];
             text +=
                 fmt::format("  {:34} {:8} {:>10} {:>10.2f} {:>8}  {:>8} {:>8} {:>10} {:>10} {:>10} {:>10}\n", name,
-                            movement, number_text(m["mean_ms"]), m["model_ms"].get<double>() / frames,
-                            number_text(m["measured_over_model"]), number_text(interval[0]), number_text(interval[1]),
-                            number_text(m["mean_rmse"], 4), number_text(m["worst_rmse"], 4),
+                            movement, number_text(m["median_ms"]), m["model_ms"].get<double>() / frames,
+                            number_text(m["frame_over_model"]["median"]), number_text(interval[0]),
+                            number_text(interval[1]), number_text(m["mean_rmse"], 4), number_text(m["worst_rmse"], 4),
                             m["interior"].is_null() ? "-" : m["interior"].dump(), m["undefined"].dump());
         }
     }
@@ -59,18 +70,22 @@ std::string motion_table(const Json& record) {
             text += fmt::format("  {:8} {}\n", movement["movement"].get<std::string>(),
                                 movement.contains("cannot") ? "cannot: " + movement["cannot"].get<std::string>()
                                                             : movement["what"].get<std::string>());
-        text += method_rows(scene);
+        text += method_rows(scene, record["frames"].get<int>());
         text += fmt::format(
-            "  fastest of those that answer every point; the same with an RMSE of at most {:g} in every frame\n",
-            record["max_rmse"].get<double>());
+            "  fastest by median of those that answer every point; the same with an RMSE of at most {:g} in every "
+            "frame; {}\n",
+            record["max_rmse"].get<double>(), noise_text(scene["noise_bar"]));
         for (const Json& row : scene["winners"])
             text += fmt::format("  {:28} {:60} | {}\n", row["mix"].get<std::string>(), winner_text(row["complete"]),
                                 winner_text(row["within"]));
         for (const Json& pair : scene["break_even"])
-            text += fmt::format("  {} pays off over {} from {} camera frames on ({} to {} by the rounds)\n",
-                                pair["method"].get<std::string>(), pair["over"].get<std::string>(),
-                                number_text(pair["frames"], 0), number_text(pair["rounds"][0], 0),
-                                pair["rounds"][1].is_null() ? "never" : number_text(pair["rounds"][1], 0));
+            text += fmt::format(
+                "  {} pays off over {} from {} camera frames on{}\n", pair["method"].get<std::string>(),
+                pair["over"].get<std::string>(), number_text(pair["frames"], 0),
+                pair["rounds"][0] == pair["rounds"][1]
+                    ? ""
+                    : fmt::format(" ({} to {} by the rounds)", number_text(pair["rounds"][0], 0),
+                                  pair["rounds"][1].is_null() ? "never" : number_text(pair["rounds"][1], 0)));
     }
     text += fmt::format("{}, {} threads, load average {} to {}\n", record["machine"]["cpu"].get<std::string>(),
                         record["machine"]["threads"].get<int>(), number_text(record["load_average"]["before"]),

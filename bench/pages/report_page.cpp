@@ -94,9 +94,25 @@ bool serves(const Field& method) {
     return word != "not";
 }
 
-std::string method_id(const Field& method) {
+std::string setting_text(const Field& method) {
+    if (std::string text = method["text"].text(); !text.empty()) return text;
     const std::string id = method["id"].text();
     return id.empty() ? method["name"].required_text() : id;
+}
+
+bool same_setting(const Field& a, const Field& b) {
+    if (setting_text(a) != setting_text(b)) return false;
+    const std::vector<std::pair<std::string, Field>> parameters = a["parameters"].members();
+    return std::all_of(parameters.begin(), parameters.end(), [&](const auto& parameter) {
+        const Field other = b["parameters"][parameter.first];
+        return !other.present() || other.scalar() == parameter.second.scalar();
+    });
+}
+
+std::optional<Field> find_setting(const std::vector<Field>& methods, const Field& setting) {
+    const auto found =
+        std::find_if(methods.begin(), methods.end(), [&](const Field& m) { return same_setting(m, setting); });
+    return found == methods.end() ? std::nullopt : std::optional(*found);
 }
 
 std::string method_label(const Field& method, const std::vector<Field>& methods) {
@@ -106,16 +122,23 @@ std::string method_label(const Field& method, const std::vector<Field>& methods)
         std::count_if(methods.begin(), methods.end(), [&](const Field& m) { return m["name"].text() == name; });
     const std::string shown = title.empty() ? in_words(name) : title;
     const auto colon        = text.find(':');
-    return runs > 1 && colon != std::string::npos ? fmt::format("{} ({})", shown, text.substr(colon + 1)) : shown;
+    std::string settings    = colon != std::string::npos ? text.substr(colon + 1) : "";
+    // Records of two versions of the program may write other settings as one text.
+    for (const auto& [name_of, value] : method["parameters"].members())
+        if (std::any_of(methods.begin(), methods.end(), [&, &of = name_of, &here = value](const Field& m) {
+                return setting_text(m) == setting_text(method) && m["parameters"][of].present() &&
+                       m["parameters"][of].scalar() != here.scalar();
+            }))
+            settings += fmt::format("{}{}={}", settings.empty() ? "" : ",", name_of, value.scalar());
+    return runs > 1 && !settings.empty() ? fmt::format("{} ({})", shown, settings) : shown;
 }
 
-std::vector<std::string> method_ids(const std::vector<ScenePage>& scenes) {
-    std::vector<std::string> ids;
+std::vector<Field> settings_of(const std::vector<ScenePage>& scenes) {
+    std::vector<Field> settings;
     for (const ScenePage& scene : scenes)
         for (const Field& method : scene.root["methods"].items())
-            if (const std::string id = method_id(method); std::find(ids.begin(), ids.end(), id) == ids.end())
-                ids.push_back(id);
-    return ids;
+            if (!find_setting(settings, method)) settings.push_back(method);
+    return settings;
 }
 
 namespace {

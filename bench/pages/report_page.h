@@ -58,13 +58,22 @@ private:
 };
 
 [[nodiscard]] bool serves(const Field& method);
-[[nodiscard]] std::string method_id(const Field& method);
+
+/// A method with its settings, as typed; of a record without, its id, which tells apart the runs of one record alone.
+[[nodiscard]] std::string setting_text(const Field& method);
+
+/// Whether entries of `methods`, of any two records, are one method with the same settings: as typed, and in every
+/// parameter that both records know.
+[[nodiscard]] bool same_setting(const Field& a, const Field& b);
+
+/// The entry of `methods` with that setting; nothing where it was not run.
+[[nodiscard]] std::optional<Field> find_setting(const std::vector<Field>& methods, const Field& setting);
 
 /// What a method is called on a page. Where one method runs with several settings, these tell the runs apart.
 [[nodiscard]] std::string method_label(const Field& method, const std::vector<Field>& methods);
 
-/// The methods of all scenes in the order in which they first appear, by their ids.
-[[nodiscard]] std::vector<std::string> method_ids(const std::vector<ScenePage>& scenes);
+/// The settings of all scenes in the order in which they first appear: an entry of `methods` of each.
+[[nodiscard]] std::vector<Field> settings_of(const std::vector<ScenePage>& scenes);
 
 /// Sums over the lights of one method on one scene. Interior and edge are never summed.
 struct Totals {

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
@@ -111,10 +113,9 @@ public:
             choices.push_back(c.choice);
             turns.first.push_back(lab_.price(c.choice));
         }
-        const TimedTogether together = lab_.times(choices, turns);
+        const TimedTogether together = lab_.times(choices, turns, options_.most_noise);
         if (who.empty()) return;
-        const Json& bar   = together.turns.at("noise_bar");
-        result_.noise_bar = bar.is_number() ? bar.get<double>() : kUnknown;
+        result_.noise_bar = together.noise_bar();
         for (std::size_t t = 0; t < who.size(); ++t) {
             const Json& times = together.settings[t];
             Candidate& c      = result_.candidates[who[t]];
@@ -125,12 +126,14 @@ public:
         }
     }
 
-    /// Cost of `a` over cost of `b`; without an interval where one of them took part in no round.
-    [[nodiscard]] Ratio ratio(std::size_t a, std::size_t b) const {
-        const Candidate &x = result_.candidates[a], &y = result_.candidates[b];
-        if (!x.costs.empty() && !y.costs.empty()) return paired_ratio(x.costs, y.costs);
-        const double r = *x.cost / *y.cost;
-        return {r, {r, r}, 0};
+    /// The cost of `k` over that of `base`.
+    [[nodiscard]] Rival rival(std::size_t k, std::size_t base) const {
+        const Candidate &x = result_.candidates[k], &y = result_.candidates[base];
+        if (!x.costs.empty() && !y.costs.empty())
+            if (const Ratio ratio = paired_ratio(x.costs, y.costs); ratio.has_interval())
+                return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
+        const double ratio = *x.cost / *y.cost;
+        return {k, {ratio, {0, kUnknown}, 1}, std::max(ratio, 1 / ratio) > kTooExpensive};
     }
 
 private:
@@ -156,16 +159,25 @@ private:
     Recommendation& result_;
 };
 
-/// By descending error: each step is cheaper than every setting of a smaller bound.
-std::vector<Step> staircase_of(const std::vector<Candidate>& candidates) {
+/// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar.
+std::vector<Step> staircase_of(const std::vector<Candidate>& candidates, double noise_bar) {
     std::vector<std::size_t> by_cost;
     for (std::size_t k = 0; k < candidates.size(); ++k)
         if (candidates[k].cost && candidates[k].bounds[0]) by_cost.push_back(k);
     std::ranges::stable_sort(by_cost, {}, [&](std::size_t k) { return *candidates[k].cost; });
+    const double same = std::isfinite(noise_bar) ? 1 + noise_bar : 1;
     std::vector<Step> steps;
-    for (const std::size_t k : by_cost)
-        if (steps.empty() || *candidates[k].bounds[0] < steps.back().error)
-            steps.push_back({k, *candidates[k].bounds[0]});
+    double cheapest = 0;  // of those that the last step stands for
+    for (const std::size_t k : by_cost) {
+        const double cost = *candidates[k].cost, error = *candidates[k].bounds[0];
+        if (!steps.empty() && error >= steps.back().error) continue;
+        if (!steps.empty() && cost <= same * cheapest) {
+            steps.back() = {k, error};
+            continue;
+        }
+        steps.push_back({k, error});
+        cheapest = cost;
+    }
     return steps;
 }
 
@@ -241,7 +253,7 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
     }
     std::ranges::stable_sort(timed, cheaper);
     std::ranges::stable_sort(within, cheaper);
-    r.staircase = staircase_of(r.candidates);
+    r.staircase = staircase_of(r.candidates, r.noise_bar);
     if (within.empty()) {
         for (const std::size_t k : timed)
             if (!r.nearest ||
@@ -249,27 +261,62 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
                 r.nearest = k;
         return r;
     }
-    r.chosen         = within.front();
-    const auto rival = [&](std::size_t k) {
-        const Ratio ratio = search.ratio(k, *r.chosen);
-        return Rival{k, ratio.median, ratio.interval.low, ratio.interval.high};
-    };
+    const std::size_t first = within.front();
     for (std::size_t n = 1; n < within.size(); ++n) {
-        const Ratio ratio   = search.ratio(within[n], *r.chosen);
-        const bool by_price = ratio.pairs < 2;  // no rounds, hence no interval and no noise bar
-        if (by_price ? ratio.median <= kTooExpensive : !differs(ratio, r.noise_bar))
-            r.tied.push_back(rival(within[n]));
+        const Rival rival = search.rival(within[n], first);
+        if (!rival.differs)
+            r.tied.push_back(rival);
         else if (!r.runner_up)
-            r.runner_up = rival(within[n]);
+            r.runner_up = rival;
     }
-    r.cheapest = rival(timed.front());
+    if (!r.tied.empty() && std::isfinite(r.noise_bar) && r.noise_bar > options.most_noise) {
+        r.undecided.push_back(first);
+        for (const Rival& rival : r.tied) r.undecided.push_back(rival.candidate);
+        r.tied.clear();
+        r.runner_up.reset();
+        return r;
+    }
+    r.chosen   = first;
+    r.cheapest = search.rival(timed.front(), first);
     for (const std::size_t k : timed)
-        if (r.candidates[k].choice.info->reference && !r.exact) r.exact = rival(k);
+        if (r.candidates[k].choice.info->reference && !r.exact) r.exact = search.rival(k, first);
     for (int view = options.views; view < options.views + options.held_out; ++view) {
         r.held_out.push_back(lab.cell(r.candidates[*r.chosen].choice, view));
         lab.release(view);
     }
     return r;
+}
+
+std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options) {
+    std::vector<TriedMethod> all;
+    const auto of = [&](const MethodInfo* info) -> TriedMethod& {
+        const auto found = std::ranges::find(all, info, &TriedMethod::info);
+        return found != all.end() ? *found
+                                  : all.emplace_back(TriedMethod{.info = info, .candidate = {}, .outdone_by = {}});
+    };
+    for (const MethodChoice& choice : options.choices) ++of(choice.info).settings;
+    // The first of these that differs decides: fit, timed, within the limits, then the cost, or how far it misses.
+    const auto rank = [&](std::size_t k) {
+        const Candidate& c = r.candidates[k];
+        const bool within  = c.unfit.empty() && c.within(options.limits);
+        const double cost  = c.cost.value_or(kUnknown);
+        return std::tuple(!c.unfit.empty(), !c.cost, !within, within ? cost : c.worst_ratio(options.limits), cost);
+    };
+    for (std::size_t k = 0; k < r.candidates.size(); ++k) {
+        const Candidate& c  = r.candidates[k];
+        TriedMethod& method = of(c.choice.info);
+        ++method.looked_at;
+        method.within = method.within || (c.unfit.empty() && c.within(options.limits));
+        if (!method.candidate || rank(k) < rank(*method.candidate)) method.candidate = k;
+    }
+    for (std::size_t p = 0; p < r.passed_over.size(); ++p) {
+        TriedMethod& method = of(r.passed_over[p].choice.info);
+        ++method.passed_over;
+        if (!method.candidate &&
+            (!method.outdone_by || r.passed_over[p].ratio < r.passed_over[*method.outdone_by].ratio))
+            method.outdone_by = p;
+    }
+    return all;
 }
 
 }  // namespace umbra

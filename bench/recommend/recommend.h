@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/scene_lab.h"
 #include "umbra/bench/time/workload.h"
@@ -27,6 +28,8 @@ struct RecommendOptions {
     int views    = 5;                   ///< that the choice is made on, from view 0
     int held_out = 3;                   ///< further views that the chosen setting is tried on afterwards
     TurnOptions turns{.rounds = 9, .budget_ms = 20000};
+    double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
+    std::string kept_in{};           ///< the folder of cells and times, to be named; empty: it is not
     std::function<void(const std::string&)> progress{};
 };
 
@@ -49,16 +52,18 @@ struct Candidate {
     std::vector<std::optional<double>> bounds;  ///< [limit]
     std::string unfit;                          ///< why it is no candidate at all; empty where it is one
     std::vector<double> costs;                  ///< ms a frame, one a round; empty where it took part in none
-    std::optional<double> cost;                 ///< their median; of one run where there are none
+    std::optional<double> cost;                 ///< by the medians of the phases; of one run where there are no rounds
     [[nodiscard]] bool within(std::span<const Limit> limits) const;
     /// The largest bound over its limit; infinite where a bound is not known.
     [[nodiscard]] double worst_ratio(std::span<const Limit> limits) const;
 };
 
-/// How much cheaper: settings are tied where the paired ratio of their costs does not differ from 1 by more than noise.
+/// How much dearer: settings are tied where the paired ratio of their costs does not differ from 1 by more than noise;
+/// by one run each, up to five times.
 struct Rival {
     std::size_t candidate;
-    double ratio, low, high;  ///< its cost over that of the recommendation
+    Ratio ratio;           ///< its cost over that of the recommendation; fewer than two pairs: by one run each
+    bool differs = false;  ///< from 1, as far as noise lets one tell
 };
 
 /// A setting that was not looked at: by one run each, it costs over five times as much as a candidate within the limits
@@ -69,7 +74,20 @@ struct PassedOver {
     double ratio;           ///< of the costs
 };
 
-/// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest.
+/// A method and what was found of its settings.
+struct TriedMethod {
+    const MethodInfo* info  = nullptr;
+    std::size_t settings    = 0;
+    std::size_t looked_at   = 0;
+    std::size_t passed_over = 0;
+    bool within             = false;       ///< one of them is within the limits
+    std::optional<std::size_t> candidate;  ///< the cheapest within the limits, else the one that misses by the smallest
+                                           ///< factor, else one that is unfit
+    std::optional<std::size_t> outdone_by;  ///< index into passed_over, where none was looked at: the cheapest of them
+};
+
+/// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest; of those
+/// that the noise bar does not tell apart, the one with the smallest bound.
 struct Step {
     std::size_t candidate;
     double error;
@@ -77,19 +95,24 @@ struct Step {
 
 struct Recommendation {
     std::vector<Candidate> candidates;
-    std::optional<std::size_t> chosen;        ///< none: no setting is within the limits
-    std::optional<std::size_t> nearest;       ///< where none is: the one that misses by the smallest factor
-    std::vector<Rival> tied;                  ///< as cheap as the chosen one, as far as can be told
-    std::optional<Rival> runner_up;           ///< the cheapest of the others within the limits
-    std::optional<Rival> cheapest;            ///< of all that were timed, whatever their errors
-    std::optional<Rival> exact;               ///< the reference method, where it was timed
-    std::vector<Step> staircase;              ///< by descending error
-    std::vector<PassedOver> passed_over;      ///< in the order in which they were met
-    std::vector<Json> held_out;               ///< cells of the chosen one in views that it was not chosen on
+    std::optional<std::size_t> chosen;    ///< none: no setting is within the limits, or `undecided` has some
+    std::vector<std::size_t> undecided;   ///< within the limits and, at a noise bar above the most, none cheaper than
+                                          ///< another; by ascending cost
+    std::optional<std::size_t> nearest;   ///< where none is: the one that misses by the smallest factor
+    std::vector<Rival> tied;              ///< as cheap as the chosen one, as far as can be told
+    std::optional<Rival> runner_up;       ///< the cheapest of the others within the limits
+    std::optional<Rival> cheapest;        ///< of all that were timed, whatever their errors
+    std::optional<Rival> exact;           ///< the reference method, where it was timed
+    std::vector<Step> staircase;          ///< by descending error
+    std::vector<PassedOver> passed_over;  ///< in the order in which they were met
+    std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
-    double noise_bar = 0;
+    double noise_bar = 0;                     ///< as of Turns
 };
 [[nodiscard]] Recommendation recommend(SceneLab& lab, const RecommendOptions& options);
+
+/// Every method of the candidates, in the order in which the options name them.
+[[nodiscard]] std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options);
 
 /// As `umbra recommend --json` prints it (README), and in words.
 [[nodiscard]] Json recommendation_json(const Recommendation& r, const RecommendOptions& options);

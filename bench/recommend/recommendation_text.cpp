@@ -29,6 +29,15 @@ std::size_t held(const Metric& metric, const std::vector<Json>& cells, double bo
     }));
 }
 
+/// The largest share of points of a view that a setting leaves open: its errors are of the others.
+double most_undefined(const Candidate& c) {
+    double most = 0;
+    for (const Json& cell : c.views)
+        if (cell.contains("undefined") && cell.at("undefined").is_number())
+            most = std::max(most, cell.at("undefined").get<double>());
+    return most;
+}
+
 Json candidate_json(const Candidate& c, const RecommendOptions& options) {
     Json errors = Json::object();
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
@@ -37,12 +46,35 @@ Json candidate_json(const Candidate& c, const RecommendOptions& options) {
                                                    {"largest", optional_number(largest(*limit.metric, c.views))},
                                                    {"bound", optional_number(c.bounds[k])}};
     }
-    return {{"method", c.choice.text()}, {"cost", optional_number(c.cost)}, {"errors", std::move(errors)}};
+    return {{"method", c.choice.text()},
+            {"cost", optional_number(c.cost)},
+            {"errors", std::move(errors)},
+            {"undefined", number(most_undefined(c))}};
+}
+
+Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendOptions& options) {
+    Json entry = {
+        {"method", m.info->name}, {"settings", m.settings}, {"looked_at", m.looked_at}, {"passed_over", m.passed_over},
+        {"within", m.within},     {"best", nullptr},        {"factor", nullptr},        {"unfit", nullptr}};
+    if (!m.candidate) return entry;
+    const Candidate& c = r.candidates[*m.candidate];
+    entry["best"]      = candidate_json(c, options);
+    if (c.unfit.empty())
+        entry["factor"] = number(c.worst_ratio(options.limits));
+    else
+        entry["unfit"] = c.unfit;
+    return entry;
 }
 
 Json rival_json(const Rival& rival, const Recommendation& r, const RecommendOptions& options) {
     Json entry          = candidate_json(r.candidates[rival.candidate], options);
-    entry["cost_ratio"] = {{"median", number(rival.ratio)}, {"low", number(rival.low)}, {"high", number(rival.high)}};
+    const Ratio& ratio  = rival.ratio;
+    const auto bound    = [&](double value) { return ratio.has_interval() ? number(value) : Json(); };
+    entry["cost_ratio"] = {{"median", number(ratio.median)},
+                           {"low", bound(ratio.interval.low)},
+                           {"high", bound(ratio.interval.high)},
+                           {"rounds", ratio.pairs},
+                           {"differs", rival.differs}};
     return entry;
 }
 
@@ -62,15 +94,63 @@ std::string errors_in_words(const Candidate& c, const RecommendOptions& options)
             most ? fmt::format(" (largest of {} views: {})", c.views.size(), with_unit(*most, limit.metric->unit)) : "",
             with_unit(limit.most, limit.metric->unit));
     }
+    if (const double open = most_undefined(c); open > 0)
+        text += fmt::format("    errors are of the points that it answers: all but {:.2g} %\n", 100 * open);
     return text;
 }
 
 std::string rival_in_words(const Rival& rival, const Recommendation& r) {
-    const Candidate& c = r.candidates[rival.candidate];
-    if (rival.low == rival.high)
-        return fmt::format("{} ({:.3f} ms, {:.2f} times by one run)", c.choice.text(), *c.cost, rival.ratio);
-    return fmt::format("{} ({:.3f} ms, {:.2f} times, {:.2f} to {:.2f})", c.choice.text(), *c.cost, rival.ratio,
-                       rival.low, rival.high);
+    const Candidate& c    = r.candidates[rival.candidate];
+    const Ratio& ratio    = rival.ratio;
+    const std::string how = !ratio.has_interval() ? " by one run"
+                                                  : fmt::format(", {:.2f} to {:.2f} in {} rounds", ratio.interval.low,
+                                                                ratio.interval.high, ratio.pairs);
+    return fmt::format("{} ({:.3f} ms, {:.2f} times{})", c.choice.text(), *c.cost, ratio.median, how);
+}
+
+/// The bounds of a candidate in one line: "rmse at most 0.012, flip at most 0.02: 1.2 times a limit".
+std::string bounds_in_words(const Candidate& c, const RecommendOptions& options) {
+    std::string text;
+    for (std::size_t k = 0; k < options.limits.size(); ++k) {
+        const Metric& metric = *options.limits[k].metric;
+        text += fmt::format("{}{} {}", k > 0 ? ", " : "", metric.name,
+                            c.bounds[k] ? "at most " + with_unit(*c.bounds[k], metric.unit) : "without a bound");
+    }
+    const double factor = c.worst_ratio(options.limits);
+    if (factor > 1 && std::isfinite(factor)) text += fmt::format(": {:.3g} times a limit", factor);
+    return text;
+}
+
+std::string methods_in_words(const Recommendation& r, const RecommendOptions& options) {
+    std::vector<std::pair<std::string, std::string>> lines;
+    std::size_t widest = 0;
+    for (const TriedMethod& m : tried_methods(r, options)) {
+        std::string name(m.info->name), what = "no setting was needed";
+        if (m.candidate) {
+            const Candidate& c = r.candidates[*m.candidate];
+            name               = c.choice.text();
+            what               = !c.unfit.empty() ? "left out: " + c.unfit
+                                 : !c.cost        ? "could not be timed"
+                                           : fmt::format("{:>9.3f} ms  {}", *c.cost, bounds_in_words(c, options));
+        } else if (m.outdone_by) {
+            const PassedOver& p = r.passed_over[*m.outdone_by];
+            name                = p.choice.text();
+            what                = fmt::format("not looked at: one run costs {:.0f} times as much as one of {}", p.ratio,
+                                              r.candidates[p.candidate].choice.text());
+        }
+        widest = std::max(widest, name.size());
+        lines.emplace_back(std::move(name), std::move(what));
+    }
+    std::string text = "  Every method, by its cheapest setting within the limits, or else its nearest:\n";
+    for (const auto& [name, what] : lines) text += fmt::format("    {:<{}}  {}\n", name, widest, what);
+    return text;
+}
+
+std::string noise_in_words(const Recommendation& r, const RecommendOptions& options) {
+    if (!std::isfinite(r.noise_bar)) return "  Costs are of one run each: less than five times is no difference.\n";
+    return fmt::format("  Costs that differ by less than {:.0f} % are not told apart on this machine now{}.\n",
+                       std::ceil(100 * r.noise_bar),
+                       r.noise_bar > options.most_noise ? ", which other programs keep busy" : "");
 }
 
 std::string staircase_in_words(const Recommendation& r, const RecommendOptions& options) {
@@ -90,9 +170,9 @@ std::string staircase_in_words(const Recommendation& r, const RecommendOptions& 
 }  // namespace
 
 Json recommendation_json(const Recommendation& r, const RecommendOptions& options) {
-    Json record = {{"recommendation", nullptr}, {"tied", Json::array()}, {"runner_up", nullptr},
-                   {"cheapest", nullptr},       {"exact", nullptr},      {"nearest", nullptr},
-                   {"staircase", Json::array()}};
+    Json record = {{"recommendation", nullptr},  {"tied", Json::array()},      {"runner_up", nullptr},
+                   {"cheapest", nullptr},        {"exact", nullptr},           {"nearest", nullptr},
+                   {"undecided", Json::array()}, {"staircase", Json::array()}, {"methods", Json::array()}};
     if (r.chosen) {
         Json chosen   = candidate_json(r.candidates[*r.chosen], options);
         Json held_out = {{"views", r.held_out.size()}, {"holds", Json::object()}, {"largest", Json::object()}};
@@ -104,6 +184,8 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
         chosen["held_out"]       = std::move(held_out);
         record["recommendation"] = std::move(chosen);
     }
+    for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], options));
+    for (const TriedMethod& m : tried_methods(r, options)) record["methods"].push_back(method_json(m, r, options));
     for (const Rival& rival : r.tied) record["tied"].push_back(rival_json(rival, r, options));
     if (r.runner_up) record["runner_up"] = rival_json(*r.runner_up, r, options);
     if (r.cheapest) record["cheapest"] = rival_json(*r.cheapest, r, options);
@@ -116,11 +198,16 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
         record["staircase"].push_back({{"error", number(step.error)},
                                        {"method", r.candidates[step.candidate].choice.text()},
                                        {"cost", optional_number(r.candidates[step.candidate].cost)}});
-    Json unfit = Json::array();
-    for (const Candidate& c : r.candidates)
-        if (!c.unfit.empty()) unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
-    record["unfit"]  = std::move(unfit);
-    Json passed_over = Json::array();
+    Json unfit = Json::array(), candidates = Json::array();
+    for (const Candidate& c : r.candidates) {
+        if (!c.unfit.empty())
+            unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
+        else
+            candidates.push_back(candidate_json(c, options));
+    }
+    record["unfit"]      = std::move(unfit);
+    record["candidates"] = std::move(candidates);
+    Json passed_over     = Json::array();
     for (const PassedOver& p : r.passed_over)
         passed_over.push_back({{"method", p.choice.text()},
                                {"cheaper", r.candidates[p.candidate].choice.text()},
@@ -130,12 +217,22 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
     record["views"]       = options.views;
     record["settings"]    = {{"looked_at", r.looked_at}, {"of", r.settings}};
     record["noise_bar"]   = number(r.noise_bar);
+    record["kept_in"]     = options.kept_in.empty() ? Json() : Json(options.kept_in);
     return record;
 }
 
 std::string recommendation_text(const Recommendation& r, const RecommendOptions& options) {
     std::string text;
-    if (!r.chosen) {
+    if (!r.undecided.empty()) {
+        text = fmt::format(
+            "Nothing is chosen: times vary by {:.0f} %, and these are within the limits and as cheap as one "
+            "another, as far as can be told:\n",
+            std::ceil(100 * r.noise_bar));
+        for (const std::size_t k : r.undecided)
+            text +=
+                fmt::format("  {}: {:.3f} ms a frame with {}\n{}", r.candidates[k].choice.text(), *r.candidates[k].cost,
+                            to_text(options.workload), errors_in_words(r.candidates[k], options));
+    } else if (!r.chosen) {
         text = "No setting stays within the limits.\n";
         if (r.nearest) {
             const Candidate& nearest = r.candidates[*r.nearest];
@@ -159,20 +256,19 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
         for (const Rival& rival : r.tied)
             text += fmt::format("  As cheap, within the noise: {}\n", rival_in_words(rival, r));
         if (r.runner_up) text += fmt::format("  Next: {}\n", rival_in_words(*r.runner_up, r));
-        if (r.cheapest && r.cheapest->candidate != *r.chosen)
+        if (r.cheapest && r.cheapest->candidate != *r.chosen && r.cheapest->differs)
             text += fmt::format("  Cheapest of all, whatever its errors: {}\n", rival_in_words(*r.cheapest, r));
         if (r.exact && r.exact->candidate != *r.chosen)
             text += fmt::format("  The exact reference: {}\n", rival_in_words(*r.exact, r));
     }
     text += staircase_in_words(r, options);
-    for (const Candidate& c : r.candidates)
-        if (!c.unfit.empty()) text += fmt::format("  Left out: {}: {}\n", c.choice.text(), c.unfit);
-    for (const PassedOver& p : r.passed_over)
-        text += fmt::format("  Not looked at: {}: one run costs {:.0f} times as much as one of {}\n", p.choice.text(),
-                            p.ratio, r.candidates[p.candidate].choice.text());
+    text += methods_in_words(r, options) + noise_in_words(r, options);
     const std::size_t asked = r.settings - r.passed_over.size();
-    return text + fmt::format("  {} of {} settings were looked at, in {} views each{}.\n", r.looked_at, r.settings,
-                              options.views, r.looked_at < asked ? "; bisection saved others" : "");
+    text += fmt::format("  {} of {} settings were looked at, in {} views each{}.\n", r.looked_at, r.settings,
+                        options.views, r.looked_at < asked ? "; bisection saved others" : "");
+    if (!options.kept_in.empty())
+        text += fmt::format("  Errors and times are kept in {}; --fresh measures times anew.\n", options.kept_in);
+    return text;
 }
 
 }  // namespace umbra

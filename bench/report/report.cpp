@@ -40,6 +40,11 @@ using nlohmann::json;
 const std::vector<std::string> kSceneScripts = {"slider.js", "pictures.js"};
 const std::vector<std::string> kIndexScripts = {"slider.js", "finder.js", "pictures.js"};  // with all of a scene's
 
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
 std::vector<fs::path> results_files(const fs::path& dir) {
     std::vector<fs::path> files;
     std::error_code error;
@@ -71,12 +76,17 @@ std::optional<ScenePage> read_scene(const Field& root, const fs::path& file) {
     return scene;
 }
 
-/// The contents of the folders: compared scenes, studies of shading and of other light, at most one run of ladders, and
-/// the results.json of swept scenes.
+/// A folder of ladders, and where its page lies in the report.
+struct LadderFolder {
+    fs::path data, page;
+};
+
+/// The contents of the folders: compared scenes, studies of shading and of other light, runs of ladders, and the
+/// results.json of swept scenes.
 struct Found {
     std::vector<ScenePage> scenes;
     std::vector<StudyPage> studies;
-    std::optional<fs::path> ladders;
+    std::vector<LadderFolder> ladders;
     std::vector<fs::path> sweeps;
 };
 
@@ -95,13 +105,21 @@ std::vector<fs::path> swept(const Field& root, const fs::path& file) {
 Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     std::vector<ScenePage> all;
     std::vector<StudyPage> studies;
-    std::optional<fs::path> ladders;
+    std::vector<LadderFolder> ladders;
     std::vector<fs::path> sweeps;
+    const auto is_below_out = [&](const fs::path& folder) {
+        const fs::path relative = folder.lexically_relative(out);
+        return relative != "." && *relative.begin() != "..";
+    };
     for (const fs::path& dir : dirs) {
         const auto first = std::ptrdiff_t(all.size());
         for (const fs::path& file : results_files(dir)) {
             const Field root = read_results(file);
-            if (root["ladders"].present()) ladders = fs::canonical(file.parent_path());
+            // A report that was made before holds copies.
+            if (root["ladders"].present() && std::ranges::none_of(ladders, [&](const LadderFolder& other) {
+                    return bytes_of(other.data / "results.json") == bytes_of(file);
+                }))
+                ladders.push_back({fs::canonical(file.parent_path()), {}});
             for (fs::path& sweep : swept(root, file))
                 if (std::find(sweeps.begin(), sweeps.end(), sweep) == sweeps.end()) sweeps.push_back(std::move(sweep));
             if (std::optional<StudyPage> study = read_study(root, file)) {
@@ -124,41 +142,43 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
 
     std::set<fs::path> taken;
     if (!sweeps.empty()) taken.insert(out / "trade");
-    const auto below_out = [&](const ScenePage& scene) {
-        const fs::path relative = scene.data.lexically_relative(out);
-        return relative != "." && *relative.begin() != "..";
-    };
     for (ScenePage& scene : all)
-        if (below_out(scene)) taken.insert(scene.page = scene.data);
-    for (ScenePage& scene : all) {
-        for (int i = 1; scene.page.empty(); ++i) {
-            const fs::path folder = out / (folder_name(scene.name) + (i > 1 ? fmt::format("-{}", i) : ""));
-            if (taken.insert(folder).second) scene.page = folder;
+        if (is_below_out(scene.data)) taken.insert(scene.page = scene.data);
+    for (LadderFolder& folder : ladders)
+        if (is_below_out(folder.data)) taken.insert(folder.page = folder.data);
+    const auto place = [&](fs::path& page, const std::string& name) {
+        for (int i = 1; page.empty(); ++i) {
+            const fs::path folder = out / (name + (i > 1 ? fmt::format("-{}", i) : ""));
+            if (taken.insert(folder).second) page = folder;
         }
-    }
+    };
+    for (LadderFolder& folder : ladders) place(folder.page, "ladders");
+    for (ScenePage& scene : all) place(scene.page, folder_name(scene.name));
     return {std::move(all), std::move(studies), std::move(ladders), std::move(sweeps)};
 }
 
-/// The table of ladders for the first page, and the page of ladders with its files where it can be handed out with the
-/// report. Returns what the template shows; false where there are no ladders.
-json ladder_section(const std::optional<fs::path>& folder, const fs::path& out, StagedFiles& staged) {
-    if (!folder) return false;
-    fs::path place          = *folder;
-    const fs::path relative = folder->lexically_relative(out);
-    if (relative == "." || *relative.begin() == "..") {
-        place = out / "ladders";
-        for (const auto& entry : fs::recursive_directory_iterator(*folder))
-            if (entry.is_regular_file() && !is_hidden_name_of_ours(entry.path()))
-                staged.copy(entry.path(), place / entry.path().lexically_relative(*folder));
+/// The tables of ladders for the first page, one a run, and the pages of ladders with their files where they can be
+/// handed out with the report. Returns what the template shows; an empty list where there are no ladders.
+json ladder_sections(const std::vector<LadderFolder>& folders, const fs::path& out, StagedFiles& staged) {
+    json sections = json::array();
+    for (const LadderFolder& folder : folders) {
+        if (folder.page != folder.data)
+            for (const auto& entry : fs::recursive_directory_iterator(folder.data))
+                if (entry.is_regular_file() && !is_hidden_name_of_ours(entry.path()))
+                    staged.copy(entry.path(), folder.page / entry.path().lexically_relative(folder.data));
+        const Field root         = read_results(folder.data / "results.json");
+        const std::string page   = url((folder.page / "index.html").lexically_relative(out));
+        const std::string number = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
+        write_ladder_page(root, folder.page, url((out / "index.html").lexically_relative(folder.page)), staged);
+        sections.push_back({{"page", page},
+                            {"number", number},
+                            {"run", folders.size() > 1 ? run_view(root) : json(false)},
+                            {"table", ladder_table_view(root, page)},
+                            {"textbook", textbook_view(root, page)},
+                            {"showcase", ladder_showcase_view(root, page)},
+                            {"count", counted(double(root["ladders"].items().size()), "ladder")}});
     }
-    const Field root       = read_results(*folder / "results.json");
-    const std::string page = url((place / "index.html").lexically_relative(out));
-    write_ladder_page(root, place, url((out / "index.html").lexically_relative(place)), staged);
-    return {{"page", page},
-            {"table", ladder_table_view(root, page)},
-            {"textbook", textbook_view(root, page)},
-            {"showcase", ladder_showcase_view(root, page)},
-            {"count", counted(double(root["ladders"].items().size()), "ladder")}};
+    return sections;
 }
 
 /// The page of sweeps, and what the first page shows of it; false where there are no sweeps.
@@ -206,20 +226,20 @@ json lectures_section(const std::vector<SceneFiles>& files, const std::vector<St
 
 /// Everything that failed, in words, for the first page.
 void add_failures(json& index, const std::vector<std::string>& scenes_failed, const std::vector<ScenePage>& scenes,
-                  const std::optional<fs::path>& ladders) {
+                  const std::vector<LadderFolder>& ladders) {
     json failures = scenes_failed;
     for (const ScenePage& scene : scenes)
         for (std::string& message : scene_failures(scene.root)) failures.push_back(scene.title + ": " + message);
-    if (ladders)
-        for (std::string& message : listed_failures(read_results(*ladders / "results.json")))
+    for (const LadderFolder& folder : ladders)
+        for (std::string& message : listed_failures(read_results(folder.data / "results.json")))
             failures.push_back(std::move(message));
     index["has_failures"] = !failures.empty();
     index["failures"]     = std::move(failures);
 }
 
-std::string scene_page(const SceneFiles& files, const std::vector<std::string>& order, const json& previous,
+std::string scene_page(const SceneFiles& files, const std::vector<Field>& settings, const json& previous,
                        const json& next, const std::string& root, const std::string& title) {
-    json view        = scene_view(files, order);
+    json view        = scene_view(files, settings);
     view["previous"] = previous;
     view["next"]     = next;
     return render_page(assets::scene_html, {fmt::format("{} – {}", files.scene().title, title), root, kSceneScripts},
@@ -235,14 +255,13 @@ void write_scene_page(const fs::path& folder) {
     StagedFiles staged;
     const SceneFiles files(*scene, staged);
     staged.write(scene->page / "index.html",
-                 scene_page(files, method_ids({*scene}), false, false, "../", ReportOptions{}.title));
+                 scene_page(files, settings_of({*scene}), false, false, "../", ReportOptions{}.title));
     staged.commit();
 }
 
 bool links_hold(const fs::path& page) {
-    std::ifstream in(page, std::ios::binary);
-    if (!in) return false;
-    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    const std::string html = bytes_of(page);
+    if (html.empty()) return false;
     static const std::regex link(R"re( (?:src|href)="([^"#]+))re");
     for (std::sregex_iterator at(html.begin(), html.end(), link), end; at != end; ++at)
         if (const std::string target = (*at)[1]; !target.starts_with("data:") && !target.starts_with("http") &&
@@ -259,7 +278,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     for (ScenePage& scene : found.scenes) scene.with_exr = options.with_exr;
     StagedFiles staged;
     for (StudyPage& study : found.studies) take_study(study, root, staged);
-    const std::vector<std::string> order = method_ids(scenes);
+    const std::vector<Field> settings = settings_of(scenes);
 
     std::vector<SceneFiles> files;
     files.reserve(scenes.size());
@@ -274,11 +293,11 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
         const json previous = i > 0 ? neighbour(i - 1) : json(false);
         const json next     = i + 1 < scenes.size() ? neighbour(i + 1) : json(false);
         if (page != scenes[i].data) staged.copy(scenes[i].data / "results.json", page / "results.json");
-        staged.write(page / "index.html", scene_page(files[i], order, previous, next,
+        staged.write(page / "index.html", scene_page(files[i], settings, previous, next,
                                                      url(root.lexically_relative(page) / ""), options.title));
     }
     json index         = index_view(scenes, files, root, options.title);
-    index["stability"] = ladder_section(found.ladders, root, staged);
+    index["stability"] = ladder_sections(found.ladders, root, staged);
     index["trade"]     = trade_section(found.sweeps, root, staged);
     index["studies"]   = studies_section(found.studies, root);
     index["lectures"]  = lectures_section(files, found.studies, root, options, staged);

@@ -17,13 +17,11 @@ using nlohmann::json;
 
 namespace {
 
-/// One cell of the summary: a method on a scene.
-json cell_view(const ScenePage& scene, const std::string& id, const std::string& href) {
-    const std::vector<Field> methods = scene.root["methods"].items();
-    const auto method =
-        std::find_if(methods.begin(), methods.end(), [&](const Field& m) { return method_id(m) == id; });
-    json view = {{"served", false}, {"unserved", false}, {"failed", false}, {"absent", method == methods.end()}};
-    if (method == methods.end()) return view;
+/// One cell of the summary: a setting on a scene.
+json cell_view(const ScenePage& scene, const Field& setting, const std::string& href) {
+    const std::optional<Field> method = find_setting(scene.root["methods"].items(), setting);
+    json view = {{"served", false}, {"unserved", false}, {"failed", false}, {"absent", !method}};
+    if (!method) return view;
     if (!serves(*method)) {
         view[failed(*method) ? "failed" : "unserved"] =
             json{{"why", (*method)["serves"]["why"].text()}, {"href", href + "#not-served"}};
@@ -93,22 +91,15 @@ json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
 json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
                 const std::string& title) {
     json cards = json::array(), columns = json::array(), rows = json::array(), runs = json::array(),
-         references                    = json::array();
-    const std::vector<std::string> ids = method_ids(scenes);
+         references                   = json::array();
+    const std::vector<Field> settings = settings_of(scenes);
 
-    for (const std::string& id : ids)
-        for (const ScenePage& scene : scenes) {
-            const std::vector<Field> methods = scene.root["methods"].items();
-            const auto method =
-                std::find_if(methods.begin(), methods.end(), [&](const Field& m) { return method_id(m) == id; });
-            if (method == methods.end()) continue;
-            columns.push_back({{"label", method_label(*method, methods)},
-                               {"anchor", fmt::format("method-{}", columns.size() + 1)},
-                               {"paper", (*method)["paper"].text()},
-                               {"summary", (*method)["summary"].text()},
-                               {"name", method_id(*method)}});
-            break;
-        }
+    for (const Field& setting : settings)
+        columns.push_back({{"label", method_label(setting, settings)},
+                           {"anchor", fmt::format("method-{}", columns.size() + 1)},
+                           {"paper", setting["paper"].text()},
+                           {"summary", setting["summary"].text()},
+                           {"name", setting_text(setting)}});
     // Scenes that one machine and version compared share an entry, which lists their commands.
     const auto add_run = [](json& list, json view) {
         for (json& known : list) {
@@ -145,7 +136,7 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                              {"triangles", count(scene.triangles)}};
         card["thumbnail"] = files[i].figure(scene.root["reference"]["files"]["png"], "Reference", "picture", "", out);
         json cells        = json::array();
-        for (const std::string& id : ids) cells.push_back(cell_view(scene, id, href));
+        for (const Field& setting : settings) cells.push_back(cell_view(scene, setting, href));
         rows.push_back({{"title", scene.title}, {"href", href}, {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
         add_run(runs, run_view(scene.root));
@@ -155,7 +146,7 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
             {"legend", class_legend()},
             {"front", front_view(scenes, files, out)},
             {"scene_count", counted(double(scenes.size()), "scene")},
-            {"method_count", counted(double(ids.size()), "shadow method")},
+            {"method_count", counted(double(settings.size()), "shadow method")},
             {"scenes", std::move(cards)},
             {"columns", std::move(columns)},
             {"rows", std::move(rows)},

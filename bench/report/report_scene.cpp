@@ -139,7 +139,7 @@ std::string size_in_words(const Field& root) {
 
 }  // namespace
 
-json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles) {
+json scene_view(const SceneFiles& scene, const std::vector<Field>& settings) {
     const Field root                 = scene.scene().root;
     const std::vector<Field> methods = root["methods"].items();
     json pictures = json::array(), used = json::array(), unserved = json::array(), image = json::array(),
@@ -158,8 +158,8 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
         files.push_back({{"label", "Reference"}, {"href", exr}});
 
     for (const Field& method : methods) {
-        const std::string label = method_label(method, methods), id = method_id(method);
-        const bool served = serves(method);
+        const std::string label = method_label(method, methods);
+        const bool served       = serves(method);
         used.push_back({{"label", label},
                         {"how", served           ? method["serves"]["how"].text()
                                 : failed(method) ? "failed"
@@ -173,7 +173,9 @@ json scene_view(const SceneFiles& scene, const std::vector<std::string>& styles)
         const Totals t    = totals(method);
         const bool itself = is_reference(root, method);
         if (t.mae && t.camera_ms && t.object_ms) {
-            const auto style = std::find(styles.begin(), styles.end(), id) - styles.begin();
+            const auto style = std::find_if(settings.begin(), settings.end(),
+                                            [&](const Field& s) { return same_setting(s, method); }) -
+                               settings.begin();
             chart.push_back(
                 {itself ? label + " (the reference)" : label, *t.camera_ms, *t.object_ms, *t.mae, std::size_t(style)});
         }

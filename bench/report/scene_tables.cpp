@@ -11,6 +11,7 @@
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/time_ratios.h"
+#include "umbra/bench/run/edge_figure.h"
 
 namespace umbra {
 namespace {
@@ -126,20 +127,31 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
             {"all_columns", std::to_string(7 + columns.size())}};
 }
 
+std::string edge_figure(const std::optional<EdgeFigure>& figure) {
+    if (!figure) return kNone;
+    return (figure->at_least ? "≥ " : "") + score(figure->value);
+}
+
 json cause_view(const Field& root, const std::vector<Field>& methods) {
     return {{"groups", rows_by_light(root, methods, [](const Field&, const Field& e) {
-                 const Field off = e["edge_displacement_px"], width = e["penumbra_width_px"], noise = e["noise"],
+                 const Field edges = e["edge_displacement_px"], width = e["penumbra_width_px"], noise = e["noise"],
                              interior = e["interior"], terminator = e["terminator"];
+                 const EdgeRecord off{edges["mean"].number(),
+                                      edges["p95"].number(),
+                                      edges["max"].number(),
+                                      edges["pieces"].number().value_or(0),
+                                      edges["unmatched"].number().value_or(0),
+                                      edges["reach"].number().value_or(0)};
                  return json{{"wrong_lit", count(interior["lit"].number())},
                              {"wrong_penumbra", count(interior["penumbra"].number())},
                              {"wrong_umbra", count(interior["umbra"].number())},
                              {"terminator_facet", count(terminator["facet_away"].number())},
                              {"terminator_normal", count(terminator["normal_away"].number())},
                              {"terminator_wrong", count(terminator["wrong"].number())},
-                             {"off_mean", score(off["mean"].number())},
-                             {"off_p95", score(off["p95"].number())},
-                             {"off_max", score(off["max"].number())},
-                             {"off_lost", count(off["unmatched"].number())},
+                             {"off_mean", edge_figure(off.whole_mean())},
+                             {"off_p95", edge_figure(off.whole_p95())},
+                             {"off_max", edge_figure(off.whole_max())},
+                             {"off_lost", count(edges["unmatched"].number())},
                              {"width", score(width["method"].number())},
                              {"width_reference", score(width["reference"].number())},
                              {"noise", score(noise["noise_rmse"].number())},

@@ -22,7 +22,7 @@ using Samples = std::vector<double>;
 /// Milliseconds of each round by what moved, as the page's columns are.
 struct Movements {
     std::array<Samples, 3> ms;  ///< object, light, camera
-    bool paired = false;        ///< its samples are of rounds
+    bool paired = false;        ///< its samples are of rounds, and of more than one
 };
 constexpr std::array<const char*, 3> kMovements{"object", "light", "camera"};
 
@@ -39,7 +39,7 @@ Movements movements(const Field& times) {
     Samples look             = samples(times["look_ms"]);
     if (!times["look_ms"].present()) look.assign(visibility.size(), 0);  // records of older versions
     Movements m;
-    m.paired = !times["order"].items().empty();
+    m.paired = times["order"].items().size() > 1;
     for (std::size_t r = 0; r < std::min({build.size(), aim.size(), look.size(), visibility.size()}); ++r) {
         m.ms[0].push_back(build[r] + aim[r] + look[r] + visibility[r]);
         m.ms[1].push_back(aim[r] + visibility[r]);

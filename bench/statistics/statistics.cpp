@@ -15,6 +15,7 @@ namespace {
 constexpr int kResamples                = 2000;
 constexpr std::uint64_t kSeed           = 20260131;
 constexpr std::size_t kFewestToResample = 5;
+constexpr double kUnbounded             = std::numeric_limits<double>::infinity();
 
 /// Reorders its argument.
 double median_of(std::vector<double>& values) {
@@ -32,21 +33,17 @@ std::vector<double> ratios(std::span<const double> a, std::span<const double> b)
     return of;
 }
 
-}  // namespace
-
-double median(std::span<const double> values) {
-    if (values.empty()) throw std::logic_error("median of no values");
-    std::vector<double> copy(values.begin(), values.end());
-    return median_of(copy);
-}
-
-Interval bootstrap_interval(const std::vector<std::vector<double>>& samples,
-                            const std::function<double(std::span<const double> medians)>& of) {
+/// The percentiles 2.5 and 97.5 of `of(medians)` over resamples of all samples: of each on its own, or of the same
+/// indices in all of them.
+Interval resampled(const std::vector<std::vector<double>>& samples, bool together,
+                   const std::function<double(std::span<const double> medians)>& of) {
     std::vector<double> results(kResamples), medians(samples.size()), drawn;
     std::uint64_t counter = kSeed;
     for (double& result : results) {
+        const std::uint64_t first = counter;
         for (std::size_t k = 0; k < samples.size(); ++k) {
             if (samples[k].empty()) throw std::logic_error("bootstrap of no values");
+            if (together) counter = first;
             drawn.resize(samples[k].size());
             // The high bits scaled to an index: a distribution of the standard library would differ between libraries.
             for (double& d : drawn) d = samples[k][((mixed_bits(counter++) >> 32) * samples[k].size()) >> 32];
@@ -59,10 +56,60 @@ Interval bootstrap_interval(const std::vector<std::vector<double>>& samples,
     return {results[tail], results[kResamples - 1 - tail]};
 }
 
+}  // namespace
+
+double median(std::span<const double> values) {
+    if (values.empty()) throw std::logic_error("median of no values");
+    std::vector<double> copy(values.begin(), values.end());
+    return median_of(copy);
+}
+
+Interval bootstrap_interval(const std::vector<std::vector<double>>& samples,
+                            const std::function<double(std::span<const double> medians)>& of) {
+    return resampled(samples, false, of);
+}
+
+Ratio ratio_of_medians(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
+                       std::span<const double> weights) {
+    std::vector<std::vector<double>> samples = a;
+    samples.insert(samples.end(), b.begin(), b.end());
+    const auto quotient = [&](std::span<const double> of) {
+        double above = 0, below = 0;
+        for (std::size_t k = 0; k < weights.size(); ++k)
+            above += weights[k] * of[k], below += weights[k] * of[weights.size() + k];
+        return above / below;
+    };
+    std::vector<double> medians;
+    for (const std::vector<double>& sample : samples) {
+        if (sample.size() != samples.front().size()) throw std::logic_error("samples that are no pairs");
+        medians.push_back(median(sample));
+    }
+    const std::size_t pairs = samples.front().size();
+    Ratio ratio{quotient(medians), {0, kUnbounded}, static_cast<int>(pairs)};
+    if (!std::isfinite(ratio.median) || !(ratio.median > 0)) return {};
+    if (!ratio.has_interval()) return ratio;
+    Interval found{ratio.median, ratio.median};
+    const auto holds = [&](double value) { found = {std::min(found.low, value), std::max(found.high, value)}; };
+    if (pairs >= kFewestToResample) {
+        const Interval drawn = resampled(samples, true, quotient);
+        holds(drawn.low), holds(drawn.high);
+    }
+    for (std::size_t i = 0; i < pairs && pairs < kFewestToResample; ++i) {
+        for (std::size_t k = 0; k < samples.size(); ++k) medians[k] = samples[k][i];
+        holds(quotient(medians));
+    }
+    ratio.interval = found;
+    return ratio;
+}
+
 Ratio paired_ratio(std::span<const double> a, std::span<const double> b) {
     const std::vector<double> of = ratios(a, b);
     if (of.empty()) return {};
     Ratio ratio{median(of), {}, static_cast<int>(of.size())};
+    if (!ratio.has_interval()) {
+        ratio.interval = {0, kUnbounded};
+        return ratio;
+    }
     const auto [least, largest] = std::minmax_element(of.begin(), of.end());
     ratio.interval              = {*least, *largest};
     if (of.size() >= kFewestToResample)
@@ -71,7 +118,7 @@ Ratio paired_ratio(std::span<const double> a, std::span<const double> b) {
 }
 
 double noise_bar(const Ratio& same_with_itself) {
-    if (same_with_itself.pairs == 0) return std::numeric_limits<double>::infinity();
+    if (!same_with_itself.has_interval()) return kUnbounded;
     return std::max({0.0, same_with_itself.interval.high - 1, 1 / same_with_itself.interval.low - 1});
 }
 

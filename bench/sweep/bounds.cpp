@@ -78,7 +78,7 @@ std::optional<double> upper_bound(const Metric& metric, std::span<const Json> vi
     bool exactly = true;
     for (const Json& cell : views) {
         const auto value = metric_value(metric, cell);
-        if (!value) return std::nullopt;
+        if (!value || is_at_least(metric, cell)) return std::nullopt;
         values.push_back(*value);
         exactly = exactly && cell.at("serves").at("how") == "exactly" && (*value == 0 || is_error_of_s(metric));
     }

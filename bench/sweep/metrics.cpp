@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/run/edge_figure.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
+#include "umbra/core/errors/shadow_edges.h"
 
 namespace umbra {
 namespace {
@@ -41,12 +43,15 @@ constexpr std::array kMetrics{
            "noise_error.false_shadow+noise_error.false_light"},
     Metric{"terminator.wrong", "share of points", "Wrong points where shading normal and facet disagree.", Kind::share,
            "terminator.wrong"},
-    Metric{"edge_displacement_px.mean", "pixels", "Mean distance of shadow edges from the true ones.", Kind::largest,
-           "edge_displacement_px.mean"},
-    Metric{"edge_displacement_px.p95", "pixels", "95 % of the pieces of shadow edges lie at most this far off.",
+    Metric{"edge_displacement_px.mean", "pixels",
+           "Mean distance of shadow edges from the true ones; pieces not found within 8 pixels count as 8.",
+           Kind::largest, "edge_displacement_px.mean"},
+    Metric{"edge_displacement_px.p95", "pixels",
+           "95 % of the pieces of shadow edges lie at most this far off; one not found within 8 pixels counts as 8.",
            Kind::largest, "edge_displacement_px.p95"},
-    Metric{"edge_displacement_px.max", "pixels", "Largest distance of a shadow edge from the true one.", Kind::largest,
-           "edge_displacement_px.max"},
+    Metric{"edge_displacement_px.max", "pixels",
+           "Largest distance of a shadow edge from the true one; 8 where a piece is not found within 8 pixels.",
+           Kind::largest, "edge_displacement_px.max"},
     Metric{"image_rmse", "", "Root mean square error of the linear picture.", Kind::entry, "image.rmse"},
     Metric{"flip", "", "Mean FLIP of the displayed picture.", Kind::entry, "image.flip"},
     Metric{"flip_hdr", "", "Mean FLIP of the linear picture.", Kind::entry, "image.flip_hdr"},
@@ -88,11 +93,42 @@ std::optional<double> sum_at(const Json& node, std::string_view paths) {
 
 double points_of(const Json& error) { return number_at(error, "points").value_or(0); }
 
-/// Pools `path` over the lights with points; nothing where one of those has no value.
+/// Whether a light has points, and the method or the reference answers none of them.
+bool unanswered(const Json& error) {
+    return points_of(error) == 0 &&
+           number_at(error, "undefined").value_or(0) + number_at(error, "not_judged").value_or(0) > 0;
+}
+
+constexpr std::string_view kEdges = "edge_displacement_px.";
+
+/// A metric of shadow edges of one light, which has some; nothing where the record does not say.
+std::optional<EdgeFigure> edge_figure(const Metric& metric, const Json& error) {
+    const auto member = [&](const char* name) { return number_at(error, std::string(kEdges) + name); };
+    const EdgeRecord edges{member("mean"),
+                           member("p95"),
+                           member("max"),
+                           member("pieces").value_or(0),
+                           member("unmatched").value_or(0),
+                           member("reach").value_or(kFarthest)};
+    const std::string_view figure = metric.paths.substr(kEdges.size());
+    if (figure == "mean") return edges.whole_mean();
+    return figure == "p95" ? edges.whole_p95() : edges.whole_max();
+}
+
+bool is_of_edges(const Metric& metric) { return metric.paths.starts_with(kEdges); }
+
+/// Whether a light has no shadow edges that a metric of them could be of.
+bool without_edges(const Json& error) {
+    const auto edges = error.find("edge_displacement_px");
+    return edges == error.end() || edges->is_null();
+}
+
+/// Pools `path` over the lights with points; nothing where one of those has no value, and where one is unanswered.
 template <class Add>
 bool each_judged_light(const Json& cell, std::string_view path, const Add& add) {
     bool any = false;
     for (const Json& error : cell.at("errors")) {
+        if (unanswered(error)) return false;
         if (points_of(error) == 0) continue;
         const auto value = sum_at(error, path);
         if (!value) return false;
@@ -151,13 +187,28 @@ std::optional<double> metric_value(const Metric& metric, const Json& cell) {
         largest = std::max(largest, value);
         any     = true;
     };
-    if (metric.kind == Kind::largest) {  // of the lights that have one: a light without shadow edges has none
-        for (const Json& error : cell.at("errors"))
-            if (const auto value = sum_at(error, metric.paths); value && points_of(error) > 0) add(*value, 1);
+    if (is_of_edges(metric)) {
+        for (const Json& error : cell.at("errors")) {
+            if (unanswered(error)) return std::nullopt;
+            if (points_of(error) == 0 || without_edges(error)) continue;
+            const auto figure = edge_figure(metric, error);
+            if (!figure) return std::nullopt;
+            add(figure->value, 1);
+        }
         return any ? std::optional(largest) : std::nullopt;
     }
     if (!each_judged_light(cell, metric.paths, add)) return std::nullopt;
+    if (metric.kind == Kind::largest) return largest;
     return metric.kind == Kind::rms ? std::sqrt(sum / points) : sum / points;
+}
+
+bool is_at_least(const Metric& metric, const Json& cell) {
+    if (!is_of_edges(metric) || !cell.contains("errors")) return false;
+    return std::ranges::any_of(cell.at("errors"), [&](const Json& error) {
+        if (points_of(error) == 0 || without_edges(error)) return false;
+        const auto figure = edge_figure(metric, error);
+        return figure && figure->at_least;
+    });
 }
 
 Json metrics_json() {

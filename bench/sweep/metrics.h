@@ -33,8 +33,11 @@ struct Metric {
 [[nodiscard]] const Metric& find_metric(std::string_view name);
 
 /// A metric of one cell: an entry of `methods` of results.json, or one that a sweep made. Nothing where it was not
-/// judged: no point compared, no reference that names the class, no edge found.
+/// judged: no point compared, none of some light that has points, no reference that names the class, no edge there.
 [[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Json& cell);
+
+/// Whether the value is the least that it may be: shadow edges lie beyond the reach in which they are looked for.
+[[nodiscard]] bool is_at_least(const Metric& metric, const Json& cell);
 
 /// The count behind a share, and the points that it is a share of; nothing for other kinds, and where not judged.
 struct Counted {

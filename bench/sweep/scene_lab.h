@@ -1,9 +1,11 @@
 // One scene of a sweep: its cells and times, found where they have been computed before, computed where not.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,6 +20,8 @@ namespace umbra {
 struct TimedTogether {
     std::vector<Json> settings{};  ///< `times` of results.json, as given; null for one that does not serve or failed
     Json turns{};                  ///< {"pinned", "noise_bar", "calibration_ms"}; null where nothing was timed
+
+    [[nodiscard]] double noise_bar() const;  ///< as of Turns
 };
 
 /// Quality cells and times of one scene. Quality is the same on every machine; times are of this one and are found
@@ -47,12 +51,21 @@ public:
 
     /// Times of settings that took turns with one another. They are found where a run on this machine timed all of
     /// these together; otherwise all of them are timed now, also those that an earlier run has timed among others: a
-    /// ratio of times from two runs would say as much of the machine as of the settings.
-    [[nodiscard]] TimedTogether times(std::span<const MethodChoice> choices, TurnOptions options);
+    /// ratio of times from two runs would say as much of the machine as of the settings. Where the noise bar is above
+    /// `most_noise`, what is found is timed now, and what is timed is timed once more; the quieter one is kept.
+    [[nodiscard]] TimedTogether times(std::span<const MethodChoice> choices, TurnOptions options,
+                                      double most_noise = std::numeric_limits<double>::infinity());
+
+    /// Prices and times that the store has already are measured anew.
+    void measure_anew() { anew_ = true; }
+
+    /// The key of what was measured on this machine: `kind` is "time" or "price".
+    [[nodiscard]] std::string machine_key(const std::string& kind, const MethodChoice& choice);
 
 private:
-    /// Of what was measured on this machine: `kind` is "time" or "price".
-    [[nodiscard]] std::string machine_key(const std::string& kind, const MethodChoice& choice);
+    /// What this machine measured, where it need not be measured anew.
+    [[nodiscard]] std::optional<Json> measured(const std::string& key) const;
+    void keep_measured(const Json& entry);
     [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);
 
     std::shared_ptr<const Scene> scene_;
@@ -62,6 +75,8 @@ private:
     const CellStore& store_;
     std::map<int, CellView> views_;
     std::size_t computed_ = 0;
+    bool anew_            = false;
+    std::set<std::string> measured_here_;  ///< keys
 };
 
 /// By method, then by what is built, so that builds are shared; the order of the methods stays.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 #include <set>
 
@@ -243,7 +244,10 @@ SweepDone sweep(const SweepOptions& options) {
                 timed.push_back(k);
                 to_time.push_back(choices[k]);
             }
-            TimedTogether times = lab.times(to_time, options.turns);
+            TimedTogether times = lab.times(to_time, options.turns, options.most_noise);
+            if (const double bar = times.noise_bar(); options.warn && std::isfinite(bar) && bar > options.most_noise)
+                options.warn(fmt::format("{}: times vary by {:.0f} %: costs that differ by less are not told apart",
+                                         lab.scene().name, std::ceil(100 * bar)));
             for (std::size_t t = 0; t < timed.size(); ++t) swept[timed[t]].times = std::move(times.settings[t]);
             turns = std::move(times.turns);
         }

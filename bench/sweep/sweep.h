@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/cell.h"
 #include "umbra/bench/time/turns.h"
 #include "umbra/bench/time/workload.h"
@@ -34,6 +35,7 @@ struct SweepOptions {
     std::filesystem::path out;
     bool times = true;
     TurnOptions turns{.rounds = 7, .budget_ms = 20000};
+    double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then it is warned of
     Workload workload;
     std::string command;
     int threads = 0;

@@ -10,6 +10,7 @@
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/statistics/profile.h"
+#include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/trade/trade_chart.h"
 #include "umbra/bench/trade/trade_findings.h"
 
@@ -22,11 +23,19 @@ const std::vector<double> kErrors = {0.1, 0.03, 0.01, 0.003, 0.001, 0};
 
 std::string error_in_words(double error) { return error > 0 ? fmt::format("{:g}", error) : "exactly 0"; }
 
+/// Whether times of a scene vary too much to say which method is the cheapest.
+bool is_loud(const SweptScene& scene) { return scene.noise_bar && *scene.noise_bar > kMostNoise; }
+
+/// Whether a method's cost is the least, as far as the noise bar tells.
+bool is_least(const SweptScene& scene, const FixedError& problem, std::size_t method) {
+    return problem.costs[method] <= problem.least * (1 + scene.noise_bar.value_or(0));
+}
+
 json cell_view(const SweptScene& scene, const FixedError& problem, std::size_t method) {
     if (!problem.cheapest[method]) return {{"none", true}};
     const SweptSetting& s = scene.settings[*problem.cheapest[method]];
     return {{"ratio", score(problem.costs[method] / problem.least)},
-            {"best", problem.costs[method] == problem.least},
+            {"best", is_least(scene, problem, method)},
             {"label", s.label},
             {"ms", milliseconds(s.cost->median)}};
 }
@@ -44,10 +53,12 @@ json mean_view(const std::vector<FixedError>& problems, double error, std::size_
     return {{"ratio", score(geometric_mean(ratios))}, {"of", fmt::format("{} of {}", ratios.size(), solved)}};
 }
 
-json profile_view(const std::vector<FixedError>& problems, const std::vector<SweptMethod>& methods) {
+json profile_view(const std::vector<SweptScene>& scenes, const std::vector<FixedError>& problems,
+                  const std::vector<SweptMethod>& methods) {
     std::vector<std::vector<double>> costs(methods.size());
     for (const FixedError& problem : problems)
-        for (std::size_t m = 0; m < methods.size(); ++m) costs[m].push_back(problem.costs[m]);
+        for (std::size_t m = 0; m < methods.size(); ++m)
+            costs[m].push_back(is_least(scenes[problem.scene], problem, m) ? problem.least : problem.costs[m]);
     const PerformanceProfile profile(costs);
     std::vector<ProfileCurve> curves;
     for (std::size_t m = 0; m < methods.size(); ++m) {
@@ -66,8 +77,12 @@ json profile_view(const std::vector<FixedError>& problems, const std::vector<Swe
 
 json fixed_errors_view(const std::vector<SweptScene>& scenes, const std::vector<SweptMethod>& methods) {
     if (scenes.empty() || scenes[0].metrics.empty()) return false;
-    const SweptMetric& metric              = scenes[0].metrics[0];
-    const std::vector<FixedError> problems = at_fixed_errors(scenes, methods, metric.name, kErrors);
+    const SweptMetric& metric        = scenes[0].metrics[0];
+    std::vector<FixedError> problems = at_fixed_errors(scenes, methods, metric.name, kErrors);
+    std::erase_if(problems, [&](const FixedError& p) { return is_loud(scenes[p.scene]); });
+    std::string loud;
+    for (const SweptScene& scene : scenes)
+        if (is_loud(scene)) loud += (loud.empty() ? "" : ", ") + scene.title;
     if (std::none_of(problems.begin(), problems.end(), [](const FixedError& p) { return std::isfinite(p.least); }))
         return false;
 
@@ -91,9 +106,13 @@ json fixed_errors_view(const std::vector<SweptScene>& scenes, const std::vector<
         for (std::size_t m = 0; m < methods.size(); ++m) cells.push_back(mean_view(problems, error, m));
         means.push_back({{"error", error_in_words(error)}, {"cells", std::move(cells)}});
     }
-    return {{"metric", metric.title},        {"all_columns", std::to_string(methods.size() + 1)},
-            {"columns", std::move(columns)}, {"groups", std::move(groups)},
-            {"means", std::move(means)},     {"profile", profile_view(problems, methods)}};
+    return {{"metric", metric.title},
+            {"all_columns", std::to_string(methods.size() + 1)},
+            {"columns", std::move(columns)},
+            {"groups", std::move(groups)},
+            {"means", std::move(means)},
+            {"profile", profile_view(scenes, problems, methods)},
+            {"loud", loud}};
 }
 
 }  // namespace umbra

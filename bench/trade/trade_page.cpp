@@ -79,7 +79,9 @@ std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_jso
         settings += scenes[k].settings.size();
         json scene    = swept_scene_view(scenes[k], methods, fmt::format("scene-{}", k + 1));
         scene["file"] = url(below(root, scenes[k], folder, k, staged).lexically_relative(folder));
-        lines.push_back({scenes[k].title, scene["id"].get<std::string>(), scene["finding"].get<std::string>()});
+        const auto metric = scene["metric"].get<std::string>();
+        lines.push_back({scenes[k].title, scene["id"].get<std::string>(),
+                         (metric.empty() ? "" : metric + ": ") + scene["finding"].get<std::string>()});
         view["scenes"].push_back(std::move(scene));
     }
     view["failures"]      = failures_of(scenes);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/math.h"
 
 namespace umbra::flip {
@@ -72,21 +73,20 @@ std::array<Filters::Pass, N> sensitivity(const std::array<Term, N>& terms, doubl
 /// Pixels of a row that are filtered at once: sums enough for a processor that adds eight numbers in a cycle and waits
 /// four for the result.
 constexpr int kBlock = 32;
-using Lanes          = float __attribute__((vector_size(32)));
-constexpr int kLanes = 8;
+using Floats         = Lanes<float>;
 
 std::size_t whole_blocks(int width) { return static_cast<std::size_t>((width + kBlock - 1) / kBlock * kBlock); }
 
 /// Adds weight * from[0 .. 7]. By reference: processors differ in how they return eight floats.
-void add_weighted(Lanes& sum, float weight, const float* from) {
-    Lanes lanes;
+void add_weighted(Floats& sum, float weight, const float* from) {
+    Floats lanes;
     std::memcpy(&lanes, from, sizeof lanes);
     sum += weight * lanes;
 }
 
 /// A block of sums of kernel[k] * in[k * step]; `in` is where the kernel's first weight goes.
 void filter(const float* in, std::size_t step, const Kernel& kernel, float* out) {
-    Lanes a{}, b{}, c{}, d{};
+    Floats a{}, b{}, c{}, d{};
     for (const float weight : kernel) {
         add_weighted(a, weight, in), add_weighted(b, weight, in + kLanes);
         add_weighted(c, weight, in + 2 * kLanes), add_weighted(d, weight, in + 3 * kLanes);
@@ -238,7 +238,7 @@ void Part::resize(int w, int h, int r) {
     for (auto& plane : rgb) plane.resize(stride * static_cast<std::size_t>(h + 2 * r));
 }
 
-void see(const Filters& filters, const Part& part, Workspace& workspace, Seen& seen) {
+UMBRA_FOR_EACH_PROCESSOR void see(const Filters& filters, const Part& part, Workspace& workspace, Seen& seen) {
     // Opponent space, linear in light (unlike L*a*b*), so that filters may run in it.
     const std::size_t stride = part.stride, all_rows = static_cast<std::size_t>(part.height + 2 * part.reach);
     const mat3 m = white_from_rgb(), back = rgb_from_white();
@@ -322,7 +322,7 @@ void see(const Filters& filters, const Part& part, Workspace& workspace, Seen& s
         }
 }
 
-void row_errors(const Seen& reference, const Seen& test, int y, std::span<float> errors) {
+UMBRA_FOR_EACH_PROCESSOR void row_errors(const Seen& reference, const Seen& test, int y, std::span<float> errors) {
     static const ErrorScale scale;
     const float largest = scale.largest, knee = scale.knee;
     const std::size_t at  = static_cast<std::size_t>(y) * reference.stride;

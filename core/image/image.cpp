@@ -2,20 +2,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace umbra {
 
-std::array<std::size_t, 3> colour_channels(const Image& image) {
-    std::array<std::size_t, 3> found{};
-    const char* const names[] = {"R", "G", "B"};
-    for (std::size_t c = 0; c < 3; ++c) {
-        const auto at = std::find(image.channels.begin(), image.channels.end(), names[c]);
-        if (at == image.channels.end()) return {0, 0, 0};
-        found[c] = std::size_t(at - image.channels.begin());
+void spread_integers(Image& image) {
+    if (!image.channels.empty()) return;
+    for (const auto& integer : image.integers) image.channels.push_back(integer.first);
+    image.data.resize(image.pixels() * image.channels.size());
+    std::size_t c = 0;
+    for (const auto& integer : image.integers) {
+        for (std::size_t i = 0; i < image.pixels(); ++i)
+            image.at(i, c) = float(double(integer.second[i]) / double(std::numeric_limits<std::uint32_t>::max()));
+        ++c;
     }
+}
+
+std::vector<Layer> layers(const Image& image) {
+    std::vector<Layer> found;
+    const auto find = [&](const std::string& name) {
+        return std::size_t(std::find(image.channels.begin(), image.channels.end(), name) - image.channels.begin());
+    };
+    for (std::size_t r = 0; r < image.channels.size(); ++r) {
+        const std::string& name = image.channels[r];
+        if (name != "R" && !name.ends_with(".R")) continue;
+        const std::string prefix = name.substr(0, name.size() - 1);
+        const std::array<std::size_t, 3> rgb{r, find(prefix + "G"), find(prefix + "B")};
+        if (std::max(rgb[1], rgb[2]) == image.channels.size()) continue;
+        found.insert(prefix.empty() ? found.begin() : found.end(),
+                     {prefix.empty() ? "" : prefix.substr(0, prefix.size() - 1), rgb});
+    }
+    if (found.empty())
+        for (std::size_t c = 0; c < image.channels.size(); ++c) found.push_back({image.channels[c], {c, c, c}});
     return found;
 }
+
+std::array<std::size_t, 3> colour_channels(const Image& image) { return layers(image).at(0).channels; }
 
 void check_same_size(const Image& a, const Image& b, std::string_view who) {
     if (a.width != b.width || a.height != b.height || a.data.empty() || b.data.empty())

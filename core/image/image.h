@@ -32,7 +32,19 @@ struct Image {
     [[nodiscard]] float at(std::size_t pixel, std::size_t c) const { return data[pixel * channels.size() + c]; }
 };
 
-/// Where R, G and B are among the channels; the first channel three times, as grey, in an image that lacks one of them.
+/// Gives an image of integers alone, which is no picture, floats of the same names, scaled to [0, 1].
+void spread_integers(Image& image);
+
+/// Channels that make one picture.
+struct Layer {
+    std::string name;                     ///< "" of R, G, B; "spec" of spec.R, spec.G, spec.B; the channel's, if grey
+    std::array<std::size_t, 3> channels;  ///< where its R, G and B are; one channel three times, as grey
+};
+
+/// Every R, G, B of the image, that without a name first. If there is none, every channel is a layer.
+[[nodiscard]] std::vector<Layer> layers(const Image& image);
+
+/// Those of the first layer.
 [[nodiscard]] std::array<std::size_t, 3> colour_channels(const Image& image);
 
 /// Throws std::logic_error, which names `who`, where the images differ in size or one of them is empty.

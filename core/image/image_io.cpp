@@ -4,15 +4,18 @@
 #include <OpenImageIO/strutil.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <string_view>
 
 #include "umbra/core/base/error.h"
@@ -37,8 +40,9 @@ std::string standard_name(const std::string& name) {
     return name;
 }
 
-/// Refuses what would take memory, or cannot be compared pixel by pixel, from the header alone.
-void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+/// Refuses what would take memory, or cannot be compared pixel by pixel, from the header alone. `held`: values of the
+/// parts before.
+void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec, std::size_t held) {
     if (spec.deep) throw InputError(fmt::format("{}: deep image (flat ones are read)", file.string()));
     if (spec.depth > 1) throw InputError(fmt::format("{}: volume (pictures are read)", file.string()));
     if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1)
@@ -46,11 +50,12 @@ void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec
                                      spec.height, spec.nchannels));
     const std::size_t pixels = std::size_t(spec.width) * std::size_t(spec.height);
     // 4 channels of the largest picture; many channels of a smaller one.
-    if (pixels > kMaxPixels || pixels * std::size_t(spec.nchannels) > 4 * kMaxPixels)
-        throw InputError(
-            fmt::format("{}: too large: {}x{} pixels, {} channels (at most {} million pixels, and 4 "
-                        "times as many values)",
-                        file.string(), spec.width, spec.height, spec.nchannels, kMaxPixels >> 20));
+    if (pixels > kMaxPixels || held + pixels * std::size_t(spec.nchannels) > 4 * kMaxPixels)
+        throw InputError(fmt::format(
+            "{}: too large: {}x{} pixels, {} channels{} (at most {} million pixels, and 4 "
+            "times as many values)",
+            file.string(), spec.width, spec.height, spec.nchannels,
+            held > 0 ? fmt::format(" after {} million values of other parts", held >> 20) : "", kMaxPixels >> 20));
 }
 
 /// Neighbouring channels of a file that are read as one type.
@@ -59,18 +64,14 @@ struct ChannelRun {
     bool is_integer = false;
 };
 
-/// EXRs with unsigned channels beside others have several runs; all other files are one run of floats.
-std::vector<ChannelRun> channel_runs(const OIIO::ImageInput& input) {
-    const OIIO::ImageSpec& spec = input.spec();
-    const auto is_integer       = [&](int c) { return spec.channelformat(c).basetype == OIIO::TypeDesc::UINT32; };
+/// Unsigned channels of 32 bits are runs of integers; a file without is one run of floats.
+std::vector<ChannelRun> channel_runs(const OIIO::ImageSpec& spec) {
+    const auto is_integer = [&](int c) { return spec.channelformat(c).basetype == OIIO::TypeDesc::UINT32; };
     std::vector<ChannelRun> runs;
-    bool any_float = false;
     for (int c = 0; c < spec.nchannels; ++c) {
         if (runs.empty() || runs.back().is_integer != is_integer(c)) runs.push_back({c, c, is_integer(c)});
         runs.back().end = c + 1;
-        any_float |= !is_integer(c);
     }
-    if (std::string_view(input.format_name()) != "openexr" || !any_float) return {{0, spec.nchannels, false}};
     return runs;
 }
 
@@ -79,11 +80,11 @@ template <class Value>
 void read_rows(const std::filesystem::path& file, OIIO::ImageInput& input, const ChannelRun& run, int y, int rows,
                OIIO::TypeDesc type, Value* into) {
     const OIIO::ImageSpec& spec = input.spec();
-    const int top               = spec.y + y;
-    const bool done             = spec.tile_height > 0
-                                      ? input.read_tiles(0, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z, spec.z + 1,
-                                                         run.begin, run.end, type, into)
-                                      : input.read_scanlines(0, 0, top, top + rows, spec.z, run.begin, run.end, type, into);
+    const int part = input.current_subimage(), top = spec.y + y;
+    const bool done = spec.tile_height > 0
+                          ? input.read_tiles(part, 0, spec.x, spec.x + spec.width, top, top + rows, spec.z, spec.z + 1,
+                                             run.begin, run.end, type, into)
+                          : input.read_scanlines(part, 0, top, top + rows, spec.z, run.begin, run.end, type, into);
     if (!done || input.has_error())
         throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(input.geterror())));
 }
@@ -92,7 +93,7 @@ void read_rows(const std::filesystem::path& file, OIIO::ImageInput& input, const
 /// sizes.
 void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Image& image) {
     const OIIO::ImageSpec& spec        = input.spec();
-    const std::vector<ChannelRun> runs = channel_runs(input);
+    const std::vector<ChannelRun> runs = channel_runs(spec);
     image.channels.clear();
     for (const ChannelRun& run : runs)
         for (int c = run.begin; c < run.end; ++c) {
@@ -114,7 +115,7 @@ void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Ima
         std::size_t first  = 0;  // of the run, among the channels of floats
         for (const ChannelRun& run : runs) {
             const std::size_t n = std::size_t(run.end - run.begin);
-            if (runs.size() == 1) {
+            if (runs.size() == 1 && !run.is_integer) {
                 read_rows(file, input, run, y, rows, OIIO::TypeDesc::FLOAT, begin);
             } else if (run.is_integer) {
                 integers.resize(pixels * n);
@@ -137,6 +138,113 @@ void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Ima
 /// The library multiplies by a rounded 1 / levels; this divides, so that 8 and 16 bits of one value are one float.
 void round_once(Image& image, double levels) {
     for (float& x : image.data) x = float(std::floor(double(x) * levels + 0.5) / levels);  // none is negative
+}
+
+/// What the file says about how its pixels are shown. Words that mean what a file without them means are left out.
+std::map<std::string, std::string> shown_as(const OIIO::ImageSpec& spec, Encoding encoding) {
+    std::map<std::string, std::string> said;
+    if (spec.full_x != spec.x || spec.full_y != spec.y || spec.full_width != spec.width ||
+        spec.full_height != spec.height)
+        said["display windows"] =
+            fmt::format("{}x{} from ({}, {})", spec.full_width, spec.full_height, spec.full_x, spec.full_y);
+    if (const int way = spec.get_int_attribute("Orientation", 1); way != 1)
+        said["orientations"] = fmt::format("{} of EXIF", way);
+    if (const std::string aspect = fmt::format("{:.4g}", spec.get_float_attribute("PixelAspectRatio", 1));
+        aspect != "1")
+        said["pixel aspect ratios"] = aspect;
+
+    const auto is    = [](std::string_view a, std::string_view b) { return OIIO::Strutil::iequals(a, b); };
+    const auto curve = spec["oiio:ColorSpace"].get<std::string>();
+    const bool usual = curve.empty() || is(curve, "sRGB") || is(curve, "Gamma2.2") || is(curve, "scene_linear") ||
+                       (is(curve, "linear") && encoding == Encoding::linear);
+    std::vector<std::string> colours;
+    if (!usual) colours.push_back(curve);
+    constexpr std::array<float, 8> rec709{0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+    if (const auto* found = spec.find_attribute("chromaticities"); found != nullptr && found->datasize() == 32) {
+        const auto* xy  = static_cast<const float*>(found->data());
+        const auto near = [](float a, float b) { return std::abs(a - b) < 5e-4f; };
+        if (!std::equal(rec709.begin(), rec709.end(), xy, near))
+            colours.push_back(fmt::format("chromaticities {:.4g}", fmt::join(xy, xy + rec709.size(), " ")));
+    }
+    if (const auto* icc = spec.find_attribute("ICCProfile"); icc != nullptr) {
+        const auto name = spec["ICCProfile:profile_description"].get<std::string>();
+        if (name.find("sRGB") == std::string::npos || name.find("inear") != std::string::npos)
+            colours.push_back(fmt::format("ICC profile \"{}\" of {} bytes", name, icc->datasize()));
+    }
+    if (!colours.empty()) said["colours"] = fmt::format("{}", fmt::join(colours, ", "));
+    return said;
+}
+
+/// The part at which `input` is.
+LoadedImage read_part(const std::filesystem::path& file, OIIO::ImageInput& input) {
+    const OIIO::ImageSpec& spec = input.spec();
+    LoadedImage loaded;
+    loaded.image.width          = spec.width;
+    loaded.image.height         = spec.height;
+    loaded.x                    = spec.x;
+    loaded.y                    = spec.y;
+    const auto stored           = OIIO::TypeDesc::BASETYPE(spec.format.basetype);
+    const bool is_short_integer = stored == OIIO::TypeDesc::UINT8 || stored == OIIO::TypeDesc::INT8 ||
+                                  stored == OIIO::TypeDesc::UINT16 || stored == OIIO::TypeDesc::INT16;
+    loaded.encoding = is_short_integer ? Encoding::srgb : Encoding::linear;
+    loaded.shown_as = shown_as(spec, loaded.encoding);
+    for (const OIIO::ParamValue& attribute : spec.extra_attribs)
+        if (attribute.type() == OIIO::TypeDesc::STRING)
+            loaded.image.metadata[attribute.name().string()] = attribute.get_string();
+        else if (attribute.type() == OIIO::TypeMatrix)
+            std::copy_n(static_cast<const float*>(attribute.data()), 16,
+                        loaded.image.matrices[standard_name(attribute.name().string())].begin());
+    read_pixels(file, input, loaded.image);
+    if (stored == OIIO::TypeDesc::UINT8) round_once(loaded.image, 255);
+    if (stored == OIIO::TypeDesc::UINT16) round_once(loaded.image, 65535);
+    return loaded;
+}
+
+/// The parts as one image: the first's channels as they are, those of another as "PART.CHANNEL".
+LoadedImage joined(const std::filesystem::path& file, std::vector<LoadedImage> parts,
+                   const std::vector<std::string>& names) {
+    LoadedImage whole = std::move(parts.at(0));
+    Image& image      = whole.image;
+    std::set<std::string> taken(image.channels.begin(), image.channels.end());
+    const auto take = [&](const std::string& part, const std::string& channel) {
+        const std::string name = channel.starts_with(part + ".") ? channel : part + "." + channel;
+        if (!taken.insert(name).second)
+            throw InputError(fmt::format("{}: two channels are called {}", file.string(), name));
+        return name;
+    };
+    for (const auto& integer : image.integers) taken.insert(integer.first);
+    if (taken.size() < image.channels.size() + image.integers.size())
+        throw InputError(
+            fmt::format("{}: two channels have one name: {}", file.string(), fmt::join(image.channels, " ")));
+    std::vector<const Image*> with_floats{&image};
+    std::vector<std::string> channels = image.channels;
+    for (std::size_t k = 1; k < parts.size(); ++k) {
+        const std::string part = names[k].empty() ? std::to_string(k + 1) : names[k];
+        if (const auto unlike = layout_differences(whole, parts[k]); !unlike.empty())
+            throw InputError(fmt::format("{}: part {} is not as the first: {} (parts of one size and place are read)",
+                                         file.string(), part, fmt::join(unlike, "; ")));
+        if (whole.encoding != parts[k].encoding)
+            throw InputError(
+                fmt::format("{}: part {} is not as the first: one holds linear light, the other sRGB "
+                            "(parts of one kind are read)",
+                            file.string(), part));
+        for (const std::string& channel : parts[k].image.channels) channels.push_back(take(part, channel));
+        for (auto& [channel, values] : parts[k].image.integers) image.integers[take(part, channel)] = std::move(values);
+        with_floats.push_back(&parts[k].image);
+    }
+    if (parts.size() > 1) {
+        std::vector<float> data(image.pixels() * channels.size());
+        std::size_t first = 0;
+        for (const Image* part : with_floats) {
+            const std::size_t n = part->channels.size();
+            for (std::size_t i = 0; i < image.pixels(); ++i)
+                std::copy_n(part->data.data() + i * n, n, data.data() + i * channels.size() + first);
+            first += n;
+        }
+        image.channels = std::move(channels);
+        image.data     = std::move(data);
+    }
+    return whole;
 }
 
 /// A file beside `file` with the same ending, which tells the format; removed unless it was moved away. Its name is
@@ -248,6 +356,25 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
 
 }  // namespace
 
+std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b) {
+    std::vector<std::string> reasons;
+    if (a.image.width != b.image.width || a.image.height != b.image.height)
+        reasons.push_back(fmt::format("sizes differ: {}x{} against {}x{}", a.image.width, a.image.height, b.image.width,
+                                      b.image.height));
+    if (a.x != b.x || a.y != b.y)
+        reasons.push_back(fmt::format("data windows differ: begin at ({}, {}) against ({}, {})", a.x, a.y, b.x, b.y));
+    std::map<std::string, std::string> either = a.shown_as;
+    either.insert(b.shown_as.begin(), b.shown_as.end());
+    for (const auto& [what, unused] : either) {
+        const auto in = [&, &of = what](const LoadedImage& x) {
+            const auto said = x.shown_as.find(of);
+            return said == x.shown_as.end() ? "nothing said" : said->second;
+        };
+        if (in(a) != in(b)) reasons.push_back(fmt::format("{} differ: {} against {}", what, in(a), in(b)));
+    }
+    return reasons;
+}
+
 LoadedImage read_image(const std::filesystem::path& file) {
     std::error_code error;
     const auto status = std::filesystem::status(file, error);
@@ -262,27 +389,25 @@ LoadedImage read_image(const std::filesystem::path& file) {
         const auto input = OIIO::ImageInput::open(file.string(), &wish);
         if (!input)
             throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(OIIO::geterror())));
-        const OIIO::ImageSpec& spec = input->spec();
-        check_header(file, spec);
-
-        LoadedImage loaded;
-        loaded.image.width          = spec.width;
-        loaded.image.height         = spec.height;
-        loaded.x                    = spec.x;
-        loaded.y                    = spec.y;
-        const auto stored           = OIIO::TypeDesc::BASETYPE(spec.format.basetype);
-        const bool is_short_integer = stored == OIIO::TypeDesc::UINT8 || stored == OIIO::TypeDesc::INT8 ||
-                                      stored == OIIO::TypeDesc::UINT16 || stored == OIIO::TypeDesc::INT16;
-        loaded.encoding = is_short_integer ? Encoding::srgb : Encoding::linear;
-        for (const OIIO::ParamValue& attribute : spec.extra_attribs)
-            if (attribute.type() == OIIO::TypeDesc::STRING)
-                loaded.image.metadata[attribute.name().string()] = attribute.get_string();
-            else if (attribute.type() == OIIO::TypeMatrix)
-                std::copy_n(static_cast<const float*>(attribute.data()), 16,
-                            loaded.image.matrices[standard_name(attribute.name().string())].begin());
-        read_pixels(file, *input, loaded.image);
-        if (stored == OIIO::TypeDesc::UINT8) round_once(loaded.image, 255);
-        if (stored == OIIO::TypeDesc::UINT16) round_once(loaded.image, 65535);
+        std::vector<LoadedImage> parts;
+        std::vector<std::string> names;
+        std::size_t claimed = 1;
+        for (std::size_t held = 0; input->seek_subimage(int(parts.size()), 0);) {
+            const OIIO::ImageSpec& spec = input->spec();
+            claimed                     = std::size_t(std::max(1, spec.get_int_attribute("oiio:subimages", 1)));
+            check_header(file, spec, held);
+            held += std::size_t(spec.width) * std::size_t(spec.height) * std::size_t(spec.nchannels);
+            names.push_back(spec["oiio:subimagename"].get<std::string>());
+            parts.push_back(read_part(file, *input));
+            if (input->seek_subimage(int(parts.size()) - 1, 1))
+                throw InputError(
+                    fmt::format("{}: has smaller copies of its pixels, mip levels (pictures are read)", file.string()));
+        }
+        if (parts.size() < claimed)
+            throw InputError(fmt::format("{}: cannot read image: part {} of {}: {}", file.string(), parts.size() + 1,
+                                         claimed, one_line(input->geterror())));
+        LoadedImage loaded = joined(file, std::move(parts), names);
+        spread_integers(loaded.image);
         return loaded;
     } catch (const InputError&) {
         throw;

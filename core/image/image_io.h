@@ -14,11 +14,19 @@ struct LoadedImage {
     Image image;                           ///< values as the file stores them, scaled to [0, 1] for integer formats
     Encoding encoding = Encoding::linear;  ///< srgb for 8- and 16-bit integer files, linear for all others
     int x = 0, y = 0;                      ///< where the stored pixels begin (an EXR's data window)
+    /// What the file says about how its pixels are shown, by subject ("colours", "display windows", "orientations",
+    /// "pixel aspect ratios"). What goes without saying is left out: sRGB's colours, the upright picture of its pixels.
+    std::map<std::string, std::string> shown_as{};
 };
 
-/// Reads any image that OpenImageIO reads (first subimage, no conversion; the integer channels of an EXR that has
-/// others too become Image::integers). Throws InputError. Files that claim more pixels than `kMaxPixels`, or 4 times as
-/// many values, are refused before memory is taken. Alpha is not multiplied in.
+/// Why pixels of the two do not belong together: sizes, windows and what the files say about showing them.
+[[nodiscard]] std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b);
+
+/// Reads any image that OpenImageIO reads, without conversion. Unsigned channels of 32 bits become Image::integers; if
+/// all are, they are floats of [0, 1] as well. The channels of further parts (of an EXR; pages, frames) are called
+/// "PART.CHANNEL", by the part's name or its number from 1; parts that differ in layout or encoding are refused, as are
+/// mip levels. Throws InputError. Files that claim more pixels than `kMaxPixels`, or 4 times as many values, are
+/// refused before memory is taken. Alpha is not multiplied in.
 inline constexpr std::size_t kMaxPixels = 1u << 28;
 [[nodiscard]] LoadedImage read_image(const std::filesystem::path& file);
 

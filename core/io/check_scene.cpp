@@ -93,10 +93,10 @@ void check_spot(const Spot& s, const Terms& terms) {
     if (!kConeAngleRadians.holds(s.cutoff))
         terms.fail(fmt::format("the cone's half angle is {:g} degrees, expected {}", double(s.cutoff) * kDegrees,
                                kConeAngle.words));
-    if (s.falloff == SpotFalloff::smooth && !(s.inner >= 0 && s.inner < s.cutoff))
+    if (s.falloff == SpotFalloff::smooth && !(s.inner >= 0 && s.inner <= s.cutoff))
         terms.fail(
             fmt::format("the inner half angle is {:g} degrees, the outer one {:g}, expected an inner angle of at "
-                        "least 0 and below the outer one",
+                        "least 0 and at most the outer one",
                         double(s.inner) * kDegrees, double(s.cutoff) * kDegrees));
     terms.number("exponent", s.exponent, kNotNegative);
 }

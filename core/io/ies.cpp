@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "umbra/core/base/paths.h"
 #include "umbra/core/io/limits.h"
 #include "umbra/core/io/source_text.h"
 #include "umbra/core/io/tokens.h"
@@ -18,33 +20,39 @@ namespace {
 
 constexpr std::size_t kMaxIesFile = std::size_t{4} << 20;  ///< bytes
 
-/// The line that begins at an offset, without what ends it.
-std::string_view line_at(const std::string& text, std::size_t begin) {
-    std::string_view line = std::string_view(text).substr(begin, text.find('\n', begin) - begin);
-    while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
-    return line;
+std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view kBlanks = " \t\r";
+    const std::size_t begin            = text.find_first_not_of(kBlanks);
+    return begin == text.npos ? "" : text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
 }
 
-/// Where the line TILT=... begins.
-std::size_t find_tilt(const SourceText& source) {
+/// The line TILT=..., in any case, with blanks anywhere.
+struct TiltLine {
+    std::size_t at = 0, end = 0;  ///< of the line
+    std::string_view value;       ///< behind the =
+};
+
+TiltLine find_tilt(const SourceText& source) {
     for (std::size_t at = 0; at < source.text.size();) {
-        if (source.text.compare(at, 5, "TILT=") == 0) return at;
-        const std::size_t end = source.text.find('\n', at);
-        at                    = end == source.text.npos ? source.text.size() : end + 1;
+        const std::size_t end       = line_end(source.text, at);
+        const std::string_view line = trimmed(std::string_view(source.text).substr(at, end - at));
+        if (lowered(line.substr(0, 4)) == "tilt")
+            if (const std::string_view rest = trimmed(line.substr(4)); rest.starts_with('='))
+                return {at, end, trimmed(rest.substr(1))};
+        at = end + 1;
     }
     source.fail(source.text.size(), "no line begins with TILT=, expected a photometric file after IES LM-63");
 }
 
 /// "IESNA:LM-63-2002", "IES:LM-63-2019": their 12th number is reserved. Files of 1986 have no line that says so.
 bool reserves_a_factor(const SourceText& source) {
-    const std::string_view first = line_at(source.text, 0);
-    return first.find("LM-63-2") != first.npos;
+    return std::string_view(source.text).substr(0, line_end(source.text, 0)).find("LM-63-2") != std::string_view::npos;
 }
 
 /// The numbers behind the line TILT=.
 class Numbers {
 public:
-    Numbers(const SourceText& source, std::size_t begin) : source_(source), tokens_(source, begin) {}
+    Numbers(const SourceText& source, std::size_t begin) : source_(source), tokens_(source, begin, true) {}
 
     float real(std::string_view what, const Range& range = kAnyNumber) {
         const Token token = tokens_.next();
@@ -52,12 +60,14 @@ public:
         if (!range.holds(value)) tokens_.fail(token, fmt::format("{} is {:g}, expected {}", what, value, range.words));
         return value;
     }
+    /// 4.0 is 4.
     std::size_t integer(std::string_view what, std::int64_t min, std::int64_t max) {
-        const Token token        = tokens_.next();
-        const std::int64_t value = tokens_.as_integer(token, what);
-        if (value < min || value > max)
-            tokens_.fail(token, fmt::format("{} is {}, expected a whole number from {} to {}", what, value, min, max));
-        return static_cast<std::size_t>(value);
+        const Token token = tokens_.next();
+        if (token.text.find('.') == token.text.npos)
+            return in_range(token, tokens_.as_integer(token, what), what, min, max);
+        const float value = tokens_.as_real(token, what);
+        if (value != std::floor(value)) (void)tokens_.as_integer(token, what);  // says what is wrong
+        return in_range(token, static_cast<std::int64_t>(value), what, min, max);
     }
     /// How many numbers follow, one or more: no more than the rest of the file has room for.
     std::size_t count(std::string_view what) {
@@ -75,14 +85,32 @@ public:
         Tokens ahead = tokens_;
         return ahead.next().offset;
     }
-    /// Nothing follows but the mark that ended files under DOS.
-    [[nodiscard]] bool at_end() const {
-        Tokens ahead     = tokens_;
-        const Token next = ahead.next();
-        return !next || next.text == "\x1a";
+    [[nodiscard]] Token ahead() const { return Tokens(tokens_).next(); }
+    [[nodiscard]] bool on_this_line() const { return bool(Tokens(tokens_).next_on_line()); }  ///< anything follows
+    /// Words that follow; on the next line that has any.
+    [[nodiscard]] std::size_t words() const {
+        Tokens ahead  = tokens_;
+        std::size_t n = 0;
+        for (Token word = ahead.next(); word && word.text != kEndUnderDos; word = ahead.next()) ++n;
+        return n;
     }
+    [[nodiscard]] std::size_t words_of_next_line() const {
+        Tokens ahead  = tokens_;
+        std::size_t n = bool(ahead.next());
+        while (ahead.next_on_line()) ++n;
+        return n;
+    }
+    void skip() { (void)tokens_.next(); }
 
 private:
+    std::size_t in_range(Token token, std::int64_t value, std::string_view what, std::int64_t min,
+                         std::int64_t max) const {
+        if (value < min || value > max)
+            tokens_.fail(token, fmt::format("{} is {}, expected a whole number from {} to {}", what, value, min, max));
+        return static_cast<std::size_t>(value);
+    }
+
+    static constexpr std::string_view kEndUnderDos = "\x1a";
     const SourceText& source_;
     Tokens tokens_;
 };
@@ -98,19 +126,44 @@ double read_tilt(Numbers& numbers) {
     return static_cast<double>(numbers.list(n, "a factor of a tilt angle", kNotNegative)[0]);
 }
 
-/// "TILT=NONE", "TILT=INCLUDE", or refused.
-double read_tilt(const SourceText& source, std::size_t at, Numbers& numbers) {
-    const std::string_view tilt = line_at(source.text, at);
-    if (tilt == "TILT=NONE") return 1;
-    if (tilt == "TILT=INCLUDE") return read_tilt(numbers);
-    source.fail(at,
-                fmt::format("{} names a file of lamp factors, which is not read, expected TILT=NONE or TILT=INCLUDE",
-                            in_quotes(tilt)));
+/// The factor of TILT=NONE, =INCLUDE, or of the file that it names, which lies beside `file`.
+double read_tilt(const std::filesystem::path& file, const TiltLine& tilt, Numbers& numbers,
+                 std::vector<std::string>& warnings) {
+    const std::string value = lowered(tilt.value);
+    if (value == "none") return 1;
+    if (value == "include") return read_tilt(numbers);
+    if (value.empty()) {
+        warnings.push_back(fmt::format("{}: TILT= names nothing: TILT=NONE is assumed.", file.string()));
+        return 1;
+    }
+    std::string name(tilt.value);
+    std::replace(name.begin(), name.end(), '\\', '/');
+    const auto factors = file.parent_path() / std::filesystem::path(name).filename();
+    if (is_file(factors)) {
+        const SourceText source = read_text(factors, kMaxIesFile);
+        Numbers of_file(source, 0);
+        return read_tilt(of_file);
+    }
+    warnings.push_back(fmt::format("{}: the file {} of lamp factors does not exist: 1 is assumed.", file.string(),
+                                   in_quotes(tilt.value)));
+    return 1;
 }
 
 PhotometricType read_type(Numbers& numbers) {
+    const std::string letter = lowered(numbers.ahead().text);
+    for (const auto& [name, type] :
+         {std::pair{"a", PhotometricType::A}, {"b", PhotometricType::B}, {"c", PhotometricType::C}})
+        if (letter == name) return numbers.skip(), type;
     constexpr std::array kTypes{PhotometricType::C, PhotometricType::B, PhotometricType::A};  // 1, 2, 3 in files
     return kTypes.at(numbers.integer("the photometric type", 1, kTypes.size()) - 1);
+}
+
+/// Whether the input watts are there, which some files leave out: on the line of the factors before them, or in front
+/// of the angles and values.
+bool has_watts(const Numbers& numbers, std::size_t vertical, std::size_t horizontal) {
+    if (numbers.on_this_line()) return true;
+    const bool is_row_of_angles = vertical > 1 && numbers.words_of_next_line() == vertical;
+    return !is_row_of_angles && numbers.words() != vertical + horizontal + vertical * horizontal;
 }
 
 /// Planes that go round without closing are closed.
@@ -125,14 +178,16 @@ void close(Photometry& table) {
 
 }  // namespace
 
-Photometry read_ies(const std::filesystem::path& file) {
-    SourceText source      = read_text(file, kMaxIesFile);
-    const std::size_t tilt = find_tilt(source);
-    std::replace(source.text.begin() + static_cast<std::ptrdiff_t>(tilt), source.text.end(), ',', ' ');
-    Numbers numbers(source, tilt + line_at(source.text, tilt).size());
+Photometry read_ies(const std::filesystem::path& file, std::vector<std::string>& warnings) {
+    const SourceText source = read_text(file, kMaxIesFile);
+    const TiltLine tilt     = find_tilt(source);
+    Numbers numbers(source, tilt.end);
+    const auto warn = [&](const std::string& sentence) {
+        warnings.push_back(fmt::format("{}: {}", file.string(), sentence));
+    };
 
     Photometry table;
-    double factor = read_tilt(source, tilt, numbers);
+    double factor = read_tilt(file, tilt, numbers, warnings);
     (void)numbers.real("the number of lamps", kNotNegative);
     (void)numbers.real("the lumens of a lamp");  // -1: the candela values are absolute
     factor *= static_cast<double>(numbers.real("the candela multiplier", kPositive));
@@ -145,18 +200,29 @@ Photometry read_ies(const std::filesystem::path& file) {
     factor *= static_cast<double>(numbers.real("the ballast factor", kPositive));
     const auto reserved = static_cast<double>(numbers.real("the ballast-lamp photometric factor", kPositive));
     if (!reserves_a_factor(source)) factor *= reserved;
-    (void)numbers.real("the input watts");
+    if (has_watts(numbers, vertical, horizontal))
+        (void)numbers.real("the input watts");
+    else
+        warn("the input watts are left out.");
 
     const std::size_t angles = numbers.offset();
     table.vertical           = numbers.list(vertical, "a vertical angle");
     table.horizontal         = numbers.list(horizontal, "a horizontal angle");
-    for (std::size_t k = 0; k < vertical * horizontal; ++k)
-        table.candela.push_back(
-            static_cast<float>(factor * static_cast<double>(numbers.real("a candela value", kNotNegative))));
-    if (!numbers.at_end())
-        numbers.fail(numbers.offset(), fmt::format("there is more behind the {} candela values of {} vertical and {} "
-                                                   "horizontal angles, expected the end of the file",
-                                                   table.candela.size(), vertical, horizontal));
+    std::size_t negative     = 0;
+    for (std::size_t k = 0; k < vertical * horizontal; ++k) {
+        const auto candela = static_cast<double>(numbers.real("a candela value"));
+        negative += candela < 0;
+        table.candela.push_back(static_cast<float>(factor * std::max(candela, 0.0)));
+    }
+    if (negative > 0) warn(fmt::format("{} candela values are negative: they are taken as 0.", negative));
+    if (const std::size_t words = numbers.words(); words > 0)
+        warn(fmt::format("{} words behind the {} candela values of {} vertical and {} horizontal angles are ignored.",
+                         words, table.candela.size(), vertical, horizontal));
+    if (table.type == PhotometricType::C && horizontal == 1 && table.horizontal[0] != 0) {
+        warn(fmt::format("the only horizontal angle is {:g}: it is taken as 0, the same all around.",
+                         table.horizontal[0]));
+        table.horizontal[0] = 0;
+    }
     close(table);
     if (const std::string fault = fault_of(table); !fault.empty()) numbers.fail(angles, fault);
     return table;

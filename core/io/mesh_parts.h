@@ -23,13 +23,19 @@ struct MeshPart {
     Mesh mesh;
     FileNormals normals;
     std::size_t self_crossing = 0;  ///< polygons that cross themselves
+    std::size_t too_few       = 0;  ///< polygons of fewer than 3 corners, left out
 
     void add_polygon(std::span<const std::uint32_t> polygon) {
-        if (!triangulate(mesh.positions, polygon, mesh.triangles)) ++self_crossing;
+        if (polygon.size() < 3)
+            ++too_few;
+        else if (!triangulate(mesh.positions, polygon, mesh.triangles))
+            ++self_crossing;
     }
 };
 
-/// The parts as a scene with the default material. Throws InputError where they have no triangle.
-[[nodiscard]] SceneFile scene_of(const std::vector<MeshPart>& parts, const std::filesystem::path& file);
+/// The parts as a scene with the default material, warned of as `warnings` say, a sentence each without the file's
+/// name. Throws InputError where they have no triangle.
+[[nodiscard]] SceneFile scene_of(const std::vector<MeshPart>& parts, const std::filesystem::path& file,
+                                 const std::vector<std::string>& warnings);
 
 }  // namespace umbra

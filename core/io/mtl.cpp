@@ -6,7 +6,7 @@
 //   Ks             k_s, from illum 2 on (and where there is no illum)
 //   Ns             shininess
 //   Ke             emission
-//   d, 1 - Tr      opacity
+//   d, 1 - Tr      opacity; d where they contradict, with a warning
 //   Ni             index_of_refraction
 //   Tf             transmit_colour, where illum has glass; 0 0 0, which some exporters write, is taken as 1 1 1
 //   illum 0        Kd is the colour in any light: emission Kd, all else 0
@@ -17,6 +17,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -32,6 +34,7 @@ struct MtlMaterial {
     vec3 filter{1};  ///< Tf
     bool has_ka = false;
     int illum   = 2;
+    std::optional<float> d, tr;
 };
 
 // "Kd r g b" or "Kd r". Curves of spectra and CIE colours are not read: false.
@@ -61,6 +64,7 @@ float read_share(Tokens& tokens, std::string_view what) {
 Material finished(MtlMaterial m) {
     Material& out = m.material;
     if (!m.has_ka) out.k_a = out.k_d;
+    out.opacity        = m.d ? *m.d : 1 - m.tr.value_or(0);
     const float mirror = std::min(1.0f, std::max({out.k_s.r, out.k_s.g, out.k_s.b}));
     switch (m.illum) {
         case 0:
@@ -89,7 +93,7 @@ Material finished(MtlMaterial m) {
 void read_mtl(const std::filesystem::path& file, std::map<std::string, Material, std::less<>>& materials,
               std::vector<std::string>& warnings) {
     const SourceText source = read_text(file);
-    Tokens tokens(source);
+    Tokens tokens(source, 0, true);
     IgnoredLines skipped;
     MtlMaterial current;
     bool open        = false;
@@ -116,6 +120,7 @@ void read_mtl(const std::filesystem::path& file, std::map<std::string, Material,
             skipped.add(texture ? "textures are" : fmt::format("the term {} is", in_quotes(key)), tokens.line());
             continue;
         }
+        tokens.refuse_decimal_commas(key);
         if (!open) tokens.fail(keyword, fmt::format("{} before any newmtl, expected \"newmtl NAME\"", key));
         Material& m = current.material;
         bool read   = true;
@@ -140,15 +145,17 @@ void read_mtl(const std::filesystem::path& file, std::map<std::string, Material,
         } else if (key == "Tf") {
             read = read_colour(tokens, "Tf", current.filter);
         } else if (key == "d") {
-            m.opacity = read_share(tokens, "d");
+            current.d = read_share(tokens, "d");
         } else if (key == "Tr") {
-            m.opacity = 1 - read_share(tokens, "Tr");
+            current.tr = read_share(tokens, "Tr");
         } else {
             const Token token = tokens.next_on_line();
             const auto illum  = tokens.as_integer(token, "illum");
             if (illum < 0 || illum > 10) tokens.fail(token, "illum is not a known model, expected 0 to 10");
             current.illum = int(illum);
         }
+        if ((key == "d" || key == "Tr") && current.d && current.tr && std::abs(*current.d + *current.tr - 1) > 1e-3f)
+            skipped.add("a Tr other than 1 - d is", tokens.line());
         if (!read) skipped.add(fmt::format("a spectral or CIE {} is", key), tokens.line());
     }
     close();

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 #include "umbra/core/io/file_normals.h"
 #include "umbra/core/io/ignored_lines.h"
 #include "umbra/core/io/limits.h"
@@ -108,9 +110,23 @@ void read_face(Tokens& tokens, Token keyword, Obj& obj, std::uint32_t group) {
     obj.faces.push_back(face);
 }
 
+// What may follow a position: a weight w, a colour, or both.
+void note_terms_of_vertex(Tokens& tokens, IgnoredLines& skipped) {
+    const Token first = tokens.next_on_line();
+    if (!first) return;
+    std::size_t n = 1;
+    while (tokens.next_on_line()) ++n;
+    const bool is_one =
+        first.text == "1" || (first.text.starts_with("1.") && first.text.find_first_not_of('0', 2) == first.text.npos);
+    if (n >= 3)
+        skipped.add("the colour of a vertex is", tokens.line());
+    else if (!is_one)
+        skipped.add("the weight w of a vertex is", tokens.line());
+}
+
 Obj read_lines(const SourceText& source) {
     Obj obj;
-    Tokens tokens(source);
+    Tokens tokens(source, 0, true);
     // A group is what lies between lines that change object, group, material or smoothing; coming back to an earlier
     // combination goes on with its group.
     std::string object, group_name, material;
@@ -134,8 +150,11 @@ Obj read_lines(const SourceText& source) {
         const Token keyword        = tokens.next();
         const std::string_view key = keyword.text;
         if (key == "v") {
+            tokens.refuse_decimal_commas("a vertex coordinate");
             obj.positions.push_back(tokens.point_on_line("a vertex coordinate"));
+            note_terms_of_vertex(tokens, obj.skipped);
         } else if (key == "vn") {
+            tokens.refuse_decimal_commas("a component of a normal");
             obj.normals.push_back(obj.normal_check.usable(tokens.normal_on_line()));
         } else if (key == "vt") {
             while (const Token token = tokens.next_on_line()) (void)tokens.as_real(token, "a texture coordinate");
@@ -174,37 +193,87 @@ Obj read_lines(const SourceText& source) {
     return obj;
 }
 
+// The names in a line of several: quotes hold one together, and so does a backslash before a blank.
+std::vector<std::string> words_of(std::string_view text) {
+    std::vector<std::string> words;
+    bool quoted = false, in_word = false;
+    for (std::size_t k = 0; k < text.size(); ++k) {
+        const bool escaped = text[k] == '\\' && k + 1 < text.size() && text[k + 1] == ' ';
+        if (text[k] == '"') {
+            quoted = !quoted;
+        } else if (text[k] == ' ' && !quoted) {
+            in_word = false;
+        } else {
+            if (!in_word) words.emplace_back();
+            in_word = true;
+            words.back() += escaped ? text[++k] : text[k];
+        }
+    }
+    return words;
+}
+
+// A # behind a blank may begin a comment or belong to the name ("Material #25").
+std::string_view before_comment(std::string_view name) {
+    std::size_t hash = name.find('#');
+    while (hash != name.npos && hash > 0 && name[hash - 1] != ' ' && name[hash - 1] != '\t')
+        hash = name.find('#', hash + 1);
+    name = name.substr(0, hash);
+    while (!name.empty() && (name.back() == ' ' || name.back() == '\t')) name.remove_suffix(1);
+    return name;
+}
+
+// The regular file of that name; where there is none, the first of those whose names differ in case alone.
+path find_in_any_case(const path& file) {
+    if (is_file(file)) return file;
+    std::error_code error;
+    const std::string wanted = lowered(file.filename().string());
+    path found;
+    for (std::filesystem::directory_iterator entry(file.parent_path().empty() ? "." : file.parent_path(), error), end;
+         !error && entry != end; entry.increment(error))
+        if (lowered(entry->path().filename().string()) == wanted && is_file(entry->path()) &&
+            (found.empty() || entry->path() < found))
+            found = entry->path();
+    return found;
+}
+
 // The material files, looked for beside the OBJ. A line may name several, and names may hold blanks.
 bool read_libraries(const Obj& obj, const path& file, const SourceText& source,
                     std::map<std::string, Material, std::less<>>& materials, std::vector<std::string>& warnings) {
     bool found      = false;
     const auto read = [&](std::string name) {
         std::replace(name.begin(), name.end(), '\\', '/');
-        for (const path& candidate :
-             {file.parent_path() / path(name).relative_path(), file.parent_path() / path(name).filename()}) {
-            std::error_code error;
-            if (!std::filesystem::is_regular_file(candidate, error)) continue;
+        for (const path& beside : {path(name).relative_path(), path(name).filename()}) {
+            const path candidate = beside.empty() ? path() : find_in_any_case(file.parent_path() / beside);
+            if (candidate.empty()) continue;
             read_mtl(candidate, materials, warnings);
-            return true;
+            return found = true;
         }
         return false;
     };
-    std::map<std::string_view, bool> tried;
+    std::set<std::string_view> tried;
     for (const Token& library : obj.libraries) {
-        if (!tried.try_emplace(library.text, true).second) continue;
-        bool here = read(std::string(library.text));
-        for (std::size_t begin = 0;
-             !here && library.text.find(' ') != library.text.npos && begin < library.text.size();) {
-            const std::size_t end = std::min(library.text.find(' ', begin), library.text.size());
-            if (end > begin && read(std::string(library.text.substr(begin, end - begin)))) found = true;
-            begin = end + 1;
-        }
-        found = found || here;
-        if (!found)
+        if (!tried.insert(library.text).second) continue;
+        if (read(std::string(library.text)) || read(std::string(before_comment(library.text)))) continue;
+        const std::vector<std::string> words = words_of(before_comment(library.text));
+        std::vector<std::string> missing;
+        for (const std::string& word : words)
+            if (!read(word)) missing.push_back(word);
+        if (missing.size() == words.size()) missing = {std::string(library.text)};
+        for (const std::string& name : missing)
             warnings.push_back(fmt::format("{}: the material file {} does not exist: its materials are grey.",
-                                           source.file, in_quotes(library.text)));
+                                           source.file, in_quotes(name)));
     }
     return found;
+}
+
+// The name of the material that a "usemtl" means: either it or "newmtl" may have a comment behind it.
+std::string material_named(const std::string& name, const std::map<std::string, Material, std::less<>>& library) {
+    const std::string_view bare = before_comment(name);
+    if (library.contains(name)) return name;
+    if (library.contains(bare)) return std::string(bare);
+    for (const auto& [known, material] : library)
+        if (before_comment(known) == name) return known;
+    return name;
 }
 
 // The faces of one group as a mesh with the positions that they use; a position with several normals is split.
@@ -256,7 +325,8 @@ SceneFile read_obj(const path& file) {
     for (std::uint32_t f = 0; f < obj.faces.size(); ++f) faces_of[obj.faces[f].group].push_back(f);
 
     std::map<std::string, std::uint32_t, std::less<>> material_of;
-    const auto material = [&](const std::string& name) {
+    const auto material = [&](const std::string& written) {
+        const std::string name = material_named(written, library);
         const auto [it, added] = material_of.try_emplace(name, std::uint32_t(scene.materials.size()));
         if (added) {
             const auto known = library.find(name);

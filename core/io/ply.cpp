@@ -47,8 +47,9 @@ Type read_type(const Tokens& tokens, Token token) {
                                                                                {"float32", Type::float32},
                                                                                {"double", Type::float64},
                                                                                {"float64", Type::float64}}};
+    const std::string written = lowered(token.text);
     for (const auto& [name, type] : kTypes)
-        if (token.text == name) return type;
+        if (written == name) return type;
     tokens.fail(token, fmt::format("unknown type {} (known: char uchar short ushort int uint float double)",
                                    in_quotes(token.text)));
 }
@@ -66,30 +67,42 @@ struct Header {
     std::size_t end = 0;  ///< where the data begins
 };
 
+// Words are read in any case. Where the first line ends in a CR alone, all lines of the header do, so that an LF behind
+// the last one is a byte of the data.
 Header read_header(const SourceText& source) {
     Tokens tokens(source);
     Header header;
     const Token magic = tokens.next();
-    if (magic.text != "ply")
+    if (lowered(magic.text) != "ply")
         tokens.fail(magic, fmt::format("the file begins with {}, expected ply", in_quotes(magic.text)));
+    const std::size_t first_end = line_end(source.text, tokens.offset());
+    const bool ends_in_cr       = first_end < source.text.size() && source.text[first_end] == '\r';
     tokens.skip_line();
     bool has_format = false;
     for (;; tokens.skip_line()) {
-        const Token keyword        = tokens.next();
-        const std::string_view key = keyword.text;
+        const Token keyword   = tokens.next();
+        const std::string key = lowered(keyword.text);
         if (!keyword) tokens.fail(keyword, "the file ends within the header, expected \"end_header\"");
         if (key == "end_header") {
-            tokens.skip_line();
+            header.end = std::min(tokens.offset() + 1, source.text.size());
+            if (!ends_in_cr) {
+                tokens.skip_line();
+                header.end = tokens.offset();
+            }
             break;
         }
-        if (key == "comment" || key == "obj_info") continue;
+        if (key == "comment" || key == "obj_info") {
+            (void)tokens.rest_of_line();  // a backslash at its end joins nothing
+            continue;
+        }
         if (key == "format") {
-            const Token token = tokens.next_on_line();
-            if (token.text == "ascii")
+            const Token token        = tokens.next_on_line();
+            const std::string format = lowered(token.text);
+            if (format == "ascii")
                 header.encoding = Encoding::ascii;
-            else if (token.text == "binary_little_endian")
+            else if (format == "binary_little_endian")
                 header.encoding = Encoding::little;
-            else if (token.text == "binary_big_endian")
+            else if (format == "binary_big_endian")
                 header.encoding = Encoding::big;
             else
                 tokens.fail(token,
@@ -100,7 +113,7 @@ Header read_header(const SourceText& source) {
             Element element;
             const Token name = tokens.next_on_line();
             if (!name) tokens.fail(name, "an element without a name");
-            element.name      = name.text;
+            element.name      = lowered(name.text);
             const Token count = tokens.next_on_line();
             const auto n      = tokens.as_integer(count, "the number of elements");
             if (n < 0 || std::uint64_t(n) > kMaxVertices)
@@ -111,7 +124,7 @@ Header read_header(const SourceText& source) {
             if (header.elements.empty()) tokens.fail(keyword, "a property before any element");
             Property property;
             Token type = tokens.next_on_line();
-            if (type.text == "list") {
+            if (lowered(type.text) == "list") {
                 const Token counting = tokens.next_on_line();
                 property.is_list     = true;
                 property.counting    = read_type(tokens, counting);
@@ -121,16 +134,15 @@ Header read_header(const SourceText& source) {
             property.type    = read_type(tokens, type);
             const Token name = tokens.next_on_line();
             if (!name) tokens.fail(name, "a property without a name");
-            property.name = name.text;
+            property.name = lowered(name.text);
             header.elements.back().properties.push_back(std::move(property));
         } else {
             tokens.fail(keyword, fmt::format("unknown header line {} (known: format element property comment obj_info "
                                              "end_header)",
-                                             in_quotes(key)));
+                                             in_quotes(keyword.text)));
         }
     }
     if (!has_format) tokens.fail({{}, 0}, "the header names no format, expected \"format ascii 1.0\"");
-    header.end = tokens.offset();
     return header;
 }
 
@@ -207,6 +219,11 @@ struct Roles {
     bool has_normals = false;
 };
 
+// vertex_indices, vertex_index, and what programs make of it: vertex_indexes, vertexIndices, vert_ind.
+bool names_vertices(std::string_view property) {
+    return property.starts_with("vert") && property.find("ind") != property.npos;
+}
+
 Roles find_roles(const Body& body, const Element& element) {
     static constexpr std::array<std::string_view, 6> kCoordinates{"x", "y", "z", "nx", "ny", "nz"};
     Roles roles;
@@ -221,7 +238,7 @@ Roles find_roles(const Body& body, const Element& element) {
         for (std::size_t k = 0; roles.is_vertex && k < 6; ++k)
             if (!property.is_list && property.name == kCoordinates[k]) roles.of[p] = int(k), found[k] = true;
         if (roles.is_face && property.is_list && is_whole(property.type) && !has_indices &&
-            (property.name == "vertex_indices" || property.name == "vertex_index"))
+            names_vertices(property.name))
             roles.of[p] = 0, has_indices = true;
     }
     if (roles.is_vertex && !(found[0] && found[1] && found[2]))
@@ -235,7 +252,6 @@ Roles find_roles(const Body& body, const Element& element) {
 // The vertex indices of one face or of strips, each checked.
 void read_indices(Body& body, const Property& property, std::int64_t n, bool is_strips, std::uint64_t vertices,
                   std::vector<std::int64_t>& list) {
-    if (!is_strips && n < 3) body.fail(fmt::format("a face of {} corners, expected at least 3", n));
     list.clear();
     for (std::int64_t k = 0; k < n; ++k) {
         const std::int64_t v = body.whole(property.type, "the vertex index");
@@ -284,7 +300,7 @@ void read_element(Body& body, const Element& element, MeshPart& part, std::uint6
     }
 }
 
-MeshPart ply_part(const SourceText& source) {
+MeshPart ply_part(const SourceText& source, std::vector<std::string>& warnings) {
     const Header header = read_header(source);
     const auto named    = [](std::string_view name) { return [name](const Element& e) { return e.name == name; }; };
     const auto vertex   = std::find_if(header.elements.begin(), header.elements.end(), named("vertex"));
@@ -305,6 +321,8 @@ MeshPart ply_part(const SourceText& source) {
             source.fail(0, fmt::format("the header says {} of element {}, but only {} bytes follow it", e.count, e.name,
                                        left - 1));
     }
+    if (std::ranges::any_of(vertex->properties, [](const Property& p) { return p.name.ends_with("red"); }))
+        warnings.push_back(fmt::format("colours of {} vertices are ignored.", vertex->count));
     MeshPart part;
     Body body(source, header);
     for (const Element& e : header.elements) read_element(body, e, part, vertex->count);
@@ -315,7 +333,9 @@ MeshPart ply_part(const SourceText& source) {
 
 SceneFile read_ply(const std::filesystem::path& file) {
     const SourceText source = read_text(file);
-    return scene_of({ply_part(source)}, file);
+    std::vector<std::string> warnings;
+    const MeshPart part = ply_part(source, warnings);
+    return scene_of({part}, file, warnings);
 }
 
 }  // namespace umbra

@@ -8,6 +8,16 @@
 
 namespace umbra {
 
+/// Whether a line ends at text[i], i < text.size(): LF, CR LF (at its LF), or CR alone.
+[[nodiscard]] inline bool ends_line(std::string_view text, std::size_t i) {
+    return text[i] == '\n' || (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'));
+}
+/// Where the line that `at` <= text.size() lies in ends: at what ends_line() finds, or at the end of the text.
+[[nodiscard]] inline std::size_t line_end(std::string_view text, std::size_t at) {
+    while (at < text.size() && !ends_line(text, at)) ++at;
+    return at;
+}
+
 struct SourceText {
     std::string file;  ///< as the user named it
     std::string text;
@@ -16,8 +26,8 @@ struct SourceText {
     [[noreturn]] void fail(std::size_t offset, std::string_view message) const;
 };
 
-/// Reads a whole file, at most `max_bytes`. Throws InputError that says why it can't (missing, a folder, unreadable
-/// ...).
+/// Reads a whole regular file, at most `max_bytes`, asked for before memory is taken. Throws InputError that says why
+/// it can't (missing, a folder, a device, unreadable ...).
 [[nodiscard]] SourceText read_text(const std::filesystem::path& file, std::size_t max_bytes = std::size_t{1} << 30);
 
 }  // namespace umbra

@@ -13,54 +13,71 @@
 namespace umbra {
 namespace {
 
+// A word of the grammar, in any case; "end loop" is "endloop".
+Token next_word(Tokens& tokens, std::string& word) {
+    const Token token = tokens.next();
+    word              = lowered(token.text);
+    if (word == "end") word += lowered(tokens.next().text);
+    return token;
+}
+
 // Facets share no positions. Their normals say nothing that their corners do not: they are read and left out, whatever
 // their values.
-std::vector<MeshPart> read_text_stl(const SourceText& source) {
+std::vector<MeshPart> read_text_stl(const SourceText& source, std::vector<std::string>& warnings) {
     Tokens tokens(source);
     std::vector<MeshPart> parts;
-    const auto expect = [&](Token token, std::string_view name) {
-        if (token.text != name)
-            tokens.fail(token, fmt::format("found {}, expected \"{}\"",
-                                           token ? in_quotes(token.text) : "the end of the file", name));
+    std::string word;
+    const auto refuse = [&](Token found, std::string_view expected) {
+        tokens.fail(found, fmt::format("found {}, expected {}", found ? in_quotes(found.text) : "the end of the file",
+                                       expected));
     };
-    while (!tokens.at_end()) {
-        expect(tokens.next(), "solid");
+    const auto expect = [&](std::string_view name) {
+        if (const Token token = next_word(tokens, word); word != name) refuse(token, fmt::format("\"{}\"", name));
+    };
+    std::size_t unended = 0;
+    bool begun          = false;  // the word "solid" is read
+    while (begun || !tokens.at_end()) {
+        if (!begun) expect("solid");
+        begun = false;
         MeshPart part;
         part.name = tokens.rest_of_line().text;
         for (;;) {
-            const Token token = tokens.next();
-            if (token.text == "endsolid") {
+            const Token token = next_word(tokens, word);
+            if (word == "endsolid") {
                 (void)tokens.rest_of_line();
                 break;
             }
-            if (token.text != "facet")
-                tokens.fail(token, fmt::format("found {}, expected \"facet\" or \"endsolid\"",
-                                               token ? in_quotes(token.text) : "the end of the file"));
-            expect(tokens.next(), "normal");
+            if (begun = word == "solid"; begun || !token) {
+                ++unended;
+                break;
+            }
+            if (word != "facet") refuse(token, "\"facet\" or \"endsolid\"");
+            expect("normal");
             (void)tokens.normal();
-            expect(tokens.next(), "outer");
-            expect(tokens.next(), "loop");
+            expect("outer");
+            expect("loop");
             const auto first = std::uint32_t(part.mesh.positions.size());
             for (int k = 0; k < 3; ++k) {
-                expect(tokens.next(), "vertex");
+                expect("vertex");
                 part.mesh.positions.push_back(tokens.point("a vertex coordinate"));
             }
             part.mesh.triangles.emplace_back(first, first + 1, first + 2);
-            expect(tokens.next(), "endloop");
-            expect(tokens.next(), "endfacet");
+            expect("endloop");
+            expect("endfacet");
         }
         parts.push_back(std::move(part));
     }
+    if (unended > 0) warnings.push_back(fmt::format("{} solids have no endsolid.", unended));
     return parts;
 }
 
 constexpr std::size_t kStlHeader = 84, kStlFacet = 50;
 
-std::vector<MeshPart> read_binary_stl(const SourceText& source, std::uint32_t facets) {
+std::vector<MeshPart> read_binary_stl(const SourceText& source, std::uint64_t facets) {
     BinaryReader bytes(source, kStlHeader, std::endian::little);
     std::vector<MeshPart> parts(1);
     Mesh& mesh = parts[0].mesh;
-    for (std::uint32_t i = 0; i < facets; ++i) {
+    for (std::uint64_t i = 0; i < facets; ++i) {
         bytes.skip(12, "a facet");  // the normal
         const auto first = std::uint32_t(mesh.positions.size());
         for (int k = 0; k < 3; ++k) {
@@ -77,29 +94,48 @@ std::vector<MeshPart> read_binary_stl(const SourceText& source, std::uint32_t fa
     return parts;
 }
 
-// Binary files may begin with "solid" too, so the length decides: 80 bytes, the number of facets, 50 bytes each.
-std::vector<MeshPart> read_parts(const SourceText& source) {
+// Binary files may begin with "solid", too, but have zeros soon, which text has not.
+bool is_text(const SourceText& source) {
+    constexpr std::size_t kLooked = 1024;
+    const auto looked             = std::string_view(source.text).substr(0, kLooked);
+    return lowered(Tokens(source).next().text) == "solid" && looked.find('\0') == looked.npos;
+}
+
+// Binary: 80 bytes, the number of facets, 50 bytes each. Programs that write facets as they find them leave the number
+// at 0 or -1: then the size of the file says it.
+std::vector<MeshPart> read_parts(const SourceText& source, std::vector<std::string>& warnings) {
     const std::size_t size = source.text.size();
-    std::uint32_t facets   = 0;
-    if (size >= kStlHeader) {
-        facets = BinaryReader(source, kStlHeader - 4, std::endian::little).take<std::uint32_t>("the header");
-        if (size == kStlHeader + std::uint64_t(facets) * kStlFacet) return read_binary_stl(source, facets);
-    }
-    if (Tokens(source).next().text == "solid") return read_text_stl(source);
-    if (size < kStlHeader)
+    if (size < kStlHeader) {
+        if (is_text(source)) return read_text_stl(source, warnings);
         throw InputError(fmt::format(
             "{}: neither text STL nor binary STL, expected \"solid\" as its first word or at least {} bytes "
             "({} found)",
             source.file, kStlHeader, size));
-    throw InputError(fmt::format("{}: byte {}: {} facets take {} bytes, but the file has {}", source.file,
-                                 kStlHeader - 4, facets, kStlHeader + std::uint64_t(facets) * kStlFacet, size));
+    }
+    const auto says = BinaryReader(source, kStlHeader - 4, std::endian::little).take<std::uint32_t>("the header");
+    const std::uint64_t room = (size - kStlHeader) / kStlFacet, rest = (size - kStlHeader) % kStlFacet;
+    if (says == room && rest == 0) return read_binary_stl(source, says);
+    if (is_text(source)) return read_text_stl(source, warnings);
+    if ((says == 0 || says == ~std::uint32_t{0}) && rest == 0) {
+        warnings.push_back(
+            fmt::format("the header says {} facets, the file has {}: all are read.", std::int32_t(says), room));
+        return read_binary_stl(source, room);
+    }
+    if (says > room || says == 0)
+        throw InputError(fmt::format("{}: byte {}: {} facets take {} bytes, but the file has {}", source.file,
+                                     kStlHeader - 4, says, kStlHeader + std::uint64_t(says) * kStlFacet, size));
+    warnings.push_back(fmt::format("{} bytes behind the {} facets that the header says are ignored.",
+                                   size - kStlHeader - says * kStlFacet, says));
+    return read_binary_stl(source, says);
 }
 
 }  // namespace
 
 SceneFile read_stl(const std::filesystem::path& file) {
     const SourceText source = read_text(file);
-    return scene_of(read_parts(source), file);
+    std::vector<std::string> warnings;
+    const std::vector<MeshPart> parts = read_parts(source, warnings);
+    return scene_of(parts, file, warnings);
 }
 
 }  // namespace umbra

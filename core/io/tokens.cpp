@@ -11,8 +11,6 @@
 namespace umbra {
 namespace {
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
-
 // from_chars accepts no leading plus, which C's printf writes with "%+g".
 std::string_view without_plus(std::string_view s) {
     return s.size() > 1 && s[0] == '+' && s[1] != '-' ? s.substr(1) : s;
@@ -28,18 +26,38 @@ std::string in_quotes(std::string_view token) {
     return fmt::format("\"{}{}\"", shown, token.size() > kShown ? "..." : "");
 }
 
+std::string lowered(std::string_view text) {
+    std::string small(text);
+    for (char& c : small)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return small;
+}
+
+Tokens::Tokens(const SourceText& source, std::size_t begin, bool commas)
+    : source_(source), at_(begin), commas_(commas && source.text.find(',') != source.text.npos) {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (begin == 0 && source.text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
+bool Tokens::is_blank(char c) const {
+    return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f' || (commas_ && c == ',');
+}
+
 Token Tokens::read(bool across_lines) {
     const std::string& text = source_.text;
     while (at_ < text.size()) {
         const char c = text[at_];
         if (c == '\\') {
             std::size_t after = at_ + 1;
-            if (after < text.size() && text[after] == '\r') ++after;
-            if (after >= text.size() || text[after] != '\n') break;  // a backslash within a token, as in a path
+            if (after < text.size() && text[after] == '\r' && !ends_line(text, after)) ++after;
+            if (after >= text.size() || !ends_line(text, after)) break;  // a backslash within a token, as in a path
             at_ = after + 1;
         } else if (c == '#') {
-            at_ = std::min(text.find('\n', at_), text.size());
-        } else if (is_blank(c) || (c == '\n' && across_lines)) {
+            at_ = line_end(text, at_);
+        } else if (ends_line(text, at_)) {
+            if (!across_lines) break;
+            ++at_;
+        } else if (is_blank(c)) {
             ++at_;
         } else {
             break;
@@ -57,12 +75,14 @@ Token Tokens::next() { return read(true); }
 Token Tokens::next_on_line() { return read(false); }
 
 Token Tokens::rest_of_line() {
-    const Token first       = read(false);
     const std::string& text = source_.text;
-    at_                     = std::min({text.find('\n', first.offset), text.find('#', first.offset), text.size()});
-    std::size_t end         = at_;
-    while (end > first.offset && is_blank(text[end - 1])) --end;
-    return {std::string_view(text).substr(first.offset, end - first.offset), first.offset};
+    const std::size_t stop  = line_end(text, at_);
+    while (at_ < stop && is_blank(text[at_])) ++at_;
+    const std::size_t begin = at_;
+    std::size_t end         = stop;
+    while (end > begin && is_blank(text[end - 1])) --end;
+    at_ = stop;
+    return {std::string_view(text).substr(begin, end - begin), begin};
 }
 
 void Tokens::skip_line() {
@@ -79,10 +99,8 @@ bool Tokens::at_end() {
 }
 
 std::size_t Tokens::line() {
-    const auto begin = source_.text.begin();
     if (counted_to_ > at_) counted_to_ = 0, line_ = 1;
-    line_ += std::size_t(std::count(begin + std::ptrdiff_t(counted_to_), begin + std::ptrdiff_t(at_), '\n'));
-    counted_to_ = at_;
+    for (; counted_to_ < at_; ++counted_to_) line_ += ends_line(source_.text, counted_to_);
     return line_;
 }
 
@@ -136,7 +154,10 @@ vec3 Tokens::point_on_line(std::string_view what) {
     return {x, y, z};
 }
 
-float Tokens::any_real(std::string_view what) { return static_cast<float>(as_double(next(), what)); }
+float Tokens::as_any_real(Token token, std::string_view what) const {
+    return static_cast<float>(as_double(token, what));
+}
+float Tokens::any_real(std::string_view what) { return as_any_real(next(), what); }
 
 vec3 Tokens::normal() {
     constexpr std::string_view what = "a component of a normal";
@@ -146,9 +167,29 @@ vec3 Tokens::normal() {
 
 vec3 Tokens::normal_on_line() {
     constexpr std::string_view what = "a component of a normal";
-    const auto component            = [&] { return static_cast<float>(as_double(next_on_line(), what)); };
+    const auto component            = [&] { return as_any_real(next_on_line(), what); };
     const float x = component(), y = component(), z = component();
     return {x, y, z};
+}
+
+void Tokens::refuse_decimal_commas(std::string_view what) const {
+    if (!commas_) return;
+    const std::size_t end = line_end(source_.text, at_);
+    if (std::string_view(source_.text).substr(at_, end - at_).find(',') == std::string_view::npos) return;
+    Tokens words(source_, at_);
+    Token decimal, before;
+    bool by_blanks = false;  // some blank has no comma beside it
+    while (const Token word = words.next_on_line()) {
+        const std::size_t comma = word.text.find(',');
+        const auto is_digit     = [&](std::size_t k) { return word.text[k] >= '0' && word.text[k] <= '9'; };
+        if (comma != word.text.npos && comma > 0 && comma + 1 < word.text.size() && is_digit(comma - 1) &&
+            is_digit(comma + 1) && !decimal)
+            decimal = word;
+        if (before && !before.text.ends_with(',') && !word.text.starts_with(',')) by_blanks = true;
+        before = word;
+    }
+    if (decimal && by_blanks)
+        fail(decimal, fmt::format("{} is {}, expected a number with a decimal point", what, in_quotes(decimal.text)));
 }
 
 }  // namespace umbra

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/render/embree_api.h"
 #include "umbra/core/render/point_writer.h"
 #include "umbra/core/render/tiles.h"
@@ -120,7 +121,8 @@ private:
 
 using TileHits = Hits8[kTileHeight / 2][kTileWidth / 4];
 
-void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, int height, TileHits& hits) {
+UMBRA_FOR_EACH_PROCESSOR void trace_tile(RTCScene scene, const EyeRays& eye, int x0, int y0, int width, int height,
+                                         TileHits& hits) {
     const FlushDenormals flush;
     RTCRayHit8 rays{};
     eye.start(rays.ray);

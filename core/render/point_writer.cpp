@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/seen_side.h"
 
@@ -11,11 +12,9 @@ namespace {
 
 constexpr Facing kOpen{0xff};  // what face_open_points looks for
 
-// Loops over lanes say "unroll 1", without which g++ unrolls short ones before it would make vector code of them. What
-// one such loop stores as vectors the next loads as vectors: numbers stored one by one make such a load wait.
-using Lanes = double[8];
+using Doubles = LaneArray<double>;
 
-void spread(double x, Lanes& to) {
+void spread(double x, Doubles& to) {
 #pragma GCC unroll 1
     for (int k = 0; k < 8; ++k) to[k] = x;
 }
@@ -24,24 +23,24 @@ void spread(double x, Lanes& to) {
 
 struct PointWriter::Points8 {
     float u[8], v[8], px[8], py[8], pz[8], nx[8], ny[8], nz[8];
-    Lanes flipped, done;    ///< 1 or 0
+    Doubles flipped, done;  ///< 1 or 0
     std::uint8_t flags[8];  ///< `flipped`
 };
 
 /// Triangles (a, a + b, a + c) of eight hits, and what follows from them alone.
 struct PointWriter::Triangles8 {
-    Lanes a[3], b[3], c[3];
-    Lanes n[3], length;  ///< cross(b, c) and its length
-    Lanes sides, reach;  ///< for keeps_sign; `reach` of a
-    Lanes two_sided;     ///< 1 or 0
+    Doubles a[3], b[3], c[3];
+    Doubles n[3], length;  ///< cross(b, c) and its length
+    Doubles sides, reach;  ///< for keeps_sign; `reach` of a
+    Doubles two_sided;     ///< 1 or 0
 };
 
 namespace {
 
 /// Heights of a light over the planes of eight triangles, times the lengths of their normals.
 struct Heights8 {
-    Lanes middle, rise;  ///< of the centre; of the lowest and highest part below and over it
-    double reach;        ///< the sum of the magnitudes of what they were computed from, but for the triangles
+    Doubles middle, rise;  ///< of the centre; of the lowest and highest part below and over it
+    double reach;          ///< the sum of the magnitudes of what they were computed from, but for the triangles
 };
 
 template <class Triangles8>
@@ -82,7 +81,7 @@ void heights_of(const Light& light, const Triangles8& t, Heights8& h) {
 
 /// Which part of the light eight points see, as face_lights has it, or kOpen. `known` is 0 where that is not asked.
 template <class Triangles8>
-void face_eight(const Light& light, const Triangles8& t, const Lanes& flipped, const Lanes& known, int (&to)[8]) {
+void face_eight(const Light& light, const Triangles8& t, const Doubles& flipped, const Doubles& known, int (&to)[8]) {
     Heights8 h;
     heights_of(light, t, h);
 #pragma GCC unroll 1
@@ -137,7 +136,7 @@ void PointWriter::load(const TriangleId (&triangles)[8], Triangles8& to) const {
     load_corners(triangles, same ? 1 : 8, to);
     if (same) {
         for (auto* corner : {&to.a, &to.b, &to.c})
-            for (Lanes& lanes : *corner) spread(lanes[0], lanes);
+            for (Doubles& lanes : *corner) spread(lanes[0], lanes);
         spread(to.two_sided[0], to.two_sided);
     }
 #pragma GCC unroll 1
@@ -231,7 +230,7 @@ void PointWriter::clear(std::size_t i) const {
     batch_.flipped[i] = 0;
 }
 
-bool PointWriter::write(const Hits8& hits, int x, int y) const {
+UMBRA_FOR_EACH_PROCESSOR bool PointWriter::write(const Hits8& hits, int x, int y) const {
     const CameraFrame& frame = *batch_.raster;
     const int count          = std::min(4, frame.width - x);
     const std::size_t first  = static_cast<std::size_t>(y) * frame.width + x;
@@ -271,7 +270,7 @@ bool PointWriter::write(const Hits8& hits, int x, int y) const {
     return all_known;
 }
 
-void PointWriter::face_open_points(const PointTile& tile) const {
+UMBRA_FOR_EACH_PROCESSOR void PointWriter::face_open_points(const PointTile& tile) const {
     for (LightId j = 0; j < scene_.lights.size(); ++j) {
         std::vector<Facing>& facing = batch_.facing[j];
         std::size_t last            = batch_.size();  // neighbours often lie on one triangle

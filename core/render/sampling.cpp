@@ -5,6 +5,7 @@
 // Martin Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018
 // Peter Shirley, Kenneth Chiu. A Low Distortion Map Between Disk and Square. 1997
 #include "umbra/core/render/sampling.h"
+#include "umbra/core/base/lanes.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -101,7 +102,7 @@ PointKey SampleSet::key(std::uint64_t point) const {
     return {mix(all + 0x2c1b3c6du), mix(all ^ 0x297a2d39u)};
 }
 
-void SampleSet::eight(PointKey key, int first, Samples8& out) const {
+UMBRA_FOR_EACH_PROCESSOR void SampleSet::eight(PointKey key, int first, Samples8& out) const {
     const std::size_t block = static_cast<std::size_t>(first) / 8;
     const auto base         = static_cast<std::uint32_t>(first);
     switch (sampler_) {
@@ -149,7 +150,7 @@ void SampleSet::eight(PointKey key, int first, Samples8& out) const {
 
 std::size_t SampleSet::memory_bytes() const { return cells_.size() * sizeof(Cell) + words_.size() * sizeof(Word); }
 
-void map_to_disk(Samples8& points) {
+UMBRA_FOR_EACH_PROCESSOR void map_to_disk(Samples8& points) {
     // Of the square's coordinates (a, b) the one farther from 0 becomes the radius, their quotient q an eighth of a
     // turn either way. The series of sine and cosine of q pi/4 err by less than 2^-26 for |q| <= 1.
     constexpr auto h = static_cast<float>(kPi / 4);

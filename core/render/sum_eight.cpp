@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/render/lobe_power.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/core/render/sum.h"
@@ -13,36 +14,33 @@
 namespace umbra {
 namespace {
 
-constexpr int kLanes      = 8;
 constexpr unsigned kAll   = (1u << kLanes) - 1;
 constexpr double kLargest = std::numeric_limits<float>::max();
-using Lanes               = double[kLanes];
+using Doubles             = LaneArray<double>;
 
-// Without "unroll 1" g++ unrolls such short loops before it would make vector code of them. Numbers that are stored one
-// by one make a vector load of them wait.
-void fill(Lanes& to, double x) {
+void fill(Doubles& to, double x) {
 #pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) to[k] = x;
 }
 
-void widen(const std::vector<float>& from, std::size_t first, Lanes& to) {
+void widen(const std::vector<float>& from, std::size_t first, Doubles& to) {
     const float* const x = from.data() + first;
 #pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) to[k] = static_cast<double>(x[k]);
 }
 
-void narrow(const Lanes& from, float (&to)[kLanes]) {
+void narrow(const Doubles& from, float (&to)[kLanes]) {
 #pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) to[k] = static_cast<float>(std::min(from[k], kLargest));
 }
 
 struct Lanes3 {
-    Lanes x, y, z;
+    Doubles x, y, z;
     void set(int k, dvec3 v) { x[k] = v.x, y[k] = v.y, z[k] = v.z; }
     void fill(dvec3 v) { umbra::fill(x, v.x), umbra::fill(y, v.y), umbra::fill(z, v.z); }
 };
 
-void dots(const Lanes3& a, const Lanes3& b, Lanes& to) {
+void dots(const Lanes3& a, const Lanes3& b, Doubles& to) {
 #pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) to[k] = a.x[k] * b.x[k] + a.y[k] * b.y[k] + a.z[k] * b.z[k];
 }
@@ -71,7 +69,7 @@ struct PhongSum::Eight {
     Lanes3 p, n, v;
     std::uint32_t object[kLanes]{};
     Lanes3 diffuse, specular, sum;
-    Lanes is_specular;
+    Doubles is_specular;
 
     /// k, or where that is none of them, the first that is one.
     [[nodiscard]] std::size_t lane(int k) const {
@@ -88,7 +86,7 @@ bool PhongSum::has_lanes(std::span<const VisibilityPlane> visibility) const {
 /// Positions, normals, directions to the eye, and the terms of the objects.
 void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight& e) const {
     Lanes3 face, corner[3];
-    Lanes share[3];
+    Doubles share[3];
     if (e.which == kAll) {
         widen(points.px, first, e.p.x), widen(points.py, first, e.p.y), widen(points.pz, first, e.p.z);
         widen(points.nx, first, face.x), widen(points.ny, first, face.y), widen(points.nz, first, face.z);
@@ -127,7 +125,7 @@ void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight&
         }
     }
     if (smooth) {  // see corner_normals
-        Lanes agreement{}, one;
+        Doubles agreement{}, one;
         for (const Lanes3& c : corner) {
             dots(c, face, one);
             for (int k = 0; k < kLanes; ++k) agreement[k] += one[k];
@@ -144,7 +142,7 @@ void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight&
     }
 #pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) share[0][k] = 1 - share[1][k] - share[2][k];
-    Lanes squares;
+    Doubles squares;
     for (int k = 0; k < kLanes; ++k) {
         e.n.x[k] = 0.0 + share[0][k] * corner[0].x[k] + share[1][k] * corner[1].x[k] + share[2][k] * corner[2].x[k];
         e.n.y[k] = 0.0 + share[0][k] * corner[0].y[k] + share[1][k] * corner[1].y[k] + share[2][k] * corner[2].y[k];
@@ -172,7 +170,7 @@ void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight&
 
 /// S_j of light j, 0 where it has nothing to add; false where that is so of all eight.
 bool PhongSum::load_visibility(std::size_t j, const PointBatch& points, std::size_t first,
-                               const VisibilityPlane& visibility, const Eight& e, Lanes& s) const {
+                               const VisibilityPlane& visibility, const Eight& e, Doubles& s) const {
     const Facing* const facing = points.facing[j].data() + first;
     const Answer* const answer = visibility.answer.data() + first;
     const auto all             = [](const auto* bytes, auto value) {
@@ -201,12 +199,12 @@ bool PhongSum::load_visibility(std::size_t j, const PointBatch& points, std::siz
 void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t first, const VisibilityPlane& visibility,
                          Eight& e) const {
     const Light& light = scene_->lights[j];
-    Lanes s;  // 0: nothing to add
+    Doubles s;  // 0: nothing to add
     if (!load_visibility(j, points, first, visibility, e, s)) return;
 
     // As to_light, whose answers are floats.
     Lanes3 l;
-    Lanes distance, length, cosine, factor;
+    Doubles distance, length, cosine, factor;
     if (light.kind == LightKind::directional) {
         const ToLight to = to_light(light, vec3(0));
         for (int k = 0; k < kLanes; ++k) l.set(k, dvec3(to.direction)), distance[k] = HUGE_VAL;
@@ -248,13 +246,13 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
 #pragma GCC unroll 1
     for (int k = 0; k < kLanes; ++k) s[k] = factor[k] > 0 ? s[k] : 0;
 
-    Lanes lobe{};
+    Doubles lobe{};
     if (light.specular != vec3(0) && std::ranges::any_of(e.is_specular, [](double x) { return x != 0; })) {
         const auto material = [&](int k) -> const Material& {
             return scene_->materials[scene_->objects[e.object[k]].material];
         };
         Lanes3 r, h;
-        Lanes phong, blinn, half;
+        Doubles phong, blinn, half;
         for (int k = 0; k < kLanes; ++k) {
             const double twice = 2 * cosine[k];
             r.x[k] = twice * e.n.x[k] - l.x[k], r.y[k] = twice * e.n.y[k] - l.y[k], r.z[k] = twice * e.n.z[k] - l.z[k];
@@ -283,7 +281,8 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
             }
         }
     }
-    const auto add = [&](Lanes& sum, const Lanes& diffuse, const Lanes& specular, float i_diffuse, float i_specular) {
+    const auto add = [&](Doubles& sum, const Doubles& diffuse, const Doubles& specular, float i_diffuse,
+                         float i_specular) {
         const auto d = static_cast<double>(i_diffuse), g = static_cast<double>(i_specular);
         for (int k = 0; k < kLanes; ++k) {
             const double matte     = d * diffuse[k] * cosine[k];
@@ -296,8 +295,8 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
     add(e.sum.z, e.diffuse.z, e.specular.z, light.diffuse.z, light.specular.z);
 }
 
-void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned which,
-                        std::span<const VisibilityPlane> visibility, float* rgb) const {
+UMBRA_FOR_EACH_PROCESSOR void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned which,
+                                                 std::span<const VisibilityPlane> visibility, float* rgb) const {
     const auto write = [&](int k, float r, float g, float b) {
         float* const to = rgb + 3 * (first + static_cast<std::size_t>(k));
         to[0] = r, to[1] = g, to[2] = b;

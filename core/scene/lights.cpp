@@ -46,7 +46,7 @@ namespace {
 
 /// In double: a cosine near 1 that is off by one float step is off by 6 % once it is raised to 1e6.
 float spot_factor_of(const Spot& spot, double cos_angle) {
-    const double cos_cutoff = std::cos(spot.cutoff);
+    const double cos_cutoff = std::cos(static_cast<double>(spot.cutoff));
     if (cos_angle < cos_cutoff || cos_angle <= 0) return 0;
     const auto power = [&] { return std::pow(std::min(cos_angle, 1.0), static_cast<double>(spot.exponent)); };
     switch (spot.falloff) {
@@ -55,8 +55,9 @@ float spot_factor_of(const Spot& spot, double cos_angle) {
             // As the lecture prints it, it goes negative near the rim for n > 1: clamped at 0.
             return static_cast<float>(std::max(0.0, (power() - cos_cutoff) / (1 - cos_cutoff)));
         case SpotFalloff::smooth: {
-            const double cos_inner = std::cos(spot.inner);
-            const double t = std::clamp((cos_angle - cos_cutoff) / std::max(1e-3, cos_inner - cos_cutoff), 0.0, 1.0);
+            const double cos_inner = std::cos(static_cast<double>(spot.inner));
+            if (cos_angle >= cos_inner) return 1;
+            const double t = (cos_angle - cos_cutoff) / (cos_inner - cos_cutoff);
             return static_cast<float>(t * t);
         }
     }

@@ -31,13 +31,14 @@ struct Attenuation {
 enum class SpotFalloff : std::uint8_t {
     cosine,    ///< cos^n(a), OpenGL's
     zachmann,  ///< max(0, (cos^n(a) - cos(t)) / (1 - cos(t))), t the cut-off angle
-    smooth     ///< 1 inside `inner`, 0 outside `cutoff`, glTF's KHR_lights_punctual interpolation squared between
+    smooth     ///< 1 inside `inner`, 0 outside `cutoff`, the square of a line in cos(a) between; one step where the two
+               ///< are equal
 };
 struct Spot {
     SpotFalloff falloff = SpotFalloff::cosine;
     float exponent      = 1;
     float cutoff        = 0.7853982f;  ///< half angle of the cone, radians, in (0, pi/2]
-    float inner         = 0;           ///< radians, in [0, cutoff); `smooth` only
+    float inner         = 0;           ///< radians, in [0, cutoff]; `smooth` only
 };
 
 /// Where a light is and how it is turned, in some space; members as in Light.

@@ -23,7 +23,6 @@
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/render/facing.h"
 #include "umbra/shadows/atherton/lit_part.h"
 #include "umbra/shadows/atherton/receiver.h"
 #include "umbra/shadows/geometry/exact_segment.h"
@@ -36,47 +35,20 @@ using exact_visibility::ExactPoint;
 using exact_visibility::Segment;
 
 struct atherton::WeldedTriangles final : Built {
-    WeldedTriangles(const Scene& of, const SceneFacts& its_facts)
-        : Built(of, its_facts),
-          topology(find_topology(of, 0, static_cast<std::uint32_t>(of.triangles.size()))),
-          tree(of) {}
+    WeldedTriangles(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), mesh(of), tree(of) {}
 
-    [[nodiscard]] std::size_t memory_bytes() const override {
-        const auto bytes = [](const auto& list) { return list.size() * sizeof(list[0]); };
-        return tree.memory_bytes() + bytes(topology.triangles) + bytes(topology.edges) + bytes(topology.uses) +
-               bytes(topology.position) + bytes(topology.degenerate);
-    }
+    [[nodiscard]] std::size_t memory_bytes() const override { return tree.memory_bytes() + mesh.memory_bytes(); }
 
-    const Topology topology;
+    const OccluderMesh mesh;
     const TriangleTree tree;
 };
 
 namespace {
 
-/// +1 for triangles that face the light, -1 for those that face away, 0 for those that it sees edge-on.
-std::vector<std::int8_t> sides_of(const Scene& scene, const Light& light) {
-    std::vector<std::int8_t> sides(scene.triangles.size());
-    parallel_ranges(sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) {
-            const auto id = static_cast<TriangleId>(t);
-            sides[t]      = static_cast<std::int8_t>(
-                side_of_light(light, scene.vertex(id, 0), scene.vertex(id, 1), scene.vertex(id, 2)));
-        }
-    });
-    return sides;
-}
-
-std::vector<std::int8_t> of_those_that_block(const Scene& scene, std::vector<std::int8_t> sides) {
-    parallel_ranges(sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t)
-            if (!scene.blocks(static_cast<TriangleId>(t))) sides[t] = 0;
-    });
-    return sides;
-}
-
-std::vector<Box> boxes_of(const std::vector<OutlineEdge>& outlines) {
+std::vector<Box> boxes_of(const std::vector<ChangeEdge>& outlines, const OccluderMesh& mesh) {
     std::vector<Box> boxes;
-    for (const OutlineEdge& edge : outlines) boxes.push_back(extend(extend(Box{}, edge.from), edge.to));
+    for (const ChangeEdge& edge : outlines)
+        boxes.push_back(extend(extend(Box{}, mesh.position(edge.a)), mesh.position(edge.b)));
     return boxes;
 }
 
@@ -89,7 +61,7 @@ void visit_met(const WeldedTriangles& triangles, const Light& light, TriangleId 
     const ExactPoint point(scene, own, u, v);
     const Segment segment(point, light);
     triangles.tree.visit(segment.piece(), [&](TriangleId t) {
-        if (t == own || triangles.topology.degenerate[t] || !scene.blocks(t)) return true;
+        if (t == own || !triangles.mesh.blocks(t)) return true;
         const auto met = segment.meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
         return met == Segment::Meeting::none || visit(t, met);
     });
@@ -111,10 +83,9 @@ void add(const Receiver& receiver, const Projected& from, const Projected& to, i
 LitPolygons::LitPolygons(const WeldedTriangles& among, LightId at)
     : Aimed(among, at),
       triangles_(among),
-      sides_(sides_of(scene(), source())),
-      covers_(of_those_that_block(scene(), sides_)),
-      outlines_(find_outlines(scene(), triangles_.topology, covers_)),
-      outline_tree_(boxes_of(outlines_)),
+      sides_(sides_of_light(scene(), source())),
+      outlines_(among.mesh.edges.changes(sides_)),
+      outline_tree_(boxes_of(outlines_, among.mesh)),
       seen_(sides_.size(), Seen::unknown),
       parts_(sides_.size()) {
     parallel_ranges(sides_.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -129,7 +100,7 @@ const std::vector<std::vector<dvec2>>& LitPolygons::lit_loops(TriangleId t) cons
 std::vector<std::array<dvec2, 3>> LitPolygons::lit_triangles(TriangleId t) const { return part(t).triangles(); }
 
 std::size_t LitPolygons::memory_bytes() const {
-    std::size_t bytes = outline_tree_.memory_bytes() + outlines_.size() * sizeof(OutlineEdge) + 2 * sides_.size() +
+    std::size_t bytes = outline_tree_.memory_bytes() + outlines_.size() * sizeof(ChangeEdge) + sides_.size() +
                         seen_.size() + parts_.size() * sizeof(parts_[0]);
     for (const auto& part : parts_) bytes += part ? part->memory_bytes() : 0;
     return bytes;
@@ -178,9 +149,10 @@ void LitPolygons::add_outlines(const Receiver& receiver, Pieces& pieces) const {
     outline_tree_.visit(
         receiver.towards_light(), [](std::uint32_t, const Box&) { return true; },
         [&](BoxTree::Item item) {
-            const OutlineEdge& edge = outlines_[item];
-            if (receiver.may_cover(edge.from, edge.to))
-                add(receiver, receiver.project(edge.from), receiver.project(edge.to), edge.change, false, pieces);
+            const ChangeEdge& edge = outlines_[item];
+            const vec3 from = triangles_.mesh.position(edge.a), to = triangles_.mesh.position(edge.b);
+            if (receiver.may_cover(from, to))
+                add(receiver, receiver.project(from), receiver.project(to), edge.change, false, pieces);
             return true;
         });
 }
@@ -190,7 +162,7 @@ void LitPolygons::add_cuts(TriangleId own, const Receiver& receiver, Pieces& pie
     triangles_.tree.visit(
         receiver.itself(), [](std::uint32_t, const Box&) { return true; },
         [&](TriangleId t) {
-            if (t != own && covers_[t] != 0) add_cut(own, t, receiver, pieces);
+            if (t != own && sides_[t] != 0 && triangles_.mesh.blocks(t)) add_cut(own, t, receiver, pieces);
             return true;
         });
 }
@@ -198,7 +170,7 @@ void LitPolygons::add_cuts(TriangleId own, const Receiver& receiver, Pieces& pie
 void LitPolygons::add_cut(TriangleId own, TriangleId t, const Receiver& receiver, Pieces& pieces) const {
     std::array<int, 3> side{}, corner{-1, -1, -1};
     std::array<vec3, 3> position{};
-    const uvec3 mine = triangles_.topology.triangles[own], its = triangles_.topology.triangles[t];
+    const uvec3 mine = triangles_.mesh.corners[own], its = triangles_.mesh.corners[t];
     int shared = 0;
     for (int k = 0; k < 3; ++k) {
         const auto at = static_cast<std::size_t>(k);

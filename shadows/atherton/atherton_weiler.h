@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "umbra/shadows/atherton/outlines.h"
 #include "umbra/shadows/geometry/box_tree.h"
+#include "umbra/shadows/geometry/edges.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -60,8 +60,7 @@ private:
     const atherton::WeldedTriangles& triangles_;
     /// One a triangle: +1 if it faces the light, -1 if it faces away, 0 if edge-on.
     const std::vector<std::int8_t> sides_;
-    const std::vector<std::int8_t> covers_;  ///< the same, 0 for triangles that do not block
-    const std::vector<atherton::OutlineEdge> outlines_;
+    const std::vector<ChangeEdge> outlines_;  ///< of those that block
     const BoxTree outline_tree_;
     std::vector<Seen> seen_;                                 ///< one a triangle
     std::vector<std::unique_ptr<atherton::LitPart>> parts_;  ///< one a triangle; null where not Seen::parts

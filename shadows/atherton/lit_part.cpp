@@ -174,10 +174,10 @@ LitPart::At LitPart::at(float u, float v) const {
     bool inside = false, on_own_border = false;
     const std::size_t r = row(y);
     for (std::uint32_t k = row_first_[r]; k < row_first_[r + 1]; ++k) {
-        const Edge& edge = edges_[row_edges_[k]];
-        const Ends& ends = ends_[row_edges_[k]];
-        const int a_over = sign(edge.a.y - y, kRounded, [&]() -> Rational { return ends.a[1] - exact_y; });
-        const int b_over = sign(edge.b.y - y, kRounded, [&]() -> Rational { return ends.b[1] - exact_y; });
+        const LitEdge& edge = edges_[row_edges_[k]];
+        const Ends& ends    = ends_[row_edges_[k]];
+        const int a_over    = sign(edge.a.y - y, kRounded, [&]() -> Rational { return ends.a[1] - exact_y; });
+        const int b_over    = sign(edge.b.y - y, kRounded, [&]() -> Rational { return ends.b[1] - exact_y; });
         if (a_over * b_over > 0) continue;
         if (std::min(edge.a.x, edge.b.x) > x + kRounded) continue;
         const bool crosses = (a_over > 0) != (b_over > 0);
@@ -240,7 +240,7 @@ std::vector<std::array<dvec2, 3>> LitPart::triangles() const {
 }
 
 std::size_t LitPart::memory_bytes() const {
-    std::size_t bytes = sizeof(*this) + edges_.size() * sizeof(Edge) +
+    std::size_t bytes = sizeof(*this) + edges_.size() * sizeof(LitEdge) +
                         (row_first_.size() + row_edges_.size()) * sizeof(std::uint32_t) +
                         loops_.size() * sizeof(std::vector<dvec2>);
     for (const auto& loop : loops_) bytes += loop.size() * sizeof(dvec2);

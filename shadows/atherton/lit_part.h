@@ -38,7 +38,7 @@ public:
 
 private:
     /// An edge of a lit polygon, with its ends rounded.
-    struct Edge {
+    struct LitEdge {
         dvec2 a{0}, b{0};
         bool border = false;  ///< on the receiver's own border
     };
@@ -51,7 +51,7 @@ private:
     void sort_into_rows();
     [[nodiscard]] std::size_t row(double v) const;
 
-    std::vector<Edge> edges_;
+    std::vector<LitEdge> edges_;
     std::vector<Ends> ends_;  ///< the same, exact
     std::vector<std::uint32_t>
         row_first_;  ///< edges that meet row r of v: row_edges_[row_first_[r] ... row_first_[r+1])

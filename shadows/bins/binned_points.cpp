@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
@@ -120,7 +121,7 @@ public:
 
 private:
     /// What some points have besides bins.
-    struct Part {
+    struct Unbinned {
         std::vector<std::uint32_t> without{};
         vec3 reach{0};
     };
@@ -132,10 +133,11 @@ private:
     }
 
     /// Adds the points that have a place.
-    void enter(std::span<const std::uint32_t> which, PointBins::Tile& to, Part& part) const {
+    UMBRA_FOR_EACH_PROCESSOR void enter(std::span<const std::uint32_t> which, PointBins::Tile& to,
+                                        Unbinned& part) const {
         float reach[3][kLanes] = {};
         for (std::size_t k = 0; k < which.size(); k += kLanes) {
-            const std::size_t count = std::min(kLanes, which.size() - k);
+            const std::size_t count = std::min<std::size_t>(kLanes, which.size() - k);
             // Eight of a raster are mostly of two rows, and what follows in memory is of other tiles.
             if (k + 8 * kLanes + 2 < which.size())
                 for (const std::size_t ahead : {k + 8 * kLanes, k + 8 * kLanes + 2}) {
@@ -198,7 +200,7 @@ private:
 
     [[nodiscard]] BinnedPoints with_parts(PointBins bins) const {
         BinnedPoints all{.bins = std::move(bins)};
-        for (const Part& part : parts_) {
+        for (const Unbinned& part : parts_) {
             all.next_to_light.insert(all.next_to_light.end(), part.without.begin(), part.without.end());
             all.reach = glm::max(all.reach, dvec3(part.reach));
         }
@@ -210,7 +212,7 @@ private:
     LightId light_;
     const LightImage& image_;
     dvec3 centre_;
-    std::vector<Part> parts_{};
+    std::vector<Unbinned> parts_{};
 };
 
 }  // namespace

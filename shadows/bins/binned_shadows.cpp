@@ -208,7 +208,7 @@ void BinnedShadows::cast_all(Picture& picture, const PointBatch& points, const C
 BinnedShadows::Group BinnedShadows::group(std::size_t g, const Picture& picture) const {
     const std::size_t first = g * kLanes;
     Group made;
-    made.triangles = std::span(order_).subspan(first, std::min(kLanes, order_.size() - first));
+    made.triangles = std::span(order_).subspan(first, std::min<std::size_t>(kLanes, order_.size() - first));
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t axis = 0; axis < 3; ++axis)
             std::copy_n(eights_[g].corner[c][axis], kLanes, made.corners[c][axis]);
@@ -286,7 +286,7 @@ void BinnedShadows::test(const Group& group, const Picture& picture, const Point
             if (hidden == 0xff) continue;
             if (!shadows) shadows.emplace(planes(group, picture));
             const Block& block = bins.block(found.block);
-            ShadowPlanes::Lanes lanes[kLanes];
+            ShadowPlanes::InShadow lanes[kLanes];
             Met all;
             for (unsigned rest = shadows->test(found.triangles, block, lanes); rest != 0; rest &= rest - 1) {
                 const auto k       = static_cast<std::size_t>(std::countr_zero(rest));

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
+
 namespace umbra::bins {
 namespace {
 
@@ -54,9 +56,9 @@ bool is_near(const std::array<dvec3, 3>& c, double limit) {
 }
 
 /// A convex polygon in a face's (x, y, w), cut down to four half spaces.
-class Outline {
+class ClippedPolygon {
 public:
-    explicit Outline(const std::array<dvec3, 3>& corners) : count_(3) {
+    explicit ClippedPolygon(const std::array<dvec3, 3>& corners) : count_(3) {
         std::copy(corners.begin(), corners.end(), corners_.begin());
     }
     /// Keeps what has dot(g, corner) >= 0.
@@ -102,7 +104,7 @@ std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& c
     std::array<dvec3, 3> q;
     for (std::size_t k = 0; k < 3; ++k) q[k] = in_face(face, corners[k]);
     if (q[0].z <= 0 && q[1].z <= 0 && q[2].z <= 0) return std::nullopt;  // signs of differences of floats are exact
-    Outline outline(q);
+    ClippedPolygon outline(q);
     const bool is_within =
         std::ranges::all_of(q, [](dvec3 c) { return c.z > 0 && std::abs(c.x) <= c.z && std::abs(c.y) <= c.z; });
     if (!is_within && is_near(q, kNearTriangle * std::max({size(q[0]), size(q[1]), size(q[2])})))
@@ -146,7 +148,8 @@ struct FaceOf {
 }  // namespace
 
 // Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
-void LightImage::places(const Corners& corners, const float (&u)[kLanes], const float (&v)[kLanes], Places& to) const {
+UMBRA_FOR_EACH_PROCESSOR void LightImage::places(const Corners& corners, const float (&u)[kLanes],
+                                                 const float (&v)[kLanes], Places& to) const {
     const auto position = [&](std::size_t axis, double* at) {
         for (std::size_t i = 0; i < kLanes; ++i) {
             const double a = corners[0][axis][i];
@@ -180,11 +183,11 @@ void LightImage::places(const Corners& corners, const float (&u)[kLanes], const 
     }
 }
 
-unsigned LightImage::extents(const Corners& corners, Extents& to) const {
+UMBRA_FOR_EACH_PROCESSOR unsigned LightImage::extents(const Corners& corners, Extents& to) const {
     return infinite_ ? infinite_extents(corners, to) : cube_extents(corners, to);
 }
 
-void LightImage::travel(const Corners& corners, Corners& to) const {
+UMBRA_FOR_EACH_PROCESSOR void LightImage::travel(const Corners& corners, Corners& to) const {
     for (std::size_t c = 0; c < 3; ++c)
         for (int axis = 0; axis < 3; ++axis)
             for (std::size_t i = 0; i < kLanes; ++i)
@@ -193,7 +196,7 @@ void LightImage::travel(const Corners& corners, Corners& to) const {
 
 // The sign of a determinant. Its factors are off by at most 4 roundings each (a direction is divided by its length),
 // and 6 more happen to each of its 6 products.
-LightImage::Windings LightImage::windings(const Corners& corners) const {
+UMBRA_FOR_EACH_PROCESSOR LightImage::Windings LightImage::windings(const Corners& corners) const {
     const double from_position = infinite_ ? 0 : 1;
     const dvec3 along = infinite_ ? axes_[2] : dvec3(0), origin = from_position * origin_;
     Windings w;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
 
@@ -60,7 +61,8 @@ float widest_of(const PointBins::Box& box, std::size_t count) {
 class PointBins::Filler {
 public:
     /// Writes the blocks of a tile and their boxes, adds to the boxes of the faces, and returns how many blocks.
-    std::size_t fill(const Tile& tile, std::array<Box, kFaces>& faces, Block* blocks, Box* boxes) {
+    UMBRA_FOR_EACH_PROCESSOR std::size_t fill(const Tile& tile, std::array<Box, kFaces>& faces, Block* blocks,
+                                              Box* boxes) {
         Writer to{.tile = tile, .block = blocks, .box = boxes};
         if (fill_in_order(tile, faces, to)) return to.number;
         for (std::size_t k = 0; k < tile.count; ++k) add(tile, k, faces[static_cast<std::size_t>(tile.face[k])]);
@@ -256,7 +258,8 @@ void PointBins::start_at_root(Start& to) const {
 }
 
 /// Adds the nodes of level to.level below a node; false where they are too many.
-bool PointBins::add_nodes(std::size_t level, std::size_t node, const Extent& around, Start& to) const {
+UMBRA_FOR_EACH_PROCESSOR bool PointBins::add_nodes(std::size_t level, std::size_t node, const Extent& around,
+                                                   Start& to) const {
     const Extents& boxes = levels_[level][node];
     for (unsigned rest = points_in(boxes, around); rest != 0; rest &= rest - 1) {
         const auto lane  = static_cast<std::size_t>(std::countr_zero(rest));
@@ -288,8 +291,8 @@ void PointBins::find(const Extents& triangles, unsigned which, const Start& star
 }
 
 /// Triangles that are next to one another look for points together, others half by half. `first` and `count`: lanes.
-void PointBins::find(const Extents& triangles, unsigned which, std::size_t first, std::size_t count, const Start& start,
-                     std::vector<Found>& to) const {
+UMBRA_FOR_EACH_PROCESSOR void PointBins::find(const Extents& triangles, unsigned which, std::size_t first,
+                                              std::size_t count, const Start& start, std::vector<Found>& to) const {
     const unsigned own = which & ((1u << count) - 1) << first;
     if (own == 0) return;
     Extent all = Extent::nothing();
@@ -310,8 +313,8 @@ void PointBins::find(const Extents& triangles, unsigned which, std::size_t first
                     own, all, to);
 }
 
-void PointBins::find_in(std::size_t level, std::size_t node, const Extents& triangles, unsigned which,
-                        const Extent& all, std::vector<Found>& to) const {
+UMBRA_FOR_EACH_PROCESSOR void PointBins::find_in(std::size_t level, std::size_t node, const Extents& triangles,
+                                                 unsigned which, const Extent& all, std::vector<Found>& to) const {
     const Extents& boxes = levels_[level][node];
     for (unsigned rest = points_in(boxes, all); rest != 0; rest &= rest - 1) {
         const auto lane         = static_cast<std::size_t>(std::countr_zero(rest));

@@ -4,7 +4,8 @@
 #include <bit>
 #include <cmath>
 
-// Compiled so that loops over lanes become vector code: shadows/CMakeLists.txt.
+#include "umbra/core/base/lanes.h"
+
 namespace umbra::bins {
 namespace {
 
@@ -17,7 +18,7 @@ double largest(double a, double b, double c) {
 
 ShadowPlanes::ShadowPlanes(const LightImage::Corners& corners, const LightImage::Corners& travel,
                            const double (&turn)[kLanes], dvec3 reach) {
-    Eight ab, ac, bc;
+    Vectors ab, ac, bc;
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (std::size_t i = 0; i < kLanes; ++i) {
             ab[axis][i] = corners[1][axis][i] - corners[0][axis][i];
@@ -44,8 +45,8 @@ ShadowPlanes::ShadowPlanes(const LightImage::Corners& corners, const LightImage:
 /// turn * first x second . (p - through) > 0. In floats each product has a rounded factor from either side and is
 /// rounded, as are the offset and three sums: less than 8 roundings of the sum of all magnitudes. The normal itself,
 /// and the offset, come from products of sizes, with less than 32 roundings in double.
-void ShadowPlanes::set(std::size_t plane, const Eight& first, const Eight& second, const Eight& through,
-                       const double (&turn)[kLanes], dvec3 reach) {
+UMBRA_FOR_EACH_PROCESSOR void ShadowPlanes::set(std::size_t plane, const Vectors& first, const Vectors& second,
+                                                const Vectors& through, const double (&turn)[kLanes], dvec3 reach) {
     const double farthest = largest(reach.x, reach.y, reach.z);
     for (std::size_t i = 0; i < kLanes; ++i) {
         const double nx = turn[i] * (first[1][i] * second[2][i] - first[2][i] * second[1][i]),
@@ -92,7 +93,8 @@ unsigned ShadowPlanes::lanes_of(std::size_t t, const Block& block) const {
     return bits;
 }
 
-unsigned ShadowPlanes::test(unsigned which, const Block& block, Lanes (&lanes)[kLanes]) const {
+UMBRA_FOR_EACH_PROCESSOR unsigned ShadowPlanes::test(unsigned which, const Block& block,
+                                                     InShadow (&lanes)[kLanes]) const {
     unsigned some = 0;
     for (unsigned rest = which; rest != 0; rest &= rest - 1) {
         const auto t        = static_cast<std::size_t>(std::countr_zero(rest));

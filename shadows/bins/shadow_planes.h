@@ -20,18 +20,18 @@ public:
                  dvec3 reach);
 
     /// Which lanes of a block are in a shadow, and of which that is not known.
-    struct Lanes {
+    struct InShadow {
         std::uint8_t inside, unsure;
     };
     /// Tests the triangles whose bits are set in `which`; of those to which any lane is inside or unsure writes the
     /// lanes, and returns their bits.
-    unsigned test(unsigned which, const Block& block, Lanes (&lanes)[kLanes]) const;
+    unsigned test(unsigned which, const Block& block, InShadow (&lanes)[kLanes]) const;
 
 private:
-    using Eight = double[3][kLanes];
+    using Vectors = LaneArray<double>[3];
 
     [[nodiscard]] unsigned lanes_of(std::size_t t, const Block& block) const;
-    void set(std::size_t plane, const Eight& first, const Eight& second, const Eight& through,
+    void set(std::size_t plane, const Vectors& first, const Vectors& second, const Vectors& through,
              const double (&turn)[kLanes], dvec3 reach);
 
     float x_[4][kLanes], y_[4][kLanes], z_[4][kLanes], offset_[4][kLanes];

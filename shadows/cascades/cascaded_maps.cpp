@@ -216,7 +216,8 @@ struct CascadedMaps::Lookups {
     }
 };
 
-CascadedMaps::Lookups CascadedMaps::look_up(const Aimed& aimed, const Looked& looked) const {
+CascadedMaps::Lookups CascadedMaps::look_up(const Aimed& aimed, const Looked& looked,
+                                            std::optional<std::size_t> alone) const {
     Lookups lookups;
     if (!is_sun(aimed.source())) {
         lookups.views = as<LightViews>(aimed).views();
@@ -225,26 +226,37 @@ CascadedMaps::Lookups CascadedMaps::look_up(const Aimed& aimed, const Looked& lo
     lookups.cascades = fit(aimed, looked);
     if (!lookups.cascades) return lookups;
     const Cascades& cascades = *lookups.cascades;
+    const Scene& scene       = aimed.scene();
+    const PointBatch& points = looked.points;
     std::atomic<std::uint32_t> asked{0};
     const auto note = [&](std::size_t k) {
         const std::uint32_t bit = k == Cascades::kLit ? 0 : 1u << k;
         if ((bit & ~asked.load(std::memory_order_relaxed)) != 0) asked |= bit;
     };
-    for_each_facet(aimed.scene(), looked.points, aimed.light, [&](std::size_t, const Facet&, dvec3 p) {
+    const auto note_choice = [&](std::size_t, const Facet&, dvec3 p) {
         const Cascades::Choice choice = cascades.choose(p);
         note(choice.first);
         note(choice.second);
-    });
+    };
+    if (alone)
+        note_choice(*alone, {}, exact_position(scene, points, *alone));
+    else
+        for_each_facet(scene, points, aimed.light, note_choice);
     lookups.drawn.resize(cascades.parts.size() + 1);
     for (std::size_t k = 0; k <= cascades.parts.size(); ++k) {
         const Cascade& cascade = k < cascades.parts.size() ? cascades.parts[k] : cascades.whole;
         if ((asked >> k & 1) == 0 || !cascade.casts) continue;
         const dmat4 clip_from_world = cascade.frame.clip_from_world();
-        const auto triangles        = as<Sun>(aimed).casters.seen_by(clip_from_world);
+        const auto& casters         = as<Sun>(aimed).casters;
+        const auto triangles        = casters.seen_by(clip_from_world);
         if (triangles.empty()) continue;
         MapView& view = lookups.drawn[k].emplace(
             MapView{cascade.frame, DepthMap(options.resolution, options.resolution, DepthFormat::float32)});
-        view.map.draw(clip_from_world, aimed.scene().positions, triangles, Faces::all);
+        if (!alone)
+            view.map.draw(clip_from_world, scene.positions, triangles, Faces::all);
+        else if (const auto at = receive(view, facet_of(scene, points.triangle[*alone], points.flipped[*alone] != 0),
+                                         exact_position(scene, points, *alone), bias_, filter_))
+            draw_around(view, casters, Faces::all, texel_of(*at, view), filter_.radius + 1);
     }
     return lookups;
 }
@@ -289,10 +301,20 @@ void CascadedMaps::blame(const Aimed& aimed, const Looked& looked, std::span<Tri
 }
 
 Reason CascadedMaps::explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const {
-    Reason reason                = Method::explain(aimed, looked, i, given);
-    const Lookups lookups        = look_up(aimed, looked);
-    const Facet facet            = facet_of(aimed.scene(), looked.points.triangle[i], looked.points.flipped[i] != 0);
-    const Lookups::Answer answer = lookups.at(facet, exact_position(aimed.scene(), looked.points, i), bias_, filter_);
+    const Scene& scene           = aimed.scene();
+    const PointBatch& points     = looked.points;
+    const Lookups lookups        = look_up(aimed, looked, i);
+    const Facet facet            = facet_of(scene, points.triangle[i], points.flipped[i] != 0);
+    const Lookups::Answer answer = lookups.at(facet, exact_position(scene, points, i), bias_, filter_);
+    TriangleId blocker           = kNoTriangle;
+    for (const auto& asked : {answer.first, answer.second}) {
+        if (!asked || given.s >= 1 || blocker != kNoTriangle) continue;
+        const MapView& view = lookups.view(*asked);
+        if (const auto sample = blocked_sample(view, asked->receiver, bias_.mode, filter_))
+            blocker = is_sun(aimed.source()) ? owner(view, as<Sun>(aimed).casters, Faces::all, *sample)
+                                             : as<LightViews>(aimed).owner(asked->view, *sample);
+    }
+    Reason reason = reason_by_geometry(scene, points, i, aimed.light, given, blocker);
     if (answer.first)
         add_texel(reason, *answer.first, lookups.view(*answer.first), given);
     else

@@ -44,7 +44,9 @@ public:
 private:
     /// Views of a light, and which of them are asked for each point.
     struct Lookups;
-    [[nodiscard]] Lookups look_up(const Aimed& aimed, const Looked& looked) const;
+    /// With maps for all points that ask, or for point `alone`: then a map holds what that point reads, and no more.
+    [[nodiscard]] Lookups look_up(const Aimed& aimed, const Looked& looked,
+                                  std::optional<std::size_t> alone = {}) const;
 
     const Bias bias_;
     const Filter filter_;

@@ -14,8 +14,8 @@ constexpr double kHalfTexel    = 0.5;   // a window may be asked that far beyond
 constexpr double kOctaveSteps  = 4;     // ranges of stable cascades are rounded to these
 
 LightExtents extents_of(const LightFrame& f) {
-    return {Extent{f.centre.x - f.half.x, f.centre.x + f.half.x}, Extent{f.centre.y - f.half.y, f.centre.y + f.half.y},
-            Extent{f.near, f.far}};
+    return {MinMax{f.centre.x - f.half.x, f.centre.x + f.half.x}, MinMax{f.centre.y - f.half.y, f.centre.y + f.half.y},
+            MinMax{f.near, f.far}};
 }
 
 /// Reaches over the window's border and in front of the first depth, as the maps of other lights do (LightViews).
@@ -39,12 +39,12 @@ Cascade window_of(const CascadeOptions& options, const LightFrame& casters, Ligh
     const LightExtents all = extents_of(casters);
     const double size      = std::max({all[0].half(), all[1].half(), all[2].half()});
     for (int axis = 0; axis < 3; ++axis) {
-        Extent& r = receivers[axis];
+        MinMax& r = receivers[axis];
         r.min -= kRoundingRoom * size;
         r.max += kRoundingRoom * size;
         // Beyond the last that casts nothing is shaded: there a window needs no bound.
-        const Extent& c   = all[axis];
-        const Extent both = {std::max(r.min, c.min), std::min(r.max, c.max)};
+        const MinMax& c   = all[axis];
+        const MinMax both = {std::max(r.min, c.min), std::min(r.max, c.max)};
         if (r.min > c.min) cascade.low[axis] = r.min;
         if (r.max < c.max) cascade.high[axis] = r.max;
         if (axis == 2) {
@@ -124,7 +124,7 @@ Cascades fit_cascades(const CascadeOptions& options, const LightFrame& casters, 
     all.whole.frame = casters;
     add_room(all.whole.frame, options, options.border);
 
-    Extent range = receivers.depths();
+    MinMax range = receivers.depths();
     if (!(range.max > 0)) return all;
     if (options.stable) {
         range.max = std::exp2(std::ceil(kOctaveSteps * std::log2(range.max)) / kOctaveSteps);

@@ -37,14 +37,14 @@ void add_point(LightExtents& to, const LightFrame& light, dvec3 p) {
 double distance(const dvec4& plane, dvec3 v) { return glm::dot(dvec3(plane), v) + plane.w; }
 
 /// A triangle, or what is left of one: convex, corners relative to the eye.
-struct Part {
+struct ClippedTriangle {
     std::array<dvec3, 16> corners;  // 3, and one more for each of at most 11 planes
     int count = 0;
 
     /// Keeps what lies on the plane's positive side. Cuts are computed from the inner corner to the outer one, so that
     /// they do not depend on which corner comes first.
     void cut(const dvec4& plane) {
-        Part kept;
+        ClippedTriangle kept;
         for (int i = 0; i < count; ++i) {
             const dvec3 a = corners[i], b = corners[(i + 1) % count];
             const double u = distance(plane, a), v = distance(plane, b);
@@ -74,20 +74,20 @@ public:
         });
     }
 
-    [[nodiscard]] Extent depths() const override {
-        const auto merge = [](Extent& all, const Extent& more) { all.add(more); };
-        Extent all       = reduced(
-                  corners_.size(), Extent{},
-                  [&](std::size_t i, Extent& range) {
+    [[nodiscard]] MinMax depths() const override {
+        const auto merge = [](MinMax& all, const MinMax& more) { all.add(more); };
+        MinMax all       = reduced(
+                  corners_.size(), MinMax{},
+                  [&](std::size_t i, MinMax& range) {
                 if (corners_[i].outside == 0) range.add(corners_[i].depth);
             },
                   merge);
         all.add(reduced(
-            scene_->triangles.size(), Extent{},
-            [&](std::size_t t, Extent& range) {
+            scene_->triangles.size(), MinMax{},
+            [&](std::size_t t, MinMax& range) {
                 const Seen seen = see(t);
                 if (seen.misses || seen.cut_by == 0) return;  // its corners are counted above
-                const Part part = cut(t, seen);
+                const ClippedTriangle part = cut(t, seen);
                 for (int i = 0; i < part.count; ++i) range.add(glm::dot(forward_, part.corners[i]));
             },
             merge));
@@ -116,7 +116,7 @@ public:
                                        if (seen.depths.max < from || seen.depths.min > to) continue;
                                        if (seen.cut_by == 0 && seen.depths.min >= from && seen.depths.max <= to)
                                            continue;  // as above
-                                       Part part = cut(t, seen);
+                                       ClippedTriangle part = cut(t, seen);
                                        part.cut({forward_, -from});
                                        part.cut({-forward_, to});
                                        for (int i = 0; i < part.count; ++i)
@@ -135,7 +135,7 @@ private:
     struct Seen {
         bool misses;           ///< all of it lies beyond one plane
         std::uint32_t cut_by;  ///< bit k: it crosses planes_[k]
-        Extent depths;
+        MinMax depths;
     };
 
     [[nodiscard]] Seen see(std::size_t t) const {
@@ -151,8 +151,8 @@ private:
         return seen;
     }
 
-    [[nodiscard]] Part cut(std::size_t t, const Seen& seen) const {
-        Part part;
+    [[nodiscard]] ClippedTriangle cut(std::size_t t, const Seen& seen) const {
+        ClippedTriangle part;
         for (int k = 0; k < 3; ++k)
             part.corners[part.count++] = dvec3(scene_->vertex(static_cast<TriangleId>(t), k)) - view_.eye();
         for (std::size_t k = 0; k < planes_.size(); ++k)
@@ -180,13 +180,13 @@ public:
         facing_ = (points.facing.empty() ? sides_ : points).facing[light];
     }
 
-    [[nodiscard]] Extent depths() const override {
+    [[nodiscard]] MinMax depths() const override {
         return reduced(
-            points_->size(), Extent{},
-            [&](std::size_t i, Extent& range) {
+            points_->size(), MinMax{},
+            [&](std::size_t i, MinMax& range) {
                 if (const auto p = at(i)) range.add(view_.depth(*p));
             },
-            [](Extent& all, const Extent& more) { all.add(more); });
+            [](MinMax& all, const MinMax& more) { all.add(more); });
     }
 
     [[nodiscard]] std::vector<LightExtents> extents(std::span<const DepthSlice> slices,

@@ -14,7 +14,7 @@
 namespace umbra {
 
 /// Extents of x, y and z in the light space of a frame.
-using LightExtents = std::array<Extent, 3>;
+using LightExtents = std::array<MinMax, 3>;
 
 /// A range of depths along the camera, closed.
 struct DepthSlice {
@@ -26,7 +26,7 @@ class Receivers {
 public:
     virtual ~Receivers() = default;
     /// From the least to the greatest depth; empty where there is nothing.
-    [[nodiscard]] virtual Extent depths() const = 0;
+    [[nodiscard]] virtual MinMax depths() const = 0;
     /// One entry a slice, of what lies in it.
     [[nodiscard]] virtual std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
                                                             const LightFrame& light) const = 0;

@@ -100,7 +100,7 @@ public:
     void restore(std::span<const Slot> order);
 
 private:
-    static constexpr bool kLanes   = std::is_same_v<T, double>;  ///< lists are filled up
+    static constexpr bool kInLanes = std::is_same_v<T, double>;  ///< lists are filled up
     static constexpr double kNever = std::numeric_limits<double>::infinity();
 
     template <class Less>
@@ -125,14 +125,14 @@ void ActiveEdges<T>::clear() {
     order_.clear();
     size_    = 0;
     counted_ = strictly_ = false;
-    if constexpr (kLanes) std::fill(high_y_.begin(), high_y_.end(), kNever);
+    if constexpr (kInLanes) std::fill(high_y_.begin(), high_y_.end(), kNever);
 }
 
 template <class T>
 void ActiveEdges<T>::begin_row(const T& y) {
     std::swap(bottom_, top_);
     ended_.clear();
-    if constexpr (kLanes) {
+    if constexpr (kInLanes) {
         ends_at(high_y_.data(), size_, y, ended_);
     } else {
         for (Slot s = 0; s < size_; ++s)
@@ -167,7 +167,7 @@ void ActiveEdges<T>::remove_ended() {
 
 template <class T>
 T ActiveEdges<T>::next_end() const {
-    if constexpr (kLanes)
+    if constexpr (kInLanes)
         return least_of(high_y_.data(), size_);
     else
         return *std::min_element(high_y_.begin(), high_y_.begin() + size_);
@@ -175,7 +175,7 @@ T ActiveEdges<T>::next_end() const {
 
 template <class T>
 void ActiveEdges<T>::end_row(const T& y, LeftOfEdge left) {
-    if constexpr (kLanes) {
+    if constexpr (kInLanes) {
         edges_at({low_x_.data(), low_y_.data(), width_.data(), height_.data(), high_x_.data(), high_y_.data()}, size_,
                  y, top_.data());
     } else {
@@ -284,10 +284,10 @@ bool ActiveEdges<T>::sort(const Less& less) {
 
 template <class T>
 void ActiveEdges<T>::grow() {
-    const std::size_t n = low_x_.size() + (kLanes ? kEdgeLanes : 1);
+    const std::size_t n = low_x_.size() + (kInLanes ? kLanes : 1);
     for (auto* list : {&low_x_, &low_y_, &width_, &high_x_, &bottom_, &top_}) list->resize(n, T(0));
     height_.resize(n, T(1));
-    high_y_.resize(n, T(kLanes ? kNever : 0));
+    high_y_.resize(n, T(kInLanes ? kNever : 0));
     edge_.resize(n, nullptr);
 }
 
@@ -311,7 +311,7 @@ void ActiveEdges<T>::remove(Slot s) {
         edge_[s]                                       = edge_[last];
         *std::find(order_.begin(), order_.end(), last) = s;
     }
-    if constexpr (kLanes) high_y_[last] = kNever;
+    if constexpr (kInLanes) high_y_[last] = kNever;
 }
 
 }  // namespace umbra::exact_visibility

@@ -41,7 +41,7 @@ std::optional<BoxTree::Region> AimedLight::region_from(const ExactPoint& p, doub
 
 /// Exact.
 std::vector<std::int8_t> AimedLight::sides(const Occluders& occluders) const {
-    std::vector<std::int8_t> side(occluders.topology.position.size());
+    std::vector<std::int8_t> side(occluders.positions.size());
     const dvec3 centre(light_.position);
     const Entries u{half_.u, axis_error(light_)}, v{half_.v, axis_error(light_)};
     parallel_ranges(side.size(), 4096, [&](std::size_t begin, std::size_t end) {
@@ -64,10 +64,9 @@ dvec3 AimedLight::reach() const {
 std::vector<TriangleId> AimedLight::those_across(const Occluders& occluders) const {
     std::vector<TriangleId> across;
     const dvec3 centre(light_.position), wide = reach();
-    const Topology& topology = occluders.topology;
-    for (TriangleId t = 0; t < topology.triangles.size(); ++t) {
-        const uvec3 v = topology.triangles[t];
-        if (occluders.casts_nothing[t]) continue;
+    for (TriangleId t = 0; t < occluders.corners.size(); ++t) {
+        const uvec3 v = occluders.corners[t];
+        if (!occluders.blocks(t)) continue;
         if (!side_.empty() && side_[v[0]] == side_[v[1]] && side_[v[1]] == side_[v[2]]) continue;
         const vec3 a = occluders.position(v[0]), b = occluders.position(v[1]), c = occluders.position(v[2]);
         bool apart = false;

@@ -61,7 +61,7 @@ bool CoveringEdges<Space>::add_edge(const CandidateEdge& edge, int change, Displ
 /// Where a triangle passes through the light's plane, its part before the plane ends with an edge in the plane.
 template <class Space>
 bool CoveringEdges<Space>::add_chord(TriangleId t, Displacement& displacement) {
-    const uvec3 vertex      = projection_.sight().occluders.topology.triangles[t];
+    const uvec3 vertex      = projection_.sight().occluders.corners[t];
     const Numerators<T> q[] = {projection_.project(vertex[0]), projection_.project(vertex[1]),
                                projection_.project(vertex[2])};
     Filtered<bool> beyond[3];

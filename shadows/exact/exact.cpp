@@ -14,6 +14,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <utility>
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/light_points.h"
@@ -265,7 +266,10 @@ public:
 
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
         Reason reason = Method::explain(aimed, looked, i, given);
-        if (is_area(aimed.source().kind)) return reason;
+        if (is_area(aimed.source().kind)) {
+            add_account(as<AreaLight>(aimed), looked.points, i, reason);
+            return reason;
+        }
         const ExactPoint point = exact_point(aimed.scene(), looked.points, i);
         const auto [crossed, touched] =
             as<Geometry>(aimed.built).count_met(Segment(point, aimed.source()), looked.points.triangle[i]);
@@ -301,9 +305,36 @@ private:
         });
     }
 
+    [[nodiscard]] ExactArea before(const AreaLight& aimed) const {
+        return {as<Geometry>(aimed.built).before_area_lights(), aimed.area_light, options.arithmetic, options.measure};
+    }
+
+    void add_account(const AreaLight& aimed, const PointBatch& points, std::size_t i, Reason& reason) const {
+        constexpr std::size_t kFew = 12;
+        const ExactArea::Account account =
+            before(aimed).account(points.triangle[i], points.u[i], points.v[i],
+                                  points.facing[aimed.light][i] == Facing::partly, points.flipped[i] ? -1 : 1);
+        std::size_t corners = 0;
+        std::string outlines;
+        for (const std::vector<dvec2>& outline : account.outlines) {
+            corners += outline.size();
+            const char* between = outlines.empty() ? "" : " | ";
+            for (const dvec2 c : outline) {
+                const dvec2 shown = glm::round(c * 1e4) / 1e4 + 0.0;  // no negative zeros
+                outlines += fmt::format("{}{} {}", std::exchange(between, ", "), shown.x, shown.y);
+            }
+        }
+        reason.evidence.push_back({"visible area", static_cast<double>(account.answer.visibility), "of the light"});
+        reason.evidence.push_back({"visible pieces", static_cast<double>(account.pieces)});
+        reason.evidence.push_back({"corners", static_cast<double>(corners)});
+        if (corners > 0 && corners <= kFew) reason.evidence.push_back({"corners in half axes", outlines});
+        reason.evidence.push_back({"silhouette edges", static_cast<double>(account.edges)});
+        reason.evidence.push_back({"sides that doubles leave open", static_cast<double>(account.open_sides)});
+        reason.evidence.push_back({"arithmetic", account.arithmetic});
+    }
+
     void see_area(const AreaLight& aimed, const PointBatch& points, Visibility out) const {
-        const ExactArea area(as<Geometry>(aimed.built).before_area_lights(), aimed.area_light, options.arithmetic,
-                             options.measure);
+        const ExactArea area   = before(aimed);
         const bool irradiance  = options.measure == Measure::irradiance;
         const bool bracket     = irradiance || aimed.source().kind != LightKind::rectangle;
         const bool has_filters = aimed.built.facts.has_filters;

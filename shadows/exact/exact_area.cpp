@@ -1,5 +1,7 @@
 #include "umbra/shadows/exact/exact_area.h"
 
+#include <fmt/format.h>
+
 #include "umbra/shadows/exact/filtered_light.h"
 
 namespace umbra::exact_visibility {
@@ -40,6 +42,98 @@ Answer answer(const VisibleArea& area, bool round) {
 
 /// Of a point, and how many times as long rationals take.
 constexpr std::uint64_t kStepsOfPoint = 20, kRationalSteps = 300;
+
+/// In half axes: narrower gaps join what they part, and corners less far from a line lie on it.
+constexpr double kNarrow = 1e-9;
+
+double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
+
+/// Outlines of what trapezoids cover together. They come row by row from bottom to top, each row from left to right.
+///
+///      .___________.__       A walk goes up the right side of a trapezoid (T). At its top it turns to what is last of
+///     /     N     / \  \     the trapezoids above that touch T there (N): up the right side of that one or, where it
+///    /___.____.__/   \__\    lies over another one of T's row (S), too, down the left side of the first such one.
+///     | T|    |S \           Where nothing is above, down T's own left side. Down a left side is up a right one in
+///     |__|    |___\          the picture turned by half a turn.
+class Outlines {
+public:
+    explicit Outlines(const std::vector<Trapezoid>& pieces) {
+        for (const Trapezoid& p : pieces)
+            if (p.low < p.high) in_turn_[0].push_back(p);
+        for (const Trapezoid& p : in_turn_[0])
+            in_turn_[1].push_back({-p.high, -p.low, -p.high_right, -p.high_left, -p.low_right, -p.low_left});
+        std::ranges::reverse(in_turn_[1]);
+    }
+
+    /// One after the other; each goes on from its last point to its first.
+    [[nodiscard]] std::vector<std::vector<dvec2>> walk() const {
+        const std::size_t n = in_turn_[0].size();
+        std::vector<bool> done[2]{std::vector<bool>(n), std::vector<bool>(n)};
+        std::vector<std::vector<dvec2>> all;
+        for (std::size_t begin = 0; begin < n; ++begin) {
+            if (done[0][begin]) continue;
+            all.emplace_back();
+            for (TrapezoidSide at{0, begin}; !done[at.turn][at.piece]; at = next(at)) {
+                done[at.turn][at.piece] = true;
+                const Trapezoid& p      = in_turn_[at.turn][at.piece];
+                const double sign       = at.turn == 0 ? 1 : -1;
+                all.back().push_back(sign * dvec2(p.low_right, p.low));
+                all.back().push_back(sign * dvec2(p.high_right, p.high));
+            }
+        }
+        return all;
+    }
+
+private:
+    /// The right side of a trapezoid in one of the two pictures.
+    struct TrapezoidSide {
+        int turn;
+        std::size_t piece;
+    };
+
+    [[nodiscard]] TrapezoidSide next(const TrapezoidSide& at) const {
+        const std::vector<Trapezoid>& all = in_turn_[at.turn];
+        const Trapezoid& p                = all[at.piece];
+        const auto touch                  = [](const Trapezoid& below, const Trapezoid& above) {
+            return std::min(below.high_right, above.low_right) - std::max(below.high_left, above.low_left) > kNarrow;
+        };
+        const auto other_side = [&](std::size_t piece) { return TrapezoidSide{1 - at.turn, all.size() - 1 - piece}; };
+        const auto row_above  = std::ranges::equal_range(all, p.high, {}, &Trapezoid::low);
+        for (auto above = row_above.end(); above != row_above.begin();) {
+            if (!touch(p, *--above)) continue;
+            for (std::size_t k = at.piece + 1; k < all.size() && all[k].low == p.low; ++k)
+                if (touch(all[k], *above)) return other_side(k);
+            return {at.turn, static_cast<std::size_t>(above - all.begin())};
+        }
+        return other_side(at.piece);
+    }
+
+    std::vector<Trapezoid> in_turn_[2];
+};
+
+/// Twice the area; negative of what is gone around clockwise.
+double twice_area(const std::vector<dvec2>& outline) {
+    double sum = 0;
+    for (std::size_t k = 0; k < outline.size(); ++k) sum += cross(outline[k], outline[(k + 1) % outline.size()]);
+    return sum;
+}
+
+/// Without points between two others.
+std::vector<dvec2> corners_of(std::vector<dvec2> outline) {
+    const auto lowest = [](dvec2 a, dvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); };
+    std::ranges::rotate(outline, std::ranges::min_element(outline, lowest));  // to one that is a corner
+    outline.push_back(outline.front());
+    std::vector<dvec2> corners;
+    for (const dvec2 p : outline) {
+        for (; corners.size() >= 2; corners.pop_back()) {
+            const dvec2 a = corners[corners.size() - 2];
+            if (std::abs(cross(corners.back() - a, p - a)) > kNarrow * glm::length(p - a)) break;
+        }
+        corners.push_back(p);
+    }
+    corners.pop_back();
+    return corners;
+}
 
 }  // namespace
 
@@ -150,6 +244,38 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
     return area ? answer(*area, light_.round()) : kNothingKnown;
 }
 
+ExactArea::Account ExactArea::account(TriangleId own, float u, float v, bool partly, int turn) const {
+    Workspace work;
+    Account account{.answer = seen(own, u, v, partly, turn, work)};
+    account.edges           = work.silhouette.size();
+    account.open_sides      = work.coplanar.known.size();
+    const bool in_rationals = work.rational_points > 0 || account.answer.edge_on;
+    std::string_view open   = work.in_double.left_open;
+    if (open.empty()) open = "the point's side of the light's plane";
+    account.arithmetic = !in_rationals                         ? "doubles"
+                         : arithmetic_ == Arithmetic::rational ? "rationals, as set"
+                                                               : fmt::format("rationals: doubles leave open {}", open);
+
+    const Viewpoint viewpoint(occluders_.scene, own, u, v, work.coplanar);
+    const std::optional<LightPlane> plane = light_.plane_from(viewpoint.point());
+    if (!plane || !(plane->rounding <= kRoughest) || account.answer.edge_on) return account;
+    const Sight sight{occluders_, edges_, light_, *plane, viewpoint, partly, turn, work.over};
+    const auto pieces = [&](const auto& space, auto& covering) {
+        return VisiblePart<std::decay_t<decltype(space)>>(sight, space, measure_, covering).pieces(work.silhouette);
+    };
+    const Outlines outlines(in_rationals ? pieces(RationalSpace(viewpoint.point(), *plane), work.in_rationals)
+                                         : pieces(FloatSpace(viewpoint.point(), *plane), work.in_double));
+    for (const std::vector<dvec2>& walked : outlines.walk()) {
+        std::vector<dvec2> corners = corners_of(walked);
+        const double twice         = twice_area(corners);
+        if (std::abs(twice) <= kNarrow) continue;
+        if (twice > 0) ++account.pieces;
+        if (light_.round()) std::erase_if(corners, [](dvec2 c) { return glm::length(c) > 1 - kNarrow; });
+        account.outlines.push_back(std::move(corners));
+    }
+    return account;
+}
+
 std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bool partly, int turn, const Answer& seen,
                                             Workspace& work) const {
     const vec3 without(seen.visibility);
@@ -161,7 +287,7 @@ std::optional<vec3> ExactArea::seen_through(TriangleId own, float u, float v, bo
     bool any_filter = false;
     work.between.clear();
     const auto take = [&](TriangleId t) {
-        if (t == own || occluders_.topology.degenerate[t] || scene.lets_through(t) == vec3(1)) return true;
+        if (t == own || !occluders_.has_area(t) || scene.lets_through(t) == vec3(1)) return true;
         work.between.push_back(t);
         any_filter = any_filter || !scene.blocks(t);
         return true;

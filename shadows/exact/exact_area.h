@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "umbra/core/render/points.h"
 #include "umbra/shadows/exact/visible_part.h"
@@ -37,6 +38,18 @@ public:
                                ///< triangle, in [0, 1]; else it means nothing
         float irradiance_half_width = 0;      ///< the truth lies within irradiance -+ this
         bool edge_on                = false;  ///< the point lies in the light's plane: nothing to take a fraction of
+    };
+
+    /// How an answer came about.
+    struct Account {
+        Answer answer;
+        std::size_t edges      = 0;  ///< silhouette edges that were looked at
+        std::size_t open_sides = 0;  ///< triangles of which doubles do not tell on which side the point is
+        std::string arithmetic{};    ///< of all else
+        std::size_t pieces = 0;      ///< of the visible part
+        std::vector<std::vector<dvec2>> outlines{};  ///< its corners in half axes: anticlockwise around a piece,
+                                                     ///< clockwise around a hole. Of a round light without those on
+                                                     ///< its rim. None where nothing is known of them
     };
 
     /// What one thread needs for itself, from point to point. `rational_points` counts those that doubles could not
@@ -79,6 +92,8 @@ public:
     /// For a point of triangle `own`; `partly`: the triangle's plane cuts the light; `turn`: -1 where the side that
     /// sees is against the triangle's winding, else 1. From any thread, each with a workspace of its own.
     [[nodiscard]] Answer seen(TriangleId own, float u, float v, bool partly, int turn, Workspace& work) const;
+    /// The same, and how it came about. Need not be fast.
+    [[nodiscard]] Account account(TriangleId own, float u, float v, bool partly, int turn) const;
 
     /// Of a rectangle light through occluders that let a part of the light through: the visible fraction with what
     /// passes those, per channel, where `seen` is the answer without them. Off by less than 1e-9. Nothing where that

@@ -27,7 +27,7 @@ private:
         Numerators<T> corner[3];
     };
     [[nodiscard]] Projected projected(TriangleId t) const {
-        const uvec3 v = projection_.sight().occluders.topology.triangles[t];
+        const uvec3 v = projection_.sight().occluders.corners[t];
         return {t, v, {projection_.project(v[0]), projection_.project(v[1]), projection_.project(v[2])}};
     }
     [[nodiscard]] Filtered<bool> lies_over(const Projected& t, double x, double y) const;
@@ -104,7 +104,7 @@ Filtered<int> LayerCount<Space>::at(double x, double y, TriangleId& blocker) con
     const double rounding = 2 * p.slack() + centre.error + 8 * kUnit * (largest(centre.value) + largest(across));
     Filtered<int> layers  = 0;
     const auto count      = [&](TriangleId t) {
-        if (t == sight.viewpoint.own() || sight.occluders.casts_nothing[t]) return true;
+        if (t == sight.viewpoint.own() || !sight.occluders.blocks(t)) return true;
         if (sight.viewpoint.surely_coplanar(t)) return true;
         const Projected seen      = projected(t);
         const Filtered<bool> over = lies_over(seen, x, y);

@@ -1,13 +1,11 @@
 #include "umbra/shadows/exact/silhouette_edges.h"
 
 #include "umbra/core/base/predicates.h"
+#include "umbra/shadows/exact/edge_lanes.h"
 
 namespace umbra::exact_visibility {
 namespace {
 
-constexpr double kThin = 1e-6;  ///< sine of a triangle's angle below which its normal, a difference of products, may
-                                ///< be off by more than a float's rounding
-constexpr double kUnderflow   = 1e-290;   ///< products below this have lost digits
 constexpr double kNormalError = 0x1p-20;  ///< a rounded unit normal is off by less than 2^-22 in each component, so
                                           ///< its product with d by less than 2^-20 of d's largest component
 
@@ -18,82 +16,59 @@ SilhouetteEdges::SilhouetteEdges(const Occluders& occluders)
       tree_(find_candidates()),
       cones_(tree_.summaries([&](std::uint32_t e) { return cone_of(edges_[e]); }, NormalCone::joined)) {}
 
-/// Fills `uses_` and `edges_`, and returns the edges' boxes.
+/// Fills `edges_`, and returns the edges' boxes.
 std::vector<Box> SilhouetteEdges::find_candidates() {
-    for (const Edge& e : occluders_.topology.edges) add(e);
-    std::vector<Box> boxes(edges_.size());
-    for (std::size_t e = 0; e < edges_.size(); ++e)
-        boxes[e] = extend(extend(Box{}, occluders_.position(edges_[e].a)), occluders_.position(edges_[e].b));
+    std::vector<Box> boxes;
+    for (std::size_t e = 0; e < occluders_.edges.size(); ++e) {
+        CandidateEdge edge{occluders_.edges[e]};
+        for (std::uint32_t k = 0; edge.count <= 2 && k < edge.count; ++k) {
+            const auto corner = [&](int c) { return occluders_.scene.vertex(uses(edge)[k].triangle, c); };
+            edge.normal[k]    = normal_unless_thin(corner(0), corner(1), corner(2));
+        }
+        if (edge.count == 2 && continue_each_other(edge)) continue;
+        edges_.push_back(edge);
+        boxes.push_back(extend(extend(Box{}, occluders_.position(edge.a)), occluders_.position(edge.b)));
+    }
     return boxes;
 }
 
 /// Whether the edge's two triangles continue each other in one plane: they cancel wherever they are seen from.
-bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const {
-    const auto corner    = [&](TriangleId t, int k) { return occluders_.scene.vertex(t, k); };
-    const EdgeUse &first = uses_[edge.first], &second = uses_[edge.first + 1];
-    const auto in_one_plane = [&] {
-        return side_of_plane(corner(first.triangle, 0), corner(first.triangle, 1), corner(first.triangle, 2),
-                             corner(second.triangle, (second.side + 2) % 3)) == 0;
-    };
-    const bool alike  = first.forward != second.forward;
-    const double even = glm::dot(normal[0], normal[1]);
-    if ((even > 0) != alike && edge.normal[0] != vec3(0) && edge.normal[1] != vec3(0)) return false;
-    if (!in_one_plane()) return false;
-    if (edge.normal[0] != vec3(0) && edge.normal[1] != vec3(0)) return true;
+bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge) const {
+    const auto corner      = [&](TriangleId t, int k) { return occluders_.scene.vertex(t, k); };
+    const TriangleId first = uses(edge)[0].triangle, second = uses(edge)[1].triangle;
+    const bool alike = uses(edge)[0].forward != uses(edge)[1].forward;
+    const bool thin  = edge.normal[0] == vec3(0) || edge.normal[1] == vec3(0);
+    if (!thin && (glm::dot(edge.normal[0], edge.normal[1]) > 0) != alike) return false;
+    int opposite  = 0;
+    const uvec3 v = occluders_.corners[second];
+    while (v[opposite] == edge.a || v[opposite] == edge.b) ++opposite;
+    if (side_of_plane(corner(first, 0), corner(first, 1), corner(first, 2), corner(second, opposite)) != 0)
+        return false;
+    if (!thin) return true;
     // Thin triangles: their normals' directions may be noise.
     const auto exact_normal = [&](TriangleId t) {
         const Rational3 a = rational(corner(t, 0));
         return cross(rational(corner(t, 1)) - a, rational(corner(t, 2)) - a);
     };
-    return (dot(exact_normal(first.triangle), exact_normal(second.triangle)) > 0) == alike;
-}
-
-void SilhouetteEdges::add(const Edge& e) {
-    const auto corner        = [&](TriangleId t, int k) { return dvec3(occluders_.scene.vertex(t, k)); };
-    const Topology& topology = occluders_.topology;
-    CandidateEdge edge{e.a, e.b, static_cast<std::uint32_t>(uses_.size()), 0};
-    for (std::uint32_t k = e.first; k < e.first + e.count; ++k)
-        if (!occluders_.casts_nothing[topology.uses[k].triangle]) uses_.push_back(topology.uses[k]);
-    edge.count = static_cast<std::uint32_t>(uses_.size()) - edge.first;
-    bool flat  = false;
-    if (edge.count == 1 || edge.count == 2) {
-        dvec3 normal[2]{};
-        for (std::size_t k = 0; k < edge.count; ++k) {
-            const TriangleId t = uses_[edge.first + k].triangle;
-            const dvec3 x = corner(t, 1) - corner(t, 0), y = corner(t, 2) - corner(t, 0);
-            normal[k]         = glm::cross(x, y);
-            const double size = glm::length(normal[k]);
-            if (size > kThin * glm::length(x) * glm::length(y) && size > kUnderflow)
-                edge.normal[k] = vec3(normal[k] / size);
-        }
-        flat = edge.count == 2 && continue_each_other(edge, normal);
-    }
-    if (edge.count == 0 || flat)
-        uses_.resize(edge.first);
-    else
-        edges_.push_back(edge);
+    return (dot(exact_normal(first), exact_normal(second)) > 0) == alike;
 }
 
 NormalCone SilhouetteEdges::cone_of(const CandidateEdge& edge) const {
     const vec3 &n = edge.normal[0], &m = edge.normal[1];
     if (edge.count != 2 || n == vec3(0) || m == vec3(0)) return {};
-    const bool alike = uses_[edge.first].forward != uses_[edge.first + 1].forward;
+    const bool alike = uses(edge)[0].forward != uses(edge)[1].forward;
     return NormalCone::joined(NormalCone::around(n, 0), NormalCone::around(alike ? m : -m, 0));
 }
 
 int SilhouetteEdges::change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const {
-    int change        = 0;
-    const Entries d   = viewpoint.point().to(occluders_.position(edge.a));
-    const double sure = kNormalError * largest(d.value) + 4 * d.error;
-    for (std::uint32_t k = 0; k < edge.count; ++k) {
-        const EdgeUse& use = uses_[edge.first + k];
-        const double over  = edge.count <= 2 ? glm::dot(d.value, dvec3(edge.normal[k])) : 0;
-        const int side     = use.triangle == viewpoint.own() ? 0
-                             : std::abs(over) > sure         ? (over > 0 ? 1 : -1)
-                                                             : viewpoint.side_of(use.triangle);
-        change += use.forward ? side : -side;
-    }
-    return change;
+    const Entries d    = viewpoint.point().to(occluders_.position(edge.a));
+    const double sure  = kNormalError * largest(d.value) + 4 * d.error;
+    const vec3* normal = edge.count <= 2 ? edge.normal : nullptr;  // of the next triangle
+    return change_of(uses(edge), [&](TriangleId t) {
+        const double over = normal != nullptr ? glm::dot(d.value, dvec3(*normal++)) : 0;
+        if (t == viewpoint.own()) return 0;
+        return std::abs(over) > sure ? (over > 0 ? 1 : -1) : viewpoint.side_of(t);
+    });
 }
 
 void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
@@ -123,7 +98,7 @@ bool SilhouetteEdges::cancels_around(const Viewpoint& viewpoint, const Candidate
         const dvec3 n(edge.normal[k]);
         const double over = glm::dot(d.value, n);
         if (!(std::abs(over) > sure + around * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)))) return false;
-        change += (over > 0) == uses_[edge.first + k].forward ? 1 : -1;
+        change += (over > 0) == (uses(edge)[k].forward != 0) ? 1 : -1;
     }
     return change == 0;
 }
@@ -153,28 +128,23 @@ bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, BoxTree::Region 
         const CandidateEdge& edge = edges_[group.edges[e]];
         put(group.a, e, vec3(dvec3(occluders_.position(edge.a)) - group.origin));
         put(group.b, e, vec3(dvec3(occluders_.position(edge.b)) - group.origin));
-        put(group.first, e, turned(edge, 0));
-        put(group.second, e, turned(edge, 1));
+        const bool two = edge.count == 2;
+        put(group.first, e, two ? turned(edge.normal[0], uses(edge)[0]) : vec3(0));
+        put(group.second, e, two ? turned(edge.normal[1], uses(edge)[1]) : vec3(0));
     }
     return true;
 }
 
-/// The normal of a triangle of the edge, against the edge where the triangle uses it backwards; 0 where it is unknown.
-vec3 SilhouetteEdges::turned(const CandidateEdge& edge, std::uint32_t k) const {
-    if (edge.count != 2) return vec3(0);
-    return uses_[edge.first + k].forward ? edge.normal[k] : -edge.normal[k];
-}
-
-void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, double reach, EdgeGroup& group,
-                           std::vector<SilhouetteEdge>& found) const {
+UMBRA_FOR_EACH_PROCESSOR void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
+                                                    EdgeGroup& group, std::vector<SilhouetteEdge>& found) const {
     // Floats, with a bound of 2^-19 of the largest coordinates: each is rounded to 2^-24 of itself, and so is each of
     // five operations on products with numbers of at most 1.
     constexpr float kRounding    = 0x1p-19f;
     const BoxTree::Region region = shaft(viewpoint.point(), space, reach);
-    struct Plane {
+    struct RegionPlane {
         float x, y, z, offset, tilt, least;  ///< least: see beyond
     };
-    std::array<Plane, 5> planes;
+    std::array<RegionPlane, 5> planes;
     for (std::size_t k = 0; k < planes.size(); ++k) {
         const dvec3 n     = region.planes[k].normal;
         const double size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
@@ -191,7 +161,7 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
     constexpr float kDenormal = 0x1p-140f;
     const float slack         = static_cast<float>(4 * region.slack) + kDenormal,
                 d             = std::abs(dx) + std::abs(dy) + std::abs(dz);
-    for (Plane& plane : planes) plane.least = plane.tilt * (d + std::abs(plane.offset)) + slack;
+    for (RegionPlane& plane : planes) plane.least = plane.tilt * (d + std::abs(plane.offset)) + slack;
     const std::size_t n = group.edges.size();
     group.out.resize(n);
     const float *ax = group.a[0].data(), *ay = group.a[1].data(), *az = group.a[2].data();
@@ -227,10 +197,10 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
         const float qx = bx[e] - dx, qy = by[e] - dy, qz = bz[e] - dz;
         std::int32_t outside = 0;
         for (std::size_t k = 0; k < planes.size(); ++k) {
-            const Plane& plane = planes[k];
-            const float p      = plane.x * px + plane.y * py + plane.z * pz + plane.offset,
-                        q      = plane.x * qx + plane.y * qy + plane.z * qz + plane.offset;
-            const float beyond = -(plane.tilt * size + plane.least);
+            const RegionPlane& plane = planes[k];
+            const float p            = plane.x * px + plane.y * py + plane.z * pz + plane.offset,
+                        q            = plane.x * qx + plane.y * qy + plane.z * qz + plane.offset;
+            const float beyond       = -(plane.tilt * size + plane.least);
             outside |= int{p < beyond} & int{q < beyond};
         }
         out[e] = outside;
@@ -245,8 +215,7 @@ void SilhouetteEdges::pick(const Viewpoint& viewpoint, const FloatSpace& space, 
 }
 
 std::size_t SilhouetteEdges::memory_bytes() const {
-    return uses_.size() * sizeof(EdgeUse) + edges_.size() * sizeof(CandidateEdge) + cones_.size() * sizeof(NormalCone) +
-           tree_.memory_bytes();
+    return edges_.size() * sizeof(CandidateEdge) + cones_.size() * sizeof(NormalCone) + tree_.memory_bytes();
 }
 
 }  // namespace umbra::exact_visibility

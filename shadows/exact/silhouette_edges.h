@@ -19,14 +19,11 @@
 namespace umbra::exact_visibility {
 
 /// An edge that may be a silhouette edge.
-struct CandidateEdge {
-    std::uint32_t a = 0, b = 0;          ///< welded vertices, a < b
-    std::uint32_t first = 0, count = 0;  ///< its triangles: a run of uses
-    vec3 normal[2]{vec3(0), vec3(0)};  ///< where it has one or two: their unit normals, rounded; 0 where they are thin
+struct CandidateEdge : Edge {
+    vec3 normal[2]{vec3(0), vec3(0)};  ///< where it has one triangle or two: normal_unless_thin
 };
 
-/// By how much more triangles lie to the left of the edge from a to b than to its right, as the point sees it with the
-/// world's orientation. Not 0.
+/// A candidate and its change as the point sees it with the world's orientation. Not 0.
 struct SilhouetteEdge {
     std::uint32_t candidate;
     int change;
@@ -38,8 +35,8 @@ struct EdgeGroup {
     dvec3 origin{0};
     std::vector<std::uint32_t> edges{};
     std::array<std::vector<float>, 3> a{}, b{};           ///< both ends
-    std::array<std::vector<float>, 3> first{}, second{};  ///< normals of the two triangles, turned by their use of the
-                                                          ///< edge; 0 where they are not two, or thin
+    std::array<std::vector<float>, 3> first{}, second{};  ///< normals of the two triangles, turned; 0 where they are
+                                                          ///< not two, or thin
 
     // For one point.
     std::vector<std::int32_t> out{};                       ///< surely no silhouette edge, or not before the light
@@ -71,15 +68,15 @@ public:
 
 private:
     [[nodiscard]] std::vector<Box> find_candidates();
-    void add(const Edge& edge);
-    [[nodiscard]] bool continue_each_other(const CandidateEdge& edge, const dvec3 (&normal)[2]) const;
+    [[nodiscard]] std::span<const PackedUse> uses(const Edge& edge) const {
+        return occluders_.edges.uses(edge.first, edge.count);
+    }
+    [[nodiscard]] bool continue_each_other(const CandidateEdge& edge) const;
     [[nodiscard]] NormalCone cone_of(const CandidateEdge& edge) const;
     [[nodiscard]] int change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const;
-    [[nodiscard]] vec3 turned(const CandidateEdge& edge, std::uint32_t k) const;
     [[nodiscard]] bool cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const;
 
     const Occluders& occluders_;
-    std::vector<EdgeUse> uses_{};
     std::vector<CandidateEdge> edges_{};
     BoxTree tree_;                   ///< of the edges
     std::vector<NormalCone> cones_;  ///< one a node of it: the normals of the triangles there, so turned that an edge

@@ -1,5 +1,7 @@
 #include "umbra/shadows/exact/triangles_over.h"
 
+#include "umbra/shadows/exact/edge_lanes.h"
+
 namespace umbra::exact_visibility {
 namespace {
 
@@ -15,7 +17,7 @@ void TrianglesOver::gather(const Occluders& occluders, const ExactPoint& p, dvec
     triangles_.clear();
     const double slack = around_ + p.slack() + 16 * kUnit * (largest(origin_) + largest(to_place));
     occluders.triangles.visit(BoxTree::Piece{origin_, to_place, 1.0, slack}, [&](TriangleId t) {
-        if (occluders.casts_nothing[t] == 0) triangles_.push_back(t);
+        if (occluders.blocks(t)) triangles_.push_back(t);
         return triangles_.size() <= kMost;
     });
     known_ = triangles_.size() <= kMost;
@@ -56,7 +58,7 @@ const std::vector<TriangleId>* TrianglesOver::pick(const ExactPoint& p, dvec3 to
 
 /// Finds which triangles are surely not met by the segment from the origin and `moved` to `to_place`, which may be
 /// `off`, or by one that differs by `beside` from it or a plane through it; false where the segment has no length.
-bool TrianglesOver::find_out(dvec3 moved, dvec3 to_place, double off, double beside) {
+UMBRA_FOR_EACH_PROCESSOR bool TrianglesOver::find_out(dvec3 moved, dvec3 to_place, double off, double beside) {
     // A triangle is out that lies on one side of either of two planes through the segment, or past one of its ends
     // along an axis. Floats, bounded as in SilhouetteEdges::pick.
     constexpr float kRounding = 0x1p-19f, kDenormal = 0x1p-140f;

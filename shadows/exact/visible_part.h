@@ -26,6 +26,8 @@
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
 #pragma once
 
+#include <string_view>
+
 #include "umbra/core/render/visibility.h"
 #include "umbra/shadows/exact/covering_edges.h"
 #include "umbra/shadows/exact/depth_doubt.h"
@@ -44,6 +46,7 @@ struct PartialCovering {
     Covering<T> edges;
     DiskCaps caps;
     typename Covering<T>::Outline cut;  ///< of a light that the plane of the point's triangle cuts
+    std::string_view left_open{};       ///< what this arithmetic could not tell of a point, if any
 };
 
 /// Areas in the light's plane, in half axes.
@@ -71,7 +74,15 @@ public:
     /// `blocker` becomes a triangle that hides the whole light, where one is found, else kNoTriangle.
     [[nodiscard]] Filtered<VisibleArea> find(const std::vector<SilhouetteEdge>& silhouette, TriangleId& blocker) const;
 
+    /// The visible part of the light, of a round one's polygon: rows from bottom to top, each from left to right.
+    /// Nothing where `find` is kUnsure.
+    [[nodiscard]] std::vector<Trapezoid> pieces(const std::vector<SilhouetteEdge>& silhouette) const;
+
 private:
+    std::nullopt_t unsure(std::string_view of) const {
+        covering_.left_open = of;
+        return kUnsure;
+    }
     [[nodiscard]] bool is_clear(double x, double y, double widest) const;
     [[nodiscard]] Filtered<int> base_layers(double widest, TriangleId& blocker) const;
     using Light = typename Covering<T>::Outline;
@@ -178,10 +189,11 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     Displacement displacement;
     DiskCaps* const caps = round() && !to_rim() ? &covering_.caps : nullptr;
     if (caps) caps->reset();
-    if (!CoveringEdges<Space>(projection_, covering_.edges, caps).add(silhouette, displacement)) return kUnsure;
+    if (!CoveringEdges<Space>(projection_, covering_.edges, caps).add(silhouette, displacement))
+        return unsure("where edges lie before the light");
 
     const Filtered<int> base = base_layers(displacement.widest, blocker);
-    if (!base) return kUnsure;
+    if (!base) return unsure("which triangles lie over the light");
     if (blocker != kNoTriangle && surely_before_light(sight_, blocker)) return result;
     const double in_doubt = area_in_doubt(sight_);
     result.error          = in_doubt;
@@ -224,7 +236,8 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     result.error            = in_doubt + displacement.swept + 16 * kUnit * (rows + 4);
     // What rationals are not free of. They are worth their time where they more than halve the bound.
     const double of_frame = in_doubt + displacement.by_frame;
-    if (std::is_same_v<T, double> && !(result.error - of_frame <= std::max(kTrusted, of_frame))) return kUnsure;
+    if (std::is_same_v<T, double> && !(result.error - of_frame <= std::max(kTrusted, of_frame)))
+        return unsure("the area to 1e-9");
     if (caps) {
         const DiskCaps::Area with_caps = caps->with_caps(area);
         result.visible                 = with_caps.visible;
@@ -232,10 +245,25 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     }
     if (weighted) {
         const Filtered<Bracket> bracket = irradiance(*received, light_before_horizon(horizon), arrives, result.error);
-        if (!bracket) return kUnsure;
+        if (!bracket) return unsure("the irradiance");
         result.irradiance = *bracket;
     }
     return result;
+}
+
+template <class Space>
+std::vector<Trapezoid> VisiblePart<Space>::pieces(const std::vector<SilhouetteEdge>& silhouette) const {
+    std::vector<Trapezoid> found;
+    Displacement displacement;
+    TriangleId blocker = kNoTriangle;
+    if (!CoveringEdges<Space>(projection_, covering_.edges, nullptr).add(silhouette, displacement)) return found;
+    const Filtered<int> base = base_layers(displacement.widest, blocker);
+    if (!base || blocker != kNoTriangle) return found;
+    DiskCaps caps;  // the polygon's chords are counted there
+    const Light& light = light_before_horizon(sight_.partly ? horizon_of<T>(sight_) : Horizon<T>{});
+    (void)covering_.edges.uncovered(light, *base, caps.within_chords(),
+                                    [&](const Trapezoid& piece) { found.push_back(piece); });
+    return found;
 }
 
 }  // namespace umbra::exact_visibility

@@ -30,7 +30,7 @@ bool follow_one_another(const Scene& scene, std::span<const TriangleId> order) {
     std::vector<double> excess(groups);
     parallel_ranges(groups, 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t g = begin; g < end; ++g) {
-            const auto own = order.subspan(g * kLanes, std::min(kLanes, order.size() - g * kLanes));
+            const auto own = order.subspan(g * kLanes, std::min<std::size_t>(kLanes, order.size() - g * kLanes));
             Box all        = box_of(scene, own[0]);
             double sum     = 0;
             for (const TriangleId t : own) {

@@ -1,5 +1,6 @@
 #include "umbra/shadows/light_rays/light_rays.h"
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra::rays {
@@ -28,8 +29,8 @@ std::size_t LightRays::hard_light_rays(const Starts& starts, const Facing* facin
 }
 
 // All rays of a tile are one list, since neighbours meet the same triangles.
-void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& points, const PointTile& tile,
-                                 std::span<float> s) const {
+UMBRA_FOR_EACH_PROCESSOR void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& points,
+                                                          const PointTile& tile, std::span<float> s) const {
     const FlushDenormals flush;
     const Facing* facing = points.facing[light_].data();
     Starts starts;
@@ -54,6 +55,16 @@ void LightRays::trace_hard_light(const StartPlaces& places, const PointBatch& po
             s[i]               = blocked ? 0.0f : 1.0f;
         }
     });
+}
+
+UMBRA_FOR_EACH_PROCESSOR float LightRays::visible_fraction(const Starts& starts, int lane, PointKey key) const {
+    int seen           = 0;
+    const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
+        rays_->occluded(packet);
+        for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
+        return true;
+    });
+    return outside ? static_cast<float>(seen) / static_cast<float>(samples_.count()) : 1;
 }
 
 TriangleId LightRays::first_blocker(const Starts& starts, int lane, Facing facing, std::size_t point) const {

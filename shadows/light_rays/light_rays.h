@@ -112,15 +112,7 @@ public:
 
     /// The fraction of an area light's samples that a point sees, 1 within the light. What is behind the point's plane
     /// is not seen. Call under FlushDenormals.
-    [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const {
-        int seen           = 0;
-        const bool outside = for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {
-            rays_->occluded(packet);
-            for (int k = 0; k < 8; ++k) seen += packet.valid[k] != 0 && packet.tfar[k] >= 0;
-            return true;
-        });
-        return outside ? static_cast<float>(seen) / static_cast<float>(samples_.count()) : 1;
-    }
+    [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const;
 
     /// Writes S_j of a light without an area for the points of a tile that ask for it: one ray each.
     void trace_hard_light(const StartPlaces& places, const PointBatch& points, const PointTile& tile,

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
+
 namespace umbra::rays {
 
 namespace {
@@ -47,7 +49,8 @@ vec3 StartPlaces::exact_start(const PointBatch& points, std::size_t i) const {
     return vec3(a + double(points.u[i]) * (b - a) + double(points.v[i]) * (c - a));
 }
 
-void StartPlaces::load(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const {
+UMBRA_FOR_EACH_PROCESSOR void StartPlaces::load(const PointBatch& points, std::size_t first, std::size_t count,
+                                                Starts& starts) const {
     const RaySpace& space = space_;
     const auto load       = [&](const auto& from, auto& to) {
         const auto* source = from.data() + first;

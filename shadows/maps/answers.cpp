@@ -27,16 +27,20 @@ std::size_t SeenPicture::memory_bytes() const {
     return traced_ ? traced_->size() * kPoint : 0;
 }
 
+ivec2 texel_of(const Receiver& receiver, const MapView& view) {
+    return {std::clamp(static_cast<int>(receiver.x), 0, view.map.width() - 1),
+            std::clamp(static_cast<int>(receiver.y), 0, view.map.height() - 1)};
+}
+
 void add_texel(Reason& reason, const FoundReceiver& found, const MapView& view, Given given) {
     const Receiver& receiver = found.receiver;
-    const int x              = std::clamp(static_cast<int>(receiver.x), 0, view.map.width() - 1),
-              y              = std::clamp(static_cast<int>(receiver.y), 0, view.map.height() - 1);
-    const double stored      = view.frame.depth(view.map.nearness(x, y));
+    const ivec2 texel        = texel_of(receiver, view);
+    const double stored      = view.frame.depth(view.map.nearness(texel.x, texel.y));
     const double own         = view.frame.depth(receiver.r);
     const double compared =
         view.frame.depth(std::min(1.0, receiver.r + receiver.bias + std::min(receiver.slack, receiver.most)));
     reason.evidence.push_back({"map", static_cast<double>(found.view)});
-    reason.evidence.push_back({"texel", fmt::format("{}, {}", x, y)});
+    reason.evidence.push_back({"texel", fmt::format("{}, {}", texel.x, texel.y)});
     reason.evidence.push_back({"stored depth", stored, "world"});
     reason.evidence.push_back({"depth of the point", own, "world"});
     reason.evidence.push_back({"bias towards the light", own - compared, "world"});

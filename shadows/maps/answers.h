@@ -74,6 +74,9 @@ private:
     std::optional<PointBatch> traced_;
 };
 
+/// The texel that the point lies in, or the nearest one of the map.
+[[nodiscard]] ivec2 texel_of(const Receiver& receiver, const MapView& view);
+
 /// Adds to a reason what the map holds in the texel that the point lies in, and what that is compared with. Depths are
 /// along the view's axis, from the light or its window. The margin becomes the difference of the two depths, where it
 /// has the answer's sign: with a filter other texels may have decided.

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cmath>
+#include <mutex>
 
 #include "umbra/core/base/geometry.h"
 
@@ -10,6 +11,13 @@ namespace {
 
 constexpr double kCornerRounding = 0x1p-22;  // of a corner that was computed in float, relative
 constexpr double kGrazing        = 1e-6;     // sine: flatter light may as well lie in the plane
+
+/// Beyond which sides of a view p lies, a bit each.
+std::uint8_t sides_beyond(const dmat4& clip_from_world, dvec3 p) {
+    const dvec4 c = clip_from_world * dvec4(p, 1);
+    return static_cast<std::uint8_t>(int{c.w <= 0} | int{c.x > c.w} << 1 | int{c.x < -c.w} << 2 | int{c.y > c.w} << 3 |
+                                     int{c.y < -c.w} << 4);
+}
 
 }  // namespace
 
@@ -46,7 +54,7 @@ void Casters::find_sides() {
     const std::size_t n = planes_.size();
     parallel_ranges(n, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            Plane& plane = planes_[i];
+            CasterPlane& plane = planes_[i];
             plane.others.resize(n);
             for (std::size_t p = 0; p < planes_of_position_.size(); ++p) {
                 const std::uint64_t in = planes_of_position_[p];
@@ -106,17 +114,33 @@ std::vector<std::span<const uvec3>> SelectedCasters::seen_by(const dmat4& clip_f
     std::vector<std::span<const uvec3>> runs;
     for (const auto& part : casters_.parts_) {
         if (!all && !part.is_in(drawn_)) continue;
-        std::array<int, 5> outside{};
-        for (int corner = 0; corner < 8; ++corner) {
-            const dvec4 c = clip_from_world * dvec4(corner & 1 ? part.box.max.x : part.box.min.x,
-                                                    corner & 2 ? part.box.max.y : part.box.min.y,
-                                                    corner & 4 ? part.box.max.z : part.box.min.z, 1);
-            const std::array<bool, 5> is_outside{c.w <= 0, c.x > c.w, c.x<-c.w, c.y> c.w, c.y < -c.w};
-            for (int side = 0; side < 5; ++side) outside[side] += is_outside[side];
-        }
-        if (std::ranges::find(outside, 8) == outside.end())
-            runs.push_back(std::span(scene().triangles).subspan(part.first, part.count));
+        std::uint8_t beyond = 0xff;
+        for (int corner = 0; corner < 8; ++corner)
+            beyond &= sides_beyond(clip_from_world, {corner & 1 ? part.box.max.x : part.box.min.x,
+                                                     corner & 2 ? part.box.max.y : part.box.min.y,
+                                                     corner & 4 ? part.box.max.z : part.box.min.z});
+        if (beyond == 0) runs.push_back(std::span(scene().triangles).subspan(part.first, part.count));
     }
+    return runs;
+}
+
+std::vector<std::span<const uvec3>> SelectedCasters::reaching(const dmat4& clip_from_world) const {
+    const std::vector<vec3>& positions = scene().positions;
+    std::vector<std::uint8_t> beyond(positions.size());
+    parallel_ranges(positions.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) beyond[i] = sides_beyond(clip_from_world, dvec3(positions[i]));
+    });
+    std::vector<std::span<const uvec3>> runs;
+    std::mutex adding;
+    for (const std::span<const uvec3> part : seen_by(clip_from_world))
+        parallel_ranges(part.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+            std::vector<std::span<const uvec3>> mine;
+            for (std::size_t i = begin; i < end; ++i)
+                if ((beyond[part[i].x] & beyond[part[i].y] & beyond[part[i].z]) == 0)
+                    mine.push_back(part.subspan(i, 1));
+            const std::lock_guard lock(adding);
+            runs.insert(runs.end(), mine.begin(), mine.end());
+        });
     return runs;
 }
 

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/shadows/maps/penumbra.h"
 
 namespace umbra {
@@ -84,15 +85,21 @@ std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet
 
 namespace {
 
+// Four at a time.
+constexpr int kFour = 4;
+using Doubles       = Lanes<double, kFour>;
+using Masks         = Lanes<std::int64_t, kFour>;  ///< all bits, or none
+using Ints          = Lanes<std::int32_t, kFour>;
+
 /// Four positions in a map, in samples.
 struct FourPlaces {
-    FourDoubles x, y;
+    Doubles x, y;
 };
 
 /// Four samples of a map, and what it shows there; as is_blocked has it, in a view without midpoints.
 struct FourSamples {
-    FourDoubles nearness;  ///< where blocked
-    FourMasks blocked;
+    Doubles nearness;  ///< where blocked
+    Masks blocked;
 };
 
 /// Calls body with the mode as a constant.
@@ -106,18 +113,18 @@ auto with_mode(BiasMode mode, const Body& body) {
     return body(std::integral_constant<BiasMode, BiasMode::automatic>());
 }
 
-void floor_of(const FourDoubles& v, FourDoubles& whole) {
-    round_four(v, whole);
+void floor_of(const Doubles& v, Doubles& whole) {
+    round_lanes(v, whole);
     whole = whole > v ? whole - 1 : whole;
 }
 
 /// What four samples are compared with, as is_blocked has it, where the point's plane has the nearness `plane`.
 template <BiasMode mode>
-void find_reference(const Receiver& p, const FourDoubles& plane, FourDoubles& r) {
-    constexpr FourDoubles kZero{};
+void find_reference(const Receiver& p, const Doubles& plane, Doubles& r) {
+    constexpr Doubles kZero{};
     r = mode == BiasMode::manual ? kZero + p.r : plane;
     if (mode == BiasMode::automatic) {
-        const FourDoubles above = p.r - plane, eased = (above > 0 ? above : kZero) + p.slack;
+        const Doubles above = p.r - plane, eased = (above > 0 ? above : kZero) + p.slack;
         r += p.most < eased ? kZero + p.most : eased;
     }
     r += p.bias;
@@ -128,14 +135,14 @@ void find_reference(const Receiver& p, const FourDoubles& plane, FourDoubles& r)
 template <BiasMode mode>
 [[gnu::always_inline]] inline void ask(const MapView& view, const Receiver& p, const FourPlaces& at,
                                        FourSamples& found) {
-    constexpr FourDoubles kZero{};
-    FourDoubles x, y;
+    constexpr Doubles kZero{};
+    Doubles x, y;
     floor_of(at.x, x), floor_of(at.y, y);
     const double width = view.map.width(), height = view.map.height();
-    const FourMasks in_map = (x >= 0) & (y >= 0) & (x < width) & (y < height);
-    FourDoubles r;
+    const Masks in_map = (x >= 0) & (y >= 0) & (x < width) & (y < height);
+    Doubles r;
     find_reference<mode>(p, p.r + p.r_x * (x + 0.5 - p.x) + p.r_y * (y + 0.5 - p.y), r);
-    view.map.nearness(__builtin_convertvector(in_map ? y * width + x : kZero, FourInts), found.nearness);
+    view.map.nearness(__builtin_convertvector(in_map ? y * width + x : kZero, Ints), found.nearness);
     found.blocked = in_map & (found.nearness > r);
 }
 
@@ -147,7 +154,7 @@ void for_each_four(const Receiver& p, std::span<const dvec2> points, dvec2 withi
         const std::size_t n = std::min<std::size_t>(kFour, points.size() - from);
         const auto of       = [&](std::size_t k) { return points[from + std::min(k, n - 1)]; };
         const dvec2 a = of(0), b = of(1), c = of(2), d = of(3);
-        const FourDoubles x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y};
+        const Doubles x{a.x, b.x, c.x, d.x}, y{a.y, b.y, c.y, d.y};
         const FourPlaces at{p.x + within.x * (p.turn.x * x - p.turn.y * y),
                             p.y + within.y * (p.turn.y * x + p.turn.x * y)};
         body(at, static_cast<int>(n));
@@ -158,14 +165,14 @@ void for_each_four(const Receiver& p, std::span<const dvec2> points, dvec2 withi
 class BlockedCount {
 public:
     /// The first n of four.
-    void add(const FourMasks& blocked, int n) {
-        constexpr FourMasks kLane{0, 1, 2, 3};
+    void add(const Masks& blocked, int n) {
+        constexpr Masks kLane{0, 1, 2, 3};
         lanes_ -= blocked & (kLane < n);
     }
     [[nodiscard]] int all() const { return static_cast<int>((lanes_[0] + lanes_[1]) + (lanes_[2] + lanes_[3])); }
 
 private:
-    FourMasks lanes_{};
+    Masks lanes_{};
 };
 
 /// The share of a disc's samples that are not blocked, in a view without midpoints.
@@ -183,10 +190,10 @@ double lit_in_disc(const MapView& view, const Receiver& p, const Filter& filter)
         for (int k = 0; k < n; ++k) {
             const double x = std::floor(at.x[k] - 0.5), y = std::floor(at.y[k] - 0.5);
             const double fx = at.x[k] - 0.5 - x, fy = at.y[k] - 0.5 - y;
-            const FourPlaces corners{FourDoubles{x, x + 1, x, x + 1}, FourDoubles{y, y, y + 1, y + 1}};
+            const FourPlaces corners{x + Doubles{0, 1, 0, 1}, y + Doubles{0, 0, 1, 1}};
             ask<mode>(view, p, corners, samples);
-            const FourDoubles weights{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
-            const FourDoubles counts = samples.blocked ? FourDoubles{} : weights;
+            const Doubles weights{(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy};
+            const Doubles counts = samples.blocked ? Doubles{} : weights;
             lit += (counts[0] + counts[1]) + (counts[2] + counts[3]);
         }
     });
@@ -235,9 +242,9 @@ float lit_softly(const MapView& view, const Receiver& receiver, double depth, co
 /// beyond the square's side have no weight.
 template <int kBlocks, BiasMode mode>
 double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel& square) {
-    constexpr FourDoubles kSteps{0, 1, 2, 3};
-    constexpr FourDoubles kZero{};
-    FourDoubles across[kBlocks], weight[kBlocks], lit{};
+    constexpr Doubles kSteps{0, 1, 2, 3};
+    constexpr Doubles kZero{};
+    Doubles across[kBlocks], weight[kBlocks], lit{};
     for (int b = 0; b < kBlocks; ++b) {
         across[b] = p.r + p.r_x * (square.x + kFour * b + kSteps + 0.5 - p.x);
         std::memcpy(&weight[b], &square.across[kFour * b], sizeof weight[b]);
@@ -246,7 +253,7 @@ double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel&
     for (int j = 0; j < square.side; ++j) {
         const double down = p.r_y * (square.y + j + 0.5 - p.y), of_row = square.down[j];
         for (int b = 0; b < kBlocks; ++b) {
-            FourDoubles nearest, r;
+            Doubles nearest, r;
             view.map.nearness(square.x + kFour * b, square.y + j, nearest);
             find_reference<mode>(p, across[b] + down, r);
             lit += nearest > r ? kZero : weight[b] * of_row;
@@ -262,7 +269,7 @@ double lit_in_square(const MapView& view, const Receiver& p, BiasMode mode, cons
 
 }  // namespace
 
-float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
+UMBRA_FOR_EACH_PROCESSOR float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Filter& filter) {
     if (filter.is_one_sample())
         return is_blocked(view, p, static_cast<int>(std::floor(p.x)), static_cast<int>(std::floor(p.y)), mode) ? 0.0f
                                                                                                                : 1.0f;
@@ -292,7 +299,8 @@ float lit_share(const MapView& view, const Receiver& p, BiasMode mode, const Fil
     return static_cast<float>(std::clamp(lit / whole, 0.0, 1.0));
 }
 
-float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode, const SoftFilter& filter) {
+UMBRA_FOR_EACH_PROCESSOR float soft_share(const MapView& view, const Receiver& receiver, double depth, BiasMode mode,
+                                          const SoftFilter& filter) {
     return with_mode(mode, [&](auto constant) {
         return view.midpoint ? lit_softly<constant.value, true>(view, receiver, depth, filter)
                              : lit_softly<constant.value, false>(view, receiver, depth, filter);

@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/math.h"
-#include "umbra/shadows/maps/four_lanes.h"
 #include "umbra/shadows/maps/rasteriser.h"
 
 namespace umbra {
@@ -37,14 +37,15 @@ public:
     [[nodiscard]] bool is_empty(int x, int y) const { return word(x, y) == far_word_; }
 
     /// The same at (x, y) to (x + 3, y).
-    void nearness(int x, int y, FourDoubles& four) const {
-        FourWords words;
+    void nearness(int x, int y, Lanes<double, 4>& four) const {
+        Lanes<std::uint32_t, 4> words;
         std::memcpy(&words, words_.get() + static_cast<std::size_t>(y) * width_ + x, sizeof words);
         decode(words, four);
     }
     /// The same at samples y * width + x.
-    void nearness(const FourInts& samples, FourDoubles& four) const {
-        const FourWords words{words_[samples[0]], words_[samples[1]], words_[samples[2]], words_[samples[3]]};
+    void nearness(const Lanes<std::int32_t, 4>& samples, Lanes<double, 4>& four) const {
+        const Lanes<std::uint32_t, 4> words{words_[samples[0]], words_[samples[1]], words_[samples[2]],
+                                            words_[samples[3]]};
         decode(words, four);
     }
 
@@ -91,11 +92,11 @@ private:
         if (format_ == DepthFormat::float32) return std::bit_cast<float>(kFarWord - word);
         return 1 - word * step_;
     }
-    void decode(const FourWords& words, FourDoubles& four) const {
+    void decode(const Lanes<std::uint32_t, 4>& words, Lanes<double, 4>& four) const {
         if (format_ == DepthFormat::float32) {
-            four = __builtin_convertvector(reinterpret_cast<FourFloats>(kFarWord - words), FourDoubles);
+            four = __builtin_convertvector(reinterpret_cast<Lanes<float, 4>>(kFarWord - words), Lanes<double, 4>);
         } else {
-            four = 1 - __builtin_convertvector(words, FourDoubles) * step_;
+            four = 1 - __builtin_convertvector(words, Lanes<double, 4>) * step_;
         }
     }
     [[nodiscard]] DepthCode code() const { return {format_, far_word_}; }

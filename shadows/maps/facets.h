@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/scene/scene.h"
@@ -41,34 +42,40 @@ void for_each_facet(const Scene& scene, const PointBatch& points, LightId light,
     });
 }
 
+/// Calls body(first, which, points) for runs of eight points, from point `begin` on, a multiple of 8, to `end`.
+template <class Body>
+UMBRA_FOR_EACH_PROCESSOR void for_each_eight_facets(const Scene& scene, const PointBatch& points, LightId light,
+                                                    std::size_t begin, std::size_t end, const Body& body) {
+    Facet facet{};
+    TriangleId triangle = kNoTriangle;
+    bool flipped        = false;
+    for (std::size_t first = begin; first < end; first += 8) {
+        FacetPoints8 at;
+        unsigned which = 0;
+        for (std::size_t k = 0; k < std::min<std::size_t>(8, end - first); ++k) {
+            const std::size_t i = first + k;
+            if (!points.asks(light, i)) continue;
+            if (points.triangle[i] != triangle || (points.flipped[i] != 0) != flipped) {
+                triangle = points.triangle[i];
+                flipped  = points.flipped[i] != 0;
+                facet    = facet_of(scene, triangle, flipped);
+            }
+            which |= 1u << k;
+            at.set(static_cast<int>(k),
+                   facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac,
+                   facet.normal);
+        }
+        if (which != 0) body(first, which, at);
+    }
+}
+
 /// Calls body(first, which, points) for runs of eight points, in parallel: the index of lane 0, and bit k for each lane
 /// that asks for S_j, whose point and normal are set.
 template <class Body>
 void for_each_eight_facets(const Scene& scene, const PointBatch& points, LightId light, const Body& body) {
     constexpr std::size_t kGrain = 512;
     parallel_ranges((points.size() + 7) / 8, kGrain, [&](std::size_t begin, std::size_t end) {
-        Facet facet{};
-        TriangleId triangle = kNoTriangle;
-        bool flipped        = false;
-        for (std::size_t first = 8 * begin; first < std::min(8 * end, points.size()); first += 8) {
-            FacetPoints8 at;
-            unsigned which = 0;
-            for (std::size_t k = 0; k < std::min<std::size_t>(8, points.size() - first); ++k) {
-                const std::size_t i = first + k;
-                if (!points.asks(light, i)) continue;
-                if (points.triangle[i] != triangle || (points.flipped[i] != 0) != flipped) {
-                    triangle = points.triangle[i];
-                    flipped  = points.flipped[i] != 0;
-                    facet    = facet_of(scene, triangle, flipped);
-                }
-                which |= 1u << k;
-                at.set(
-                    static_cast<int>(k),
-                    facet.a + static_cast<double>(points.u[i]) * facet.ab + static_cast<double>(points.v[i]) * facet.ac,
-                    facet.normal);
-            }
-            if (which != 0) body(first, which, at);
-        }
+        for_each_eight_facets(scene, points, light, 8 * begin, std::min(8 * end, points.size()), body);
     });
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
+
 namespace umbra {
 
 constexpr int kRolls = 16;  // orientations of the map tried about the light's direction
@@ -38,15 +40,15 @@ bool fit_to_scene(LightFrame& frame, const SelectedCasters& casters, double wide
         for (int i = 0; i < kRolls; ++i) values[kRolls + i] = cosines[i] * v.y - sines[i] * v.x;
         return values;
     });
-    const Extent depth = ranges.back();
+    const MinMax depth = ranges.back();
     int best           = 0;
     const auto area    = [&](int i) { return ranges[i].half() * ranges[kRolls + i].half(); };
     for (int i = 1; i < kRolls; ++i)
         if (area(i) < area(best)) best = i;
-    const Extent across = ranges[best], down = ranges[kRolls + best];
+    const MinMax across = ranges[best], down = ranges[kRolls + best];
     if (frame.perspective) {
         if (!(depth.min > 0)) return false;
-        for (const Extent& r : {across, down})
+        for (const MinMax& r : {across, down})
             if (std::max(-r.min, r.max) > widest) return false;
     }
 

@@ -150,6 +150,20 @@ DepthMap Fitting::new_map(int resolution) {
     return map;
 }
 
+/// Of a map of size x size samples, as wide as those of the view's, that shows one of them at (size / 2, size / 2).
+dmat4 clip_around(const MapView& view, ivec2 sample, int size) {
+    const double there = 1.0 / size;
+    const dvec2 samples(view.map.width(), view.map.height());
+    const dvec2 here = (2.0 * dvec2(sample) + 1.0) / samples - 1.0, scale = samples / static_cast<double>(size);
+    dmat4 clip_from_world = view.frame.clip_from_world();
+    for (int column = 0; column < 4; ++column) {
+        dvec4& c = clip_from_world[column];
+        c.x      = (c.x - here.x * c.w) * scale.x + there * c.w;
+        c.y      = (c.y - here.y * c.w) * scale.y + there * c.w;
+    }
+    return clip_from_world;
+}
+
 }  // namespace
 
 double LightViews::half_of_memory() { return 0.5 * usable_memory(); }
@@ -162,22 +176,20 @@ std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& caste
 }
 
 TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample) {
-    // A map of the same samples' width that shows this one at (4, 4).
-    constexpr int kSize = 8, kAt = 4;
-    constexpr double kPlace = (2.0 * kAt + 1) / kSize - 1;
-    const dvec2 samples(view.map.width(), view.map.height());
-    const dvec2 place = (2.0 * dvec2(sample) + 1.0) / samples - 1.0, scale = samples / static_cast<double>(kSize);
-    dmat4 clip_from_world = view.frame.clip_from_world();
-    for (int column = 0; column < 4; ++column) {
-        dvec4& c = clip_from_world[column];
-        c.x      = (c.x - place.x * c.w) * scale.x + kPlace * c.w;
-        c.y      = (c.y - place.y * c.w) * scale.y + kPlace * c.w;
-    }
+    constexpr int kSize         = 8;
+    const dmat4 clip_from_world = clip_around(view, sample, kSize);
     DepthMap around(kSize, kSize, view.map.format());
     const Scene& scene   = casters.scene();
-    const auto triangles = casters.seen_by(clip_from_world);
+    const auto triangles = casters.reaching(clip_from_world);
     around.draw(clip_from_world, scene.positions, triangles, faces);
-    return around.owners(clip_from_world, scene.positions, scene.triangles, triangles, faces)[kAt * kSize + kAt];
+    return around.owners(clip_from_world, scene.positions, scene.triangles, triangles,
+                         faces)[kSize / 2 * kSize + kSize / 2];
+}
+
+void draw_around(MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample, int around) {
+    // The whole map's own corners and spans, since others are rounded otherwise.
+    view.map.draw(view.frame.clip_from_world(), casters.scene().positions,
+                  casters.reaching(clip_around(view, sample, 2 * (around + 2))), faces);
 }
 
 LightViews::LightViews(const Built& from, LightId at, const Options& options)

@@ -31,6 +31,9 @@ struct MapView {
 [[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces);
 /// The same of one sample: draws a few samples around it.
 [[nodiscard]] TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample);
+/// Draws into the view's map what reaches the samples that lie at most `around` from this one in x and in y. These
+/// become what they are in the whole map; others keep some of what they would show.
+void draw_around(MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample, int around);
 
 /// Keeps the maps of a LightViews that ends, so that the next one draws in their memory: the system clears new memory
 /// page by page, which takes longer than drawing a small scene.

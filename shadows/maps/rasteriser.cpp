@@ -8,8 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/shadows/maps/four_lanes.h"
 
 namespace umbra {
 namespace {
@@ -23,9 +23,11 @@ constexpr std::size_t kBatch = 32;    // chunks between two joins: their triangl
 constexpr int kNarrow        = 8;     // triangles of at most as many columns
 constexpr int kTall          = 32;    // and rows become fragments
 
-constexpr int kLanes = kFour;
-using Lanes          = FourDoubles;
-using Masks          = FourMasks;
+constexpr int kFour = 4;  // rows, samples or triangles at a time
+using Doubles       = Lanes<double, kFour>;
+using Masks         = Lanes<std::int64_t, kFour>;  ///< all bits, or none
+using Words         = Lanes<std::uint32_t, kFour>;
+using Ints          = Lanes<std::int32_t, kFour>;
 
 /// Corners in units of 1 / kSnapsPerSample, such that sample (x, y) lies at (kSnapsPerSample x, kSnapsPerSample y). Of
 /// positive area.
@@ -54,7 +56,7 @@ using Polygon = std::vector<dvec4>;
 
 // ---- clipping ------------------------------------------------------------------------------------------------------
 
-/// FourInts distances from the planes that bound what can be snapped.
+/// Signed distances from the planes that bound what can be snapped.
 std::array<double, 5> distances(const dvec4& c) {
     return {c.w - kMinW, kGuard * c.w - c.x, kGuard * c.w + c.x, kGuard * c.w - c.y, kGuard * c.w + c.y};
 }
@@ -79,11 +81,15 @@ void clip(Polygon& polygon) {
 
 // ---- lanes ---------------------------------------------------------------------------------------------------------
 
-[[gnu::always_inline]] inline void spread(double value, Lanes& lanes) { lanes = Lanes{} + value; }
+[[gnu::always_inline]] inline void spread(double value, Doubles& lanes) { lanes = Doubles{} + value; }
 
-[[gnu::always_inline]] inline void min_lanes(const Lanes& a, const Lanes& b, Lanes& least) { least = a < b ? a : b; }
+[[gnu::always_inline]] inline void min_lanes(const Doubles& a, const Doubles& b, Doubles& least) {
+    least = a < b ? a : b;
+}
 
-[[gnu::always_inline]] inline void max_lanes(const Lanes& a, const Lanes& b, Lanes& most) { most = a > b ? a : b; }
+[[gnu::always_inline]] inline void max_lanes(const Doubles& a, const Doubles& b, Doubles& most) {
+    most = a > b ? a : b;
+}
 
 [[gnu::always_inline]] inline bool any(const Masks& m) { return ((m[0] | m[1]) | (m[2] | m[3])) != 0; }
 
@@ -96,70 +102,70 @@ void clip(Polygon& polygon) {
 /// kSnapsPerSample = 2^10), so double arithmetic on them is exact. E >= fill: covered; 0 where the edge is a top or a
 /// left one, 1 elsewhere.
 struct Edges {
-    std::array<Lanes, 3> dx, ax, c, fill, r;
-    std::array<Lanes, 3> towards;  ///< -1 / ax
-    std::array<Lanes, 3> inwards;  ///< 1 where ax > 0, else -1: from outside the edge to inside
-    Lanes inverse_area, r_x, r_low, r_high;
-    Lanes x_first, x_last, y_first, y_last;  ///< samples of the bounding box that lie in the map
+    std::array<Doubles, 3> dx, ax, c, fill, r;
+    std::array<Doubles, 3> towards;  ///< -1 / ax
+    std::array<Doubles, 3> inwards;  ///< 1 where ax > 0, else -1: from outside the edge to inside
+    Doubles inverse_area, r_x, r_low, r_high;
+    Doubles x_first, x_last, y_first, y_last;  ///< samples of the bounding box that lie in the map
 };
 
-[[gnu::always_inline]] inline void find_edge(const Lanes& ax, const Lanes& ay, const Lanes& bx, const Lanes& by, int k,
-                                             Edges& e) {
-    const Lanes zero{};
-    const Lanes dy = by - ay;
-    e.dx[k]        = bx - ax;
-    e.ax[k]        = -dy * kSnapsPerSample;
-    e.towards[k]   = -1 / e.ax[k];
-    e.inwards[k]   = e.ax[k] > zero ? zero + 1 : zero - 1;
-    e.c[k]         = dy * ax - e.dx[k] * ay;
-    e.fill[k]      = ((dy < zero) | ((dy == zero) & (e.dx[k] > zero))) ? zero : zero + 1;
+[[gnu::always_inline]] inline void find_edge(const Doubles& ax, const Doubles& ay, const Doubles& bx, const Doubles& by,
+                                             int k, Edges& e) {
+    const Doubles zero{};
+    const Doubles dy = by - ay;
+    e.dx[k]          = bx - ax;
+    e.ax[k]          = -dy * kSnapsPerSample;
+    e.towards[k]     = -1 / e.ax[k];
+    e.inwards[k]     = e.ax[k] > zero ? zero + 1 : zero - 1;
+    e.c[k]           = dy * ax - e.dx[k] * ay;
+    e.fill[k]        = ((dy < zero) | ((dy == zero) & (e.dx[k] > zero))) ? zero : zero + 1;
 }
 
 /// All but the bounding box.
-[[gnu::always_inline]] inline void find_edges(const std::array<Lanes, 3>& x, const std::array<Lanes, 3>& y,
-                                              const std::array<Lanes, 3>& r, Edges& e) {
+[[gnu::always_inline]] inline void find_edges(const std::array<Doubles, 3>& x, const std::array<Doubles, 3>& y,
+                                              const std::array<Doubles, 3>& r, Edges& e) {
     find_edge(x[1], y[1], x[2], y[2], 0, e);
     find_edge(x[2], y[2], x[0], y[0], 1, e);
     find_edge(x[0], y[0], x[1], y[1], 2, e);
-    const Lanes zero{};
-    const Lanes one  = zero + 1;
-    const Lanes area = e.c[0] + e.c[1] + e.c[2];
-    e.r              = r;
-    e.inverse_area   = 1 / area;
-    e.r_x            = (e.ax[0] * r[0] + e.ax[1] * r[1] + e.ax[2] * r[2]) * e.inverse_area;
+    const Doubles zero{};
+    const Doubles one  = zero + 1;
+    const Doubles area = e.c[0] + e.c[1] + e.c[2];
+    e.r                = r;
+    e.inverse_area     = 1 / area;
+    e.r_x              = (e.ax[0] * r[0] + e.ax[1] * r[1] + e.ax[2] * r[2]) * e.inverse_area;
     min_lanes(r[0], r[1], e.r_low);
     min_lanes(e.r_low, r[2], e.r_low);
     max_lanes(r[0], r[1], e.r_high);
     max_lanes(e.r_high, r[2], e.r_high);
-    for (Lanes* limit : {&e.r_low, &e.r_high}) {
+    for (Doubles* limit : {&e.r_low, &e.r_high}) {
         max_lanes(*limit, zero, *limit);
         min_lanes(*limit, one, *limit);
     }
 }
 
 /// What rows y cover, a row a lane: samples [first, last], which may be empty, and the nearness at `first`.
-[[gnu::always_inline]] inline void find_spans(const Edges& e, const Lanes& y, Lanes& first, Lanes& last,
-                                              Lanes& r_first) {
-    const Lanes zero{};
-    const Lanes before = e.x_first - 1, after = e.x_last + 1;
-    std::array<Lanes, 3> value;  // E at x = 0
+[[gnu::always_inline]] inline void find_spans(const Edges& e, const Doubles& y, Doubles& first, Doubles& last,
+                                              Doubles& r_first) {
+    const Doubles zero{};
+    const Doubles before = e.x_first - 1, after = e.x_last + 1;
+    std::array<Doubles, 3> value;  // E at x = 0
     first = e.x_first;
     last  = e.x_last;
     for (int k = 0; k < 3; ++k) {
-        value[k]      = e.dx[k] * (y * kSnapsPerSample) + e.c[k];
-        const Lanes c = value[k] - e.fill[k];  // covered where ax x + c >= 0
+        value[k]        = e.dx[k] * (y * kSnapsPerSample) + e.c[k];
+        const Doubles c = value[k] - e.fill[k];  // covered where ax x + c >= 0
         // The quotient may be off by a rounding, and the nearest whole number may be on either side: neighbours settle
         // it exactly, towards the inside and then back.
-        Lanes at = c * e.towards[k];
-        round_four(at, at);
+        Doubles at = c * e.towards[k];
+        round_lanes(at, at);
         max_lanes(at, before, at);
         min_lanes(at, after, at);
         at += e.ax[k] * at + c < zero ? e.inwards[k] : zero;
-        const Lanes back  = at - e.inwards[k];
-        at                = e.ax[k] * back + c >= zero ? back : at;
-        const Lanes low   = e.ax[k] > zero ? at : first;
-        const Lanes level = c < zero ? before : last;
-        const Lanes high  = e.ax[k] < zero ? at : e.ax[k] == zero ? level : last;
+        const Doubles back  = at - e.inwards[k];
+        at                  = e.ax[k] * back + c >= zero ? back : at;
+        const Doubles low   = e.ax[k] > zero ? at : first;
+        const Doubles level = c < zero ? before : last;
+        const Doubles high  = e.ax[k] < zero ? at : e.ax[k] == zero ? level : last;
         max_lanes(first, low, first);
         min_lanes(last, high, last);
     }
@@ -173,13 +179,13 @@ struct Edges {
 // ---- depths --------------------------------------------------------------------------------------------------------
 
 template <DepthFormat format>
-[[gnu::always_inline]] inline void encode(const Lanes& r, std::uint32_t far_word, FourWords& bits) {
+[[gnu::always_inline]] inline void encode(const Doubles& r, std::uint32_t far_word, Words& bits) {
     if constexpr (format == DepthFormat::float32) {
-        const FourFloats kept = __builtin_convertvector(r, FourFloats);
-        bits                  = far_word - reinterpret_cast<FourWords>(kept);
+        const Lanes<float, kFour> kept = __builtin_convertvector(r, Lanes<float, kFour>);
+        bits                           = far_word - reinterpret_cast<Words>(kept);
     } else {
         // Adding 2^52 leaves the rounded whole number in the low bits.
-        bits = __builtin_convertvector(reinterpret_cast<Masks>((1 - r) * far_word + 0x1p52), FourWords);
+        bits = __builtin_convertvector(reinterpret_cast<Masks>((1 - r) * far_word + 0x1p52), Words);
     }
 }
 
@@ -203,9 +209,8 @@ auto with_format(DepthFormat format, const Body& body) {
 
 // ---- narrow triangles ----------------------------------------------------------------------------------------------
 
-using Columns = std::int32_t __attribute__((vector_size(8 * sizeof(std::int32_t))));
-
-using RowBits = std::uint32_t __attribute__((vector_size(8 * sizeof(std::int32_t))));
+using Columns = Lanes<std::int32_t>;
+using RowBits = Lanes<std::uint32_t>;
 
 /// Column x has its bits in byte x % 4, bit 0 for the first of eight rows.
 constexpr RowBits kFirstRow{1, 1 << 8, 1 << 16, 1 << 24, 1, 1 << 8, 1 << 16, 1 << 24};
@@ -262,9 +267,10 @@ struct Owner {
 
 /// Rows [row_begin, row_end) of one triangle.
 template <DepthFormat format, class Keep>
-void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing, const Keep& keep) {
+UMBRA_FOR_EACH_PROCESSOR void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing,
+                                   const Keep& keep) {
     Edges e;
-    std::array<Lanes, 3> x, y, r;
+    std::array<Doubles, 3> x, y, r;
     for (int k = 0; k < 3; ++k) {
         spread(t.x[k], x[k]);
         spread(t.y[k], y[k]);
@@ -278,23 +284,23 @@ void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing, 
     const int y_first = std::max(static_cast<int>(std::ceil(y_low / kSnapsPerSample)), row_begin);
     const int y_last  = std::min(static_cast<int>(std::floor(y_high / kSnapsPerSample)), row_end - 1);
 
-    constexpr Lanes kSteps{0, 1, 2, 3};
-    constexpr FourInts kWholeSteps{0, 1, 2, 3};
+    constexpr Doubles kSteps{0, 1, 2, 3};
+    constexpr Ints kWholeSteps{0, 1, 2, 3};
     const std::size_t band_end = static_cast<std::size_t>(row_end) * drawing.width;
-    const Lanes r_low = e.r_low, r_high = e.r_high;
+    const Doubles r_low = e.r_low, r_high = e.r_high;
     const double r_x             = e.r_x[0];
     const std::uint32_t far_word = drawing.code.far_word;
-    for (int row = y_first; row <= y_last; row += kLanes) {
-        Lanes rows, first, last, r_first;
-        for (int k = 0; k < kLanes; ++k) rows[k] = row + k;
+    for (int row = y_first; row <= y_last; row += kFour) {
+        Doubles rows, first, last, r_first;
+        for (int k = 0; k < kFour; ++k) rows[k] = row + k;
         find_spans(e, rows, first, last, r_first);
-        for (int k = 0; k < std::min(kLanes, y_last - row + 1); ++k) {
+        for (int k = 0; k < std::min(kFour, y_last - row + 1); ++k) {
             const int begin        = static_cast<int>(first[k]);
             const int count        = static_cast<int>(last[k]) - begin + 1;
             const double r_begin   = r_first[k];
             const std::size_t from = static_cast<std::size_t>(row + k) * drawing.width + begin;
-            const auto word        = [&](int i, FourWords& words) {
-                Lanes at;
+            const auto word        = [&](int i, Words& words) {
+                Doubles at;
                 max_lanes(r_begin + r_x * (kSteps + i), r_low, at);
                 min_lanes(at, r_high, at);
                 encode<format>(at, far_word, words);
@@ -302,20 +308,20 @@ void fill(const Snapped& t, int row_begin, int row_end, const Drawing& drawing, 
             int i = 0;
             if constexpr (std::is_same_v<Keep, Nearest>) {
                 // Samples behind the span's last one get their own word again, which is safe within the band.
-                if (from + count + kLanes <= band_end)
-                    for (; i < count; i += kLanes) {
-                        FourWords words, kept;
+                if (from + count + kFour <= band_end)
+                    for (; i < count; i += kFour) {
+                        Words words, kept;
                         word(i, words);
-                        words |= reinterpret_cast<FourWords>(kWholeSteps >= count - i);
+                        words |= reinterpret_cast<Words>(kWholeSteps >= count - i);
                         std::memcpy(&kept, keep.words + from + i, sizeof kept);
                         kept = kept < words ? kept : words;
                         std::memcpy(keep.words + from + i, &kept, sizeof kept);
                     }
             }
-            for (; i < count; i += kLanes) {
-                FourWords words;
+            for (; i < count; i += kFour) {
+                Words words;
                 word(i, words);
-                for (int l = 0; l < std::min(kLanes, count - i); ++l) keep(from + i + l, words[l], t.from);
+                for (int l = 0; l < std::min(kFour, count - i); ++l) keep(from + i + l, words[l], t.from);
             }
         }
     }
@@ -337,15 +343,15 @@ public:
     }
 
     void snap(std::span<const uvec3> triangles) {
-        for (std::size_t i = 0; i < triangles.size(); i += kLanes)
-            snap_four(triangles.subspan(i, std::min<std::size_t>(kLanes, triangles.size() - i)));
+        for (std::size_t i = 0; i < triangles.size(); i += kFour)
+            snap_four(triangles.subspan(i, std::min<std::size_t>(kFour, triangles.size() - i)));
     }
 
 private:
     void snap_four(std::span<const uvec3> triangles);
-    void clip_and_snap(const std::array<std::array<Lanes, 3>, 4>& corners, int lane, const uvec3* from);
+    void clip_and_snap(const std::array<std::array<Doubles, 3>, 4>& corners, int lane, const uvec3* from);
     /// Triangles of `drawn` lanes, whose corners are in units of samples' spacings.
-    void place(const std::array<Lanes, 3>& x, const std::array<Lanes, 3>& y, const std::array<Lanes, 3>& r,
+    void place(const std::array<Doubles, 3>& x, const std::array<Doubles, 3>& y, const std::array<Doubles, 3>& r,
                const Masks& drawn, const uvec3* const* from);
     /// Triangles of at most kNarrow columns and kTall rows.
     void add_narrow(const Edges& e, const Masks& drawn);
@@ -358,19 +364,19 @@ private:
 };
 
 template <DepthFormat format>
-void Snapper<format>::snap_four(std::span<const uvec3> triangles) {
-    // X, Y, R and W of three corners. Lanes without a triangle take the last one's, and are not drawn.
-    std::array<std::array<Lanes, 3>, 4> c;
-    std::array<const uvec3*, kLanes> from;
+UMBRA_FOR_EACH_PROCESSOR void Snapper<format>::snap_four(std::span<const uvec3> triangles) {
+    // X, Y, R and W of three corners. Doubles without a triangle take the last one's, and are not drawn.
+    std::array<std::array<Doubles, 3>, 4> c;
+    std::array<const uvec3*, kFour> from;
     Masks drawn{};
-    for (int l = 0; l < kLanes; ++l) {
+    for (int l = 0; l < kFour; ++l) {
         from[l]  = &triangles[std::min<std::size_t>(l, triangles.size() - 1)];
         drawn[l] = l < static_cast<int>(triangles.size()) ? -1 : 0;
     }
     const dmat4& m = drawing_.clip_from_world;
     for (int k = 0; k < 3; ++k) {
-        Lanes x, y, z;
-        for (int l = 0; l < kLanes; ++l) {
+        Doubles x, y, z;
+        for (int l = 0; l < kFour; ++l) {
             const vec3& p = drawing_.positions[(*from[l])[k]];
             x[l] = p.x, y[l] = p.y, z[l] = p.z;
         }
@@ -386,69 +392,69 @@ void Snapper<format>::snap_four(std::span<const uvec3> triangles) {
         above &= Y[k] < -W[k];
         below &= Y[k] > W[k];
         behind &= W[k] < kMinW;
-        const Lanes guard = kGuard * W[k];
+        const Doubles guard = kGuard * W[k];
         inside &=
             (W[k] - kMinW >= 0) & (guard - X[k] >= 0) & (guard + X[k] >= 0) & (guard - Y[k] >= 0) & (guard + Y[k] >= 0);
     }
     drawn &= ~(left | right | above | below | behind);
     if (!any(drawn)) return;
     if (const Masks cut = drawn & ~inside; any(cut)) {
-        for (int l = 0; l < kLanes; ++l)
+        for (int l = 0; l < kFour; ++l)
             if (cut[l] != 0) clip_and_snap(c, l, from[l]);
         drawn &= inside;
         if (!any(drawn)) return;
     }
 
-    std::array<Lanes, 3> x, y, r;
+    std::array<Doubles, 3> x, y, r;
     const double width = drawing_.width, height = drawing_.height;
     for (int k = 0; k < 3; ++k) {
-        const Lanes inverse_w = 1 / W[k];
-        round_four(((X[k] * inverse_w + 1) * width - 1) * (kSnapsPerSample / 2.0), x[k]);
-        round_four(((Y[k] * inverse_w + 1) * height - 1) * (kSnapsPerSample / 2.0), y[k]);
+        const Doubles inverse_w = 1 / W[k];
+        round_lanes(((X[k] * inverse_w + 1) * width - 1) * (kSnapsPerSample / 2.0), x[k]);
+        round_lanes(((Y[k] * inverse_w + 1) * height - 1) * (kSnapsPerSample / 2.0), y[k]);
         r[k] = R[k] * inverse_w;
     }
     place(x, y, r, drawn, from.data());
 }
 
 template <DepthFormat format>
-void Snapper<format>::clip_and_snap(const std::array<std::array<Lanes, 3>, 4>& corners, int lane, const uvec3* from) {
+void Snapper<format>::clip_and_snap(const std::array<std::array<Doubles, 3>, 4>& corners, int lane, const uvec3* from) {
     polygon_.clear();
     for (int k = 0; k < 3; ++k)
         polygon_.emplace_back(corners[0][k][lane], corners[1][k][lane], corners[2][k][lane], corners[3][k][lane]);
     clip(polygon_);
-    std::array<Lanes, 3> x{}, y{}, r{};
+    std::array<Doubles, 3> x{}, y{}, r{};
     for (std::size_t i = 2; i < polygon_.size(); ++i) {
         const std::array<const dvec4*, 3> fan{&polygon_[0], &polygon_[i - 1], &polygon_[i]};
         for (int k = 0; k < 3; ++k) {
             const dvec4& v         = *fan[k];
             const double inverse_w = 1 / v.w;
-            Lanes at{((v.x * inverse_w + 1) * drawing_.width - 1) * (kSnapsPerSample / 2.0),
-                     ((v.y * inverse_w + 1) * drawing_.height - 1) * (kSnapsPerSample / 2.0)};
-            round_four(at, at);
+            Doubles at{((v.x * inverse_w + 1) * drawing_.width - 1) * (kSnapsPerSample / 2.0),
+                       ((v.y * inverse_w + 1) * drawing_.height - 1) * (kSnapsPerSample / 2.0)};
+            round_lanes(at, at);
             x[k][0] = at[0], y[k][0] = at[1], r[k][0] = v.z * inverse_w;
         }
-        const std::array<const uvec3*, kLanes> all{from, from, from, from};
+        const std::array<const uvec3*, kFour> all{from, from, from, from};
         place(x, y, r, Masks{-1, 0, 0, 0}, all.data());
     }
 }
 
 template <DepthFormat format>
-void Snapper<format>::place(const std::array<Lanes, 3>& x, const std::array<Lanes, 3>& y, const std::array<Lanes, 3>& r,
-                            const Masks& drawn, const uvec3* const* from) {
-    const Lanes zero{};
+void Snapper<format>::place(const std::array<Doubles, 3>& x, const std::array<Doubles, 3>& y,
+                            const std::array<Doubles, 3>& r, const Masks& drawn, const uvec3* const* from) {
+    const Doubles zero{};
     Edges e;
     Masks narrow = all_large_ ? Masks{} : ~Masks{};
     // Samples within the bounding box and the map. Small are triangles that are, within the map or not.
-    const auto box = [&](const std::array<Lanes, 3>& v, int samples, int small, Lanes& first, Lanes& last) {
-        Lanes low, high;
+    const auto box = [&](const std::array<Doubles, 3>& v, int samples, int small, Doubles& first, Doubles& last) {
+        Doubles low, high;
         min_lanes(v[0], v[1], low);
         min_lanes(low, v[2], low);
         max_lanes(v[0], v[1], high);
         max_lanes(high, v[2], high);
         low *= 1.0 / kSnapsPerSample;
         high *= 1.0 / kSnapsPerSample;
-        round_four(low, first);
-        round_four(high, last);
+        round_lanes(low, first);
+        round_lanes(high, last);
         first = first < low ? first + 1 : first;
         last  = last > high ? last - 1 : last;
         narrow &= last - first < small;
@@ -459,19 +465,19 @@ void Snapper<format>::place(const std::array<Lanes, 3>& x, const std::array<Lane
     box(y, drawing_.height, kTall, e.y_first, e.y_last);
 
     // With y down, anticlockwise corners have negative area.
-    const Lanes area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
-    Masks kept       = drawn & (e.x_first <= e.x_last) & (e.y_first <= e.y_last) & (area != zero);
+    const Doubles area = (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
+    Masks kept         = drawn & (e.x_first <= e.x_last) & (e.y_first <= e.y_last) & (area != zero);
     if (drawing_.faces == Faces::front) kept &= area < zero;
     if (drawing_.faces == Faces::back) kept &= area > zero;
     if (!any(kept)) return;
 
-    const std::array<Lanes, 3> px{x[0], area < zero ? x[2] : x[1], area < zero ? x[1] : x[2]};
-    const std::array<Lanes, 3> py{y[0], area < zero ? y[2] : y[1], area < zero ? y[1] : y[2]};
-    const std::array<Lanes, 3> pr{r[0], area < zero ? r[2] : r[1], area < zero ? r[1] : r[2]};
+    const std::array<Doubles, 3> px{x[0], area < zero ? x[2] : x[1], area < zero ? x[1] : x[2]};
+    const std::array<Doubles, 3> py{y[0], area < zero ? y[2] : y[1], area < zero ? y[1] : y[2]};
+    const std::array<Doubles, 3> pr{r[0], area < zero ? r[2] : r[1], area < zero ? r[1] : r[2]};
 
     narrow &= kept;
     if (const Masks large = kept & ~narrow; any(large)) {
-        for (int l = 0; l < kLanes; ++l) {
+        for (int l = 0; l < kFour; ++l) {
             if (large[l] == 0) continue;
             const auto index = static_cast<std::uint32_t>(chunk_.large.size());
             chunk_.large.push_back({{px[0][l], px[1][l], px[2][l]},
@@ -509,10 +515,10 @@ template <DepthFormat format>
 void Snapper<format>::add_narrow(const Edges& e, const Masks& drawn) {
     // E - fill at the first sample of the box, and its steps: whole numbers below 2^31 in the box and around it, since
     // the triangle is small beyond the map, too.
-    std::array<std::array<std::int32_t, kLanes>, 3> at_first, right, down;
+    std::array<std::array<std::int32_t, kFour>, 3> at_first, right, down;
     for (int k = 0; k < 3; ++k) {
-        const auto to_int = [](const Lanes& from, std::array<std::int32_t, kLanes>& to) {
-            const FourInts whole = __builtin_convertvector(from, FourInts);
+        const auto to_int = [](const Doubles& from, std::array<std::int32_t, kFour>& to) {
+            const Ints whole = __builtin_convertvector(from, Ints);
             std::memcpy(to.data(), &whole, sizeof whole);
         };
         to_int(e.ax[k] * e.x_first + (e.dx[k] * (e.y_first * kSnapsPerSample) + e.c[k]) - e.fill[k], at_first[k]);
@@ -520,7 +526,7 @@ void Snapper<format>::add_narrow(const Edges& e, const Masks& drawn) {
         to_int(e.dx[k] * kSnapsPerSample, down[k]);
     }
     constexpr Columns kColumns{0, 1, 2, 3, 4, 5, 6, 7};
-    for (int l = 0; l < kLanes; ++l) {
+    for (int l = 0; l < kFour; ++l) {
         if (drawn[l] == 0) continue;
         const int x_first = static_cast<int>(e.x_first[l]), columns = static_cast<int>(e.x_last[l]) - x_first + 1;
         const int y_first = static_cast<int>(e.y_first[l]), y_last = static_cast<int>(e.y_last[l]);

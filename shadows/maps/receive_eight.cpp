@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
+
 namespace umbra {
 namespace {
 
-using Lanes = double[8];
+using Doubles = LaneArray<double>;
 
 /// A few points one by one, where the bias moves them first.
 Receivers8 one_by_one(const MapView& view, const FacetPoints8& points, unsigned which, const Bias& bias,
@@ -32,7 +34,7 @@ Receivers8 receive_lanes(const MapView& view, const FacetPoints8& points, unsign
                          const Filter& filter) {
     const LightFrame& f = view.frame;
     const auto dot      = [](dvec3 a, double x, double y, double z) { return a.x * x + a.y * y + a.z * z; };
-    Lanes vx, vy, vz, ax, ay;
+    Doubles vx, vy, vz, ax, ay;
     int covered[8];
     for (int k = 0; k < 8; ++k) {
         const double x = points.px[k] - f.origin.x, y = points.py[k] - f.origin.y, z = points.pz[k] - f.origin.z;
@@ -57,7 +59,7 @@ Receivers8 receive_lanes(const MapView& view, const FacetPoints8& points, unsign
     const double near = f.near, far = f.far;
     const bool manual   = bias.mode == BiasMode::manual;
     const bool is_plane = bias.mode == BiasMode::receiver_plane;
-    Lanes largest, per_depth, scale, nx, ny;
+    Doubles largest, per_depth, scale, nx, ny;
     for (int k = 0; k < 8; ++k) {
         nx[k]           = dot(f.x, points.nx[k], points.ny[k], points.nz[k]);
         ny[k]           = dot(f.y, points.nx[k], points.ny[k], points.nz[k]);
@@ -104,16 +106,16 @@ Receivers8 receive_lanes(const MapView& view, const FacetPoints8& points, unsign
 
 }  // namespace
 
-Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsigned which, const Bias& bias,
-                         const Filter& filter) {
+UMBRA_FOR_EACH_PROCESSOR Receivers8 receive_eight(const MapView& view, const FacetPoints8& points, unsigned which,
+                                                  const Bias& bias, const Filter& filter) {
     if (bias.normal_offset > 0) return one_by_one(view, points, which, bias, filter);
     return view.frame.perspective ? receive_lanes<true>(view, points, which, bias, filter)
                                   : receive_lanes<false>(view, points, which, bias, filter);
 }
 
-unsigned lit_lanes(const MapView& view, const Receivers8& p, BiasMode mode) {
+UMBRA_FOR_EACH_PROCESSOR unsigned lit_lanes(const MapView& view, const Receivers8& p, BiasMode mode) {
     const bool manual = mode == BiasMode::manual, automatic = mode == BiasMode::automatic;
-    Lanes x, y, bound;
+    Doubles x, y, bound;
     for (int k = 0; k < 8; ++k) {
         x[k] = std::floor(p.x[k]), y[k] = std::floor(p.y[k]);
         const double plane = p.r[k] + p.r_x[k] * (x[k] + 0.5 - p.x[k]) + p.r_y[k] * (y[k] + 0.5 - p.y[k]);

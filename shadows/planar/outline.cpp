@@ -10,7 +10,6 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
-#include "umbra/core/scene/topology.h"
 
 namespace umbra::planar {
 namespace {
@@ -23,12 +22,12 @@ constexpr double kHighest = 1 - 0x1p-10;
 double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// A vertex, its shadow, and how far rounding may have moved that.
-struct Corner {
+struct ShadowCorner {
     dvec3 at{0};
     dvec2 shadow{0};
     double slack = 0;
 
-    Corner(const LocalSource& source, dvec3 x) : at(x), shadow(source.project(x)) {
+    ShadowCorner(const LocalSource& source, dvec3 x) : at(x), shadow(source.project(x)) {
         const double height = source.at_infinity ? source.at.z : source.at.z - x.z;
         const double length = sum_of_magnitudes(source.at_infinity ? source.at : source.at - x);
         slack =
@@ -80,52 +79,9 @@ struct Counts {
     }
 };
 
-}  // namespace
-
-std::size_t Outline::memory_bytes() const {
-    std::size_t bytes = sizeof(Outline) + edges.capacity() * sizeof(OutlineEdge);
-    for (const Shadows& run : rest) bytes += run.memory_bytes();
-    return bytes;
-}
-
-OccluderEdges::OccluderEdges(const Occluders& occluders) : occluders_(&occluders) {
-    const auto count  = static_cast<std::uint32_t>(occluders.scene->triangles.size());
-    Topology topology = find_topology(*occluders.scene, 0, count);
-    std::vector<std::uint8_t> casts(count, 0);
-    for (const TriangleId t : occluders.triangles) casts[t] = 1;
-    uses_.reserve(topology.uses.size());
-    edges_.reserve(topology.edges.size() + 1);
-    for (const umbra::Edge& e : topology.edges) {
-        const auto first = static_cast<std::uint32_t>(uses_.size());
-        for (std::uint32_t k = e.first; k < e.first + e.count; ++k)
-            if (casts[topology.uses[k].triangle] != 0)
-                uses_.push_back({topology.uses[k].triangle & 0x7fffffffu, topology.uses[k].forward ? 1u : 0u});
-        if (uses_.size() > first) edges_.push_back({e.a, e.b, first});
-    }
-    edges_.push_back({0, 0, static_cast<std::uint32_t>(uses_.size())});
-    corners_  = std::move(topology.triangles);
-    position_ = std::move(topology.position);
-}
-
-std::vector<Outline> OccluderEdges::outlines(std::span<const Receiver> receivers, const Source& source) const {
-    // On which side of a triangle the source is: +1 where its winding faces it.
-    std::vector<std::int8_t> facing(corners_.size(), 0);
-    const std::vector<TriangleId>& all = occluders_->triangles;
-    parallel_ranges(all.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Scene& scene = *occluders_->scene;
-            const vec3 a = scene.vertex(all[i], 0), b = scene.vertex(all[i], 1), c = scene.vertex(all[i], 2);
-            facing[all[i]] = static_cast<std::int8_t>(source.at_infinity ? side_of_direction(a, b, c, source.at)
-                                                                         : side_of_plane(a, b, c, source.at));
-        }
-    });
-    std::vector<Outline> outlines;
-    for (const Receiver& receiver : receivers) outlines.push_back(outline(receiver, source, facing));
-    return outlines;
-}
-
-Outline OccluderEdges::outline(const Receiver& receiver, const Source& from,
-                               std::span<const std::int8_t> facing) const {
+/// Empty where the source is not above the receiver. `facing`: of each triangle, +1 where its winding faces the source.
+Outline find_outline(const Occluders& occluders, const OccluderMesh& mesh, const Receiver& receiver, const Source& from,
+                     std::span<const std::int8_t> facing) {
     const LocalSource source(receiver, from);
     Outline result;
     if (!source.is_above()) return result;
@@ -137,23 +93,23 @@ Outline OccluderEdges::outline(const Receiver& receiver, const Source& from,
     const dvec2 far2     = glm::max(glm::abs(reach.low), glm::abs(reach.high));
     const double far     = 2 * (far2.x + far2.y);
     if (!(far < 1e100)) {
-        result.rest = project(*occluders_, occluders_->triangles, receiver, from);
+        result.rest = project(occluders, occluders.triangles, receiver, from);
         return result;
     }
 
-    std::vector<dvec3> at(position_.size());
+    std::vector<dvec3> at(mesh.positions.size());
     parallel_ranges(at.size(), 8192, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) at[v] = receiver.local(occluders_->scene->positions[position_[v]]);
+        for (std::size_t v = begin; v < end; ++v) at[v] = receiver.local(mesh.position(static_cast<std::uint32_t>(v)));
     });
     // +1, -1: in the outline, to the left of its edges as wound or to their right. 0: no shadow, or one of the rest.
-    std::vector<std::int8_t> turn(corners_.size(), 0);
-    std::vector<std::uint8_t> left_out(corners_.size(), 0);
-    const std::vector<TriangleId>& all = occluders_->triangles;
+    std::vector<std::int8_t> turn(mesh.corners.size(), 0);
+    std::vector<std::uint8_t> left_out(mesh.corners.size(), 0);
+    const std::vector<TriangleId>& all = occluders.triangles;
     parallel_ranges(all.size(), 8192, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const TriangleId t = all[i];
-            if (facing[t] == 0 || occluders_->plane_of[t] == receiver.plane) continue;
-            const uvec3 c     = corners_[t];
+            if (facing[t] == 0 || occluders.plane_of[t] == receiver.plane) continue;
+            const uvec3 c     = mesh.corners[t];
             const double low  = std::min({at[c.x].z, at[c.y].z, at[c.z].z}),
                          high = std::max({at[c.x].z, at[c.y].z, at[c.z].z});
             if (high <= 0 || (!source.at_infinity && low >= source.at.z)) continue;
@@ -170,16 +126,14 @@ Outline OccluderEdges::outline(const Receiver& receiver, const Source& from,
         std::vector<OutlineEdge> edges;
         Counts counts;
     };
-    const std::size_t count = edges_.size() - 1;
+    const std::size_t count = mesh.edges.size();
     std::vector<Found> found((count + run - 1) / run, Found{{}, Counts(reach)});
     parallel_ranges(found.size(), 1, [&](std::size_t first, std::size_t last) {
         for (std::size_t r = first; r < last; ++r)
             for (std::size_t e = r * run; e < std::min(count, (r + 1) * run); ++e) {
-                int change = 0;
-                for (std::uint32_t k = edges_[e].first; k < edges_[e + 1].first; ++k)
-                    change += uses_[k].forward != 0 ? turn[uses_[k].triangle] : -turn[uses_[k].triangle];
+                const int change = mesh.edges.change(e, [&](TriangleId t) { return turn[t]; });
                 if (change == 0) continue;
-                const Corner a(source, at[edges_[e].a]), b(source, at[edges_[e].b]);
+                const ShadowCorner a(source, at[mesh.edges[e].a]), b(source, at[mesh.edges[e].b]);
                 const OutlineEdge edge{a.shadow,
                                        b.shadow,
                                        std::max(a.slack, b.slack),
@@ -195,7 +149,7 @@ Outline OccluderEdges::outline(const Receiver& receiver, const Source& from,
     for (const Found& f : found) counts.add(f.counts), size += f.edges.size();
     const auto sure = std::ranges::find(counts.doubt, 0.0) - counts.doubt.begin();
     if (static_cast<std::size_t>(sure) == counts.doubt.size()) {
-        result.rest = project(*occluders_, all, receiver, from);
+        result.rest = project(occluders, all, receiver, from);
         return result;
     }
     result.reference = counts.at[static_cast<std::size_t>(sure)];
@@ -205,13 +159,34 @@ Outline OccluderEdges::outline(const Receiver& receiver, const Source& from,
     std::vector<TriangleId> rest;
     for (const TriangleId t : all)
         if (left_out[t] != 0) rest.push_back(t);
-    result.rest = project(*occluders_, rest, receiver, from);
+    result.rest = project(occluders, rest, receiver, from);
     return result;
 }
 
-std::size_t OccluderEdges::memory_bytes() const {
-    return corners_.capacity() * sizeof(uvec3) + position_.capacity() * sizeof(std::uint32_t) +
-           edges_.capacity() * sizeof(Edge) + uses_.capacity() * sizeof(Use);
+std::vector<Outline> find_outlines(const Occluders& occluders, const OccluderMesh& mesh,
+                                   std::span<const Receiver> receivers, const Source& source) {
+    std::vector<std::int8_t> facing(mesh.corners.size(), 0);
+    const std::vector<TriangleId>& all = occluders.triangles;
+    parallel_ranges(all.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const Scene& scene = *occluders.scene;
+            const vec3 a = scene.vertex(all[i], 0), b = scene.vertex(all[i], 1), c = scene.vertex(all[i], 2);
+            facing[all[i]] = static_cast<std::int8_t>(source.at_infinity ? side_of_direction(a, b, c, source.at)
+                                                                         : side_of_plane(a, b, c, source.at));
+        }
+    });
+    std::vector<Outline> outlines;
+    for (const Receiver& receiver : receivers)
+        outlines.push_back(find_outline(occluders, mesh, receiver, source, facing));
+    return outlines;
+}
+
+}  // namespace
+
+std::size_t Outline::memory_bytes() const {
+    std::size_t bytes = sizeof(Outline) + edges.capacity() * sizeof(OutlineEdge);
+    for (const Shadows& run : rest) bytes += run.memory_bytes();
+    return bytes;
 }
 
 std::size_t memory_bytes(const LightOutlines& outlines) {
@@ -221,13 +196,13 @@ std::size_t memory_bytes(const LightOutlines& outlines) {
     return bytes;
 }
 
-LightOutlines project(const Occluders& occluders, const OccluderEdges* edges, std::span<const Receiver> receivers,
+LightOutlines project(const Occluders& occluders, const OccluderMesh* mesh, std::span<const Receiver> receivers,
                       std::span<const Source> sources, double memory_limit) {
     LightOutlines all;
     double bytes = 0;
     for (const Source& source : sources) {
-        if (edges != nullptr) {
-            all.push_back(edges->outlines(receivers, source));
+        if (mesh != nullptr) {
+            all.push_back(find_outlines(occluders, *mesh, receivers, source));
         } else {
             all.emplace_back(receivers.size());
             for (std::size_t r = 0; r < receivers.size(); ++r)

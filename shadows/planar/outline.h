@@ -5,20 +5,15 @@
 // borders, some ten thousand edges of a million triangles.
 //
 //        +---------+
-//       /    1    /|         change of an edge = shadows to its left - shadows to its right
+//       /    1    /|         change of an edge = shadows to its left - shadows to its right (geometry/edges.h)
 //      +---------+2|
 //      |    2    | |         The count over p is that over a reference point, plus what the edges between them change.
 //      |       p | +         p is lit where it is 0.
 //      |         |/
 //      +---------+
 //
-// Any set of triangles has right counts, closed or open, and however it is wound. So the triangles that the plane cuts
-// and those that come close to the height of the source, whose corners have no place on the plane, are left out and
-// cast their shadows one by one (project.h).
-//
-// This work is based on:
-// Philippe Bergeron. A General Version of Crow's Shadow Volumes. 1986
-// Byungmoon Kim, Kihwan Kim, Greg Turk. A Shadow-Volume Algorithm for Opaque and Transparent Nonmanifold Casters. 2008
+// The triangles that the plane cuts and those that come close to the height of the source, whose corners have no place
+// on the plane, are left out and cast their shadows one by one (project.h).
 #pragma once
 
 #include <algorithm>
@@ -28,6 +23,7 @@
 #include <span>
 #include <vector>
 
+#include "umbra/shadows/geometry/edges.h"
 #include "umbra/shadows/planar/project.h"
 
 namespace umbra::planar {
@@ -35,10 +31,10 @@ namespace umbra::planar {
 /// The shadow of an edge, in a receiver's coordinates.
 struct OutlineEdge {
     dvec2 from{0}, to{0};
-    double slack = 0;    ///< how far rounding may have moved an end in x or y
-    Side side{0, 0, 0};  ///< positive to the left, seen from `from` to `to`
-    double doubt  = 0;   ///< a side of at most this magnitude may have the wrong sign, anywhere in Outline::reach
-    double change = 0;   ///< shadows to the left less those to the right: a whole number, not 0
+    double slack = 0;            ///< how far rounding may have moved an end in x or y
+    EdgeFunction side{0, 0, 0};  ///< positive to the left, seen from `from` to `to`
+    double doubt  = 0;  ///< a side of at most this magnitude may have the wrong sign, anywhere in Outline::reach
+    double change = 0;  ///< shadows to the left less those to the right: a whole number, not 0
 };
 
 /// The shadows on one receiver from one source.
@@ -67,8 +63,8 @@ void add_changes(const OutlineEdge& edge, dvec2 from, const double (&to_x)[lanes
     for (std::size_t k = 0; k < lanes; ++k) near_x |= (to_x[k] >= low_x) & (to_x[k] <= high_x);
     if (!strip_y && near_x == 0) return;
 
-    const Side s       = edge.side;
-    const double first = s.at(from.x, from.y);
+    const EdgeFunction s = edge.side;
+    const double first   = s.at(from.x, from.y);
     const bool left = first > 0, near_first = std::abs(first) <= edge.doubt;
     const bool spans_y = (edge.from.y <= from.y) != (edge.to.y <= from.y);
     // As factors: loops without branches become vector code.
@@ -90,45 +86,15 @@ void add_changes(const OutlineEdge& edge, dvec2 from, const double (&to_x)[lanes
 inline constexpr std::array<std::array<double, 2>, 4> kPlaces{
     {{0.5012893, 0.4970367}, {0.4571811, 0.5370713}, {0.5320179, 0.4679841}, {0.3819571, 0.6180713}}};
 
-/// The edges of all occluders, without which no outline is found.
-class OccluderEdges {
-public:
-    /// `occluders` must outlive this object.
-    explicit OccluderEdges(const Occluders& occluders);
-
-    /// The outline on each of the receivers, an empty one where the source is not above a receiver.
-    [[nodiscard]] std::vector<Outline> outlines(std::span<const Receiver> receivers, const Source& source) const;
-
-    [[nodiscard]] std::size_t memory_bytes() const;
-
-private:
-    struct Use {
-        std::uint32_t triangle : 31;
-        std::uint32_t forward : 1;  ///< the triangle runs the edge from a to b
-    };
-    struct Edge {
-        std::uint32_t a, b;   ///< vertices
-        std::uint32_t first;  ///< of its uses, which end where those of the next edge begin
-    };
-
-    [[nodiscard]] Outline outline(const Receiver& receiver, const Source& from,
-                                  std::span<const std::int8_t> facing) const;
-
-    const Occluders* occluders_;
-    std::vector<uvec3> corners_;           ///< vertices of each triangle
-    std::vector<std::uint32_t> position_;  ///< of each vertex
-    std::vector<Edge> edges_;              ///< and one more
-    std::vector<Use> uses_;                ///< by occluders
-};
-
 /// The outlines on all receivers from all sources: [source][receiver].
 using LightOutlines = std::vector<std::vector<Outline>>;
 [[nodiscard]] std::size_t memory_bytes(const LightOutlines& outlines);
 
-/// Projects from every source onto every receiver: outlines where there are `edges`, else every triangle for itself
-/// (Outline::rest). Throws UsageError where several sources' shadows take more than `memory_limit` bytes: how many
-/// would fit. One source is never refused. In use there may be one source's shadows more than the limit for a moment.
-[[nodiscard]] LightOutlines project(const Occluders& occluders, const OccluderEdges* edges,
+/// Projects from every source onto every receiver: outlines where there is the scene's `mesh`, empty ones where the
+/// source is not above a receiver; else every triangle for itself (Outline::rest). Throws UsageError where several
+/// sources' shadows take more than `memory_limit` bytes: how many would fit. One source is never refused. In use there
+/// may be one source's shadows more than the limit for a moment.
+[[nodiscard]] LightOutlines project(const Occluders& occluders, const OccluderMesh* mesh,
                                     std::span<const Receiver> receivers, std::span<const Source> sources,
                                     double memory_limit);
 

@@ -24,6 +24,7 @@
 #include <optional>
 
 #include "umbra/core/base/heights.h"
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
@@ -34,19 +35,10 @@
 #include "umbra/shadows/planar/project.h"
 
 namespace umbra {
-namespace {
 
-using planar::DarkeningTree;
-using planar::LocalSource;
-using planar::OccluderEdges;
-using planar::Occluders;
-using planar::Outline;
-using planar::Places;
-using planar::PlaneTree;
-using planar::Receiver;
-using planar::Shadow;
-using planar::Shadows;
-using planar::Source;
+using namespace planar;
+
+namespace {
 
 /// The part of the machine's memory that an area light's shadows may take.
 constexpr double kMemoryShare = 0.25;
@@ -112,7 +104,7 @@ struct Planes final : Built {
         for (const PlanarReceiver& plane : facts.planes) {
             if (!is_receiver(plane, area, options)) continue;
             const auto index = static_cast<std::uint32_t>(receivers.size() / 2);
-            for (const int side : {1, -1}) receivers.push_back(planar::make_receiver(scene, plane, index, side));
+            for (const int side : {1, -1}) receivers.push_back(make_receiver(scene, plane, index, side));
             for (const TriangleId t : plane.triangles) {
                 occluders.plane_of[t] = index;
                 const dvec3 normal    = unit_normal(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
@@ -122,28 +114,29 @@ struct Planes final : Built {
         for (TriangleId t = 0; t < scene.triangles.size(); ++t)
             if (scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
                 occluders.triangles.push_back(t);
-        if (options.edges == Edges::weighted && !receivers.empty()) edges.emplace(occluders);
+        if (options.edges == Edges::weighted && !receivers.empty())
+            mesh.emplace(scene).left_out = std::vector<std::uint8_t>();  // occluders has a list
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
         return receivers.size() * sizeof(Receiver) + occluders.plane_of.size() * sizeof(std::uint32_t) +
                occluders.triangles.size() * sizeof(TriangleId) + group_of.size() * sizeof(std::uint32_t) +
-               (edges ? edges->memory_bytes() : 0);
+               (mesh ? mesh->memory_bytes() : 0);
     }
 
     Occluders occluders;
     std::vector<Receiver> receivers;      ///< both sides of plane k at 2 k and 2 k + 1
     std::vector<std::uint32_t> group_of;  ///< of each triangle: the receiver that its front belongs to, or kNoGroup
-    std::optional<OccluderEdges> edges;
+    std::optional<OccluderMesh> mesh;     ///< where edges are projected
 };
 
 /// The shadows of one light.
-struct Projected final : Aimed {
-    Projected(const Planes& planes, LightId at, int samples)
+struct ProjectedLight final : Aimed {
+    ProjectedLight(const Planes& planes, LightId at, int samples)
         : Aimed(planes, at),
-          centre(planar::centre_of(source())),
-          sources(planar::sources_of(source(), samples)),
-          outlines(planar::project(planes.occluders, planes.edges ? &*planes.edges : nullptr, planes.receivers, sources,
-                                   kMemoryShare * usable_memory())) {}
+          centre(centre_of(source())),
+          sources(sources_of(source(), samples)),
+          outlines(project(planes.occluders, planes.mesh ? &*planes.mesh : nullptr, planes.receivers, sources,
+                           kMemoryShare * usable_memory())) {}
     [[nodiscard]] std::size_t memory_bytes() const override {
         return sources.size() * sizeof(Source) + planar::memory_bytes(outlines);
     }
@@ -158,54 +151,24 @@ using Members = std::span<const std::uint32_t>;
 
 /// A point that is off the plane by its triangle's rounding is moved along its own ray to the light's centre, which
 /// leaves unchanged what that ray meets.
-Places places_of(const Scene& scene, const PointBatch& points, Members members, const Receiver& receiver,
-                 const LocalSource& centre) {
-    constexpr std::size_t kTogether = 16;  // points whose places are computed at once
-    Places places{RawVector<double>(members.size()), RawVector<double>(members.size())};
-    parallel_ranges((members.size() + kTogether - 1) / kTogether, 1024, [&](std::size_t first, std::size_t last) {
-        TriangleId before = kNoTriangle;
-        dvec3 a{0}, ab{0}, ac{0};
-        const auto stand_on = [&](TriangleId t) {  // neighbours are mostly on one triangle
-            if (t == before) return;
-            before = t;
-            a      = receiver.local(dvec3(scene.vertex(t, 0)));
-            ab     = receiver.local(dvec3(scene.vertex(t, 1))) - a;
-            ac     = receiver.local(dvec3(scene.vertex(t, 2))) - a;
-        };
-        for (std::size_t begin = first * kTogether; begin < std::min(last * kTogether, members.size());
-             begin += kTogether) {
-            const std::size_t count = std::min(kTogether, members.size() - begin);
-            // Of points in squares of 4 x 4 pixels, the first of each row: what follows in memory is another row.
-            if (begin + 5 * kTogether < members.size())
-                for (const std::size_t k : {0, 2, 8, 10}) {
-                    const std::uint32_t p = members[begin + 4 * kTogether + k];
-                    __builtin_prefetch(&points.triangle[p]);
-                    __builtin_prefetch(&points.u[p]);
-                    __builtin_prefetch(&points.v[p]);
-                }
-            double u[kTogether], v[kTogether];
-            bool one = count == kTogether;
-            for (std::size_t k = 0; k < count; ++k) {
-                const std::uint32_t p = members[begin + k];
-                u[k] = static_cast<double>(points.u[p]), v[k] = static_cast<double>(points.v[p]);
-                one &= points.triangle[p] == points.triangle[members[begin]];
-            }
-            for (std::size_t k = 0; k < count; k += one ? kTogether : 1) {
-                stand_on(points.triangle[members[begin + k]]);
-                for (std::size_t j = k; j < (one ? kTogether : k + 1); ++j) {
-                    const double x = a.x + u[j] * ab.x + v[j] * ac.x, y = a.y + u[j] * ab.y + v[j] * ac.y;
-                    const double z = a.z + u[j] * ab.z + v[j] * ac.z;
-                    // As LocalSource::project, where the light's centre is above the point.
-                    const double step   = centre.at_infinity          ? -z / centre.at.z
-                                          : centre.at.z > std::abs(z) ? z / (centre.at.z - z)
-                                                                      : 0;
-                    places.x[begin + j] = x + step * (centre.at_infinity ? centre.at.x : x - centre.at.x);
-                    places.y[begin + j] = y + step * (centre.at_infinity ? centre.at.y : y - centre.at.y);
-                }
-            }
-        }
+PlaneTree tree_of(const Scene& scene, const PointBatch& points, Members members, const Receiver& receiver,
+                  const LocalSource& centre) {
+    LeafPlaces places(points, members, [&](TriangleId t) -> std::array<dvec3, 3> {
+        const dvec3 a = receiver.local(dvec3(scene.vertex(t, 0)));
+        return {a, receiver.local(dvec3(scene.vertex(t, 1))) - a, receiver.local(dvec3(scene.vertex(t, 2))) - a};
     });
-    return places;
+    return {members.size(), [&, places](auto& at, std::size_t begin, std::size_t end) mutable {
+                places.find(begin, end);
+                for (std::size_t k = 0; k < PlaneTree::kLeaf; ++k) {
+                    const double x = places.x[k], y = places.y[k], z = places.z[k];
+                    // As LocalSource::project, where the light's centre is above the point.
+                    const double step = centre.at_infinity          ? -z / centre.at.z
+                                        : centre.at.z > std::abs(z) ? z / (centre.at.z - z)
+                                                                    : 0;
+                    at[0][begin + k]  = x + step * (centre.at_infinity ? centre.at.x : x - centre.at.x);
+                    at[1][begin + k]  = y + step * (centre.at_infinity ? centre.at.y : y - centre.at.y);
+                }
+            }};
 }
 
 /// The surface points on the receivers.
@@ -225,12 +188,12 @@ struct OnPlanes final : Looked {
         for (std::size_t r = 0; r < groups.size(); ++r) {
             groups[r].members        = std::move(members[r]);
             const Receiver& receiver = planes.receivers[r];
-            const bool flat          = receiver.tolerance == 0;
-            if (groups[r].members.empty() || (!flat && points.raster)) continue;  // rasters are in order
+            if (!points.raster)  // rasters are in order
+                sort_in_plane(groups[r].members,
+                              [&](std::uint32_t p) { return dvec2(receiver.local(dvec3(points.position(p)))); });
+            if (groups[r].members.empty() || receiver.tolerance != 0) continue;
             const LocalSource above(receiver, {true, vec3(receiver.normal)});
-            Places places = places_of(planes.scene, points, groups[r].members, receiver, above);
-            if (!points.raster) planar::sort_in_plane(groups[r].members, places);
-            if (flat) groups[r].tree.emplace(std::move(places));
+            groups[r].tree = tree_of(planes.scene, points, groups[r].members, receiver, above);
         }
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
@@ -283,7 +246,7 @@ public:
     }
 
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<Projected>(as<Planes>(built), light, options.light_samples);
+        return std::make_unique<ProjectedLight>(as<Planes>(built), light, options.light_samples);
     }
 
     [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
@@ -292,7 +255,7 @@ public:
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
         const Planes& planes               = as<Planes>(aimed.built);
-        const Projected& light             = as<Projected>(aimed);
+        const ProjectedLight& light        = as<ProjectedLight>(aimed);
         const std::vector<Source>& sources = light.sources;
         parallel_ranges(looked.points.size(), 65536, [&](std::size_t begin, std::size_t end) {
             const Facing* const facing = looked.points.facing[aimed.light].data();
@@ -328,19 +291,18 @@ public:
 
     /// Tests every point against every shadow, since few are asked for: the first that holds one is named.
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const Planes& planes   = as<Planes>(aimed.built);
-        const Projected& light = as<Projected>(aimed);
+        const Planes& planes        = as<Planes>(aimed.built);
+        const ProjectedLight& light = as<ProjectedLight>(aimed);
         std::ranges::fill(blockers, kNoTriangle);
         for_each_receiver(light, looked, [&](std::size_t r, Members members, const PlaneTree& places) {
             const Receiver& receiver = planes.receivers[r];
             for (const Source& from : light.sources) {
                 const LocalSource source(receiver, from);
-                const auto shadows = planar::project(planes.occluders, planes.occluders.triangles, receiver, from);
+                const auto shadows = project(planes.occluders, planes.occluders.triangles, receiver, from);
                 parallel_ranges(members.size(), 16, [&](std::size_t begin, std::size_t end) {
                     for (std::size_t i = begin; i < end; ++i)
                         if (blockers[members[i]] == kNoTriangle)
-                            blockers[members[i]] =
-                                planar::first_over(planes.scene, receiver, source, shadows, places.at(i));
+                            blockers[members[i]] = first_over(planes.scene, receiver, source, shadows, places.point(i));
                 });
             }
         });
@@ -356,21 +318,21 @@ public:
         }
         const std::uint32_t index = side ^ looked.points.flipped[i], plane = index / 2;
         const Receiver& receiver = planes.receivers[index];
-        const LocalSource centre(receiver, as<Projected>(aimed).centre);
+        const LocalSource centre(receiver, as<ProjectedLight>(aimed).centre);
         reason.evidence.push_back({"receiver", static_cast<double>(plane)});
         reason.evidence.push_back({"flatness of the receiver", receiver.tolerance, "world"});
         reason.evidence.push_back(
             {centre.at_infinity ? "slope of the light above the receiver" : "height of the light above the receiver",
              centre.at.z, centre.at_infinity ? "" : "world"});
         if (is_area(aimed.source().kind))
-            add_samples(reason, static_cast<int>(as<Projected>(aimed).sources.size()), given);
+            add_samples(reason, static_cast<int>(as<ProjectedLight>(aimed).sources.size()), given);
         return reason;
     }
 
 private:
     /// Calls body(r, points, where they lie) with the points on receiver r that ask for the light, where there are any.
     template <class Body>
-    static void for_each_receiver(const Projected& light, const Looked& looked, const Body& body) {
+    static void for_each_receiver(const ProjectedLight& light, const Looked& looked, const Body& body) {
         const Planes& planes     = as<Planes>(light.built);
         const PointBatch& points = looked.points;
         const auto asks          = [&](std::uint32_t i) { return points.asks(light.light, i); };
@@ -394,8 +356,8 @@ private:
                 body(r, members, *tree_of_all);
             else
                 body(r, members,
-                     PlaneTree(places_of(planes.scene, points, members, planes.receivers[r],
-                                         LocalSource(planes.receivers[r], light.centre))));
+                     tree_of(planes.scene, points, members, planes.receivers[r],
+                             LocalSource(planes.receivers[r], light.centre)));
         }
     }
 
@@ -405,7 +367,7 @@ private:
         parallel_ranges(runs.size(), 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t r = first; r < last; ++r)
                 for (const Shadow& shadow : runs[r].shadows)
-                    tree.darken(shadow, planar::sides_of(scene, receiver, source, runs[r], shadow));
+                    tree.darken(shadow, sides_of(scene, receiver, source, runs[r], shadow));
         });
     }
 
@@ -414,11 +376,12 @@ private:
                                   const Planes& planes, const Receiver& receiver, const Source& from) {
         if (which.empty()) return;
         std::ranges::sort(which);  // the tree's order
-        Places some;
-        for (const std::uint32_t i : which) some.x.push_back(places.x[i]), some.y.push_back(places.y[i]);
-        const PlaneTree few_places(std::move(some));
+        const PlaneTree few_places(which.size(), [&](auto& at, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (const std::size_t axis : {0, 1}) at[axis][i] = places.at[axis][which[i]];
+        });
         DarkeningTree few(few_places);
-        const auto shadows = planar::project(planes.occluders, planes.occluders.triangles, receiver, from);
+        const auto shadows = project(planes.occluders, planes.occluders.triangles, receiver, from);
         darken(few, planes.scene, receiver, LocalSource(receiver, from), shadows);
         for (std::size_t i = 0; i < which.size(); ++i)
             if (few.is_dark(i)) tree.darken(which[i]);

@@ -225,7 +225,7 @@ std::size_t Shadows::memory_bytes() const {
 // ---- what a shadow holds --------------------------------------------------------------------------------------------
 
 /// Only differences of near points meet the large ones of a far source.
-Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) {
+EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) {
     if (before(to, from)) {
         std::swap(from, to);
         sign = -sign;
@@ -234,8 +234,8 @@ Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign) 
     return {n.x, n.y, -glm::dot(n, from)};
 }
 
-std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
-                             const Shadows& run, const Shadow& shadow) {
+std::array<EdgeFunction, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                                     const Shadows& run, const Shadow& shadow) {
     const Triangle x = shadow.is_piece ? run.pieces[shadow.triangle] : local_triangle(scene, shadow.triangle, receiver);
     // Inside, det(a - source, b - a, p - a) has the sign of the triangle seen from behind.
     const double sign = shadow.from_behind ? 1 : -1;
@@ -252,8 +252,8 @@ TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalS
     for (const Shadows& run : runs)
         for (const Shadow& shadow : run.shadows) {
             if (!in_box(shadow)) continue;
-            const std::array<Side, 3> sides = sides_of(scene, receiver, source, run, shadow);
-            if (std::ranges::all_of(sides, [&](const Side& e) { return e.at(at.x, at.y) >= 0; }))
+            const std::array<EdgeFunction, 3> sides = sides_of(scene, receiver, source, run, shadow);
+            if (std::ranges::all_of(sides, [&](const EdgeFunction& e) { return e.at(at.x, at.y) >= 0; }))
                 return run.caster(shadow);
         }
     return kNoTriangle;

@@ -113,18 +113,18 @@ struct Shadows {
 [[nodiscard]] std::vector<Shadows> project(const Occluders& occluders, std::span<const TriangleId> triangles,
                                            const Receiver& receiver, const Source& source);
 
-/// Side of a point (x, y) of the plane to the plane through the source and one edge: sign of x * a + y * b + c.
-struct Side {
+/// The side of a point (x, y) of the plane to the plane through the source and one edge: sign of x * a + y * b + c.
+struct EdgeFunction {
     double a, b, c;
     [[nodiscard]] double at(double x, double y) const { return a * x + b * y + c; }
 };
 
 /// det(from - source, to - from, p - from) times `sign`. Both triangles of an edge get the same, of opposite signs.
-[[nodiscard]] Side side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign);
+[[nodiscard]] EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign);
 
 /// The three sides of one of `run`'s shadows, positive inside. `source` is the one that it was projected from.
-[[nodiscard]] std::array<Side, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
-                                           const Shadows& run, const Shadow& shadow);
+[[nodiscard]] std::array<EdgeFunction, 3> sides_of(const Scene& scene, const Receiver& receiver,
+                                                   const LocalSource& source, const Shadows& run, const Shadow& shadow);
 
 /// The first triangle whose shadow holds the point `at` of the plane, kNoTriangle where none does.
 [[nodiscard]] TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,

@@ -33,7 +33,9 @@ struct RadiosityPatches final : Built {
 /// What aim makes: S_j of one light over all patches.
 struct RadiosityElements final : Aimed {
     RadiosityElements(const RadiosityPatches& from, LightId at)
-        : Aimed(from, at), surfaces(from), sides{Side(from.patches.size()), Side(from.patches.size())} {}
+        : Aimed(from, at),
+          surfaces(from),
+          sides{ElementsOfPatches(from.patches.size()), ElementsOfPatches(from.patches.size())} {}
     [[nodiscard]] std::size_t memory_bytes() const override;
 
     /// The element that a point lies in, of its side.
@@ -45,9 +47,9 @@ struct RadiosityElements final : Aimed {
     /// Of both sides of all patches.
     [[nodiscard]] std::size_t elements() const;
 
-    using Side = std::vector<patches::Elements>;  ///< one a patch
+    using ElementsOfPatches = std::vector<patches::Elements>;  ///< one a patch
     const RadiosityPatches& surfaces;
-    std::array<Side, 2> sides;  ///< that which the winding faces, and the other
+    std::array<ElementsOfPatches, 2> sides;  ///< that which the winding faces, and the other
 };
 
 }  // namespace umbra

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra::rays {
@@ -39,7 +40,7 @@ struct DBox {
     }
 };
 
-struct Plane {
+struct ShaftPlane {
     dvec3 normal{0};  ///< to the outside
     double offset = 0;
     [[nodiscard]] double above(dvec3 p) const { return glm::dot(normal, p) - offset; }
@@ -115,7 +116,7 @@ public:
         const dvec3 normal  = glm::cross(v[1] - v[0], v[2] - v[0]);
         const double length = glm::length(normal);
         if (!(length > 0)) return false;
-        const Plane plane{normal / length, glm::dot(normal / length, v[0])};
+        const ShaftPlane plane{normal / length, glm::dot(normal / length, v[0])};
         const double side = plane.above(ends_[0][0]) > 0 ? 1 : -1;
         double least_here = HUGE_VAL, most_here = 0, least_there = HUGE_VAL;
         for (int k = 0; k < 8; ++k) {
@@ -158,9 +159,9 @@ private:
     DBox points_, light_;
     DBox all_;                                    ///< around both, along the axes of ray space
     std::array<std::array<dvec3, 8>, 2> ends_{};  ///< corners of both in ray space
-    Plane floor_;                                 ///< rays start on it and rise
+    ShaftPlane floor_;                            ///< rays start on it and rise
     double rise_ = HUGE_VAL;                      ///< of the light above it, at least
-    std::array<Plane, 14> sides_;
+    std::array<ShaftPlane, 14> sides_;
     std::size_t side_count_ = 0;
     ShaftPlanes planes_;  ///< the same, and the floor
 };
@@ -275,8 +276,8 @@ Known LightShafts::resolve(const Run& run, const Few* among, Few& few) const {
     return few.count == 0 ? Known::lit : Known::nothing;
 }
 
-TileKnown LightShafts::known(const PointBatch& points, LightId light, const PointTile& tile,
-                             const TileStarts& starts) const {
+UMBRA_FOR_EACH_PROCESSOR TileKnown LightShafts::known(const PointBatch& points, LightId light, const PointTile& tile,
+                                                      const TileStarts& starts) const {
     TileKnown known{};
     if (!usable_) return known;
     std::array<Run, kRunsPerTile> runs;

@@ -15,6 +15,7 @@
 
 #include <optional>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/light_rays/light_rays.h"
 #include "umbra/shadows/light_rays/sample_options.h"
@@ -202,8 +203,9 @@ private:
     /// The fraction of the light's irradiance that arrives at the point. Towards a flat light the cosine at the light
     /// is the same height over the distance for all samples, so that one of direction d counts n.d / |d|^4; the disk
     /// that a point sees of a sphere spans the directions that the sphere does.
-    [[nodiscard]] static float visible_irradiance(const TracedLight& traced, const Starts& starts, int lane,
-                                                  PointKey key) {
+    UMBRA_FOR_EACH_PROCESSOR [[nodiscard]] static float visible_irradiance(const TracedLight& traced,
+                                                                           const Starts& starts, int lane,
+                                                                           PointKey key) {
         const vec3 n(starts.nx[lane], starts.ny[lane], starts.nz[lane]);
         double seen = 0, all = 0;
         const bool outside = traced.rays.for_each_packet(starts, lane, key, [&](ShadowPacket& packet) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/geometry/coherent_order.h"
 
@@ -12,17 +13,17 @@ namespace {
 /// Of a height above a plane, in float and ray space, where coordinates are about 1. Shafts are wider by much more.
 constexpr float kRounding = 4e-6f;
 
-using Lanes = float __attribute__((vector_size(32)));
-using Masks = std::int32_t __attribute__((vector_size(32)));
+using Floats = Lanes<float>;
+using Masks  = Lanes<std::int32_t>;
 
 // By reference: processors differ in how they pass and return eight numbers.
 
-void load(const float (&from)[8], Lanes& to) { std::memcpy(&to, from, sizeof to); }
+void load(const float (&from)[8], Floats& to) { std::memcpy(&to, from, sizeof to); }
 
 /// Sets the bits of the lanes that are above the plane.
 void mark_above(Masks& above, float nx, float ny, float nz, float beyond, const float (&x)[8], const float (&y)[8],
                 const float (&z)[8]) {
-    Lanes px, py, pz;
+    Floats px, py, pz;
     load(x, px), load(y, py), load(z, pz);
     above = nx * px + ny * py + nz * pz > beyond;
 }
@@ -80,7 +81,7 @@ void ShaftPlanes::add(dvec3 normal, double offset) {
     ++count_;
 }
 
-unsigned ShaftPlanes::may_meet(const EightBoxes& boxes) const {
+UMBRA_FOR_EACH_PROCESSOR unsigned ShaftPlanes::may_meet(const EightBoxes& boxes) const {
     Masks outside{}, above{};
     for (std::size_t s = 0; s < count_; ++s) {
         // The corner that is lowest above the plane.
@@ -92,7 +93,7 @@ unsigned ShaftPlanes::may_meet(const EightBoxes& boxes) const {
     return zeros(outside);
 }
 
-unsigned ShaftPlanes::may_meet(const EightTriangles& t) const {
+UMBRA_FOR_EACH_PROCESSOR unsigned ShaftPlanes::may_meet(const EightTriangles& t) const {
     Masks outside{}, a{}, b{}, c{};
     for (std::size_t s = 0; s < count_; ++s) {
         const float nx = nx_[s], ny = ny_[s], nz = nz_[s], beyond = beyond_[s];

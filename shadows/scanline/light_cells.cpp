@@ -82,7 +82,7 @@ dvec3 LightCells::seen(dvec3 p) const {
 }
 
 template <std::size_t N>
-std::optional<LightCells::Outline> LightCells::outline(int face, const std::array<dvec3, N>& corners) const {
+std::optional<LightCells::Coverage> LightCells::outline(int face, const std::array<dvec3, N>& corners) const {
     Cut<N> part;
     for (const dvec3& corner : corners) part.corner[part.count++] = infinite_ ? corner : in_face(face, corner);
     if (!infinite_) {
@@ -92,7 +92,7 @@ std::optional<LightCells::Outline> LightCells::outline(int face, const std::arra
         part = cut(part, [](dvec3 p) { return p.z * (1 + kWide) + p.y; });
     }
     if (part.count == 0) return std::nullopt;
-    Outline found;
+    Coverage found;
     for (std::size_t k = 0; k < part.count; ++k) {
         const dvec3 p = part.corner[k];
         // In the light itself all directions meet.
@@ -113,7 +113,7 @@ int LightCells::column(double x) const {
 }
 
 /// Where a segment is within a row, widened by a little.
-std::pair<double, double> LightCells::across(const Outline& segment, int row) const {
+std::pair<double, double> LightCells::across(const Coverage& segment, int row) const {
     const double step = segment.to.y - segment.from.y;
     if (std::abs(step) < kWide) return {segment.low.x, segment.high.x};
     const double cells = static_cast<double>(side_), low = 2 * row / cells - 1 - kWide,
@@ -127,6 +127,6 @@ std::pair<double, double> LightCells::across(const Outline& segment, int row) co
     return {std::max(segment.low.x, a - slack), std::min(segment.high.x, b + slack)};
 }
 
-template std::optional<LightCells::Outline> LightCells::outline(int, const std::array<dvec3, 2>&) const;
+template std::optional<LightCells::Coverage> LightCells::outline(int, const std::array<dvec3, 2>&) const;
 
 }  // namespace umbra::scanline

@@ -29,7 +29,7 @@ public:
     void visit(dvec3 a, dvec3 b, const Visit& visit) const {
         const std::array<dvec3, 2> ends{seen(a), seen(b)};
         for (int face = 0; face < faces_; ++face) {
-            const std::optional<Outline> part = outline(face, ends);
+            const std::optional<Coverage> part = outline(face, ends);
             if (!part) continue;
             const int low = column(part->low.y), high = column(part->high.y);
             for (int row = low; row <= high; ++row) {
@@ -50,16 +50,16 @@ public:
 private:
     /// What a segment or triangle covers of a face, within [-1, 1] x [-1, 1]: its extent, and the first and last of its
     /// corners.
-    struct Outline {
+    struct Coverage {
         dvec2 low{1}, high{-1}, from{0}, to{0};
     };
 
     /// From the light; of a directional light across its direction, in units of the scene.
     [[nodiscard]] dvec3 seen(dvec3 p) const;
     template <std::size_t N>
-    [[nodiscard]] std::optional<Outline> outline(int face, const std::array<dvec3, N>& corners) const;
+    [[nodiscard]] std::optional<Coverage> outline(int face, const std::array<dvec3, N>& corners) const;
     [[nodiscard]] int column(double x) const;
-    [[nodiscard]] std::pair<double, double> across(const Outline& segment, int row) const;
+    [[nodiscard]] std::pair<double, double> across(const Coverage& segment, int row) const;
     [[nodiscard]] std::size_t cell(int face, int x, int y) const {
         return (static_cast<std::size_t>(face) * side_ + static_cast<std::size_t>(y)) * side_ +
                static_cast<std::size_t>(x);

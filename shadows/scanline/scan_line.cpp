@@ -123,14 +123,14 @@ private:
 /// What a triangle hides from the light: the positions where all four of these are positive.
 struct Shadow {
     /// dot(normal, p - from).
-    struct Side {
+    struct SidePlane {
         dvec3 normal{0}, from{0};
         [[nodiscard]] double at(dvec3 p) const { return glm::dot(normal, p - from); }
     };
-    std::array<Side, 4> sides{};
+    std::array<SidePlane, 4> sides{};
 
     [[nodiscard]] bool holds(dvec3 p) const {
-        return std::ranges::all_of(sides, [p](const Side& side) { return side.at(p) > 0; });
+        return std::ranges::all_of(sides, [p](const SidePlane& side) { return side.at(p) > 0; });
     }
 };
 
@@ -179,7 +179,7 @@ private:
         const std::optional<Shadow> shadow = shadow_of(t);
         if (!shadow) return;
         Run sure{0, static_cast<double>(span.last - span.first)}, open = sure;
-        for (const Shadow::Side& side : shadow->sides) {
+        for (const Shadow::SidePlane& side : shadow->sides) {
             // Divided by depth, its value is linear along the row.
             const double a = side.at(span.a) / span.depth_a, b = side.at(span.b) / span.depth_b;
             const double slack = glm::length(side.normal) * span.shift / std::min(span.depth_a, span.depth_b);

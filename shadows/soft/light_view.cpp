@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
+
 namespace umbra::soft {
 namespace {
 
@@ -21,7 +23,7 @@ constexpr double kEndDoubt = 0x1p-18;        ///< of W where a ray meets a trian
 double size(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// A segment's part, from its beginning 0 to its end 1.
-struct Part {
+struct Stretch {
     double from = 0, to = 1;
     [[nodiscard]] bool empty() const { return !(from < to); }
 
@@ -78,12 +80,12 @@ void LightView::set_shaft(Shafts& shafts, std::size_t lane) const {
 std::optional<FlatEdge> LightView::flatten(const LightEdge& edge) const {
     const dvec3 a = place(edge.a), b = place(edge.b);
     FlatEdge flat;
-    Part part;
+    Stretch part;
     part.cut(a.z - start_, b.z - start_);
     part.cut(kEnd - a.z, kEnd - b.z);
     if (part.empty()) return flat;
-    const Part before = part;  // the light
-    const auto at     = [&](double t) {
+    const Stretch before = part;  // the light
+    const auto at        = [&](double t) {
         const dvec3 q = t == 0 ? a : t == 1 ? b : a + t * (b - a);
         return vec2(dvec2(q) * (1 / q.z));
     };
@@ -144,7 +146,7 @@ bool LightView::may_end_within(vec3 a, vec3 b, vec3 c) const {
     };
     for (std::size_t k = 0; k < 3; ++k) {
         const dvec3 &p = corner[k], &q = corner[(k + 1) % 3];
-        Part part;
+        Stretch part;
         part.cut(p.z - (kEnd - kEndDoubt), q.z - (kEnd - kEndDoubt));
         part.cut(kEnd + kEndDoubt - p.z, kEnd + kEndDoubt - q.z);
         if (part.empty()) continue;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
 
@@ -50,24 +51,12 @@ constexpr double kSceneRadius = 4;  ///< ray space holds the scene within 2 each
 
 }  // namespace
 
-OccluderEdges::OccluderEdges(const Scene& scene, const RaySpace& space) {
-    const auto triangles = static_cast<std::uint32_t>(scene.triangles.size());
-    Topology topology    = find_topology(scene, 0, triangles);
-    corners_             = std::move(topology.triangles);
-    vertices_.reserve(topology.position.size());
-    for (const std::uint32_t p : topology.position) vertices_.push_back(space.point(scene.positions[p]));
-    blocks_.resize(triangles);
-    for (TriangleId t = 0; t < triangles; ++t) blocks_[t] = topology.degenerate[t] == 0 && scene.blocks(t);
-    for (const Edge& e : topology.edges) {
-        Edge edge{e.a, e.b, static_cast<std::uint32_t>(uses_.size()), 0};
-        for (std::uint32_t k = e.first; k < e.first + e.count; ++k)
-            if (blocks(topology.uses[k].triangle)) uses_.push_back(topology.uses[k]);
-        edge.count = static_cast<std::uint32_t>(uses_.size()) - edge.first;
-        if (edge.count > 0) edges_.push_back(edge);
-    }
+RayMesh::RayMesh(const Scene& of, const RaySpace& space) : OccluderMesh(of) {
+    vertices.reserve(positions.size());
+    for (const std::uint32_t p : positions) vertices.push_back(space.point(of.positions[p]));
 }
 
-int OccluderEdges::side_of(TriangleId t, vec3 p) const {
+int RayMesh::side_of(TriangleId t, vec3 p) const {
     const vec3 a = corner(t, 0), b = corner(t, 1), c = corner(t, 2);
     // Differences of floats and their products are off by a few roundings of the products' magnitudes.
     const dvec3 ab = dvec3(b) - dvec3(a), ac = dvec3(c) - dvec3(a), ap = dvec3(p) - dvec3(a);
@@ -77,7 +66,7 @@ int OccluderEdges::side_of(TriangleId t, vec3 p) const {
     return side_of_plane(a, b, c, p);
 }
 
-bool OccluderEdges::is_next_to_edge(TriangleId t, float u, float v, double distance) const {
+bool RayMesh::is_next_to_edge(TriangleId t, float u, float v, double distance) const {
     const dvec3 a(corner(t, 0)), ab = dvec3(corner(t, 1)) - a, ac = dvec3(corner(t, 2)) - a, n = glm::cross(ab, ac);
     const double twice = glm::dot(n, n), d = distance * distance;
     // A weight is the distance from the opposite edge over the height there, which is twice the area over the edge.
@@ -85,29 +74,19 @@ bool OccluderEdges::is_next_to_edge(TriangleId t, float u, float v, double dista
     return next_to(double(u), ac) || next_to(double(v), ab) || next_to(1 - double(u) - double(v), ac - ab);
 }
 
-vec3 OccluderEdges::unit_normal(TriangleId t) const {
-    constexpr double thin = 1e-6;  // sine of an angle below which a normal, a difference of products, may be noise
-    const dvec3 a(corner(t, 0)), ab = dvec3(corner(t, 1)) - a, ac = dvec3(corner(t, 2)) - a, n = glm::cross(ab, ac);
-    const double size = glm::length(n);
-    return size > thin * glm::length(ab) * glm::length(ac) && size > 1e-290 ? vec3(n / size) : vec3(0);
-}
+std::size_t RayMesh::memory_bytes() const { return OccluderMesh::memory_bytes() + vertices.capacity() * sizeof(vec3); }
 
-std::size_t OccluderEdges::memory_bytes() const {
-    return vertices_.capacity() * sizeof(vec3) + corners_.capacity() * sizeof(uvec3) + blocks_.capacity() +
-           edges_.capacity() * sizeof(Edge) + uses_.capacity() * sizeof(EdgeUse);
-}
-
-LightEdges::LightEdges(const OccluderEdges& edges, const rays::Target& light) : occluders_(&edges) {
+LightEdges::LightEdges(const RayMesh& mesh, const rays::Target& light) : mesh_(&mesh) {
     const LightHull hull(light);
     // Rays leave 2^-16 of the segment to the light untraced: twice that, whatever the point.
     const double stretch = 2 * rays::kUntraced * (glm::length(hull.centre) + largest(hull.u) + kSceneRadius);
-    side_.resize(edges.triangles());
-    std::vector<std::uint8_t> is_near(edges.triangles());
+    side_.resize(mesh.corners.size());
+    std::vector<std::uint8_t> is_near(mesh.corners.size());
     parallel_ranges(side_.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const auto t = static_cast<TriangleId>(i);
-            if (!edges.blocks(t)) continue;
-            const vec3 a = edges.corner(t, 0), b = edges.corner(t, 1), c = edges.corner(t, 2);
+            if (!mesh.blocks(t)) continue;
+            const vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
             const dvec3 ab = dvec3(b) - dvec3(a), ac = dvec3(c) - dvec3(a);
             side_[t]   = hull.side_of_plane_with(glm::cross(ab, ac), a, 8 * 0x1p-53 * largest(ab) * largest(ac));
             is_near[t] = hull.meets(extend(extend(extend(Box{}, a), b), c), stretch);
@@ -115,20 +94,19 @@ LightEdges::LightEdges(const OccluderEdges& edges, const rays::Target& light) : 
     });
     for (TriangleId t = 0; t < is_near.size(); ++t)
         if (is_near[t] != 0) near_light_.push_back(t);
-    for (const Edge& e : edges.edges()) {
-        int change = 0;
-        bool known = true;
-        for (const EdgeUse& use : edges.uses(e.first, e.count)) {
-            known = known && side_[use.triangle] != 0;
-            change += use.forward ? side_[use.triangle] : -side_[use.triangle];
-        }
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e) {
+        bool known       = true;
+        const int change = mesh.edges.change(e, [&](TriangleId t) {
+            known = known && side_[t] != 0;
+            return side_[t];
+        });
         if (known && change == 0) continue;
-        LightEdge edge{edges.vertex(e.a), edges.vertex(e.b), e.first, e.count};
-        const auto uses = edges.uses(e.first, e.count);
-        edge.forward    = uses[0].forward ? 1 : -1;
-        if (e.count == 2) {
-            edge.normal[0] = edges.unit_normal(uses[0].triangle);
-            edge.normal[1] = edges.unit_normal(uses[1].triangle) * (uses[0].forward == uses[1].forward ? -1.0f : 1.0f);
+        const auto [a, b, first, count] = mesh.edges[e];
+        LightEdge edge{mesh.vertices[a], mesh.vertices[b], first, count};
+        for (std::uint32_t k = 0; count == 2 && k < 2; ++k) {
+            const PackedUse use = mesh.edges.uses(first, count)[k];
+            const TriangleId t  = use.triangle;
+            edge.normal[k] = turned(normal_unless_thin(mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)), use);
         }
         edges_.push_back(edge);
     }
@@ -137,30 +115,24 @@ LightEdges::LightEdges(const OccluderEdges& edges, const rays::Target& light) : 
     tree_.emplace(std::move(boxes));
 }
 
-void LightEdges::gather(const Shafts& shafts, std::vector<ShaftEdge>& found) const {
+UMBRA_FOR_EACH_PROCESSOR void LightEdges::gather(const Shafts& shafts, std::vector<ShaftEdge>& found) const {
     found.clear();
-    tree_->visit_entered(
-        [&](const Box& box) { return shafts.meeting(box) != 0; },
-        [&](std::uint32_t e) {
-            const LightEdge& edge = edges_[e];
-            const Sides one = shafts.sides_of(edge.normal[0], edge.a), two = shafts.sides_of(edge.normal[1], edge.a);
-            std::uint32_t lanes = ~((one.front & two.front) | (one.back & two.back));
-            if ((lanes & 0xffu) == 0) return;
-            lanes &= shafts.meeting(edge.a, edge.b);
-            if (lanes == 0) return;
-            const std::uint32_t front = one.front & two.back, back = one.back & two.front;
-            found.push_back({e, lanes, edge.forward > 0 ? front : back, edge.forward > 0 ? back : front});
-        });
+    tree_->visit_entered([&](const Box& box) { return shafts.meeting(box) != 0; },
+                         [&](std::uint32_t e) {
+                             const LightEdge& edge = edges_[e];
+                             const Sides one       = shafts.sides_of(edge.normal[0], edge.a),
+                                         two       = shafts.sides_of(edge.normal[1], edge.a);
+                             std::uint32_t lanes   = ~((one.front & two.back) | (one.back & two.front));
+                             if ((lanes & 0xffu) == 0) return;
+                             lanes &= shafts.meeting(edge.a, edge.b);
+                             if (lanes != 0) found.push_back({e, lanes, one.front & two.front, one.back & two.back});
+                         });
 }
 
 int LightEdges::change_at(const LightEdge& edge, vec3 p, TriangleId own) const {
-    int change = 0;
-    for (const EdgeUse& use : occluders_->uses(edge.first, edge.count)) {
-        if (use.triangle == own) continue;
-        const int side = side_[use.triangle] != 0 ? -side_[use.triangle] : occluders_->side_of(use.triangle, p);
-        change += use.forward ? side : -side;
-    }
-    return change;
+    return change_of(mesh_->edges.uses(edge.first, edge.count), [&](TriangleId t) {
+        return t == own ? 0 : side_[t] != 0 ? -side_[t] : mesh_->side_of(t, p);
+    });
 }
 
 std::size_t LightEdges::memory_bytes() const {

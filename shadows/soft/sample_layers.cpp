@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "umbra/core/base/lanes.h"
+
 namespace umbra::soft {
 namespace {
 
@@ -39,7 +41,7 @@ std::size_t SampleLayers::row_of(float y) const {
     return row >= static_cast<float>(rows_) ? rows_ - 1 : row > 0 ? static_cast<std::size_t>(row) : 0;
 }
 
-void SampleLayers::take(const rays::LightRays& light, PointKey key) {
+UMBRA_FOR_EACH_PROCESSOR void SampleLayers::take(const rays::LightRays& light, PointKey key) {
     std::fill(layers_.begin(), layers_.end(), 0);
     std::fill(doubt_.begin(), doubt_.end(), 0);
     std::fill(begin_.begin(), begin_.end(), 0);
@@ -61,7 +63,7 @@ void SampleLayers::take(const rays::LightRays& light, PointKey key) {
     }
 }
 
-void SampleLayers::add(const FlatEdge& edge, int change) {
+UMBRA_FOR_EACH_PROCESSOR void SampleLayers::add(const FlatEdge& edge, int change) {
     const std::int32_t entry = change * edge.entry, step = change * edge.step;
     if (entry != 0)
         for_each_block(begin_[row_of(edge.entry_y)], count_,
@@ -84,8 +86,8 @@ void SampleLayers::add(const FlatEdge& edge, int change) {
                    });
 }
 
-void SampleLayers::leave_out_behind(const rays::LightRays& light, const rays::SeenLight& seen,
-                                    const rays::Starts& starts, int lane, float latest) {
+UMBRA_FOR_EACH_PROCESSOR void SampleLayers::leave_out_behind(const rays::LightRays& light, const rays::SeenLight& seen,
+                                                             const rays::Starts& starts, int lane, float latest) {
     ShadowPacket packet = rays::LightRays::packet_from(starts, lane);
     for (std::size_t first = 0; first < count_; first += 8) {
         Samples8 samples;
@@ -101,7 +103,7 @@ void SampleLayers::leave_out_behind(const rays::LightRays& light, const rays::Se
     }
 }
 
-SampleLayers::Fewest SampleLayers::fewest() const {
+UMBRA_FOR_EACH_PROCESSOR SampleLayers::Fewest SampleLayers::fewest() const {
     const std::int32_t *layers = layers_.data(), *doubt = doubt_.data();
     std::int32_t least = kLeftOut;
     for (std::size_t k = 0; k < count_; ++k) least = std::min(least, doubt[k] != 0 ? kLeftOut : layers[k]);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/base/math.h"
 
 namespace umbra::soft {
@@ -17,7 +18,7 @@ struct Sides {
 /// Convex regions in ray space, one a lane: where all planes are positive. Lanes that were not set are empty.
 class Shafts {
 public:
-    static constexpr std::size_t kLanes = 8, kPlanes = 5;
+    static constexpr std::size_t kPlanes = 5;
 
     Shafts() {
         for (float& x : offset_[0]) x = -kInfinity;

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/light_rays/light_rays.h"
 #include "umbra/shadows/light_rays/sample_options.h"
@@ -57,12 +58,12 @@ struct Occluders final : Built {
         : Built(of, its_facts),
           rays(of, Met::blocking),
           places(of, rays.space(), OffsetPolicy::skip_triangle, 0),
-          edges(of, rays.space()) {}
-    [[nodiscard]] std::size_t memory_bytes() const override { return rays.memory_bytes() + edges.memory_bytes(); }
+          mesh(of, rays.space()) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return rays.memory_bytes() + mesh.memory_bytes(); }
 
     const RayScene rays;
     const StartPlaces places;
-    const OccluderEdges edges;
+    const RayMesh mesh;
 };
 
 /// One light, and the edges before it.
@@ -70,7 +71,7 @@ class SoftLight final : public Aimed {
 public:
     SoftLight(const Occluders& from, LightId at, const Options& options)
         : Aimed(from, at), occluders_(from), rays_(from.scene, from.rays, at, options) {
-        if (is_area(rays_.target().kind)) edges_.emplace(from.edges, rays_.target());
+        if (is_area(rays_.target().kind)) edges_.emplace(from.mesh, rays_.target());
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
         return rays_.memory_bytes() + (edges_ ? edges_->memory_bytes() : 0);
@@ -131,8 +132,8 @@ void SoftLight::see_tile(const PointBatch& points, const PointTile& tile, bool d
 }
 
 /// S_j of the points first .. first + count - 1, at most eight, or what it waits for.
-void SoftLight::see_run(const PointBatch& points, std::size_t first, std::size_t count, const Starts& starts,
-                        Scratch& scratch, std::span<float> s) const {
+UMBRA_FOR_EACH_PROCESSOR void SoftLight::see_run(const PointBatch& points, std::size_t first, std::size_t count,
+                                                 const Starts& starts, Scratch& scratch, std::span<float> s) const {
     std::optional<SeenLight> seen[8];
     std::optional<LightView> view[8];
     Shafts shafts;
@@ -143,8 +144,8 @@ void SoftLight::see_run(const PointBatch& points, std::size_t first, std::size_t
         view[k].emplace(starts, static_cast<int>(k), *seen[k], rays_.target());
         // A neighbour of the point's own triangle may begin where rays do, before them or after.
         if (!view[k]->is_usable() || may_end_near_light(*view[k], starts.id[k]) ||
-            occluders_.edges.is_next_to_edge(starts.id[k], points.u[first + k], points.v[first + k],
-                                             view[k]->start_reach()))
+            occluders_.mesh.is_next_to_edge(starts.id[k], points.u[first + k], points.v[first + k],
+                                            view[k]->start_reach()))
             view[k].reset();
         else
             view[k]->set_shaft(shafts, k);
@@ -162,7 +163,7 @@ void SoftLight::see_run(const PointBatch& points, std::size_t first, std::size_t
 /// Whether some ray may end within a triangle: the edges of its part before that end are not all there.
 bool SoftLight::may_end_near_light(const LightView& view, TriangleId own) const {
     return std::ranges::any_of(edges_->near_light(), [&](TriangleId t) {
-        const OccluderEdges& of = occluders_.edges;
+        const RayMesh& of = occluders_.mesh;
         return t != own && view.may_end_within(of.corner(t, 0), of.corner(t, 1), of.corner(t, 2));
     });
 }

@@ -8,9 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "umbra/core/base/parallel.h"
-#include "umbra/core/base/raw_vector.h"
-#include "umbra/core/render/points.h"
+#include "umbra/shadows/geometry/point_tree.h"
 
 namespace umbra {
 
@@ -55,30 +53,17 @@ public:
     CountingTree(const Scene& scene, const PointBatch& points);
 
     [[nodiscard]] const ViewFrame& view() const { return view_; }
-    [[nodiscard]] std::size_t memory_bytes() const;
+    [[nodiscard]] std::size_t memory_bytes() const {
+        return index_.size() * sizeof(std::uint32_t) + tree_.memory_bytes();
+    }
 
 private:
     friend class PointCounts;
-    static constexpr std::size_t kLeaf   = 16;  // points in a leaf
-    static constexpr std::size_t kFanOut = 4;   // children of a node
-    /// The boxes in (x, y, w) of four nodes that have one parent; each at its index in every array.
-    struct alignas(32) Siblings {
-        double min[3][kFanOut], max[3][kFanOut];
-    };
-    using Level = RawVector<Siblings>;
-
-    /// Up to whole siblings: the last may be empty.
-    [[nodiscard]] std::size_t leaf_count() const {
-        return (size() + kFanOut * kLeaf - 1) / (kFanOut * kLeaf) * kFanOut;
-    }
-    [[nodiscard]] std::size_t size() const { return index_.size(); }
-    void project(const Scene& scene, const PointBatch& points);
-    void build_nodes();
+    using Tree = PointTree<double, 3, 4>;
 
     RawVector<std::uint32_t> index_;  // point of the batch
     ViewFrame view_;
-    RawVector<double> x_, y_, w_;  // padded to whole leaves
-    std::vector<Level> levels_;    // leaves first; the children of node i are those at i, one level below
+    Tree tree_;
 };
 
 /// Counts at the points of a tree that need an answer for one light: those whose facing to it is `front` or `partly`.
@@ -94,29 +79,22 @@ public:
     /// same in any order.
     void add(const Region& region, std::int32_t weight);
 
-    /// Calls visit(point of the batch, sum of the weights of the regions that it lies in), in parallel. Once, at the
-    /// end.
+    /// Calls visit(point of the batch, sum of the weights of the regions that it lies in), in parallel.
     template <class Visit>
-    void for_each(const Visit& visit);
+    void for_each(const Visit& visit) const;
 
 private:
-    static constexpr std::size_t kLeaf = CountingTree::kLeaf, kFanOut = CountingTree::kFanOut;
-    using Siblings = CountingTree::Siblings;
+    using Tree                         = CountingTree::Tree;
+    static constexpr std::size_t kLeaf = Tree::kLeaf, kFanOut = Tree::kBranches;
     struct Level {
         std::vector<std::array<std::int32_t, kFanOut>> count;  // of each node of the tree
-        RawVector<std::uint8_t> asks;  // a bit for each of four: some point below needs an answer
+        RawVector<std::uint8_t> asks;  // a bit for each branch: some point below needs an answer
     };
 
-    void descend(const Region& region, std::int32_t weight, std::size_t level, std::size_t parent, unsigned open);
-    void add_to_leaf(const Region& region, std::int32_t weight, std::size_t leaf, unsigned open);
-    void push_down();
-    static unsigned within(const Siblings& nodes, const Region& region);
-    static bool are_large(const Siblings& nodes, const Region& region, unsigned which);
-    static unsigned cover(const HalfSpace& f, const Siblings& nodes);
-    static unsigned cover(const HalfSpace& f, const double* low_x, const double* high_x, const double* low_y,
-                          const double* high_y, const double* low_w, const double* high_w);
+    struct OneRegion;
 
-    const CountingTree& tree_;
+    const Tree& tree_;
+    const RawVector<std::uint32_t>& index_;
     RawVector<std::uint16_t> asks_;  // of each leaf: a bit for each point
     RawVector<std::int32_t> count_;  // of each point; set in leaves where some point asks
     std::vector<Level> levels_;
@@ -129,14 +107,19 @@ private:
 [[nodiscard]] dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin);
 
 template <class Visit>
-void PointCounts::for_each(const Visit& visit) {
-    push_down();
-    parallel_ranges(tree_.leaf_count(), 256, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t leaf = begin; leaf < end; ++leaf) {
-            const std::int32_t all = levels_[0].count[leaf / kFanOut][leaf % kFanOut];
-            for (unsigned asks = asks_[leaf]; asks != 0; asks &= asks - 1) {
-                const std::size_t k = leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(asks));
-                visit(tree_.index_[k], count_[k] + all);
+void PointCounts::for_each(const Visit& visit) const {
+    if (empty()) return;
+    parallel_ranges(levels_[0].count.size(), 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t node = begin; node < end; ++node) {
+            std::int32_t above = 0;
+            for (std::size_t level = 1, n = node; level < levels_.size(); ++level, n /= kFanOut)
+                above += levels_[level].count[n / kFanOut][n % kFanOut];
+            for (std::size_t leaf = node * kFanOut; leaf < std::min(asks_.size(), (node + 1) * kFanOut); ++leaf) {
+                const std::int32_t all = above + levels_[0].count[node][leaf % kFanOut];
+                for (unsigned asks = asks_[leaf]; asks != 0; asks &= asks - 1) {
+                    const std::size_t k = leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(asks));
+                    visit(index_[k], count_[k] + all);
+                }
             }
         }
     });

@@ -86,16 +86,16 @@ void SeenVolumes::add_far_cap(PointCounts& counts, TriangleId t, int orientation
     counts.add(region, +1);
 }
 
-void SeenVolumes::add_side(PointCounts& counts, const SilhouetteEdge& e, bool depth_fail) const {
-    const Plane plane = side_plane(e.a, e.b);
-    const int origin  = plane.origin_outside ? +1 : -1;
+void SeenVolumes::add_side(PointCounts& counts, const ChangeEdge& e, bool depth_fail) const {
+    const VolumePlane plane = side_plane(e.a, e.b);
+    const int origin        = plane.origin_outside ? +1 : -1;
     Region region;
     region.add(HalfSpace::side(plane.normal, plane.offset, depth_fail ? origin : -origin));
     region.add(HalfSpace::side(edge(e.a, e.b).normal, 0, origin));
     region.add(HalfSpace::side(glm::cross(vertices_[e.b], travel_), 0, origin));
     region.add(HalfSpace::side(glm::cross(vertices_[e.a], travel_), 0, -origin));
     if (depth_fail && !at_infinity_) region.add(HalfSpace::side(far_edge(e.a, e.b).normal, 0, -origin));
-    counts.add(region, depth_fail ? -origin * e.weight : origin * e.weight);
+    counts.add(region, depth_fail ? -origin * e.change : origin * e.change);
 }
 
 std::int32_t SeenVolumes::count_at_origin(std::span<const std::int8_t> orientation) const {
@@ -133,8 +133,8 @@ SeenVolumes::Cap SeenVolumes::near_cap(TriangleId t, int orientation) const {
     return cap;
 }
 
-SeenVolumes::Plane SeenVolumes::side_plane(std::uint32_t a, std::uint32_t b) const {
-    Plane plane;
+SeenVolumes::VolumePlane SeenVolumes::side_plane(std::uint32_t a, std::uint32_t b) const {
+    VolumePlane plane;
     plane.normal         = glm::cross(far(a), vertices_[b] - vertices_[a]);
     plane.offset         = -glm::dot(plane.normal, vertices_[a]);
     plane.origin_outside = plane.offset >= 0;

@@ -35,7 +35,7 @@ public:
     void add_far_cap(PointCounts& counts, TriangleId t, int orientation) const;
 
     /// The side that an edge extrudes.
-    void add_side(PointCounts& counts, const SilhouetteEdge& e, bool depth_fail) const;
+    void add_side(PointCounts& counts, const ChangeEdge& e, bool depth_fail) const;
 
     /// In how many volumes the view's origin lies: by the same planes, and the same rule where it lies in one.
     /// `orientation`: of each triangle, 0 where it bounds no volume.
@@ -52,12 +52,12 @@ private:
     [[nodiscard]] Cap near_cap(TriangleId t, int orientation) const;
 
     /// A side's plane, its normal out of the volume of a triangle that runs the edge from a to b.
-    struct Plane {
+    struct VolumePlane {
         dvec3 normal;
         double offset       = 0;
         bool origin_outside = false;
     };
-    [[nodiscard]] Plane side_plane(std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] VolumePlane side_plane(std::uint32_t a, std::uint32_t b) const;
 
     /// The plane through O and an edge, made the same for both directions of the edge; `sense` is -1 for the second.
     struct Line {

@@ -76,18 +76,18 @@ struct Meshes final : Built {
 /// What bounds the volumes of one light.
 struct Volumes final : Aimed {
     Volumes(const Meshes& from, LightId at, Edges which)
-        : Aimed(from, at), meshes(from.meshes), orientation(meshes.facing(source())) {
+        : Aimed(from, at), meshes(from.meshes), orientation(sides_of_light(scene(), source())) {
         leave_out_transparent();
         if (which == Edges::silhouette) leave_out_back_faces();
         edges = which == Edges::per_triangle ? all_edges() : meshes.edges(orientation);
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
-        return orientation.capacity() + edges.capacity() * sizeof(SilhouetteEdge);
+        return orientation.capacity() + edges.capacity() * sizeof(ChangeEdge);
     }
 
     const SilhouetteMeshes& meshes;
     std::vector<std::int8_t> orientation;  ///< of each triangle: +1 taken as wound, -1 flipped, 0 no occluder
-    std::vector<SilhouetteEdge> edges;
+    std::vector<ChangeEdge> edges;
 
 private:
     void leave_out_transparent() {
@@ -110,8 +110,8 @@ private:
         }
     }
 
-    [[nodiscard]] std::vector<SilhouetteEdge> all_edges() const {
-        std::vector<SilhouetteEdge> all;
+    [[nodiscard]] std::vector<ChangeEdge> all_edges() const {
+        std::vector<ChangeEdge> all;
         for (std::size_t t = 0; t < orientation.size(); ++t) {
             if (orientation[t] == 0) continue;
             for (int k = 0; k < 3; ++k) {

@@ -70,18 +70,14 @@ private:
 };
 
 /// Bit k: with every triangle turned to face direction k, those at the edge do not cancel.
-std::uint64_t silhouette_bits(const Soup& soup, const Edge& e, std::span<const std::uint64_t> facing) {
-    const EdgeUse* use = &soup.uses[e.first];
-    const auto runs    = [&](std::uint32_t i) {
-        return use[i].forward ? facing[use[i].triangle] : ~facing[use[i].triangle];
-    };
-    if (e.count % 2 == 1) return ~std::uint64_t(0);
-    if (e.count == 2) return ~(runs(0) ^ runs(1));
+std::uint64_t silhouette_bits(std::span<const PackedUse> uses, std::span<const std::uint64_t> facing) {
+    const auto runs = [&](PackedUse use) { return use.forward != 0 ? facing[use.triangle] : ~facing[use.triangle]; };
+    if (uses.size() % 2 == 1) return ~std::uint64_t(0);
+    if (uses.size() == 2) return ~(runs(uses[0]) ^ runs(uses[1]));
     std::uint64_t silhouette = 0;
     for (std::size_t k = 0; k < kBlock; ++k) {
-        std::uint64_t forward = 0;
-        for (std::uint32_t i = 0; i < e.count; ++i) forward += runs(i) >> k & 1;
-        silhouette |= std::uint64_t(2 * forward != e.count) << k;
+        const auto sign = [&](TriangleId t) { return (facing[t] >> k & 1) != 0 ? 1 : -1; };
+        silhouette |= std::uint64_t(change_of(uses, sign) != 0) << k;
     }
     return silhouette;
 }
@@ -94,7 +90,7 @@ std::vector<SilhouetteStatistics> silhouette_statistics(const Scene& scene, std:
     const std::size_t objects = scene.objects.size();
     std::vector<std::vector<Neighbours>> closed_edges(objects);
     for (std::size_t o = 0; o < objects; ++o)
-        if (meshes.objects()[o].closed) closed_edges[o] = meshes.objects()[o].closed->neighbours();
+        if (meshes.objects()[o].closed()) closed_edges[o] = meshes.objects()[o].neighbours();
 
     std::vector<SilhouetteStatistics> statistics(objects);
     std::vector<double> squares(objects, 0);  // sum of squared deviations from the running mean
@@ -117,10 +113,10 @@ std::vector<SilhouetteStatistics> silhouette_statistics(const Scene& scene, std:
                     facing[t]     = facing_bits(scene.vertex(id, 0), scene.vertex(id, 1), scene.vertex(id, 2), block);
                 }
                 for (std::size_t o = 0; o < objects; ++o) {
-                    const Soup& soup = meshes.objects()[o].soup;
+                    const EdgeList& soup = meshes.objects()[o].soup();
                     BitCounters counters;
                     for (const Neighbours& e : closed_edges[o]) counters.add(facing[e.left] ^ facing[e.right]);
-                    for (const Edge& e : soup.edges) counters.add(silhouette_bits(soup, e, facing));
+                    for (std::size_t e = 0; e < soup.size(); ++e) counters.add(silhouette_bits(soup.uses(e), facing));
                     for (std::size_t k = 0; k < kBlock; ++k) counts[(o * blocks + b) * kBlock + k] = counters.count(k);
                 }
             }

@@ -1,35 +1,50 @@
 // Silhouettes: the edges at which a mesh turns away from a light.
 //
-// A closed object is a halfedge mesh of CGAL (closed_mesh.h), and its silhouettes are read off that mesh. A halfedge
-// mesh holds 2-manifolds only: where an edge has one triangle, three, or two that run it in the same direction, or
-// where a vertex has two fans, CGAL refuses the triangle. Scenes have such objects, and shadow volumes serve them; they
-// stay in the project's own core/scene/topology.h, where an edge has any number of triangles. That is also what says
-// whether an object is such a manifold (ObjectFacts::manifold), since it has to count the faults of those that are not.
-// Which way a triangle faces is decided by CGAL's exact predicates for both kinds.
+// A closed object is a halfedge mesh of CGAL, and its silhouettes are read off that mesh. A halfedge mesh holds
+// 2-manifolds only: where an edge has one triangle, three, or two that run it in the same direction, or where a vertex
+// has two fans, CGAL refuses the triangle. Scenes have such objects, and shadow volumes serve them; they are lists of
+// edges, each with any number of triangles. What says whether an object is such a manifold (ObjectFacts::manifold) is
+// the project's own core/scene/topology.h, since it has to count the faults of those that are not. Which way a triangle
+// faces is decided by CGAL's exact predicates for both kinds.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "umbra/core/scene/facts.h"
-#include "umbra/shadows/volumes/closed_mesh.h"
+#include "umbra/shadows/geometry/edges.h"
 
 namespace umbra {
 
-/// An object with edges that any number of triangles share.
-struct Soup {
-    std::vector<Edge> edges;    ///< vertices counted over the scene
-    std::vector<EdgeUse> uses;  ///< triangles counted over the scene
+/// The two triangles at an edge a-b of a closed mesh, a < b: `left` runs it from a to b, `right` from b to a.
+struct Neighbours {
+    TriangleId left = 0, right = 0;
 };
 
-/// One object: a mesh where it is closed, otherwise a soup.
-struct ObjectMesh {
-    TriangleId first_triangle    = 0;
-    std::uint32_t triangle_count = 0;
-    std::optional<ClosedMesh> closed;
-    Soup soup;
+/// One object. All vertices and triangles are counted over the scene.
+class SilhouetteMesh {
+public:
+    /// `first_vertex`: the number that the object's first welded vertex has in the scene.
+    SilhouetteMesh(const Scene& scene, const Topology& topology, std::uint32_t first_vertex, bool closed);
+
+    [[nodiscard]] bool closed() const { return halfedges_ != nullptr; }
+    /// Of each edge of a closed object, sorted by a, then b.
+    [[nodiscard]] std::vector<Neighbours> neighbours() const;
+    /// The edges of any other.
+    [[nodiscard]] const EdgeList& soup() const { return soup_; }
+
+    /// SilhouetteMeshes::edges of this object, after `others`.
+    [[nodiscard]] std::vector<ChangeEdge> edges(std::span<const std::int8_t> orientation,
+                                                std::vector<ChangeEdge> others) const;
+
+    [[nodiscard]] std::size_t memory_bytes() const;
+
+private:
+    struct Halfedges;                             // a mesh of CGAL
+    std::shared_ptr<const Halfedges> halfedges_;  // null where the object is not closed
+    EdgeList soup_;
 };
 
 /// The meshes of a scene's objects, ready to be asked for their silhouettes. Vertices are welded object by object.
@@ -40,25 +55,20 @@ public:
 
     [[nodiscard]] const std::vector<uvec3>& triangles() const { return triangles_; }  ///< welded, in scene order
     [[nodiscard]] const std::vector<vec3>& vertices() const { return vertices_; }     ///< of the welded vertices
-    [[nodiscard]] const std::vector<ObjectMesh>& objects() const { return objects_; }
+    [[nodiscard]] const std::vector<SilhouetteMesh>& objects() const { return objects_; }
 
-    /// facing_of each triangle of the scene.
-    [[nodiscard]] std::vector<std::int8_t> facing(const Light& light) const;
-
-    /// The edges where the chosen triangles do not cancel. orientation[t] is +1 where triangle t is taken as wound, -1
-    /// where it is taken turned over, 0 where it is left out. Of a closed mesh and its triangles that face the light
-    /// these are the silhouette edges, each of weight +1 or -1; with every triangle turned to face the light they have
-    /// weight 2, and any soup of triangles has a right answer. [Philippe Bergeron, A General Version of Crow's Shadow
-    /// Volumes, 1986; Byungmoon Kim, Kihwan Kim, Greg Turk, A Shadow-Volume Algorithm for Opaque and Transparent
-    /// Nonmanifold Casters, 2008]
-    [[nodiscard]] std::vector<SilhouetteEdge> edges(std::span<const std::int8_t> orientation) const;
+    /// The edges where the chosen triangles do not cancel, object by object, sorted by a, then b. orientation[t] is +1
+    /// where triangle t is taken as wound, -1 where it is taken turned over, 0 where it is left out. Of a closed mesh
+    /// and its triangles that face the light these are the silhouette edges, each of change +1 or -1; with every
+    /// triangle turned to face the light they have change 2, and any soup of triangles has a right answer.
+    [[nodiscard]] std::vector<ChangeEdge> edges(std::span<const std::int8_t> orientation) const;
 
     [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     std::vector<uvec3> triangles_;
     std::vector<vec3> vertices_;
-    std::vector<ObjectMesh> objects_;
+    std::vector<SilhouetteMesh> objects_;
 };
 
 /// The number of silhouette edges of one object over random lights at infinity: those between a triangle that faces the

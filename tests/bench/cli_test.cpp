@@ -68,6 +68,20 @@ TEST_F(Cli, UsageErrorsEndWithSixtyFour) {
                                   compare + " --reference crayon",
                                   compare + " --reference-points 0",
                                   compare + " --reference-points many",
+                                  compare + " --pixel-samples 0",
+                                  compare + " --pixel-samples 5",
+                                  compare + " --pixel-samples=-4",
+                                  compare + " --pixel-samples x",
+                                  compare + " --pixel-samples ''",
+                                  compare + " --size ''",
+                                  compare + " --reference ''",
+                                  render + " --pixel-samples 2 -o " + file("a.png"),
+                                  "whitted umbra_penumbra --pixel-samples 100 -o " + file("a"),
+                                  "growth --over pixels --max nan -o " + file("a"),
+                                  "growth --over pixels --max '' -o " + file("a"),
+                                  "sweep umbra_penumbra --list=-1 -o " + file("a"),
+                                  "sweep umbra_penumbra --pack '' -o " + file("a"),
+                                  "why umbra_penumbra '' 3",
                                   "completion fish",
                                   diff + "--fail -1",
                                   diff + "--fail nan",
@@ -99,7 +113,7 @@ TEST_F(Cli, SweepAndRecommendAnswerWithTheirExitCodes) {
     EXPECT_EQ(swept.exit_code, 0) << swept.output;
     EXPECT_NE(swept.output.find("4 cells, 4 of them computed now"), std::string::npos) << swept.output;
     EXPECT_NE(umbra(sweep).output.find("4 cells, 0 of them computed now"), std::string::npos);
-    const std::string recommend = "recommend umbra_penumbra --held-out 0 --methods 'ray_traced:samples=1|4'" + out;
+    const std::string recommend = "recommend umbra_penumbra --held-out 0 --methods ray_traced:samples=4" + out;
     EXPECT_EQ(umbra(recommend + " --max rmse=0.9").exit_code, 0);
     EXPECT_EQ(umbra(recommend + " --max rmse=0").exit_code, 1);
     EXPECT_EQ(umbra(recommend).exit_code, 64);
@@ -271,7 +285,9 @@ TEST_F(Cli, WhatAMaterialAsksForAndNothingComputesIsNamedByInspect) {
 TEST_F(Cli, ATransparentSheetIsNamedWhereverItIsDrawn) {
     std::ofstream(file("sheet.json")) << sheet_scene(R"(, "opacity": 0)");
     const std::string size = " --size 48x32 ";
-    const std::string says = "The opacity of material \"foil\" is not computed: surfaces are drawn opaque.";
+    const std::string says =
+        "The opacity of material \"foil\" is not computed: surfaces are drawn opaque. They throw no shadow "
+        "(transparent_occluders: ignore).";
     EXPECT_TRUE(contains(umbra("inspect " + file("sheet.json")).output, "warning: " + says));
     EXPECT_EQ(errors_of("render " + file("sheet.json") + size + "-o " + file("a.png")),
               "warning: sheet: " + says + "\n");

@@ -13,6 +13,7 @@
 #include "umbra/bench/diff/diff_set.h"
 #include "umbra/bench/diff/difference_map.h"
 #include "umbra/core/base/error.h"
+#include "umbra/tests/support/written_parts.h"
 
 namespace umbra {
 namespace {
@@ -136,6 +137,110 @@ TEST_F(Diff, OneTwoAndFourChannels) {
         EXPECT_EQ(verdict(written("a.exr", a), written("b.exr", b), {}), Verdict::differs);
         EXPECT_GT(diff(written("a.exr", a), written("b.exr", b), {}).flip.mean, 0);
     }
+}
+
+using other_writers::part;
+using other_writers::write_parts;
+
+TEST_F(Diff, EveryPartIsCompared) {
+    write_parts(folder / "a.exr", {part("rgb", {"R", "G", "B"}, 0.25f), part("depth", {"Z"}, 7)});
+    write_parts(folder / "b.exr", {part("rgb", {"R", "G", "B"}, 0.25f), part("depth", {"Z"}, 8)});
+    write_parts(folder / "one.exr", {part("", {"R", "G", "B"}, 0.25f)});
+    EXPECT_EQ(verdict(folder / "a.exr", folder / "a.exr", {}), Verdict::same);
+    const DiffResult result = diff(folder / "a.exr", folder / "b.exr", {});
+    EXPECT_EQ(result.verdict, Verdict::differs);
+    EXPECT_EQ(worst_pixel(result), "(0, 0), channel depth.Z: A 7, B 8");
+    EXPECT_EQ(verdict(folder / "a.exr", folder / "b.exr", {.channels = {"R", "G", "B"}}), Verdict::same);
+    const DiffResult unlike = diff(folder / "a.exr", folder / "one.exr", {});
+    EXPECT_EQ(unlike.verdict, Verdict::unlike);
+    EXPECT_EQ(unlike.reasons[0].find("channels differ: only the first has [depth.Z], only the second []"), 0u)
+        << unlike.reasons[0];
+
+    for (const auto& [name, value] : {std::pair{"a.tif", 0.5f}, {"b.tif", 0.75f}})
+        write_parts(folder / name, {part("", {"R", "G", "B"}, 0.25f), part("", {"R", "G", "B"}, value)});
+    const DiffResult pages = diff(folder / "a.tif", folder / "b.tif", {.fail = 1, .fail_flip = 1e-3});
+    EXPECT_EQ(pages.verdict, Verdict::differs);
+    EXPECT_EQ(layer_of_flip(pages), "2, worst of 2 layers");
+}
+
+TEST_F(Diff, EveryLayerIsSeen) {
+    Image a(32, 32, {"diffuse.R", "diffuse.G", "diffuse.B", "spec.R", "spec.G", "spec.B"});
+    std::fill(a.data.begin(), a.data.end(), 0.25f);
+    Image b = a;
+    for (std::size_t i = 0; i < 300; ++i)
+        for (std::size_t c = 3; c < 6; ++c) b.at(i, c) = 0.75f;
+    const fs::path file_a = written("a.exr", a), file_b = written("b.exr", b);
+    const DiffResult result = diff(file_a, file_b, {.fail = 1, .fail_flip = 0.001});
+    EXPECT_EQ(result.verdict, Verdict::differs);
+    EXPECT_EQ(verdict(file_a, file_b, {.fail = 1, .fail_ssim = 0.999}), Verdict::differs);
+    const nlohmann::json json = diff_json(result);
+    EXPECT_EQ(json["layers"][0]["name"], "diffuse");
+    EXPECT_EQ(json["layers"][0]["flip"], 0.0);
+    EXPECT_EQ(json["layers"][0]["ssim"], 1.0);
+    EXPECT_EQ(json["layers"][1]["name"], "spec");
+    EXPECT_EQ(json["layers"][1]["flip"], json["flip"]["mean"]);
+    EXPECT_EQ(json["layers"][1]["ssim"], json["ssim"]);
+    EXPECT_NE(diff_text(result).find("(mean, HDR; spec, worst of 2 layers)"), std::string::npos) << diff_text(result);
+    // As of the layer alone.
+    const DiffResult alone = diff(file_a, file_b, {.channels = {"spec.*"}});
+    EXPECT_EQ(alone.flip.mean, result.flip.mean);
+    EXPECT_EQ(alone.ssim, result.ssim);
+
+    // The pictures and the map show the layer that differs.
+    EXPECT_EQ(diff(file_a, file_b, {.map = folder / "map.exr", .pictures = folder / "shown"}).verdict,
+              Verdict::differs);
+    EXPECT_LT(read_image(folder / "shown.a.png").image.at(0, 0), read_image(folder / "shown.b.png").image.at(0, 0));
+    const Image map = read_image(folder / "map.exr").image;
+    EXPECT_NE(std::find(map.channels.begin(), map.channels.end(), "FLIP.spec"), map.channels.end());
+
+    // Without R, G, B every channel is a grey picture; what is beside R, G, B is none, which is said.
+    Image grey(32, 32, {"first", "second"}), other = grey;
+    for (std::size_t i = 0; i < 300; ++i) other.at(i, 1) = 0.5f;
+    EXPECT_EQ(verdict(written("a.exr", grey), written("b.exr", other), {.fail_flip = 0.001}), Verdict::differs);
+    Image beside(32, 32, {"R", "G", "B", "Z"}), deeper = beside;
+    for (std::size_t i = 0; i < 300; ++i) deeper.at(i, 3) = 0.5f;
+    const DiffResult depth = diff(written("a.exr", beside), written("b.exr", deeper), {.fail_flip = 0.001});
+    EXPECT_EQ(depth.verdict, Verdict::close);
+    EXPECT_EQ(depth.notes,
+              std::vector<std::string>{"SSIM and FLIP are of the layers of R, G, B; Z differ and are in neither"});
+}
+
+TEST_F(Diff, WholeNumbersAreComparedToTheLastDigit) {
+    for (const bool alone : {false, true}) {
+        Image a(6, 4, {"R", "G", "B"});
+        a.integers["id.face"] = std::vector<std::uint32_t>(24, 4294967295u);
+        Image b               = a;
+        b.integers["id.face"][8] -= 1;  // one float with the other
+        DiffOptions options{.fail = 1e9, .fail_percent = 100};
+        if (alone) options.channels = {"id.*"};
+        EXPECT_EQ(verdict(written("a.exr", a), written("a2.exr", a), options), Verdict::same);
+        const DiffResult result = diff(folder / "a.exr", written("b.exr", b), options);
+        EXPECT_EQ(result.verdict, Verdict::differs);
+        EXPECT_EQ(result.reasons,
+                  std::vector<std::string>{
+                      "whole numbers id.face differ at 1 pixels, the first (2, 1): A 4294967295, B 4294967294"});
+        EXPECT_EQ(worst_pixel(result), "(2, 1), channel id.face: A 4294967295, B 4294967294");
+    }
+    EXPECT_EQ(verdict(folder / "a.exr", folder / "b.exr", {.channels = {"R", "G", "B"}}), Verdict::same);
+    EXPECT_EQ(verdict(folder / "a.exr", box("c.exr", 0.1f), {}), Verdict::unlike);
+}
+
+TEST_F(Diff, WhatFilesSayOfTheirColoursIsCompared) {
+    const auto plain = part("", {"R", "G", "B"}, 0.5f);
+    auto aces = plain, in_frame = plain;
+    const float xy[8] = {0.7347f, 0.2653f, 0, 1, 0.0001f, -0.077f, 0.32168f, 0.33767f};
+    aces.spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy);
+    in_frame.spec.full_width = 40;
+    for (const auto& [name, of] : {std::pair{"plain.exr", plain}, {"aces.exr", aces}, {"frame.exr", in_frame}})
+        write_parts(folder / name, {of});
+    EXPECT_EQ(verdict(folder / "aces.exr", folder / "aces.exr", {}), Verdict::same);
+    const DiffResult colours = diff(folder / "plain.exr", folder / "aces.exr", {});
+    EXPECT_EQ(colours.verdict, Verdict::unlike);
+    EXPECT_EQ(colours.reasons,
+              std::vector<std::string>{"colours differ: nothing said against chromaticities 0.7347 0.2653 0 1 0.0001 "
+                                       "-0.077 0.3217 0.3377"});
+    EXPECT_EQ(diff(folder / "frame.exr", folder / "plain.exr", {}).reasons,
+              std::vector<std::string>{"display windows differ: 40x8 from (0, 0) against nothing said"});
 }
 
 TEST_F(Diff, WhatIsNotFiniteIsReportedAndNeverClose) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "umbra/core/base/error.h"
+#include "umbra/tests/support/planted_method.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -81,7 +82,7 @@ TEST(Energy, FollowsTheSunFrameByFrame) {
     std::vector<std::string> rows;
     while (std::getline(in, line)) rows.push_back(line);
     ASSERT_EQ(rows.size(), 1u + 3 * 4);
-    EXPECT_EQ(rows[0], "scene,object,triangle,area,irradiance,unshadowed");
+    EXPECT_EQ(rows[0], "scene,object,triangle,area,irradiance,unshadowed,coverage");
     EXPECT_EQ(rows[1].substr(0, 27), R"("roof@0","ground",0,32,1.74)");
 }
 
@@ -124,6 +125,104 @@ TEST(Energy, HasTheFogOfTheSum) {
     EXPECT_NEAR(lit(), std::exp(-0.75), 1e-5);
     scene.fog.dims_lights = false;
     EXPECT_NEAR(lit(), 1, 1e-5);
+}
+
+/// A ground of 2 x 2 under two suns: one of luminance 1 at the zenith, and one of 3 that is 60 degrees lower and so
+/// brings 1.5. A step of 1 x 1 lies beside it. A planted method answers by light and by index of the point.
+class PlantedEnergy : public testing::Test {
+protected:
+    ~PlantedEnergy() override { planted_behaviour = {}; }
+
+    [[nodiscard]] Json measure(const std::function<PlantedAnswer(LightId light, std::size_t point)>& answer) const {
+        planted_behaviour.answer = [&](LightId light, std::size_t x, std::size_t, int) { return answer(light, x); };
+        EnergyOptions options;
+        options.method = MethodChoice(info_);
+        options.points = 1000;
+        return measure_energy(std::vector<std::filesystem::path>{file_}, options, folder_.path());
+    }
+    [[nodiscard]] std::vector<std::string> lines(const char* file) const {
+        std::ifstream in(folder_.path() / file);
+        std::vector<std::string> rows;
+        for (std::string line; std::getline(in, line);) rows.push_back(line);
+        return rows;
+    }
+
+    const MethodInfo info_ = planted_method();
+    const TemporaryFolder folder_;
+    const std::filesystem::path file_ =
+        folder_.write("suns.json", R"({"camera": {"eye": [0, 5, 5], "target": [0, 0, 0]},
+        "lights": [{"name": "noon", "type": "directional", "direction": [0, -1, 0], "colour": [1, 1, 1]},
+                   {"name": "late", "type": "directional", "direction": [0.8660254, -0.5, 0], "colour": [3, 3, 3]}],
+        "objects": [{"name": "ground", "type": "plane", "size": [2, 2]},
+                    {"name": "step", "type": "plane", "size": [1, 1], "transform": [{"translate": [4, 0, 0]}]}]})");
+};
+
+/// 0.25 * 1 + 0.5 * 1.5 of 1 + 1.5.
+TEST_F(PlantedEnergy, EachLightHasItsOwnShadow) {
+    const Json record = measure([](LightId light, std::size_t) { return PlantedAnswer{light == 0 ? 0.25f : 0.5f}; });
+    for (const Json& object : record["mean"]) {
+        EXPECT_NEAR(object["irradiance"].get<double>(), 1, 1e-6);
+        EXPECT_NEAR(object["unshadowed"].get<double>(), 2.5, 1e-6);
+        EXPECT_NEAR(object["fraction"].get<double>(), 0.4, 1e-6);
+        EXPECT_EQ(object["coverage"], 1);
+    }
+    EXPECT_NEAR(record["mean"][0]["area"].get<double>(), 4, 1e-6);
+    EXPECT_NEAR(record["mean"][1]["area"].get<double>(), 1, 1e-6);
+    EXPECT_EQ(lines("objects.csv"),
+              (std::vector<std::string>{"scene,object,area,irradiance,unshadowed,coverage",
+                                        R"("suns","ground",4,1,2.5,1)", R"("suns","step",1,1,2.5,1)"}));
+    EXPECT_EQ(lines("faces.csv").at(3), R"("suns","step",2,0.5,1,2.5,1)");
+    EXPECT_EQ(energy_text(record),
+              "irradiance without shadows, with shadows, and their quotient; means of 1 frame\n"
+              "ground          2.5          1  0.400\n"
+              "step            2.5          1  0.400\n");
+}
+
+/// The late sun brings 1.5 of 2.5: without an answer for it, 0.4 is covered, of which a quarter arrives.
+TEST_F(PlantedEnergy, WhatHasNoAnswerIsNeitherLitNorDark) {
+    const Json record = measure([](LightId light, std::size_t) { return PlantedAnswer{0.25f, light == 0}; });
+    const Json& part  = record["mean"][0];
+    EXPECT_NEAR(part["irradiance"].get<double>(), 0.25, 1e-6);
+    EXPECT_NEAR(part["unshadowed"].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(part["fraction"].get<double>(), 0.25, 1e-6);
+    EXPECT_NEAR(part["coverage"].get<double>(), 0.4, 1e-6);
+    EXPECT_EQ(lines("objects.csv").at(1), R"("suns","ground",4,0.25,1,0.4)");
+    EXPECT_EQ(energy_text(record),
+              "irradiance without shadows, with shadows, and their quotient; means of 1 frame\n"
+              "of the part that planted answers; last column: that part of what arrives without shadows\n"
+              "ground            1       0.25  0.250  0.400\n"
+              "step              1       0.25  0.250  0.400\n");
+
+    // Every second point, lit: half of what arrives is covered, and all of that is there.
+    const Json half = measure([](LightId, std::size_t point) { return PlantedAnswer{1, point % 2 == 0}; });
+    EXPECT_NEAR(half["mean"][0]["coverage"].get<double>(), 0.5, 1e-6);
+    EXPECT_NEAR(half["mean"][0]["fraction"].get<double>(), 1, 1e-6);
+}
+
+TEST_F(PlantedEnergy, WithoutAnyAnswerThereIsNoFigure) {
+    const Json record  = measure([](LightId, std::size_t point) { return PlantedAnswer{1, point < 800}; });
+    const Json &ground = record["frames"][0]["objects"][0], &step = record["frames"][0]["objects"][1];
+    EXPECT_EQ(ground["coverage"], 1) << "its points are the first 800 of 1000";
+    EXPECT_EQ(step["coverage"], 0);
+    for (const char* figure : {"irradiance", "unshadowed", "fraction"}) EXPECT_TRUE(step[figure].is_null()) << figure;
+    EXPECT_EQ(lines("objects.csv").at(2), R"("suns","step",1,,,0)");
+    EXPECT_NE(energy_text(record).find("step              -          -      -  0.000\n"), std::string::npos)
+        << energy_text(record);
+}
+
+/// Methods that leave points open: the ring of a torus is on no plane.
+TEST(Energy, DoesNotTakeTheOpenPointsOfAMethodForLit) {
+    const std::filesystem::path file = std::filesystem::path(UMBRA_SCENES) / "self_shadow.json";
+    const TemporaryFolder folder;
+    const Json record =
+        measure_energy(std::vector<std::filesystem::path>{file}, with("planar_projection", 2000), folder.path());
+    std::size_t open = 0;
+    for (const Json& object : record["mean"])
+        if (object["coverage"] == 0) {
+            ++open;
+            EXPECT_TRUE(object["fraction"].is_null()) << object;
+        }
+    EXPECT_GT(open, 0u);
 }
 
 TEST(Energy, RefusesWhatAMethodDoesNotServeAndOtherObjects) {

@@ -173,6 +173,23 @@ TEST_F(PlantedGrowth, CrossingsLieBetweenTheSizesAroundThem) {
     EXPECT_TRUE(json["external"].is_null());
 }
 
+/// At 256: build 256 / 128, aim 3, no look, visibility 1024 sqrt(256).
+TEST_F(PlantedGrowth, TheTableHasEachPhaseInItsColumn) {
+    planted_behaviour.memory_bytes = 2500000;
+    const GrowthRun run            = run_growth(kPlanted, {MethodChoice(info_)}, 256, options_);
+    const Json record              = {{"growth", {growth_json(run)}},
+                                      {"machine", {{"cpu", "A CPU"}, {"threads", 2}}},
+                                      {"load_average", {{"before", 1}, {"after", 1}}}};
+    const std::string table        = growth_table(record);
+    EXPECT_NE(table.find(fmt::format("{:>12} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "256", "2.00", "3.00", "0.00",
+                                     "16384.00", "2.50")),
+              std::string::npos)
+        << table;
+    const GrowthPoint& point = run.series[0].points[0];
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::light_frame), std::vector<double>(3, 3 + 16384));
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::object_frame), std::vector<double>(3, 2 + 3 + 16384));
+}
+
 TEST_F(PlantedGrowth, TooShortOrTooLongIsLeftOut) {
     const auto work        = planted_behaviour.work;
     planted_behaviour.work = [&](Phase phase, LightId light) {

@@ -10,6 +10,7 @@
 
 #include "umbra/bench/motion/mix_triangle.h"
 #include "umbra/bench/motion/motion.h"
+#include "umbra/bench/motion/motion_page.h"
 #include "umbra/bench/motion/motion_summary.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/gbuffer.h"
@@ -264,6 +265,44 @@ TEST_F(PlantedMotion, PointsLeftOpenAreCountedAndDisqualify) {
     EXPECT_TRUE(scene_motion_json(motion, 1)["winners"][0]["complete"].is_null());
 }
 
+/// Half of every light, but no answer for the first: what is left open is neither wrong nor right.
+TEST_F(PlantedMotion, PointsLeftOpenAreNoErrors) {
+    const FrameErrors all    = run().methods[0].of(Movement::camera)[0].errors;
+    planted_behaviour.answer = [](LightId light, std::size_t, std::size_t, int) {
+        return PlantedAnswer{0.5f, light == 1};
+    };
+    const FrameErrors part = run().methods[0].of(Movement::camera)[0].errors;
+    EXPECT_GT(part.undefined, 0u);
+    EXPECT_GT(part.points, 0u);
+    EXPECT_EQ(part.points + part.undefined, all.points);
+    EXPECT_EQ(part.wrong, 0u) << "0.5 is the tolerance";
+    EXPECT_EQ(part.rmse, 0.5);
+}
+
+/// Who says that all is lit has false light alone, who says that nothing is has false shadow alone: each is in
+/// `interior`, and together they are wrong once at every point.
+TEST_F(PlantedMotion, ErrorsOfBothKindsCount) {
+    const auto errors = [&](float s) {
+        planted_behaviour.answer = [=](LightId, std::size_t, std::size_t, int) { return PlantedAnswer{s}; };
+        return run().methods[0].of(Movement::camera)[0].errors;
+    };
+    const FrameErrors light = errors(1), shadow = errors(0);
+    EXPECT_GT(light.interior.value(), 0u);
+    EXPECT_GT(shadow.interior.value(), 0u);
+    EXPECT_LE(light.interior.value(), light.wrong);
+    EXPECT_LE(shadow.interior.value(), shadow.wrong);
+    EXPECT_EQ(light.wrong + shadow.wrong, light.points);
+    EXPECT_EQ(light.points, shadow.points);
+}
+
+TEST_F(PlantedMotion, OneFrameHasNoInterval) {
+    options_.frames = 1;
+    const Json json = scene_motion_json(run(), 0.02)["methods"][0]["movements"]["light"]["frame_over_model"];
+    EXPECT_EQ(json["pairs"], 1);
+    EXPECT_TRUE(json["interval"][0].is_null());
+    EXPECT_TRUE(json["interval"][1].is_null());
+}
+
 TEST_F(PlantedMotion, AMethodThatThrowsEndsThereAndTheOthersGoOn) {
     const auto work        = planted_behaviour.work;
     planted_behaviour.work = [&](Phase phase, LightId light) {
@@ -382,6 +421,81 @@ TEST(MotionSummary, WinnersFollowWhatMoves) {
     EXPECT_FALSE(winner(motion, {}, {"", {1, 0, 0}}));
 }
 
+/// One slow frame of sixteen: the mean of the first is 45 / 16, its median 1, and the model says 1.
+TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
+    SceneMotion motion = made_up({{10, 0, 0.5, 0.5}, {0, 4, 0, 2}});
+    for (MethodMotion& method : motion.methods)
+        for (auto& frames : method.frames) frames.resize(16, frames.front());
+    motion.methods[0].frames[0].back().times.visibility = {29.5};
+    const std::optional<Winner> won                     = winner(motion, complete(motion), {"", {1, 0, 0}});
+    EXPECT_EQ(won->method, 0u);
+    EXPECT_EQ(won->ms, 1);
+    EXPECT_EQ(won->runner_up, std::size_t{1});
+    EXPECT_EQ(won->behind.median, 2) << "its time over the winner's";
+    EXPECT_LE(won->behind.interval.low, 2);
+    EXPECT_GE(won->behind.interval.high, 2);
+    EXPECT_EQ(won->behind.pairs, 16);
+    // Half of the frames move the light: 0.5 * 1 + 0.5 * 0.5 against 0.5 * 2 + 0.5 * 6.
+    const std::optional<Winner> mixed = winner(motion, complete(motion), {"", {0.5, 0.5, 0}});
+    EXPECT_EQ(mixed->ms, 0.75);
+    EXPECT_NEAR(mixed->behind.median, 4 / 0.75, 1e-12);
+
+    motion.reference   = Reference{motion.methods[0].still.choice, true, ""};
+    const Json json    = scene_motion_json(motion, 0.02);
+    const Json &camera = json["methods"][0]["movements"]["camera"], &ratio = camera["frame_over_model"];
+    EXPECT_EQ(camera["median_ms"], 1.0);
+    EXPECT_NEAR(camera["mean_ms"].get<double>(), 45.0 / 16, 1e-12);
+    EXPECT_EQ(ratio["median"], 1.0);
+    EXPECT_LE(ratio["interval"][0], 1.0);
+    EXPECT_GE(ratio["interval"][1], 1.0);
+    EXPECT_EQ(json["winners"][0]["complete"]["ms"], 1.0);
+    EXPECT_EQ(json["winners"][0]["complete"]["runner_up_over_winner"]["median"], 2.0);
+    const Json record       = {{"motion", {json}},
+                               {"frames", 16},
+                               {"max_rmse", 0.02},
+                               {"machine", {{"cpu", "A CPU"}, {"threads", 2}}},
+                               {"load_average", {{"before", 1}, {"after", 1}}}};
+    const std::string table = motion_table(record);
+    EXPECT_NE(table.find("camera         1.00       1.00     1.00"), std::string::npos) << table;
+    EXPECT_NE(table.find("times that differ by less than 5 % are equal"), std::string::npos) << table;
+}
+
+TEST(MotionSummary, TheModelIsOfTheMediansAtRest) {
+    SceneMotion motion                 = made_up({{10, 3, 0.5, 2}});
+    motion.methods[0].still.visibility = {2, 4, 90};
+    motion.methods[0].still.look       = {70, 6, 5};
+    motion.methods[0].still.light_aim  = {{8, 1, 2}};
+    EXPECT_EQ(model_ms(motion, motion.methods[0], Movement::camera), 6 + 4);
+    EXPECT_EQ(model_ms(motion, motion.methods[0], Movement::light), 2 + 4);
+}
+
+/// The worst frame is in the middle.
+TEST(MotionSummary, ErrorsAreTheMeanAndTheWorstOfTheFrames) {
+    SceneMotion motion               = made_up({{1, 1, 1, 1}});
+    std::vector<MotionFrame>& frames = motion.methods[0].frames[0];
+    frames.resize(3);
+    frames[0].errors           = {.points = 10, .undefined = 1, .wrong = 2, .interior = 3, .rmse = 0.1, .max = 0.2};
+    frames[1].errors           = {.points = 10, .undefined = 2, .wrong = 2, .interior = 4, .rmse = 0.4, .max = 0.5};
+    frames[2].errors           = {.points = 10, .undefined = 4, .wrong = 2, .interior = 5, .rmse = 0.1, .max = 0.2};
+    const ErrorSummary summary = summarise_errors(frames);
+    EXPECT_NEAR(summary.mean_rmse, 0.2, 1e-15);
+    EXPECT_EQ(summary.worst_rmse, 0.4);
+    EXPECT_EQ(summary.undefined, 7u);
+    EXPECT_EQ(summary.interior, 12u);
+    motion.reference = Reference{motion.methods[0].still.choice, true, ""};
+    const Json json  = scene_motion_json(motion, 0.02)["methods"][0]["movements"]["camera"];
+    EXPECT_NEAR(json["mean_rmse"].get<double>(), 0.2, 1e-15);
+    EXPECT_EQ(json["worst_rmse"], 0.4);
+    EXPECT_EQ(json["undefined"], 7);
+    EXPECT_EQ(json["interior"], 12);
+    EXPECT_EQ(json["frames"][1]["rmse"], 0.4);
+    EXPECT_EQ(json["frames"][1]["wrong"], 2);
+
+    for (MotionFrame& frame : frames) frame.errors.undefined = 0;
+    EXPECT_TRUE(within(motion, 0.39).empty()) << "one frame is enough";
+    EXPECT_EQ(within(motion, 0.4).size(), 1u);
+}
+
 TEST(MotionSummary, WhatTheNoiseBarCoversIsATie) {
     const auto ties = [](double other) {
         const SceneMotion motion = made_up({{1, 1, 0.25, 0.75}, {1, 1, 0.25, other - 0.25}});
@@ -488,7 +602,17 @@ TEST_F(MotionFiles, WriteWhatTheSchemaSaysAndAPage) {
     for (const Json& row : record["motion"][0]["winners"])
         EXPECT_NE(row["complete"]["method"], "planar_projection") << row;
 
-    const std::string page = text_of(command_.out / "index.html");
+    const auto page_at = [&](double noise_bar) {
+        Json other = record;
+        for (Json& scene : other["motion"]) scene["noise_bar"] = noise_bar;
+        StagedFiles staged;
+        write_motion_page(other, command_.out, staged);
+        staged.commit();
+        return text_of(command_.out / "index.html");
+    };
+    const std::string loud = page_at(0.4), page = page_at(0.05);
+    EXPECT_EQ(loud.find("<svg viewBox=\"0 0 440 340\""), std::string::npos) << "nothing is ranked below the noise";
+    EXPECT_NE(loud.find("too much to say which method is fastest"), std::string::npos);
     EXPECT_NE(page.find("<svg viewBox=\"0 0 440 340\""), std::string::npos);
     EXPECT_NE(page.find("A light at infinity over one plane"), std::string::npos);
     EXPECT_EQ(page.find("{{"), std::string::npos);

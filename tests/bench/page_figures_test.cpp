@@ -155,6 +155,27 @@ TEST_F(PageFigures, TablesOfErrors) {
     EXPECT_TRUE(contains(page, fmt::format("<td>{}</td>", figure(1, 0, "/false_shadow/edge"))));
 }
 
+/// A shadow that is not there has no mean in the record; the page says how far its edge is away at least.
+TEST_F(PageFigures, EdgesThatAreNotFoundAreTheReachAway) {
+    const auto edges = [&](std::size_t m) -> json& {
+        return results["methods"][m]["errors"][0]["edge_displacement_px"];
+    };
+    edges(1) = {{"mean", nullptr}, {"p95", nullptr}, {"max", nullptr}, {"pieces", 9}, {"unmatched", 9}, {"reach", 8}};
+    edges(2) = {{"mean", 1}, {"p95", 1.5}, {"max", 2}, {"pieces", 10}, {"unmatched", 1}, {"reach", 8}};
+    put(out / "court", results);
+    write_report({out}, out);
+    page = read(out / "court/index.html");
+    const HtmlTable causes(page, "causes-caption");
+    const auto row = [&](const char* label) {
+        std::vector<std::string> cells;
+        for (const char* column : {"Mean", "95 %", "Max", "Unmatched"})
+            cells.push_back(causes.at(label, fmt::format("Edge displacement, pixels / {}", column)));
+        return cells;
+    };
+    EXPECT_EQ(row("lamp / The shadow_zbuffer"), (std::vector<std::string>{"≥ 8.00", "≥ 8.00", "≥ 8.00", "9"}));
+    EXPECT_EQ(row("lamp / The ray_traced"), (std::vector<std::string>{"≥ 1.70", "2.00", "≥ 8.00", "1"}));
+}
+
 /// Phases of seven rounds on a machine that gets slower from round to round.
 json in_turns(double build, double aim, double visibility) {
     json times = {{"order", json::array()}};
@@ -198,6 +219,8 @@ TEST_F(PageFigures, RatiosOfTimes) {
     // A cold run is of no round, and without a control nothing can be said to differ.
     results["methods"][2]["times"]["order"] = json::array();
     EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "×3.00, one run");
+    results["methods"][2]["times"]["order"] = {0};
+    EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "×3.00, one run") << "one round is one run";
     results["methods"][2]["times"] = in_turns(7.24, 11.26, 15);
     results["turns"]["control"]    = nullptr;
     EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "no difference");

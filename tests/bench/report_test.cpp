@@ -282,6 +282,75 @@ TEST_F(Report, SaysWhereMethodsBreakIfLaddersWereClimbed) {
     }
 }
 
+/// What one record calls shadow_zbuffer another calls shadow_zbuffer-2, by the order of its command line.
+TEST_F(Report, AColumnIsOneSettingWhateverRecordsCallIt) {
+    json court = sample("court"), yard = sample("yard");
+    json& by_default   = court["methods"][1];
+    by_default["text"] = "shadow_zbuffer";
+    json small         = by_default;
+    small["id"] = "shadow_zbuffer-2", small["text"] = "shadow_zbuffer:resolution=64";
+    court["methods"].push_back(small);
+    json& only   = yard["methods"][1];
+    only["text"] = "shadow_zbuffer:resolution=64";
+    for (json& error : only["errors"]) error["false_shadow"]["interior"] = 444;
+    put(out / "court", court);
+    put(out / "yard", yard);
+    write_report({out}, out);
+    const std::string index = read(out / "index.html");
+    EXPECT_TRUE(contains(index, ">The shadow_zbuffer</a></th>"));
+    EXPECT_TRUE(contains(index, ">The shadow_zbuffer (resolution=64)</a></th>"));
+    EXPECT_TRUE(contains(index, "<code>shadow_zbuffer:resolution=64</code>"));
+    // Columns: planar projection, the default map, rays, the small map.
+    const auto begin      = index.find("The yard</a></th>");
+    const std::string row = index.substr(begin, index.find("</tr>", begin) - begin);
+    const auto not_run = row.find("not run"), figure = row.find(">888"), rays = row.find("<td class=\"ms\"");
+    ASSERT_NE(not_run, std::string::npos) << row;
+    ASSERT_NE(figure, std::string::npos) << row;
+    EXPECT_EQ(row.find("not run", not_run + 1), std::string::npos) << row;
+    EXPECT_LT(not_run, rays) << row;
+    EXPECT_LT(rays, figure) << row;
+}
+
+/// Two versions of a program may mean other settings by one text.
+TEST_F(Report, SettingsDifferInWhatTheirTextLeavesOut) {
+    json court = sample("court"), yard = sample("yard");
+    for (json* scene : {&court, &yard}) (*scene)["methods"][1]["text"] = "shadow_zbuffer";
+    yard["methods"][1]["parameters"]["resolution"] = "1024";
+    yard["methods"][2]["parameters"]["new"]        = "1";  // which the other record does not know
+    put(out / "court", court);
+    put(out / "yard", yard);
+    write_report({out}, out);
+    const std::string index = read(out / "index.html");
+    for (const char* label :
+         {">The shadow_zbuffer (resolution=512)<", ">The shadow_zbuffer (resolution=1024)<", ">The ray_traced<"})
+        EXPECT_TRUE(contains(index, label)) << label;
+}
+
+TEST_F(Report, KeepsEveryRunOfLadders) {
+    put(out / "court", sample("court"));
+    LadderOptions options;
+    options.names   = {"shininess"};
+    options.methods = {"shadow_zbuffer"};
+    options.out     = folder / "first";
+    climb_ladders(options);
+    fs::copy(folder / "first", folder / "second", fs::copy_options::recursive);
+    json second                   = json::parse(read(folder / "second/results.json"));
+    second["ladders"][0]["title"] = "Another run";
+    write(folder / "second/results.json", second.dump(1));
+    for (int again = 0; again < 2; ++again) {  // the second time the report's folder holds copies of both
+        write_report({out, folder / "first", folder / "second"}, out);
+        const std::string index = read(out / "index.html");
+        for (const char* part : {"id=\"stability\"", "id=\"stability-2\"", "href=\"ladders/index.html#shininess\"",
+                                 "href=\"ladders-2/index.html#shininess\"", "Another run"})
+            EXPECT_TRUE(contains(index, part)) << part;
+        EXPECT_FALSE(contains(index, "id=\"stability-3\""));
+        EXPECT_TRUE(contains(read(out / "ladders-2/index.html"), "Another run"));
+        EXPECT_FALSE(contains(read(out / "ladders/index.html"), "Another run"));
+        std::set<std::string> ids;
+        for (const std::string& id : attributes(index, {"id"})) EXPECT_TRUE(ids.insert(id).second) << id;
+    }
+}
+
 TEST_F(Report, DoesNotCompareTheReferenceWithItself) {
     json results                 = sample("court");
     results["reference"]["text"] = results["methods"][2]["text"];  // ray_traced:resolution=512

@@ -74,6 +74,48 @@ TEST(PairedRatio, TakesTheFirstPairsAndLeavesOutWhatIsNoTime) {
     EXPECT_EQ(paired_ratio(Values{}, Values{1}).pairs, 0);
 }
 
+TEST(PairedRatio, OnePairHasNoInterval) {
+    const Ratio one = paired_ratio(Values{7}, Values{3});
+    EXPECT_EQ(one.pairs, 1);
+    EXPECT_FALSE(one.has_interval());
+    EXPECT_NEAR(one.median, 7.0 / 3, 1e-15);
+    EXPECT_EQ(one.interval.low, 0);
+    EXPECT_EQ(one.interval.high, kInfinite);
+    EXPECT_FALSE(differs(one, 0.05));
+    EXPECT_EQ(noise_bar(one), kInfinite);
+    EXPECT_TRUE(paired_ratio(Values{7, 8}, Values{3, 4}).has_interval());
+}
+
+/// Medians 2 of 1, 2, 30 and 4 of 4, 4, 5: pairs of 0.25 to 6. With a second movement of 6 and 12 in a third of the
+/// frames, (2 / 3) 2 + (1 / 3) 6 over (2 / 3) 4 + (1 / 3) 12.
+TEST(RatioOfMedians, IsThatOfTheWeightedSums) {
+    const double whole[] = {1}, thirds[] = {2.0 / 3, 1.0 / 3};
+    const Ratio one = ratio_of_medians({{1, 2, 30}}, {{4, 4, 5}}, whole);
+    EXPECT_EQ(one.median, 0.5);
+    EXPECT_EQ(one.interval.low, 0.25);
+    EXPECT_EQ(one.interval.high, 6);
+    EXPECT_EQ(one.pairs, 3);
+    const Ratio two = ratio_of_medians({{1, 2, 30}, {6, 6, 6}}, {{4, 4, 5}, {12, 12, 12}}, thirds);
+    EXPECT_NEAR(two.median, 10.0 / 20, 1e-15);
+    EXPECT_FALSE(ratio_of_medians({{7}}, {{3}}, whole).has_interval());
+    EXPECT_EQ(ratio_of_medians({{0, 0}}, {{3, 4}}, whole).pairs, 0);
+}
+
+/// What varies alike in both leaves no doubt about their ratio, and one slow frame does not move it out of its
+/// interval.
+TEST(RatioOfMedians, DrawsPairsAndHoldsItself) {
+    const double whole[] = {1};
+    const Values b{3, 1, 4, 1.5, 9, 2.5, 6}, twice{6, 2, 8, 3, 18, 5, 12};
+    const Ratio ratio = ratio_of_medians({twice}, {b}, whole);
+    EXPECT_EQ(ratio.median, 2);
+    EXPECT_EQ(ratio.interval.low, 2);
+    EXPECT_EQ(ratio.interval.high, 2);
+    const Ratio slow = ratio_of_medians({{1, 1, 1, 1, 1, 100}}, {{1, 1, 1, 1, 1, 1}}, whole);
+    EXPECT_EQ(slow.median, 1);
+    EXPECT_LE(slow.interval.low, 1);
+    EXPECT_GE(slow.interval.high, 1);
+}
+
 /// Of seven distinct values the median of a resample is the least with a probability of 0.97 % and one of the least two
 /// with 11 %: the percentile 2.5 is the second value, and by symmetry the percentile 97.5 the sixth.
 TEST(PairedRatio, BootstrapOfSevenPairsIsKnown) {

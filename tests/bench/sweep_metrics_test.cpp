@@ -104,6 +104,47 @@ TEST(Metrics, SayNothingOfWhatWasNotJudged) {
     EXPECT_THROW(static_cast<void>(find_metric("psnr")), UsageError);
 }
 
+/// Of `pieces` of the edge, `unmatched` are not found within 8 pixels.
+Json with_edges(const Json& mean, const Json& p95, const Json& max, int pieces, int unmatched) {
+    Json e                    = light_error(1000, 1);
+    e["edge_displacement_px"] = {{"mean", mean},           {"p95", p95}, {"max", max}, {"pieces", pieces},
+                                 {"unmatched", unmatched}, {"reach", 8}};
+    return e;
+}
+
+TEST(Metrics, EdgesThatAreNotFoundAreTheReachAway) {
+    const Json near = with_edges(0.5, 1, 1.75, 100, 0), lost = with_edges(nullptr, nullptr, nullptr, 100, 100);
+    for (const char* name : {"edge_displacement_px.mean", "edge_displacement_px.p95", "edge_displacement_px.max"}) {
+        const Metric& metric = find_metric(name);
+        EXPECT_EQ(value(name, cell({near, lost})), 8) << name;
+        EXPECT_TRUE(is_at_least(metric, cell({near, lost}))) << name;
+        EXPECT_EQ(upper_bound(metric, std::vector{cell({near}), cell({near, lost})}), std::nullopt) << name;
+        EXPECT_FALSE(is_at_least(metric, cell({near}))) << name;
+        EXPECT_TRUE(upper_bound(metric, std::vector{cell({near}), cell({near})})) << name;
+    }
+    EXPECT_FALSE(is_at_least(find_metric("max"), cell({lost})));
+    // 9 pieces at 1 on average and one beyond 8; of 10 pieces in order the ninth is the 95th percentile.
+    const Json torn = cell({with_edges(1, 1.5, 2, 10, 1)});
+    EXPECT_NEAR(value("edge_displacement_px.mean", torn), (9 * 1 + 8) / 10.0, 1e-15);
+    EXPECT_EQ(value("edge_displacement_px.p95", torn), 2);
+    EXPECT_FALSE(is_at_least(find_metric("edge_displacement_px.p95"), torn));
+    EXPECT_EQ(value("edge_displacement_px.max", torn), 8);
+    EXPECT_EQ(value("edge_displacement_px.p95", cell({with_edges(1, 1.5, 2, 10, 2)})), 8);
+    // A record that does not say how far its edges are off, of edges that there are.
+    EXPECT_EQ(metric_value(find_metric("edge_displacement_px.max"), cell({near, with_edges(1, 1, nullptr, 10, 0)})),
+              std::nullopt);
+}
+
+TEST(Metrics, ALightWithoutAnAnswerIsUnknown) {
+    for (const char* why : {"undefined", "not_judged"}) {
+        Json open = light_error(0, 0);
+        open[why] = 12;
+        for (const Metric& m : metrics())
+            EXPECT_EQ(metric_value(m, cell({light_error(1000, 1), open})).has_value(), m.kind == Metric::Kind::entry)
+                << m.name << ' ' << why;
+    }
+}
+
 TEST(UpperShare, IsAboutThreeOverNForNone) {
     EXPECT_NEAR(upper_share(0, 1000), 1 - std::pow(0.05, 1e-3), 1e-12);
     EXPECT_NEAR(upper_share(0, 100000) * 100000, 3, 0.01);

@@ -2,7 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <fstream>
+#include <limits>
+#include <map>
+#include <random>
+#include <utility>
 
 #include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/sweep/grid.h"
@@ -131,6 +136,288 @@ TEST(Limits, AreParsedAndRefused) {
     EXPECT_EQ(error("rmse=-1"), "--max rmse=-1: found the limit \"-1\", expected a finite number of at least 0");
     EXPECT_EQ(error("rmse=1x"), "--max rmse=1x: found the limit \"1x\", expected a finite number of at least 0");
     EXPECT_EQ(error("rnse=1"), "unknown metric \"rnse\"; did you mean rmse? (umbra list metrics names them)");
+}
+
+// ---- Recommendations worked out by hand
+
+struct Phases {
+    double build, aim, look, visibility;  ///< ms
+};
+
+/// A setting whose cells, price and times are written into the store: nothing is run. The camera moves twice a second
+/// and a light once: a frame costs aim / 2 + look + visibility, and build is paid once and for all.
+struct MadeUp {
+    std::string text;
+    std::vector<double> rmse;  ///< by view; two views are chosen on
+    Phases ms;
+    std::vector<double> rounds{1, 1, 1, 1, 1};  ///< factors on the times of each round
+    std::uint64_t interior = 0;                 ///< wrong points, of a million
+    double undefined       = 0;
+};
+
+class RecommendByHand : public testing::Test {
+protected:
+    RecommendByHand() {
+        o_.views    = 2;
+        o_.held_out = 2;
+        o_.workload = parse_workload("camera=2,light=1");
+        o_.limits   = {parse_limit("rmse=0.01")};
+    }
+
+    [[nodiscard]] Recommendation recommended(const std::vector<MadeUp>& settings, double noise_bar = 0.1) {
+        for (const MadeUp& s : settings) keep(s, noise_bar);
+        Recommendation r = recommend(lab_, o_);
+        EXPECT_EQ(lab_.computed(), 0u) << "everything was made up";
+        return r;
+    }
+    void keep(const MadeUp& s, std::optional<double> noise_bar) {
+        const MethodChoice choice = parse_method(s.text);
+        o_.choices.push_back(choice);
+        for (int v = 0; v < static_cast<int>(s.rmse.size()); ++v) {
+            const Json inner = {{"interior", s.interior}, {"edge", 0}}, none = {{"interior", 0}, {"edge", 0}};
+            store_.keep({{"key", lab_.view(v).key(choice)},
+                         {"view", v},
+                         {"serves", {{"how", "approximately"}, {"why", "."}}},
+                         {"undefined", s.undefined},
+                         {"errors",
+                          {{{"light", "l"},
+                            {"points", 1000000},
+                            {"bracket", nullptr},
+                            {"rmse", s.rmse[static_cast<std::size_t>(v)]},
+                            {"false_shadow", inner},
+                            {"false_light", none}}}}});
+        }
+        store_.keep({{"key", lab_.machine_key("price", choice)},
+                     {"price",
+                      {{"build_ms", s.ms.build},
+                       {"aim_ms", {s.ms.aim}},
+                       {"look_ms", s.ms.look},
+                       {"visibility_ms", {s.ms.visibility}}}}});
+        if (!noise_bar) return;
+        const auto timing = [&](double ms) {
+            Json samples = Json::array();
+            for (const double round : s.rounds) samples.push_back(ms * round);
+            return Json{{"median", ms}, {"samples", std::move(samples)}};
+        };
+        store_.keep({{"key", lab_.machine_key("time", choice)},
+                     {"turns", {{"pinned", true}, {"noise_bar", *noise_bar}, {"calibration_ms", Json::array()}}},
+                     {"times",
+                      {{"build_ms", timing(s.ms.build)},
+                       {"aim_ms", timing(s.ms.aim)},
+                       {"look_ms", timing(s.ms.look)},
+                       {"visibility_ms", timing(s.ms.visibility)},
+                       {"order", std::vector<int>(s.rounds.size(), 0)}}}});
+    }
+    [[nodiscard]] static std::string text(const Recommendation& r, std::size_t candidate) {
+        return r.candidates.at(candidate).choice.text();
+    }
+
+    const TemporaryFolder folder_;
+    const CellStore store_{folder_.path() / "cells"};
+    SceneLab lab_{std::filesystem::path(UMBRA_SCENES) / "umbra_penumbra.json", {.size = {16, 9}}, store_};
+    RecommendOptions o_;
+};
+
+const std::vector<double> kDrift{1, 1.1, 0.9, 1, 1.2};  // of the machine, the same for all settings of a round
+
+/// 1 + 1 + 1 = 3 ms with too large an error, 4 + 2 + 3 = 9 ms within the limit, and 18 and 36 ms well within it.
+std::vector<MadeUp> four_methods() {
+    return {{"shadow_zbuffer", {0.02, 0.02}, {1000, 2, 1, 1}, kDrift},
+            {"ray_traced", {0.008, 0.008, 0.0079, 0.05}, {1000, 8, 2, 3}, kDrift},
+            {"shadow_volumes", {0.001, 0.001}, {1, 16, 4, 6}, kDrift},
+            {"brute_force", {0.001, 0.001}, {1, 32, 8, 12}, kDrift}};
+}
+
+TEST_F(RecommendByHand, TheCheapestWithinTheLimitsItsRivalsAndTheStaircase) {
+    const Recommendation r = recommended(four_methods());
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced");
+    EXPECT_EQ(*r.candidates[*r.chosen].cost, 9);
+    EXPECT_NEAR(*r.candidates[*r.chosen].bounds[0], 0.008, 1e-12) << "views that agree leave no doubt";
+    EXPECT_FALSE(r.nearest.has_value());
+    EXPECT_TRUE(r.undecided.empty());
+    EXPECT_TRUE(r.tied.empty());
+    ASSERT_TRUE(r.runner_up.has_value());
+    EXPECT_EQ(text(r, r.runner_up->candidate), "shadow_volumes");
+    EXPECT_NEAR(r.runner_up->ratio.median, 2, 1e-12) << "its cost over the recommendation's";
+    EXPECT_EQ(r.runner_up->ratio.pairs, 5);
+    EXPECT_TRUE(r.runner_up->differs);
+    ASSERT_TRUE(r.cheapest.has_value());
+    EXPECT_EQ(text(r, r.cheapest->candidate), "shadow_zbuffer");
+    EXPECT_NEAR(r.cheapest->ratio.median, 1.0 / 3, 1e-12);
+    EXPECT_FALSE(r.exact.has_value());
+    ASSERT_EQ(r.staircase.size(), 3u) << "36 ms for the error of 18 ms is no step";
+    const std::vector<std::pair<std::string, double>> steps{
+        {"shadow_zbuffer", 0.02}, {"ray_traced", 0.008}, {"shadow_volumes", 0.001}};
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+        EXPECT_EQ(text(r, r.staircase[k].candidate), steps[k].first);
+        EXPECT_NEAR(r.staircase[k].error, steps[k].second, 1e-12);
+    }
+
+    // Of two further views one is within the bound of 0.008.
+    const Json json = recommendation_json(r, o_), &chosen = json["recommendation"];
+    EXPECT_EQ(chosen["held_out"]["views"], 2);
+    EXPECT_EQ(chosen["held_out"]["holds"]["rmse"], 1);
+    EXPECT_EQ(chosen["held_out"]["largest"]["rmse"], 0.05);
+    EXPECT_EQ(chosen["errors"]["rmse"]["largest"], 0.008) << "of the views that it was chosen on";
+    EXPECT_EQ(json["runner_up"]["cost"], 18.0);
+    EXPECT_NEAR(json["runner_up"]["cost_ratio"]["low"].get<double>(), 2, 1e-12);
+    EXPECT_EQ(json["runner_up"]["cost_ratio"]["rounds"], 5);
+}
+
+/// Also those that were beaten, with their errors and costs: the one of each that is within the limits and cheapest, or
+/// else misses by least.
+TEST_F(RecommendByHand, EveryMethodThatWasTriedHasALine) {
+    std::vector<MadeUp> settings = four_methods();
+    settings.push_back({"shadow_zbuffer:filter=pcf", {0.05, 0.05}, {1000, 2, 1, 0.5}, kDrift});
+    settings.push_back({"planar_projection", {0, 0}, {1, 1, 1, 1}, kDrift, 0, 0.4});
+    const Recommendation r = recommended(settings);
+    const auto methods     = tried_methods(r, o_);
+    ASSERT_EQ(methods.size(), 5u);
+    std::map<std::string_view, TriedMethod> by_name;
+    for (const TriedMethod& m : methods) by_name[m.info->name] = m;
+    EXPECT_EQ(text(r, *by_name["brute_force"].candidate), "brute_force");
+    EXPECT_TRUE(by_name["brute_force"].within);
+    EXPECT_EQ(by_name["shadow_zbuffer"].settings, 2u);
+    EXPECT_EQ(by_name["shadow_zbuffer"].looked_at, 2u);
+    EXPECT_FALSE(by_name["shadow_zbuffer"].within);
+    EXPECT_EQ(text(r, *by_name["shadow_zbuffer"].candidate), "shadow_zbuffer") << "twice the limit, not five times";
+
+    const std::string words = recommendation_text(r, o_);
+    for (const char* line : {"    shadow_zbuffer         3.000 ms  rmse at most 0.02: 2 times a limit\n",
+                             "    ray_traced             9.000 ms  rmse at most 0.008\n",
+                             "    shadow_volumes        18.000 ms  rmse at most 0.001\n",
+                             "    brute_force           36.000 ms  rmse at most 0.001\n",
+                             "    planar_projection  left out: it leaves 40 % of the points undefined\n",
+                             "  Costs that differ by less than 10 % are not told apart on this machine now.\n",
+                             "  6 of 6 settings were looked at, in 2 views each.\n"})
+        EXPECT_NE(words.find(line), std::string::npos) << line << words;
+    const Json json = recommendation_json(r, o_);
+    ASSERT_EQ(json["methods"].size(), 5u);
+    EXPECT_EQ(json["methods"][0]["best"]["method"], "shadow_zbuffer");
+    EXPECT_NEAR(json["methods"][0]["factor"].get<double>(), 2, 1e-9);
+    EXPECT_EQ(json["methods"][4]["unfit"], "it leaves 40 % of the points undefined");
+    EXPECT_EQ(json["candidates"].size(), 5u);
+    EXPECT_EQ(json["candidates"][4]["cost"], 2.5);
+}
+
+/// Views of 0.008 and 0.009 make ln a mean of ln 0.0084853 and a deviation of 0.083284; Student's t of one degree is
+/// 6.3138 at 95 %: the bound is 0.0084853 exp(6.3138 * 0.083284 * sqrt(1.5)) = 0.016155.
+TEST_F(RecommendByHand, TheBoundIsJudgedNotTheLargestView) {
+    const Recommendation r = recommended({{"ray_traced", {0.008, 0.009}, {0, 0, 0, 1}}});
+    EXPECT_FALSE(r.chosen.has_value()) << "both views are within 0.01";
+    ASSERT_TRUE(r.nearest.has_value());
+    EXPECT_NEAR(r.candidates[*r.nearest].worst_ratio(o_.limits), 1.6155, 1e-3);
+    EXPECT_EQ(recommendation_json(r, o_)["nearest"]["errors"]["rmse"]["largest"], 0.009);
+}
+
+TEST_F(RecommendByHand, TheNearestMissesByTheSmallestFactor) {
+    const Recommendation r = recommended({{"shadow_zbuffer", {0.05, 0.05}, {0, 0, 0, 3}},
+                                          {"ray_traced", {0.02, 0.02}, {0, 0, 0, 9}},
+                                          {"shadow_volumes", {0.03, 0.03}, {0, 0, 0, 6}}});
+    EXPECT_FALSE(r.chosen.has_value());
+    ASSERT_TRUE(r.nearest.has_value());
+    EXPECT_EQ(text(r, *r.nearest), "ray_traced");
+    EXPECT_NEAR(recommendation_json(r, o_)["nearest"]["factor"].get<double>(), 2, 1e-9);
+    EXPECT_TRUE(r.held_out.empty());
+}
+
+/// 0.02 of the points are wrong in the interior of the first; the second is over the limit of rmse.
+TEST_F(RecommendByHand, EachLimitIsOfItsOwnMetric) {
+    o_.limits              = {parse_limit("rmse=0.01"), parse_limit("interior=0.001")};
+    const Recommendation r = recommended({{"shadow_zbuffer", {0.001, 0.001}, {0, 0, 0, 3}, kDrift, 20000},
+                                          {"shadow_volumes", {0.02, 0.02}, {0, 0, 0, 6}, kDrift, 0},
+                                          {"ray_traced", {0.009, 0.009, 0.009, 0.009}, {0, 0, 0, 9}, kDrift, 100}});
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced");
+    const Json errors = recommendation_json(r, o_)["recommendation"]["errors"];
+    EXPECT_EQ(errors["rmse"]["largest"], 0.009);
+    EXPECT_EQ(errors["rmse"]["limit"], 0.01);
+    EXPECT_EQ(errors["interior"]["largest"], 0.0001);
+    EXPECT_EQ(errors["interior"]["limit"], 0.001);
+    EXPECT_GT(errors["interior"]["bound"], 0.0001);
+    EXPECT_LT(errors["interior"]["bound"], 0.001);
+}
+
+/// At a noise bar of 10 % 9 and 9.5 ms are the same, and 12 ms are the next; at 40 % they are the same, too, but
+/// nothing is chosen then.
+TEST_F(RecommendByHand, WhatTheNoiseBarCoversIsTied) {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
+    const Recommendation r = recommended({{"brute_force", good, {0, 0, 0, 18}, kDrift},
+                                          {"shadow_volumes", good, {0, 0, 0, 12}, kDrift},
+                                          {"ray_traced", good, {0, 0, 0, 9.5}, kDrift},
+                                          {"shadow_zbuffer", good, {0, 0, 0, 9}, kDrift}});
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "shadow_zbuffer");
+    ASSERT_EQ(r.tied.size(), 1u);
+    EXPECT_EQ(text(r, r.tied[0].candidate), "ray_traced");
+    EXPECT_NEAR(r.tied[0].ratio.median, 9.5 / 9, 1e-12);
+    ASSERT_TRUE(r.runner_up.has_value());
+    EXPECT_EQ(text(r, r.runner_up->candidate), "shadow_volumes");
+    EXPECT_NEAR(r.runner_up->ratio.median, 12.0 / 9, 1e-12);
+
+    o_.choices.clear();
+    o_.most_noise             = 0.5;
+    const Recommendation loud = recommended(
+        {{"shadow_volumes", good, {0, 0, 0, 12}, kDrift}, {"shadow_zbuffer", good, {0, 0, 0, 9}, kDrift}}, 0.4);
+    ASSERT_TRUE(loud.chosen.has_value()) << "the most that is allowed is 50 %";
+    EXPECT_EQ(loud.tied.size(), 1u);
+    EXPECT_EQ(loud.staircase.size(), 1u) << "the same cost, as far as can be told, and the same error";
+}
+
+/// One round is one run: there is no interval, and less than five times is no difference.
+TEST_F(RecommendByHand, OneRunOfEachHasNoInterval) {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
+    const Recommendation r = recommended({{"shadow_volumes", good, {0, 0, 0, 21}, {1}},
+                                          {"ray_traced", good, {0, 0, 0, 36}, {1}},
+                                          {"shadow_zbuffer", good, {0, 0, 0, 9}, {1}}},
+                                         std::numeric_limits<double>::infinity());
+    ASSERT_EQ(r.tied.size(), 2u);
+    const Json json = recommendation_json(r, o_);
+    EXPECT_TRUE(json["tied"][0]["cost_ratio"]["low"].is_null());
+    EXPECT_TRUE(json["tied"][0]["cost_ratio"]["high"].is_null());
+    EXPECT_NE(recommendation_text(r, o_).find("shadow_volumes (21.000 ms, 2.33 times by one run)\n"),
+              std::string::npos);
+    EXPECT_EQ(recommendation_text(r, o_).find("2.33 to 2.33"), std::string::npos);
+}
+
+/// A clock that jumps: each phase takes 1 or 20 ms, as it comes.
+TEST_F(RecommendByHand, NothingIsChosenBelowALoudNoiseBar) {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
+    keep({"ray_traced", good, {1, 1, 1, 1}}, std::nullopt);
+    keep({"shadow_zbuffer", good, {1, 1, 1, 1}}, std::nullopt);
+    std::minstd_rand dice(1);
+    double now             = 0;
+    o_.turns               = {.rounds = 5, .budget_ms = 1e12};
+    o_.turns.clock         = [&] { return now += dice() / 16 % 2 == 0 ? 1 : 20; };
+    const Recommendation r = recommend(lab_, o_);
+    EXPECT_GT(r.noise_bar, 0.3);
+    EXPECT_FALSE(r.chosen.has_value());
+    EXPECT_FALSE(r.nearest.has_value());
+    EXPECT_EQ(r.undecided.size(), 2u);
+    EXPECT_TRUE(r.held_out.empty());
+    const Json json = recommendation_json(r, o_);
+    EXPECT_TRUE(json["recommendation"].is_null());
+    EXPECT_EQ(json["undecided"].size(), 2u);
+    EXPECT_EQ(recommendation_text(r, o_).substr(0, 18), "Nothing is chosen:");
+}
+
+TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
+    const MethodChoice rays = parse_method("ray_traced");
+    TurnOptions turns{.rounds = 2, .budget_ms = 1e6};
+    keep({"ray_traced", good, {123456, 1, 1, 1}}, 0.1);
+    EXPECT_EQ(lab_.price(rays)->build, 123456);
+    EXPECT_EQ(lab_.times({&rays, 1}, turns).settings[0]["build_ms"]["median"], 123456.0);
+    keep({"ray_traced", good, {123456, 1, 1, 1}}, 0.1);
+    SceneLab lab(lab_.scene().source, {.size = {16, 9}}, store_);
+    lab.measure_anew();
+    const double price = lab.price(rays)->build;
+    EXPECT_NE(price, 123456);
+    EXPECT_EQ(lab.price(rays)->build, price) << "once is enough";
+    const Json times = lab.times({&rays, 1}, turns).settings[0];
+    EXPECT_NE(times["build_ms"]["median"], 123456.0);
+    EXPECT_EQ(lab.times({&rays, 1}, turns).settings[0], times);
 }
 
 }  // namespace

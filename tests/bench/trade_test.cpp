@@ -10,6 +10,7 @@
 #include <regex>
 
 #include "trade_fixture.h"
+#include "umbra/bench/trade/fixed_errors_view.h"
 #include "umbra/bench/trade/swept_scene_view.h"
 #include "umbra/bench/trade/trade_chart.h"
 #include "umbra/bench/trade/trade_findings.h"
@@ -100,9 +101,10 @@ TEST_F(Trade, OneSentenceAScene) {
         contains(html, "<div><dt><a href=\"#scene-2\">The yard</a></dt><dd>RMSE of S: " + other + "</dd></div>"));
     EXPECT_TRUE(contains(html, "The camera moves 10 times a second, a light once a second, an object never."));
     EXPECT_TRUE(contains(html, "less than 4 % are not distinguishable"));
-    EXPECT_TRUE(
-        contains(read(out / "index.html"),
-                 "<div><dt><a href=\"trade/index.html#scene-2\">The yard</a></dt><dd>" + other + "</dd></div>"));
+    EXPECT_TRUE(contains(
+        read(out / "index.html"),
+        "<div><dt><a href=\"trade/index.html#scene-2\">The yard</a></dt><dd>RMSE of S: " + other + "</dd></div>"))
+        << "of which error it speaks";
 }
 
 TEST_F(Trade, SentencesWhereThereIsNoStaircase) {
@@ -141,6 +143,37 @@ TEST_F(Trade, AtFixedErrors) {
         EXPECT_EQ(table.at(row.name, "The exact"), row.exact) << row.name;
         EXPECT_EQ(table.at(row.name, "The planar_projection"), "–") << row.name;
     }
+}
+
+/// At a noise bar of 20 % 2.5 and 2.4 ms are the same cost; at 40 % the costs of a scene say nothing.
+TEST_F(Trade, NothingIsRankedBelowTheNoise) {
+    const auto fixed = [&](double noise_bar, double rays_ms) {
+        json quiet = trade_fixture::scene("court", {trade_fixture::setting("shadow_zbuffer", 0, 2, {0.01, 0.01}),
+                                                    trade_fixture::setting("ray_traced", 0, 5, {0.01, 0.01})});
+        json noisy = trade_fixture::scene("yard", {trade_fixture::setting("shadow_zbuffer", 0, 2.4, {0.01, 0.01}),
+                                                   trade_fixture::setting("ray_traced", 0, rays_ms, {0.01, 0.01})});
+        noisy["sweep"]["turns"]["noise_bar"] = noise_bar;
+        write(folder / "one.json", quiet.dump());
+        write(folder / "two.json", noisy.dump());
+        const std::vector<SweptScene> scenes{read_swept_scene(folder / "one.json"),
+                                             read_swept_scene(folder / "two.json")};
+        return fixed_errors_view(scenes, swept_methods(scenes));
+    };
+    const auto best = [](const json& view, std::size_t scene, std::size_t method) {
+        return view["groups"][scene]["rows"][0]["cells"][method]["best"].get<bool>();
+    };
+    const json quiet = fixed(0.2, 2.5);
+    ASSERT_EQ(quiet["groups"].size(), 2u);
+    EXPECT_TRUE(best(quiet, 0, 0));
+    EXPECT_FALSE(best(quiet, 0, 1));
+    EXPECT_TRUE(best(quiet, 1, 0));
+    EXPECT_TRUE(best(quiet, 1, 1)) << "4 % dearer, at a bar of 20 %";
+    EXPECT_FALSE(best(fixed(0.02, 2.5), 1, 1));
+    EXPECT_EQ(quiet["loud"], "");
+    const json loud = fixed(0.4, 2.5);
+    ASSERT_EQ(loud["groups"].size(), 1u);
+    EXPECT_EQ(loud["groups"][0]["scene"], "The court");
+    EXPECT_EQ(loud["loud"], "The yard");
 }
 
 /// Where the marks of a plot are, by what they say of themselves: "TEXT: COST ms, ERROR".

@@ -1,12 +1,15 @@
 // Reasons: every method's word for one point, compared with a segment test of this file's own in extended precision.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <sstream>
 #include <string>
 
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
+#include "umbra/shadows/cascades/cascaded_maps.h"
 #include "umbra/shadows/method.h"
 #include "umbra/tests/support/asked.h"
 
@@ -51,6 +54,23 @@ std::vector<std::size_t> spread(const PointBatch& points, LightId light, std::si
     for (std::size_t k = 0; k < wanted && !asking.empty(); ++k)
         some.push_back(asking[(2 * k + 1) * asking.size() / (2 * wanted)]);
     return some;
+}
+
+/// Null where the reason has none of that name.
+const Evidence* find_evidence(const Reason& reason, std::string_view name) {
+    const auto found = std::ranges::find(reason.evidence, name, &Evidence::name);
+    return found == reason.evidence.end() ? nullptr : &*found;
+}
+/// NaN where it has none, or no number.
+double number_of(const Reason& reason, std::string_view name) {
+    const Evidence* found = find_evidence(reason, name);
+    const auto* value     = found ? std::get_if<double>(&found->value) : nullptr;
+    return value ? *value : NAN;
+}
+std::string text_of(const Reason& reason, std::string_view name) {
+    const Evidence* found = find_evidence(reason, name);
+    const auto* value     = found ? std::get_if<std::string>(&found->value) : nullptr;
+    return value ? *value : std::string();
 }
 
 struct Tally {
@@ -150,6 +170,113 @@ TEST(Explain, LitByTheDistanceOfTheNearestOccluder) {
     const dvec3 d = glm::normalize(dvec3(0, 4, 0) - p);
     const dvec3 v = dvec3(1, 2, 0) - p;
     EXPECT_NEAR(lit.margin, glm::length(v - glm::dot(v, d) * d), 0.01);
+}
+
+TEST(Explain, OfACascadeHoldsWhatTheWholeMapHolds) {
+    constexpr int kTexels = 512;
+    for (const char* name : {"sun_on_plane", "low_sun_fence"}) {
+        const Scene scene       = load_scene(std::string(UMBRA_SCENES) + "/" + name + ".json");
+        const SceneFacts facts  = find_facts(scene);
+        const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 96, 54);
+        for (const char* settings : {"filter=nearest", "filter=pcf,radius=4,blend=0.5", "depth_range=visible"}) {
+            const CascadedMaps method(
+                parse_method("cascaded_maps:resolution=" + std::to_string(kTexels) + "," + settings).settings);
+            const auto built  = method.build(scene, facts);
+            const auto aimed  = method.aim(*built, 0);
+            const auto looked = method.look(*built, points);
+            VisibilityPlane plane(points.size());
+            method.visibility(*aimed, *looked, plane.out());
+
+            const Cascades fit = method.fit(*aimed, *looked).value();
+            const SelectedCasters casters(as<BuiltCasters>(*built).casters, scene.lights[0]);
+            std::vector<MapView> maps;
+            for (std::size_t k = 0; k <= fit.parts.size(); ++k) {
+                const LightFrame& frame = k < fit.parts.size() ? fit.parts[k].frame : fit.whole.frame;
+                maps.push_back({frame, DepthMap(kTexels, kTexels, DepthFormat::float32)});
+                const dmat4 clip_from_world = frame.clip_from_world();
+                maps.back().map.draw(clip_from_world, scene.positions, casters.seen_by(clip_from_world), Faces::all);
+            }
+            std::size_t compared = 0, blocked = 0;
+            for (const std::size_t i : spread(points, 0, 100)) {
+                const std::string where = std::string(name) + " " + settings + " point " + std::to_string(i);
+                const Given given{plane.s[i], plane.answer[i]};
+                const Reason reason = method.explain(*aimed, *looked, i, given);
+                EXPECT_EQ(reason.verdict, verdict_of(given)) << where;
+                const double k = number_of(reason, "map");
+                if (std::isnan(k)) continue;  // nothing casts there
+                const MapView& view = maps.at(static_cast<std::size_t>(k));
+                int x = -1, y = -1;
+                char comma = 0;
+                std::istringstream(text_of(reason, "texel")) >> x >> comma >> y;
+                ASSERT_TRUE(x >= 0 && x < kTexels && y >= 0 && y < kTexels) << where;
+                EXPECT_EQ(number_of(reason, "stored depth"), view.frame.depth(view.map.nearness(x, y))) << where;
+                ++compared;
+                blocked += reason.blocker != kNoTriangle;
+            }
+            EXPECT_GE(compared, 10u) << name << " " << settings;
+            EXPECT_GE(blocked, 1u) << name << " " << settings;
+        }
+    }
+}
+
+/// Outlines as the evidence has them: "x y, x y | x y, ...".
+std::vector<std::vector<dvec2>> outlines_of(const std::string& text) {
+    std::vector<std::vector<dvec2>> all;
+    std::istringstream lines(text);
+    for (std::string line, corner; std::getline(lines, line, '|');) {
+        all.emplace_back();
+        for (std::istringstream corners(line); std::getline(corners, corner, ',');) {
+            dvec2 c(NAN);
+            std::istringstream(corner) >> c.x >> c.y;
+            all.back().push_back(c);
+        }
+    }
+    return all;
+}
+
+TEST(Explain, OfAnAreaLightHasTheOutlineOfWhatIsVisible) {
+    for (const char* name : {"umbra_penumbra", "light_sizes"}) {
+        const Scene scene       = load_scene(std::string(UMBRA_SCENES) + "/" + name + ".json");
+        const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 96, 54);
+        for (const bool rational : {false, true}) {
+            Asked method(rational ? "exact:arithmetic=rational" : "exact");
+            method.build(scene);
+            const auto looked    = method.look(points);
+            std::size_t outlined = 0, rectangles = 0;
+            for (LightId light = 0; light < scene.lights.size(); ++light) {
+                method.aim(light);
+                const bool rectangle = scene.lights[light].kind == LightKind::rectangle;
+                rectangles += rectangle;
+                for (const std::size_t i : spread(points, light, rational ? 3 : 60)) {
+                    const auto which    = static_cast<std::uint32_t>(i);
+                    const auto answered = method.visibility(pick(points, {&which, 1}), light);
+                    const Given given{answered.s[0], answered.answer[0]};
+                    const Reason reason     = method.method().explain(method.aimed(), *looked, i, given);
+                    const std::string where = scene.lights[light].name + " point " + std::to_string(i);
+                    const double share      = number_of(reason, "visible area");
+                    EXPECT_NEAR(share, static_cast<double>(given.s), 1e-6) << where;
+                    EXPECT_GE(number_of(reason, "visible pieces"), share > 1e-6 ? 1 : 0) << where;
+                    EXPECT_GE(number_of(reason, "silhouette edges"), share > 0 && share < 1 ? 1 : 0) << where;
+                    EXPECT_FALSE(text_of(reason, "arithmetic").empty()) << where;
+                    EXPECT_TRUE(!rational || text_of(reason, "arithmetic") == "rationals, as set") << where;
+
+                    double twice_area   = 0;
+                    const auto outlines = outlines_of(text_of(reason, "corners in half axes"));
+                    for (const std::vector<dvec2>& outline : outlines)
+                        for (std::size_t k = 0; k < outline.size(); ++k) {
+                            const dvec2 a = outline[k], b = outline[(k + 1) % outline.size()];
+                            twice_area += a.x * b.y - a.y * b.x;
+                            EXPECT_LE(rectangle ? std::max(std::abs(a.x), std::abs(a.y)) : glm::length(a), 1.0001)
+                                << where;
+                        }
+                    if (!rectangle || outlines.empty()) continue;
+                    EXPECT_NEAR(twice_area / 8, share, 1e-3) << where;
+                    ++outlined;
+                }
+            }
+            EXPECT_GE(outlined, rectangles) << name;
+        }
+    }
 }
 
 }  // namespace

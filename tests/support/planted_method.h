@@ -18,7 +18,7 @@ struct PlantedAnswer {
 
 /// Set by a test before a run and read by every object of the method.
 struct PlantedBehaviour {
-    /// At the pixel in column x, row y from the top.
+    /// At the pixel in column x, row y from the top; of points that are no picture, x is the index.
     std::function<PlantedAnswer(LightId light, std::size_t x, std::size_t y, int seed)> answer;
     std::function<void(Phase phase, LightId light)> work;  ///< called in each phase, light 0 where it is about none;
                                                            ///< may be empty
@@ -53,7 +53,7 @@ public:
         work(Phase::visibility, aimed.light);
         const PointBatch& points = looked.points;
         const LightId light      = aimed.light;
-        const auto width         = static_cast<std::size_t>(points.raster->width);
+        const std::size_t width  = points.raster ? static_cast<std::size_t>(points.raster->width) : points.size();
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (!points.asks(light, i)) continue;
             const PlantedAnswer a = planted_behaviour.answer(light, i % width, i / width, options.seed);

@@ -48,6 +48,7 @@ Action compare_command(CLI::App& app, const Common& common) {
     line->options.pixel_samples = kPictureSamples;
     app.add_option("--pixel-samples", line->options.pixel_samples,
                    "Points a pixel in pictures: 1, 4, 9, 16 ... (planes and errors stay at pixel centres)")
+        ->check(pixel_samples())
         ->capture_default_str()
         ->type_name("N");
     app.add_option("-o,--output", line->options.out, "Folder to write to")->type_name("DIR")->required();

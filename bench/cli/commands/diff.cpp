@@ -52,7 +52,8 @@ Action diff_command(CLI::App& app, const Common& common) {
     DiffOptions& options   = line->options;
     app.add_option("A", line->a, "Reference image, or a folder of images")->type_name("")->required();
     app.add_option("B", line->b, "Image or folder to compare with it")->type_name("")->required();
-    app.add_option("--channels", options.channels, "Compare only these channels, as in R,G,B,S.*")
+    app.add_option("--channels", options.channels,
+                   "Compare only these channels, as in R,G,B,S.* (of a further part: PART.R)")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->type_name("NAMES");
@@ -64,9 +65,11 @@ Action diff_command(CLI::App& app, const Common& common) {
     limit("--fail-percent", options.fail_percent, "Percentage of pixels that may differ by more than --fail",
           number_in(0, 100, "a percentage, 0 to 100"));
     limit("--fail-rmse", options.fail_rmse, "Largest root mean square difference allowed", positive);
-    limit("--fail-flip", options.fail_flip, "Largest mean FLIP allowed", number_in(0, 1, "a number from 0 to 1"));
+    limit("--fail-flip", options.fail_flip, "Largest mean FLIP of any layer (R, G, B) allowed",
+          number_in(0, 1, "a number from 0 to 1"));
     limit("--fail-psnr", options.fail_psnr, "Smallest PSNR allowed, dB", number_in(-kMany, kMany, "a finite number"));
-    limit("--fail-ssim", options.fail_ssim, "Smallest SSIM allowed", number_in(-1, 1, "a number from -1 to 1"));
+    limit("--fail-ssim", options.fail_ssim, "Smallest SSIM of any layer allowed",
+          number_in(-1, 1, "a number from -1 to 1"));
     limit("--warn", options.warn, "Largest difference of a value that still counts as the same", positive);
     app.add_option("-o,--output", options.map,
                    "Write a difference map: FILE.png (colours) or FILE.exr (FLIP, and B - A of every channel); for "
@@ -77,7 +80,8 @@ Action diff_command(CLI::App& app, const Common& common) {
     app.add_option("--junit", line->junit, "Write JUnit XML, one test case per image")->type_name("FILE");
     app.add_flag("--json", line->as_json, "Print JSON");
     app.footer(
-        "Exit codes: 0 same, 1 close (within the limits), 2 differs, 3 sizes or channels differ, 4 unreadable; of "
+        "Exit codes: 0 same, 1 close (within the limits), 2 differs, 3 sizes, parts, channels, windows or colour "
+        "metadata differ, 4 unreadable; of "
         "folders the largest.");
     return [line, &common] { return diff(*line, common); };
 }

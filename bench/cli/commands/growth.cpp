@@ -49,6 +49,7 @@ Action growth_command(CLI::App& app, const Common& common) {
     app.add_option("--methods", command.methods, "Methods, with settings (default: all)")->type_name("METHOD");
     app.add_option("--max", command.most,
                    "The largest size, with one --over (default: triangles 1e6, pixels 2048 x 2048)")
+        ->check(number_in(1, 1e12, "a number from 1 to 1e12"))
         ->type_name("N");
     app.add_option("--rounds", command.options.turns.rounds, "Rounds of time at each size")
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))

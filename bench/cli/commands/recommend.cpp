@@ -22,7 +22,7 @@ struct RecommendLine {
     std::string scene, size, reference, workload, cells;
     std::vector<std::string> limits, methods;
     std::optional<std::uint64_t> points;
-    bool as_json = false;
+    bool as_json = false, fresh = false;
     RecommendOptions options;
 };
 
@@ -55,14 +55,16 @@ int recommend(RecommendLine line, const Common& common) {
         const Terminal terminal(common.quiet);
         cell.progress = [&](const std::string& what) { terminal.progress(what); };
         const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
+        options.kept_in = store.folder().string();
         SceneLab lab(scene_file(line.scene), cell, store);
+        if (line.fresh) lab.measure_anew();
         for (const std::string& warning : lab.scene().warnings)
             terminal.warn(fmt::format("{}: {}", lab.scene().name, warning));
         options.choices = planned_settings(plan, lab.facts());
         found           = recommend(lab, options);
     }
-    print_out("{}",
-              line.as_json ? json_text(recommendation_json(found, options)) : recommendation_text(found, options));
+    print_out("{}", line.as_json ? json_text(recommendation_json(found, options))
+                                 : without_controls(recommendation_text(found, options)));
     return found.chosen ? kDone : kNo;
 }
 
@@ -93,8 +95,10 @@ Action recommend_command(CLI::App& app, const Common& common) {
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
         ->type_name("N");
     app.add_option("-o,--output", line->cells,
-                   "Folder of a sweep whose cells are used and added to (default: a folder in the user's cache)")
+                   "Folder of a sweep whose cells are used and added to (default: $XDG_CACHE_HOME/umbra/cells or "
+                   "~/.cache/umbra/cells)")
         ->type_name("DIR");
+    app.add_flag("--fresh", line->fresh, "Measure times anew that were kept; errors do not change");
     app.add_flag("--json", line->as_json, "Print the answer as JSON");
     return [line, &common] { return recommend(*line, common); };
 }

@@ -46,6 +46,7 @@ Action render_command(CLI::App& app, const Common& common) {
     line->options.pixel_samples = kPictureSamples;
     app.add_option("--pixel-samples", line->options.pixel_samples,
                    "Points a pixel of a PNG: 1, 4, 9, 16 ... (an EXR has pixel centres)")
+        ->check(pixel_samples())
         ->capture_default_str()
         ->type_name("N");
     app.add_flag("--geometry", line->options.with_geometry,

@@ -79,6 +79,8 @@ int sweep(SweepLine line, const Common& common) {
     for (const fs::path& file : scene_files(line.scenes)) options.plan.scenes.push_back(fs::absolute(file));
 
     if (line.list) {
+        constexpr std::size_t kMostParts = 1'000'000'000;  // -1 is read as the largest number that there is
+        if (*line.list > kMostParts) throw UsageError(fmt::format("--list: expected 0 to {}", kMostParts));
         print_list(options, *line.list);
         return kDone;
     }

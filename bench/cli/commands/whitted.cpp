@@ -33,7 +33,6 @@ int whitted(const WhittedLine& line, const Common& common) {
     options.command        = common.command;
     options.places         = places_named(line.places);
     if (!line.no_shadows) options.method = parse_method(line.method);
-    static_cast<void>(samples_along_side(options.pixel_samples));
     PreparedScene prepared =
         prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size), 1, Work::picture);
     correct_warnings(prepared.scene);
@@ -84,6 +83,7 @@ Action whitted_command(CLI::App& app, const Common& common) {
         ->type_name("W");
     options.pixel_samples = kPictureSamples;
     app.add_option("--pixel-samples", options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...")
+        ->check(pixel_samples())
         ->capture_default_str()
         ->type_name("N");
     std::vector<std::string> places;

@@ -36,17 +36,23 @@ GltfFile open_gltf(const std::filesystem::path& file) {
     const auto word            = [&](std::size_t at) { return load_number<std::uint32_t>(all.data() + at); };
     if (all.size() < 20) fail(0, fmt::format("{} bytes (a .glb has at least 20)", all.size()));
     if (word(4) != 2) fail(4, fmt::format("version {} of the container, expected 2", word(4)));
-    if (word(8) != all.size())
-        fail(8, fmt::format("the header says {} bytes, but the file has {}", word(8), all.size()));
+    const std::size_t says = word(8);
+    if (says > all.size()) fail(8, fmt::format("the header says {} bytes, but the file has {}", says, all.size()));
+    if (says < all.size())
+        document.warnings.push_back(
+            fmt::format("The header says {} bytes, but the file has {}: what lies behind its chunks is ignored.", says,
+                        all.size()));
     std::optional<std::string_view> json;
+    constexpr std::uint32_t kJson = 0x4e4f534a, kBin = 0x004e4942;
     std::size_t at = 12;
     for (int chunk = 0; at < all.size(); ++chunk) {
-        if (all.size() - at < 8) fail(at, "the file ends within the head of a chunk");
+        const std::size_t left = all.size() - at;
+        const bool may_be_bin  = chunk == 1 && left >= 8 && word(at + 4) == kBin && word(at) <= left - 8;
+        if (chunk > 0 && at >= says && !may_be_bin) break;
+        if (left < 8) fail(at, "the file ends within the head of a chunk");
         const std::uint32_t length = word(at), type = word(at + 4);
-        if (length > all.size() - at - 8)
-            fail(at, fmt::format("a chunk of {} bytes, but {} are left", length, all.size() - at - 8));
-        const std::string_view body   = all.substr(at + 8, length);
-        constexpr std::uint32_t kJson = 0x4e4f534a, kBin = 0x004e4942;
+        if (length > left - 8) fail(at, fmt::format("a chunk of {} bytes, but {} are left", length, left - 8));
+        const std::string_view body = all.substr(at + 8, length);
         if (chunk == 0 && type != kJson) fail(at + 4, "the first chunk is not JSON");
         if (chunk == 0) json = body;
         if (chunk == 1 && type == kBin) document.bin = body;
@@ -69,7 +75,8 @@ void check_version(const JsonText& json) {
 
 // What is needed to understand the geometry must be known; what only changes the appearance may be ignored.
 void check_extensions(const JsonText& json, std::vector<std::string>& warnings) {
-    static constexpr std::array<std::string_view, 7> kRead{"KHR_lights_punctual",
+    static constexpr std::array<std::string_view, 8> kRead{"KHR_lights_punctual",
+                                                           "EXT_mesh_gpu_instancing",
                                                            "KHR_mesh_quantization",
                                                            "KHR_materials_unlit",
                                                            "KHR_materials_emissive_strength",

@@ -14,9 +14,11 @@ struct GltfFile {
     SourceText json;    ///< the document
     std::string whole;  ///< the .glb, which `bin` points into
     std::optional<std::string_view> bin;
+    std::vector<std::string> warnings;
 };
 
-/// Throws InputError where a .glb's header or chunks do not fit its size.
+/// Throws InputError where a .glb is shorter than its header or chunks say. Bytes behind them are ignored, and a length
+/// in its header that ends before its chunks do, with a warning.
 [[nodiscard]] GltfFile open_gltf(const std::filesystem::path& file);
 
 /// Refuses documents of other versions than 2.x.

@@ -307,12 +307,15 @@ void GltfData::read_accessors() {
     }
 }
 
-std::vector<vec3> GltfData::vectors(const GltfAccessor& accessor) const {
-    std::vector<vec3> out(std::size_t(accessor.count), vec3(0));
+namespace {
+
+template <class Vector>
+std::vector<Vector> read_vectors(const GltfAccessor& accessor) {
+    std::vector<Vector> out(std::size_t(accessor.count), Vector(0));
     const std::size_t size = component_size(accessor.component_type);
     const auto read        = [&](const char* p) {
-        vec3 v(0);
-        for (int c = 0; c < std::min(accessor.components, 3); ++c)
+        Vector v(0);
+        for (int c = 0; c < std::min<int>(accessor.components, Vector::length()); ++c)
             v[c] =
                 static_cast<float>(component(p + std::size_t(c) * size, accessor.component_type, accessor.normalized));
         return v;
@@ -325,6 +328,11 @@ std::vector<vec3> GltfData::vectors(const GltfAccessor& accessor) const {
             read(s.values.data() + k * size * std::size_t(accessor.components));
     return out;
 }
+
+}  // namespace
+
+std::vector<vec3> GltfData::vectors(const GltfAccessor& accessor) const { return read_vectors<vec3>(accessor); }
+std::vector<vec4> GltfData::quadruples(const GltfAccessor& accessor) const { return read_vectors<vec4>(accessor); }
 
 std::vector<std::uint32_t> GltfData::indices(const GltfAccessor& accessor) const {
     std::vector<std::uint32_t> out(std::size_t(accessor.count), 0);

@@ -43,6 +43,7 @@ public:
     [[nodiscard]] const std::vector<GltfAccessor>& accessors() const { return accessors_; }
     /// Any vector type; normalised integers as the fractions that they represent.
     [[nodiscard]] std::vector<vec3> vectors(const GltfAccessor& accessor) const;
+    [[nodiscard]] std::vector<vec4> quadruples(const GltfAccessor& accessor) const;  ///< the same of four numbers
     [[nodiscard]] std::vector<std::uint32_t> indices(const GltfAccessor& accessor) const;
 
 private:

@@ -19,11 +19,14 @@
 //   KHR_materials_transmission, _ior  transmit, transmit_colour (the base colour), index_of_refraction
 //   doubleSided                     two_sided
 //   KHR_lights_punctual             I_j = colour x intensity, as is (lux or candela); f_att = 1 / d^2 without limit;
-//                                   range as a sharp limit; spots with falloff `smooth`
+//                                   range as a sharp limit; spots with falloff `smooth`, whose inner angle is moved
+//                                   to where the extension's own formula reaches its largest value; equal angles: a
+//                                   hard edge, with a warning
 //   exposure                        1; with punctual lights 1 / E where the median E over the triangles of the light
 //                                   that arrives, sum_j f_att,j I_j, lies outside [0.1, 2]
 //   (no ambient light)              I_a = 0.1
 //   textures, vertex colours, skins, morph targets, animations   not read, with a warning
+//   EXT_mesh_gpu_instancing         an object for each instance and primitive
 //   points, lines                   left out, with a warning
 //   extras.umbra                    extras.cpp
 //
@@ -56,11 +59,13 @@ std::vector<Material> read_materials(const JsonText& json, GltfNotes& notes) {
     return materials;
 }
 
-std::vector<std::optional<Light>> read_lights(const JsonText& json, std::vector<std::string>& warnings) {
+std::vector<std::optional<Light>> read_lights(const JsonText& json, GltfNotes& notes,
+                                              std::vector<std::string>& warnings) {
     std::vector<std::optional<Light>> lights;
     if (const JsonValue* punctual = extension(json, json.root(), "KHR_lights_punctual")) {
         const JsonArray& list = list_of(json, *punctual, "lights");
-        for (std::size_t i = 0; i < list.size(); ++i) lights.push_back(read_punctual_light(json, list[i], i, warnings));
+        for (std::size_t i = 0; i < list.size(); ++i)
+            lights.push_back(read_punctual_light(json, list[i], i, notes, warnings));
     }
     return lights;
 }
@@ -92,17 +97,19 @@ SceneFile read_gltf(const std::filesystem::path& file) {
 
     SceneFile read;
     auto& warnings = read.scene.warnings;
+    warnings       = std::move(source.warnings);
     check_extensions(json, warnings);
     const GltfData data(json, file, source.bin);
 
     GltfNotes notes;
     GltfParts parts;
     read.scene.materials = read_materials(json, notes);
-    parts.lights         = read_lights(json, warnings);
+    parts.lights         = read_lights(json, notes, warnings);
     parts.lenses         = read_lenses(json, warnings);
     parts.meshes         = read_meshes(json, data, read.scene.materials.size(), notes, warnings);
 
-    const std::vector<Node> nodes = read_nodes(json);
+    std::vector<Node> nodes = read_nodes(json);
+    read_instances(json, data, nodes);
     GltfSceneBuilder builder(json, parts, read, notes);
     builder.check_references(nodes);
     builder.place_trees(nodes, read_roots(json, nodes, warnings));

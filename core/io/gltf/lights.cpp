@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -11,7 +12,45 @@
 #include "umbra/core/scene/names.h"
 
 namespace umbra {
-std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& v, std::size_t index,
+namespace {
+
+// Exporters write pi/2 with few digits, and equal angles for a hard edge.
+constexpr Range kWrittenConeAngle{kConeAngleRadians.min, 1.571, kConeAngleRadians.words};
+constexpr double kSameAngle = 1e-6;  ///< relative
+
+void read_cone(const JsonText& json, const JsonValue& spot, std::string_view what, Spot& cone, GltfNotes& notes) {
+    (void)json.object(spot, "spot");
+    double outer       = number_or(json, &spot, "outerConeAngle", kWrittenConeAngle, kPi / 4);
+    const double inner = number_or(json, &spot, "innerConeAngle", kNotNegative, 0);
+    if (outer > kConeAngleRadians.max) ++notes.wide_spots, outer = kConeAngleRadians.max;
+    cone.falloff = SpotFalloff::smooth;
+    cone.cutoff  = static_cast<float>(outer);
+    cone.inner   = static_cast<float>(inner);
+    if (inner < outer * (1 - kSameAngle)) return;
+    if (inner > outer * (1 + kSameAngle))
+        json.fail(spot,
+                  fmt::format("{}: innerConeAngle {:g} is not less than outerConeAngle {:g}", what, inner, outer));
+    ++notes.hard_spots;
+    cone.inner = cone.cutoff;
+}
+
+/// The extension divides by max(0.001, cos inner - cos outer), SpotFalloff::smooth by the difference alone. Where that
+/// is less than 0.001 the inner angle moves inwards until it is; where no angle is far enough inside, the light has its
+/// inner angle at the axis and less of its intensity.
+void widen_ramp(Light& light) {
+    constexpr double kLeast = 1e-3;
+    const double cos_outer  = std::cos(static_cast<double>(light.spot.cutoff));
+    const double cos_inner  = std::cos(static_cast<double>(light.spot.inner));
+    if (light.spot.inner == light.spot.cutoff || cos_inner - cos_outer >= kLeast) return;
+    const double share = std::min(1.0, (1 - cos_outer) / kLeast);
+    light.spot.inner   = static_cast<float>(std::acos(std::min(1.0, cos_outer + kLeast)));
+    light.diffuse *= static_cast<float>(share * share);
+    light.specular *= static_cast<float>(share * share);
+}
+
+}  // namespace
+
+std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& v, std::size_t index, GltfNotes& notes,
                                          std::vector<std::string>& warnings) {
     const auto what = fmt::format("lights[{}]", index);
     (void)json.object(v, what);
@@ -45,17 +84,10 @@ std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& 
     if (light.kind == LightKind::spot) {
         const JsonValue* spot = find_member(v, "spot");
         if (!spot) json.fail(v, what + " is a spot light without \"spot\", expected \"spot\": {}");
-        (void)json.object(*spot, "spot");
-        const double outer = number_or(json, spot, "outerConeAngle", kConeAngleRadians, kPi / 4);
-        const double inner = number_or(json, spot, "innerConeAngle", kNotNegative, 0);
-        light.spot.falloff = SpotFalloff::smooth;
-        light.spot.cutoff  = static_cast<float>(outer);
-        light.spot.inner   = static_cast<float>(inner);
-        if (light.spot.inner >= light.spot.cutoff)
-            json.fail(*spot,
-                      fmt::format("{}: innerConeAngle {:g} is not less than outerConeAngle {:g}", what, inner, outer));
+        read_cone(json, *spot, what, light.spot, notes);
     }
     if (const JsonValue* extras = find_umbra(v)) apply_light_extras(json, *extras, light);
+    if (light.kind == LightKind::spot && light.spot.falloff == SpotFalloff::smooth) widen_ramp(light);
     return light;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/core/io/gltf/notes.h"
 #include "umbra/core/io/json_text.h"
 #include "umbra/core/scene/lights.h"
 
@@ -13,6 +14,6 @@ namespace umbra {
 /// lights[index] of the extension, at the origin and shining along -z until a node places it; nothing, and a warning,
 /// where its type is unknown.
 [[nodiscard]] std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& v, std::size_t index,
-                                                       std::vector<std::string>& warnings);
+                                                       GltfNotes& notes, std::vector<std::string>& warnings);
 
 }  // namespace umbra

@@ -1,5 +1,8 @@
 #include "umbra/core/io/gltf/nodes.h"
 
+#include <cmath>
+#include <optional>
+
 #include <fmt/format.h>
 #include <glm/gtc/quaternion.hpp>
 
@@ -8,6 +11,13 @@
 
 namespace umbra {
 namespace {
+
+dmat4 transform_of(dvec3 translation, glm::dquat rotation, dvec3 scale) {
+    dmat4 m(glm::mat3_cast(rotation));
+    for (int k = 0; k < 3; ++k) m[k] *= scale[k];
+    m[3] = dvec4(translation, 1);
+    return m;
+}
 
 dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::string& what) {
     const JsonValue* matrix = find_member(v, "matrix");
@@ -22,10 +32,7 @@ dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::strin
                 json.fail(*r, fmt::format("rotation has length {:g}, expected a unit quaternion", length));
             q = glm::normalize(q);
         }
-        dmat4 m(glm::mat3_cast(q));
-        for (int k = 0; k < 3; ++k) m[k] *= s[k];
-        m[3] = dvec4(t, 1);
-        return m;
+        return transform_of(t, q, s);
     }
     for (const auto key : {"translation", "rotation", "scale"})
         if (find_member(v, key))
@@ -39,7 +46,58 @@ dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::strin
     return m;
 }
 
+/// The accessor of an instance's attribute, or null.
+const GltfAccessor* find_attribute(const JsonText& json, const GltfData& data, const JsonValue& attributes,
+                                   std::string_view name, int components) {
+    const JsonValue* v = find_member(attributes, name);
+    if (v == nullptr) return nullptr;
+    const GltfAccessor& accessor = data.accessors()[index_into(json, *v, name, data.accessors().size())];
+    if (accessor.components != components)
+        json.fail(*v,
+                  fmt::format("{} has {} components an instance, expected {}", name, accessor.components, components));
+    return &accessor;
+}
+
+std::vector<dmat4> instances_of(const JsonText& json, const GltfData& data, const JsonValue& attributes) {
+    (void)json.object(attributes, "attributes");
+    const GltfAccessor* translation = find_attribute(json, data, attributes, "TRANSLATION", 3);
+    const GltfAccessor* rotation    = find_attribute(json, data, attributes, "ROTATION", 4);
+    const GltfAccessor* scale       = find_attribute(json, data, attributes, "SCALE", 3);
+    std::optional<std::uint64_t> count;
+    for (const GltfAccessor* a : {translation, rotation, scale}) {
+        if (a == nullptr) continue;
+        if (count && *count != a->count)
+            json.fail(attributes, fmt::format("attributes of {} and of {} instances, expected one number of them",
+                                              *count, a->count));
+        count = a->count;
+    }
+    if (!count) return {dmat4(1)};  // attributes of other meanings
+    const std::vector<vec3> t = translation ? data.vectors(*translation) : std::vector<vec3>();
+    const std::vector<vec4> r = rotation ? data.quadruples(*rotation) : std::vector<vec4>();
+    const std::vector<vec3> s = scale ? data.vectors(*scale) : std::vector<vec3>();
+    std::vector<dmat4> instances;
+    for (std::size_t i = 0; i < *count; ++i) {
+        glm::dquat q(1, 0, 0, 0);
+        if (rotation) {
+            q = glm::dquat(double(r[i].w), double(r[i].x), double(r[i].y), double(r[i].z));
+            if (const double length = glm::length(q); std::abs(length - 1) > 0.02)  // of 8 bits, too
+                json.fail(attributes, fmt::format("ROTATION of instance {} has length {:g}, expected a unit quaternion",
+                                                  i, length));
+            q = glm::normalize(q);
+        }
+        instances.push_back(transform_of(translation ? dvec3(t[i]) : dvec3(0), q, scale ? dvec3(s[i]) : dvec3(1)));
+    }
+    return instances;
+}
+
 }  // namespace
+
+void read_instances(const JsonText& json, const GltfData& data, std::vector<Node>& nodes) {
+    for (Node& node : nodes)
+        if (const JsonValue* instancing = extension(json, *node.json, "EXT_mesh_gpu_instancing"))
+            if (const JsonValue* attributes = find_member(*instancing, "attributes"))
+                node.instances = instances_of(json, data, *attributes);
+}
 
 std::vector<Node> read_nodes(const JsonText& json) {
     const JsonArray& list = list_of(json, json.root(), "nodes");

@@ -14,6 +14,14 @@ void GltfNotes::warn(std::vector<std::string>& warnings) const {
     if (no_position) warnings.emplace_back("A primitive without positions is left out.");
     if (points_and_lines > 0)
         warnings.push_back(fmt::format("{} primitives of points or lines are left out.", points_and_lines));
+    if (hard_spots > 0)
+        warnings.push_back(fmt::format(
+            "{} spot lights have an innerConeAngle as large as their outerConeAngle, which the extension forbids: they "
+            "have hard edges.",
+            hard_spots));
+    if (wide_spots > 0)
+        warnings.push_back(
+            fmt::format("{} spot lights have an outerConeAngle a little above pi/2: it is taken as pi/2.", wide_spots));
     normals.warn(warnings);
 }
 

@@ -13,8 +13,9 @@ namespace umbra {
 struct GltfNotes {
     bool textures = false, vertex_colours = false, skins = false, morph_targets = false, no_position = false;
     bool emissive_above_one      = false;
-    std::size_t points_and_lines = 0;  ///< primitives
-    FileNormals normals;               ///< of the vertices that triangles use
+    std::size_t points_and_lines = 0;            ///< primitives
+    std::size_t hard_spots = 0, wide_spots = 0;  ///< lights whose angles are out of the extension's limits
+    FileNormals normals;                         ///< of the vertices that triangles use
 
     void warn(std::vector<std::string>& warnings) const;
 };

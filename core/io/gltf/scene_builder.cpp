@@ -19,7 +19,7 @@ void GltfSceneBuilder::check_references(const std::vector<Node>& nodes) const {
     for (const Node& n : nodes) {
         if (const JsonValue* v = find_member(*n.json, "mesh")) {
             for (const Primitive& p : parts_.meshes[index_into(json_, *v, "mesh", parts_.meshes.size())])
-                triangles += p.mesh.triangles.size();
+                triangles += p.mesh.triangles.size() * n.instances.size();
             if (triangles > kMaxTriangles)
                 json_.fail(*v, fmt::format("more than {} triangles with this node", kMaxTriangles));
         }
@@ -64,7 +64,8 @@ void GltfSceneBuilder::place_node(const Node& node, const dmat4& m) {
     const JsonValue& v     = *node.json;
     const std::string name = name_or(json_, v, "");
     if (const JsonValue* mesh = find_member(v, "mesh"))
-        add_mesh(v, name, parts_.meshes[index_into(json_, *mesh, "mesh", parts_.meshes.size())], m);
+        for (const dmat4& instance : node.instances)
+            add_mesh(v, name, parts_.meshes[index_into(json_, *mesh, "mesh", parts_.meshes.size())], m * instance);
     if (find_member(v, "skin")) notes_.skins = true;
     if (const JsonValue* camera = find_member(v, "camera"))
         place_camera(index_into(json_, *camera, "camera", parts_.lenses.size()), m);

@@ -87,16 +87,18 @@ Photometry read_distribution(const JsonText& json, const JsonValue& v) {
     return table;
 }
 
-Photometry read_ies_of(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder) {
+Photometry read_ies_of(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder,
+                       std::vector<std::string>& warnings) {
     try {
-        return read_ies(folder / json.string(v, "ies"));
+        return read_ies(folder / json.string(v, "ies"), warnings);
     } catch (const InputError& e) {
         json.fail(v, fmt::format("the photometric file cannot be read: {}", e.what()));
     }
 }
 
 /// The direction of a goniometric light, and what turns its table about it.
-void read_goniometric(const JsonText& json, const JsonFields& f, const std::filesystem::path& folder, Light& light) {
+void read_goniometric(const JsonText& json, const JsonFields& f, const std::filesystem::path& folder, Light& light,
+                      std::vector<std::string>& warnings) {
     f.exclude("ies", "distribution");
     const JsonValue *ies = f.find("ies"), *distribution = f.find("distribution");
     if (ies == nullptr && distribution == nullptr) {
@@ -105,7 +107,7 @@ void read_goniometric(const JsonText& json, const JsonFields& f, const std::file
                 json.fail(*given, fmt::format("{} is of a point light with ies or distribution", key));
         return;
     }
-    light.photometry = std::make_shared<const Photometry>(ies != nullptr ? read_ies_of(json, *ies, folder)
+    light.photometry = std::make_shared<const Photometry>(ies != nullptr ? read_ies_of(json, *ies, folder, warnings)
                                                                          : read_distribution(json, *distribution));
     if (f.find("attenuation") == nullptr) light.attenuation = {0, 0, 1, f.boolean("clamp", false)};
     light.direction = direction_or_target(json, f, light.position, vec3(0, -1, 0));
@@ -124,9 +126,9 @@ void read_spot(const JsonText& json, const JsonFields& f, Light& light) {
     light.spot.exponent = static_cast<float>(f.number("exponent", kNotNegative, double(light.spot.exponent)));
     const double cutoff = f.number("cutoff", kConeAngle, 45);
     const double inner  = f.number("inner", kInnerConeAngle, 0);
-    if (inner >= cutoff)
+    if (inner > cutoff)
         json.fail(*f.find("inner"),
-                  fmt::format("inner is {:g} degrees, cutoff {:g}, expected inner below cutoff", inner, cutoff));
+                  fmt::format("inner is {:g} degrees, cutoff {:g}, expected inner at most cutoff", inner, cutoff));
     light.spot.cutoff = static_cast<float>(glm::radians(cutoff));
     light.spot.inner  = static_cast<float>(glm::radians(inner));
 }
@@ -159,6 +161,17 @@ void read_rectangle(const JsonText& json, const JsonFields& f, Light& light) {
     light.edge_v  = vec3(json.number(size[1], "height", kPositive) * glm::cross(axis, u));
 }
 
+/// Without a radius it is a point.
+void read_sphere(const JsonText& json, const JsonFields& f, Light& light, std::vector<std::string>& warnings) {
+    const JsonValue& radius = f.require("radius");
+    if (const auto* number = std::get_if<double>(&radius.data); number && *number == 0) {
+        light.kind = LightKind::point;
+        warnings.emplace_back("A sphere light of radius 0 is taken as a point light.");
+    } else {
+        light.radius = static_cast<float>(json.number(radius, "radius", kPositive));
+    }
+}
+
 /// "except": a list of names of objects.
 std::vector<std::string> read_exceptions(const JsonText& json, const JsonFields& f) {
     std::vector<std::string> names;
@@ -168,7 +181,8 @@ std::vector<std::string> read_exceptions(const JsonText& json, const JsonFields&
     return names;
 }
 
-Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder, bool& on) {
+Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder, bool& on,
+                 std::vector<std::string>& warnings) {
     Light light;
     light.kind = read_kind(json, v);
     const JsonFields f(json, v, fmt::format("a {} light", to_string(light.kind)), keys_of(light.kind));
@@ -180,12 +194,13 @@ Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem
         light.direction = read_direction(json, f.require("direction"), "direction");
     else
         read_position(json, f, light);
-    if (light.kind == LightKind::point) read_goniometric(json, f, folder, light);
+    if (light.kind == LightKind::point) read_goniometric(json, f, folder, light, warnings);
     if (light.kind == LightKind::spot) read_spot(json, f, light);
     if (light.kind == LightKind::rectangle) read_rectangle(json, f, light);
     if (light.kind == LightKind::disk) light.direction = direction_or_target(json, f, light.position, vec3(0, -1, 0));
-    if (light.kind == LightKind::disk || light.kind == LightKind::sphere)
+    if (light.kind == LightKind::disk)
         light.radius = static_cast<float>(json.number(f.require("radius"), "radius", kPositive));
+    if (light.kind == LightKind::sphere) read_sphere(json, f, light, warnings);
     const JsonValue* fixed = f.find("fixed_to");
     if (fixed != nullptr && json.choice<FixedTo>(*fixed, "fixed_to") == FixedTo::camera)
         light.camera_pose = pose_of(light);
@@ -207,13 +222,16 @@ std::set<std::string_view> names_and_beginnings(const std::vector<Object>& objec
 }  // namespace
 
 void read_native_lights(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder,
-                        std::vector<Light>& lights) {
+                        std::vector<Light>& lights, std::vector<std::string>& warnings) {
+    std::vector<std::string> all;
     for (const JsonValue& entry : json.array(v, "lights", "a list of lights")) {
         if (lights.size() >= kMaxLights) json.fail(entry, fmt::format("more than {} lights", kMaxLights));
         bool on     = true;
-        Light light = read_light(json, entry, folder, on);
+        Light light = read_light(json, entry, folder, on, all);
         if (on) lights.push_back(std::move(light));
     }
+    for (const std::string& warning : all)
+        if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(warning);
 }
 
 void check_exceptions(const JsonText& json, const JsonValue& lights, const std::vector<Object>& objects) {

@@ -32,7 +32,7 @@ SceneFile read_native(const std::filesystem::path& file, int frame) {
     NativeMaterials materials(json, scene);
     if (const JsonValue* v = f.find("materials")) materials.read_all(*v);
     if (const JsonValue* v = f.find("lights")) {
-        read_native_lights(json, *v, file.parent_path(), scene.lights);
+        read_native_lights(json, *v, file.parent_path(), scene.lights, scene.warnings);
         read.may_be_dark = true;  // an empty list says that no light is meant
     }
     MeshFiles files(json, file.parent_path(), scene);

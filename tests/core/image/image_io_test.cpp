@@ -11,6 +11,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/metrics.h"
+#include "umbra/tests/support/written_parts.h"
 
 namespace umbra {
 namespace {
@@ -132,6 +133,92 @@ TEST_F(ImageIo, ExrKeepsIntegersAndMatrices) {
 
     image.integers["k"].pop_back();
     EXPECT_THROW(write_image(folder / "a.exr", image), std::logic_error);
+}
+
+using other_writers::part;
+using other_writers::write_parts;
+
+TEST_F(ImageIo, PartsArePutTogether) {
+    write_parts(folder / "a.exr", {part("rgb", {"R", "G", "B"}, 0.25f), part("depth", {"Z"}, 7),
+                                   part("spec", {"spec.R", "spec.G", "spec.B"}, 0.5f)});
+    const Image exr = read_image(folder / "a.exr").image;
+    EXPECT_EQ(exr.channels, (std::vector<std::string>{"R", "G", "B", "depth.Z", "spec.R", "spec.G", "spec.B"}));
+    ASSERT_EQ(exr.data.size(), exr.pixels() * 7);
+    for (std::size_t i = 0; i < exr.pixels(); ++i)
+        for (std::size_t c = 0; c < 7; ++c) ASSERT_EQ(exr.at(i, c), c < 3 ? 0.25f : c == 3 ? 7 : 0.5f) << i << ' ' << c;
+
+    write_parts(folder / "a.tif", {part("", {"R", "G", "B"}, 0.25f), part("", {"R", "G", "B"}, 0.75f)});
+    const Image pages = read_image(folder / "a.tif").image;
+    EXPECT_EQ(pages.channels, (std::vector<std::string>{"R", "G", "B", "2.R", "2.G", "2.B"}));
+    EXPECT_EQ(pages.at(95, 5), 0.75f);
+}
+
+TEST_F(ImageIo, PartsThatDoNotFitAreRefusedByName) {
+    const auto saying = [&](const char* name, const std::vector<other_writers::Part>& parts, bool mip = false) {
+        write_parts(folder / name, parts, mip);
+        std::string text = refusal(folder / name);
+        EXPECT_EQ(text.find((folder / name).string() + ": "), 0u) << text;
+        return text.substr((folder / name).string().size() + 2);
+    };
+    EXPECT_EQ(
+        saying("a.tif", {part("", {"R", "G", "B"}, 0), part("", {"R", "G", "B"}, 0, 12, 8, OIIO::TypeDesc::UINT8)}),
+        "part 2 is not as the first: one holds linear light, the other sRGB (parts of one kind are read)");
+}
+
+TEST_F(ImageIo, WhatAFileSaysOfItsColoursAndPlaceIsKept) {
+    const auto said = [&](const char* name, const other_writers::Part& of) {
+        write_parts(folder / name, {of});
+        return read_image(folder / name).shown_as;
+    };
+    using Said       = std::map<std::string, std::string>;
+    const auto plain = part("", {"R", "G", "B"}, 0.5f);
+    EXPECT_EQ(said("plain.exr", plain), Said{});
+    auto aces           = plain;
+    const float xy[8]   = {0.7347f, 0.2653f, 0, 1, 0.0001f, -0.077f, 0.32168f, 0.33767f};
+    const float srgb[8] = {0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
+    aces.spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), xy);
+    EXPECT_EQ(said("aces.exr", aces),
+              (Said{{"colours", "chromaticities 0.7347 0.2653 0 1 0.0001 -0.077 0.3217 0.3377"}}));
+    aces.spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), srgb);
+    EXPECT_EQ(said("srgb.exr", aces), Said{});
+    auto in_frame            = plain;
+    in_frame.spec.full_width = 40, in_frame.spec.full_height = 30;
+    EXPECT_EQ(said("frame.exr", in_frame), (Said{{"display windows", "40x30 from (0, 0)"}}));
+
+    const auto bytes = part("", {"R", "G", "B"}, 0.5f, 12, 8, OIIO::TypeDesc::UINT8);
+    EXPECT_EQ(said("plain.png", bytes), Said{});
+    auto gamma = bytes;
+    gamma.spec.attribute("oiio:ColorSpace", "Gamma1.8");
+    gamma.spec.attribute("oiio:Gamma", 1.8f);
+    EXPECT_EQ(said("gamma.png", gamma), (Said{{"colours", "Gamma1.8"}}));
+    gamma.spec.attribute("oiio:ColorSpace", "linear");
+    EXPECT_EQ(said("linear.png", gamma), (Said{{"colours", "linear"}}));
+    auto turned = bytes;
+    turned.spec.attribute("Orientation", 6);
+    EXPECT_EQ(said("turned.tif", turned), (Said{{"orientations", "6 of EXIF"}}));
+}
+
+TEST_F(ImageIo, IntegersAloneAreFloatsAsWell) {
+    Image image(3, 1, {});
+    image.integers["id"] = {0, 4294967295u, 4294967294u};
+    spread_integers(image);
+    EXPECT_EQ(image.channels, std::vector<std::string>{"id"});
+    EXPECT_EQ(image.data, (std::vector<float>{0, 1, 1}));
+}
+
+TEST(Layers, AreAllPicturesOfAnImage) {
+    const auto names = [](std::vector<std::string> channels) {
+        std::string text;
+        for (const Layer& layer : layers(Image(1, 1, std::move(channels))))
+            text += "[" + layer.name + " " + std::to_string(layer.channels[0]) + std::to_string(layer.channels[1]) +
+                    std::to_string(layer.channels[2]) + "]";
+        return text;
+    };
+    EXPECT_EQ(names({"R", "G", "B", "A"}), "[ 012]");
+    EXPECT_EQ(names({"spec.B", "spec.G", "spec.R", "Z", "R", "G", "B"}), "[ 456][spec 210]");
+    EXPECT_EQ(names({"left.a.R", "left.a.G", "left.a.B", "b.R", "b.G", "b.B"}), "[left.a 012][b 345]");
+    EXPECT_EQ(names({"R", "G"}), "[R 000][G 111]");
+    EXPECT_EQ(names({"S.lamp"}), "[S.lamp 000]");
 }
 
 TEST_F(ImageIo, PngRoundsToEightBitsAndKeepsMetadata) {

@@ -106,6 +106,56 @@ TEST(Gltf, ChildrenFollowTheirParents) {
     EXPECT_EQ(scene.title, "family");
 }
 
+/// A triangle, three translations, rotations (none, 90 degrees about z, none) and scales (1, 2, 1).
+std::string instanced(const std::string& attributes, const std::string& more = "") {
+    const float h = std::sqrt(0.5f);
+    const std::string bytes =
+        bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytes_of<float>({0, 0, 0, 1, 0, 0, 2, 0, 5}) +
+        bytes_of<float>({0, 0, 0, 1, 0, 0, h, h, 0, 0, 0, 1}) + bytes_of<float>({1, 1, 1, 2, 2, 2, 1, 1, 1});
+    return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["EXT_mesh_gpu_instancing"], )" + more +
+           R"("nodes": [{"mesh": 0, "name": "leaf", "translation": [0, 0, 10], "extensions": {"EXT_mesh_gpu_instancing": {"attributes": {)" +
+           attributes + R"(}}}}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "accessors": [
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+        {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3"},
+        {"bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 3, "type": "VEC4"},
+        {"bufferView": 0, "byteOffset": 120, "componentType": 5126, "count": 3, "type": "VEC3"},
+        {"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 156}], )" +
+           buffers(bytes) + "}";
+}
+
+TEST(Gltf, InstancesArePlaced) {
+    const std::string required = R"("extensionsRequired": ["EXT_mesh_gpu_instancing"], )";
+    const Scene all            = load(instanced(R"("TRANSLATION": 1, "ROTATION": 2, "SCALE": 3, "_ID": 4)", required));
+    ASSERT_EQ(all.objects.size(), 3u);
+    EXPECT_EQ(all.objects[2].name, "leaf");
+    expect_near(all.vertex(0, 1), {1, 0, 10});
+    expect_near(all.vertex(1, 1), {1, 2, 10});
+    expect_near(all.vertex(1, 2), {-1, 0, 10});
+    expect_near(all.vertex(2, 1), {3, 0, 15});
+    EXPECT_FALSE(warns(all, "Extensions"));
+
+    const Scene translated = load(instanced(R"("TRANSLATION": 1)"));
+    ASSERT_EQ(translated.triangles.size(), 3u);
+    expect_near(translated.vertex(1, 2), {1, 1, 10});
+    const Scene turned = load(instanced(R"("ROTATION": 2)"));
+    ASSERT_EQ(turned.triangles.size(), 3u);
+    expect_near(turned.vertex(1, 1), {0, 1, 10});
+    EXPECT_EQ(load(instanced(R"("_ID": 1)")).triangles.size(), 1u) << "an attribute of another meaning";
+}
+
+TEST(Gltf, FaultyInstancesAreRefused) {
+    const TemporaryFolder folder;
+    for (const auto& [attributes, expected] :
+         {std::pair{R"("TRANSLATION": 2)", "TRANSLATION has 4 components an instance, expected 3"},
+          {R"("ROTATION": 1)", "ROTATION has 3 components an instance, expected 4"},
+          {R"("TRANSLATION": 1, "SCALE": 4)", "attributes of 3 and of 2 instances"},
+          {R"("TRANSLATION": 9)", "TRANSLATION 9 does not exist"}}) {
+        const std::string message = refusal(folder.write("a.gltf", instanced(attributes)));
+        EXPECT_NE(message.find(expected), std::string::npos) << message;
+    }
+}
+
 TEST(Gltf, AMirrorTurnsTheWinding) {
     const Scene scene = load(with_nodes(R"({"mesh": 0, "scale": [-1, 1, 1]})"));
     for (TriangleId t = 0; t < 2; ++t) EXPECT_GT(area_normal(scene, t).z, 0) << "still seen from +z";
@@ -303,6 +353,46 @@ TEST(Gltf, PunctualLights) {
     EXPECT_EQ(spot.spot.falloff, SpotFalloff::smooth);
     EXPECT_FLOAT_EQ(spot.spot.inner, 0.1f);
     EXPECT_FLOAT_EQ(falloff(spot, vec3(0)), 0.25f) << "a node's scale does not reach its light";
+}
+
+/// A spot of that file, of intensity 1.
+Light only_spot(const std::string& angles, std::string_view warning) {
+    const Scene scene =
+        load(with_nodes(R"({"mesh": 0},)" + shining(0), punctual(R"({"type": "spot", "spot": {)" + angles + "}}")));
+    EXPECT_TRUE(warning.empty() || warns(scene, warning)) << angles;
+    return scene.lights.at(0);
+}
+
+/// Blender without blend, other rounding, the default outer angle, more than the outer angle by rounding.
+TEST(Gltf, SpotsOfEqualAnglesHaveHardEdges) {
+    for (const char* angles : {R"("innerConeAngle": 0.08968102931976317, "outerConeAngle": 0.08968102931976318)",
+                               R"("innerConeAngle": 0.25, "outerConeAngle": 0.25)", R"("innerConeAngle": 0.78539819)",
+                               R"("innerConeAngle": 0.0100000002, "outerConeAngle": 0.01)"}) {
+        const Light spot = only_spot(angles, "1 spot lights have an innerConeAngle as large as");
+        EXPECT_EQ(spot.spot.inner, spot.spot.cutoff) << angles;
+        EXPECT_EQ(spot_factor(spot.spot, std::cos(0.99f * spot.spot.cutoff)), 1) << angles;
+        EXPECT_EQ(spot_factor(spot.spot, std::cos(1.01f * spot.spot.cutoff)), 0) << angles;
+    }
+}
+
+TEST(Gltf, SpotsOfHalfASphereMayBeRounded) {
+    for (const char* angle : {"1.5707964", "1.5708", "1.571"}) {
+        const Light spot = only_spot(std::string(R"("outerConeAngle": )") + angle, "a little above pi/2");
+        EXPECT_EQ(spot.spot.cutoff, static_cast<float>(kPi / 2)) << angle;
+    }
+}
+
+/// max(0.001, cos inner - cos outer) of the extension, in narrow cones and those of narrow rims.
+TEST(Gltf, SpotsHaveTheExtensionsFormula) {
+    for (const auto& [inner, outer] : {std::pair{0.1, 0.7}, {0.699, 0.7}, {0.03, 0.05}, {0.01, 0.02}, {0.0, 0.01}}) {
+        const Light spot = only_spot(fmt::format(R"("innerConeAngle": {}, "outerConeAngle": {})", inner, outer), "");
+        for (const double a : {0.0, 0.3 * outer, 0.9 * outer, 0.9995 * outer, 1.01 * outer}) {
+            const double ramp = (std::cos(a) - std::cos(outer)) / std::max(0.001, std::cos(inner) - std::cos(outer));
+            const double t    = std::clamp(ramp, 0.0, 1.0);
+            const auto at     = static_cast<double>(spot_factor(spot.spot, static_cast<float>(std::cos(a))));
+            EXPECT_NEAR(at * static_cast<double>(spot.diffuse.r), t * t, 2e-3) << inner << " " << outer << " " << a;
+        }
+    }
 }
 
 TEST(Gltf, UnknownKindsOfLightsAreLeftOut) {
@@ -650,9 +740,9 @@ INSTANTIATE_TEST_SUITE_P(
          "places a vertex at"},
         {"light_angles", light(R"({"type": "spot", "spot": {"innerConeAngle": 0.2, "outerConeAngle": 0.1}})"),
          "innerConeAngle 0.2 is not less than outerConeAngle 0.1"},
-        {"light_angles_same", light(R"({"type": "spot", "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.25}})"),
-         "is not less"},
-        {"light_wide", light(R"({"type": "spot", "spot": {"outerConeAngle": 1.57079644}})"),
+        {"light_angles_nearly_the_same",
+         light(R"({"type": "spot", "spot": {"innerConeAngle": 0.2501, "outerConeAngle": 0.25}})"), "is not less"},
+        {"light_wide", light(R"({"type": "spot", "spot": {"outerConeAngle": 1.572}})"),
          "expected an angle in radians, from 1.75e-5 to pi/2"},
         {"light_inner", light(R"({"type": "spot", "spot": {"innerConeAngle": -0.01}})"), "innerConeAngle is -0.01"},
         {"light_no_spot", light(R"({"type": "spot"})"), "without \"spot\""},
@@ -716,7 +806,6 @@ INSTANTIATE_TEST_SUITE_P(
         {"version", with(kGlb, std::string("\x02\0\0\0", 4), std::string("\x01\0\0\0", 4)), "byte 4: version 1",
          "a.glb"},
         {"cut_off", kGlb.substr(0, kGlb.size() - 1), "byte 8: the header says", "a.glb"},
-        {"too_long", kGlb + "x", "byte 8: the header says", "a.glb"},
         {"chunk", kGlb.substr(0, 12) + "\xff\xff\xff\xff" + kGlb.substr(16), "byte 12: a chunk of 4294967295 bytes",
          "a.glb"},
         {"first_chunk", with(kGlb, "JSON", "BLOB"), "byte 16: the first chunk is not JSON", "a.glb"},
@@ -726,6 +815,23 @@ INSTANTIATE_TEST_SUITE_P(
          "says 117 bytes, but 116 are there", "a.glb"},
     }),
     [](const auto& test) { return test.param.name; });
+
+/// Padding, a newline, half a chunk; a length that ends within the header, behind the first chunk, or within the
+/// second.
+TEST(Glb, BytesBehindTheChunksAndShortLengthsAreToldOf) {
+    const auto length       = [](std::size_t n) { return bytes_of<std::uint32_t>({std::uint32_t(n)}); };
+    const auto with_length  = [&](std::size_t n) { return kGlb.substr(0, 8) + length(n) + kGlb.substr(12); };
+    const std::size_t chunk = kGlb.find(std::string("BIN\0", 4)) - 4;
+    const TemporaryFolder folder;
+    for (const std::string& file :
+         {kGlb + std::string(16, '\0'), kGlb + "\n", kGlb + length(100) + "BLOBx", with_length(0), with_length(chunk),
+          with_length(chunk + 9), with_length(kGlb.size() - 1) + "rest"}) {
+        const Scene scene = load_scene(folder.write("a.glb", file));
+        EXPECT_EQ(scene.triangles.size(), 2u);
+        EXPECT_TRUE(warns(scene, fmt::format("but the file has {}: what lies behind", file.size())));
+    }
+    EXPECT_FALSE(warns(load_scene(folder.write("a.glb", kGlb)), "but the file has"));
+}
 
 TEST(Gltf, AMillionNodesInAChainAreNoTrouble) {
     std::string nodes = R"({"mesh": 0})";

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/temporary_folder.h"
@@ -13,11 +15,21 @@
 namespace umbra {
 namespace {
 
-Photometry of_data(const std::string& name) { return read_ies(std::string(UMBRA_TEST_DATA) + "/ies/" + name); }
+Photometry of_data(const std::string& name) {
+    std::vector<std::string> warnings;
+    const Photometry table = read_ies(std::string(UMBRA_TEST_DATA) + "/ies/" + name, warnings);
+    EXPECT_TRUE(warnings.empty()) << warnings[0];
+    return table;
+}
 
-Photometry of_text(const std::string& text) {
+/// Checks that there is one warning, and that it has these words; none where they are empty.
+Photometry of_text(const std::string& text, std::string_view warning = "") {
     const TemporaryFolder folder;
-    return read_ies(folder.write("light.ies", text));
+    std::vector<std::string> warnings;
+    const Photometry table = read_ies(folder.write("light.ies", text), warnings);
+    EXPECT_EQ(warnings.size(), warning.empty() ? 0u : 1u) << text;
+    for (const std::string& w : warnings) EXPECT_NE(w.find(warning), std::string::npos) << w;
+    return table;
 }
 
 /// A file of type C whose header is given, with candela values v + 100 h.
@@ -137,11 +149,72 @@ TEST(Ies, PlanesThatDoNotCloseAreClosed) {
     EXPECT_NEAR(intensity_at(table, 90, 300), 0.5 * (201 + 1), 1e-6);
 }
 
+const std::string kSpelled =
+    "IESNA:LM-63-2002\n[TEST] ours\nTILT=NONE\n1 1000 1 4 1 1 2 0 0 0\n1 1 50\n0 30 60 90\n0\n100 80 20 0\n";
+
+void expect_spelled(const Photometry& table, const std::string& text) {
+    EXPECT_EQ(table.type, PhotometricType::C) << text;
+    EXPECT_EQ(table.vertical, (std::vector<float>{0, 30, 60, 90})) << text;
+    EXPECT_EQ(table.horizontal, std::vector<float>{0}) << text;
+    EXPECT_EQ(table.candela, (std::vector<float>{100, 80, 20, 0})) << text;
+}
+
+/// What the format forbids, and programs write: read all the same, with a sentence where something is assumed.
+TEST(Ies, OtherSpellings) {
+    struct Other {
+        std::string from, to, warning;
+    };
+    for (const Other& o :
+         std::vector<Other>{{"TILT=NONE", "Tilt=None", ""},
+                            {"TILT=NONE", "tilt=none", ""},
+                            {"TILT=NONE", "  TILT=NONE  ", ""},
+                            {"TILT=NONE", "\tTILT = NONE", ""},
+                            {"TILT=NONE", "TILT=", "TILT=NONE is assumed"},
+                            {"TILT=NONE", "TILT=lamp.tlt", "the file \"lamp.tlt\" of lamp factors does not exist"},
+                            {"TILT=NONE", "TILT=\\lamps\\lamp.tlt", "lamp factors does not exist"},
+                            {"1 1000 1 4 1 1 2", "1.0 1000. 1.0 4.0 1.0 1.0 2.0", ""},
+                            {"1 1000 1 4 1 1 2", "1,1000,1,4.,1,1,2", ""},
+                            {"4 1 1 2", "4 1 C 2", ""},
+                            {"4 1 1 2", "4 1 c 2", ""},
+                            {"20 0\n", "20 0\nEND\n", "1 words behind the 4 candela values"},
+                            {"20 0\n", "20 0\n\n[END] of file\n", "3 words behind"},
+                            {"20 0\n", "20 0 0 0 7\n", "3 words behind"},
+                            {"20 0\n", "20 -0.0001\n", "1 candela values are negative"},
+                            {"100 80 20 0", "100 80 20 -3", "1 candela values are negative"},
+                            {"\n0\n", "\n90\n", "the only horizontal angle is 90"},
+                            {"\n0\n", "\n-45\n", "the only horizontal angle is -45"},
+                            {"1 1 50\n", "1 1\n", "the input watts are left out"},
+                            {"1 1 50\n0 30 60 90\n", "1 1\n0 30\n60 90\n", "the input watts are left out"},
+                            {"1 1 50\n", "1\n1\n50\n", ""},
+                            {"1 1 50\n", "1 1\n50\n", ""},
+                            {"IESNA", "\xef\xbb\xbfIESNA", ""}}) {
+        std::string text = kSpelled;
+        text.replace(text.find(o.from), o.from.size(), o.to);
+        expect_spelled(of_text(text, o.warning), text);
+        std::replace(text.begin(), text.end(), '\n', '\r');
+        expect_spelled(of_text(text, o.warning), text);
+    }
+}
+
+/// A file of lamp factors that lies beside is read; of it the factor of a luminaire that is not tilted.
+TEST(Ies, FileOfLampFactors) {
+    const TemporaryFolder folder;
+    (void)folder.write("lamp.tlt", "1\n3\n0 45 90\n0.5 0.8 0.9\n");
+    std::string text = kSpelled;
+    text.replace(text.find("NONE"), 4, "lamp.tlt");
+    std::vector<std::string> warnings;
+    const Photometry table = read_ies(folder.write("light.ies", text), warnings);
+    EXPECT_EQ(table.candela, (std::vector<float>{50, 40, 10, 0}));
+    EXPECT_TRUE(warnings.empty());
+}
+
 TEST(Ies, FaultsAreNamed) {
     const std::string head = "IESNA:LM-63-1995\nTILT=NONE\n1 1000 1 ";
     for (const auto& [text, expected] :
          {std::pair<std::string, std::string>{"", "no line begins with TILT="},
-          {"IESNA91\nTILT=LAMP.TLT\n1 1", "\"TILT=LAMP.TLT\" names a file of lamp factors"},
+          {"IESNA91\nTILT NONE\n1 1", "no line begins with TILT="},
+          {head + "2 1.5 1 2", "the number of horizontal angles is \"1.5\", expected a whole number"},
+          {head + "2 1 D 2", "the photometric type is \"D\""},
           {"TILT=INCLUDE\n4\n", "2:1: the lamp's position in the luminaire is 4"},
           {"TILT=INCLUDE\n1\n2\n10 20\n1 1\n", "do not increase from 0"},
           {head + "2 1 4 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n", "photometric type is 4, expected a whole number from 1 to 3"},
@@ -149,8 +222,7 @@ TEST(Ies, FaultsAreNamed) {
           {head + "2 x 1", "the number of horizontal angles is \"x\""},
           {head + "900000000 1 1 2 0 0 0\n1 1 1\n", "the number of vertical angles is 900000000"},
           {head + "2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1\n", "a candela value is missing"},
-          {head + "2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 -1\n", "a candela value is -1"},
-          {head + "2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1 7\n", "7:5: there is more behind the 2 candela values"},
+          {head + "2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 END\n", "a candela value is \"END\""},
           {head + "2 1 1 2 0 0 0\n1 1 1\n90 0\n0\n1 1\n", "5:1: the vertical angle 0 follows 90"},
           {head + "2 1 1 2 0 0 0\n1 1 1\n0 200\n0\n1 1\n", "a vertical angle of 200 degrees"},
           {with_angles("0 90", 2, "0 120", 2), "go from 0 to 120 degrees, expected 0 alone"},

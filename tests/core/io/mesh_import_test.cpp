@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <cctype>
 #include <cstring>
+#include <sstream>
+#include <tuple>
 
 #include "umbra/tests/support/scene_files.h"
 
@@ -185,7 +189,10 @@ INSTANTIATE_TEST_SUITE_P(
         {"off_empty", "a.off", "", ", expected OFF, or OFF with any of"},
         {"off_other", "a.off", "solid x\n", ":1:1: the file begins with \"solid\""},
         {"off_binary", "a.off", "OFF BINARY\n", "binary OFF is not read"},
-        {"off_no_edges", "a.off", "OFF\n3 4\n0 0 0\n", ":2:4: the number of edges is missing"},
+        {"off_edges", "a.off", "OFF\n3 4 many\n0 0 0\n", ":2:5: the number of edges is \"many\""},
+        {"off_dimensions", "a.off", "nOFF\n3 3 1 0\n0 0 0\n", ":1:1: OFF of any number of dimensions"},
+        {"off_weight", "a.off", "4OFF\n1 1 0\n1 2 3 0\n3 0 0 0\n", ":3:7: the fourth coordinate is 0"},
+        {"off_glued_word", "a.off", "OFFICE\n1 1 0\n", ":1:1: the file begins with \"OFFICE\""},
         {"off_vertices_claimed", "a.off", "OFF\n4000000000 1 0\n0 0 0\n",
          ":2:1: 4000000000 vertices, but only 7 bytes follow"},
         {"off_faces_claimed", "a.off", "OFF\n1 4000000000 0\n0 0 0\n",
@@ -194,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"off_overflow", "a.off", "OFF\n99999999999999999999 1 0\n", "is \"99999999999999999999\""},
         {"off_index", "a.off", with(kOff, "3 0 1 4", "3 0 1 5"), ":10:7: vertex index 5 (there are 5, counted from 0)"},
         {"off_index_negative", "a.off", with(kOff, "3 0 1 4", "3 0 1 -1"), "vertex index -1"},
-        {"off_edge_face", "a.off", with(kOff, "3 0 1 4", "2 0 1"), ":10:1: a face of 2 corners"},
+        {"off_face_negative", "a.off", with(kOff, "3 0 1 4", "-1 0 1"), ":10:1: a face of -1 corners"},
         {"off_nan", "a.off", with(kOff, "0.5 0.5 1", "0.5 nan 1"), ":8:5: a vertex coordinate is \"nan\""},
         {"off_cut_off", "a.off", kOff.substr(0, kOff.size() - 9), "the file ends after 4 of 5 faces"},
         {"off_face_huge", "a.off", with(kOff, "4 3 2 1 0", "999999999 3 2 1 0"), ":"},
@@ -216,7 +223,7 @@ INSTANTIATE_TEST_SUITE_P(
         {"ply_float_indices", "a.ply", with(kPly, "uchar int", "uchar float"), "no list vertex_indices"},
         {"ply_float_counts", "a.ply", with(kPly, "uchar int", "float int"), "a list counted by fractions"},
         {"ply_index", "a.ply", with(kPly, "4 0 1 2 3", "4 0 1 2 4"), ":15:9: vertex index 4 (there are 4"},
-        {"ply_list_short", "a.ply", with(kPly, "4 0 1 2 3", "2 0 1"), ":15:1: a face of 2 corners"},
+        {"ply_list_short", "a.ply", with(kPly, "4 0 1 2 3", "2 0 1"), "holds no faces"},
         {"ply_list_negative", "a.ply", with(kPly, "4 0 1 2 3", "-1"), "a list of length -1"},
         {"ply_list_huge", "a.ply", with(kPly, "4 0 1 2 3", "4000000000 0 1 2 3"), "the vertex index is missing"},
         {"ply_nan", "a.ply", with(kPly, "1 1 0", "1 nan 0"), ":13:3: y is \"nan\""},
@@ -238,11 +245,210 @@ INSTANTIATE_TEST_SUITE_P(
          ":6:1: found \"endloop\", expected \"vertex\""},
         {"stl_text_cut_off", "a.stl", kStl.substr(0, kStl.find("endfacet")),
          "found the end of the file, expected \"endfacet\""},
-        {"stl_text_no_end", "a.stl", kStl.substr(0, kStl.find("endsolid")),
-         "found the end of the file, expected \"facet\" or \"endsolid\""},
+        {"stl_text_word", "a.stl", with(kStl, "endsolid", "endfile"),
+         ":9:1: found \"endfile\", expected \"facet\" or \"endsolid\""},
+        {"stl_count_zero_cut_off", "a.stl", binary_stl(0, 2).substr(0, 170), "0 facets take 84 bytes"},
         {"stl_no_facets", "a.stl", "solid x\nendsolid x\n", "holds no faces"},
     }),
     [](const auto& test) { return test.param.name; });
+
+// ---- what the formats forbid and other programs write ----
+
+/// The file has the pyramid's triangles, and says what it left out or assumed; nothing where `warning` is empty.
+void expect_pyramid(const std::string& text, std::string_view warning) {
+    const TemporaryFolder folder;
+    const Scene right = load_scene(folder.write("right.off", with(kOff, " 255 0 0", "")));
+    Scene scene;
+    try {
+        scene = load_scene(folder.write("other.off", text));
+    } catch (const InputError& e) {
+        ADD_FAILURE() << text << e.what();
+        return;
+    }
+    ASSERT_EQ(scene.triangles.size(), 6u) << text;
+    EXPECT_EQ(scene.warnings.size(), right.warnings.size() + (warning.empty() ? 0 : 1)) << text;
+    EXPECT_TRUE(warning.empty() || warns(scene, warning)) << text;
+    for (TriangleId t = 0; t < 6; ++t)
+        for (int k = 0; k < 3; ++k) EXPECT_EQ(scene.vertex(t, k), right.vertex(t, k)) << text << t;
+}
+
+TEST(Off, MagicWords) {
+    const std::string text = with(with(kOff, " 255 0 0", ""), "# a square pyramid\n", ""), rest = text.substr(4);
+    for (const char* magic : {"off\n", "Off ", "OFF", "OFF ", "off", "\xef\xbb\xbfOFF\n"})
+        expect_pyramid(magic + rest, "");
+    expect_pyramid(rest, "does not begin with OFF");
+    expect_pyramid("\xef\xbb\xbf" + rest, "does not begin with OFF");
+}
+
+TEST(Off, Counts) {
+    const std::string text = with(kOff, " 255 0 0", "");
+    for (const char* counts :
+         {"5\n5 8\n", "5 5\n8\n", "5\n5\n8\n", "5 # vertices\n5 # faces\n\n8 # edges\n", "5 5 -1\n"})
+        expect_pyramid(with(text, "5 5 8\n", counts), "");
+    for (const char* counts : {"5 5\n", "5\n5\n", "5 5 # and edges\n\n"})
+        expect_pyramid(with(text, "5 5 8\n", counts), "the number of edges is left out");
+}
+
+TEST(Off, FacesOfFewCornersAreLeftOut) {
+    const std::string text = with(with(kOff, " 255 0 0", ""), "5 5 8", "5 8 8");
+    expect_pyramid(text + "2 0 1\n1 4\n0\n", "3 faces have fewer than 3 corners");
+    expect_pyramid(with(text, "4 3 2 1 0\n", "4 3 2 1 0\n2 0 1\n1 4\n0\n"), "3 faces have fewer than 3 corners");
+}
+
+std::string with_lines_between(const std::string& text, std::size_t first, std::size_t last, const std::string& line) {
+    std::string made;
+    std::istringstream lines(text);
+    std::size_t n = 0;
+    for (std::string l; std::getline(lines, l); ++n) made += l + (n >= first && n <= last ? line : "") + "\n";
+    return made;
+}
+
+TEST(Off, Colours) {
+    const std::string text = with(kOff, " 255 0 0", ""), coloured = with(text, "OFF", "COFF");
+    for (const char* colour : {" 255 0 0", " 255 0 0 255", " 0.1 0.2 0.3 1", " 3"}) {
+        expect_pyramid(with_lines_between(coloured, 3, 7, colour), "colours of 5 vertices are ignored");
+        expect_pyramid(with_lines_between(text, 3, 7, colour), "colours of 5 vertices are ignored");
+        expect_pyramid(with_lines_between(text, 8, 12, colour), "colours of 5 faces are ignored");
+    }
+    for (const char* colour : {"\n255 0 0", "\n0 255 0 255", "\n\n0.1 0.2 0.3"}) {
+        expect_pyramid(with_lines_between(coloured, 3, 7, colour), "colours of 5 vertices are ignored");
+        expect_pyramid(with_lines_between(text, 8, 12, colour), "colours of 5 faces are ignored");
+    }
+    expect_pyramid(coloured, "");
+}
+
+TEST(Off, HomogeneousCoordinatesAreDivided) {
+    const TemporaryFolder folder;
+    for (const char* text : {"4OFF\n3 1 0\n0 0 0 1\n2 4 6 2\n0 -1 0 -0.5\n3 0 1 2\n",
+                             "C4OFF\n3 1 0\n0 0 0 1 9 9 9\n2 4 6 2 9 9 9\n0 -1 0 -0.5 9 9 9\n3 0 1 2\n"}) {
+        const Scene scene = load_scene(folder.write("a.off", text));
+        EXPECT_EQ(scene.vertex(0, 1), vec3(1, 2, 3));
+        EXPECT_EQ(scene.vertex(0, 2), vec3(0, 2, 0));
+    }
+}
+
+/// Geomview has normals first, whatever the order of the letters, MeshLab colours; texture points are last.
+TEST(Off, NormalsBesideColours) {
+    const TemporaryFolder folder;
+    const auto normal_of = [&](const std::string& magic, const std::string& terms) {
+        std::string text = magic + "\n3 1 0\n";
+        for (const char* position : {"0 0 0 ", "1 0 0 ", "0 1 0 "}) text += position + terms + "\n";
+        const Scene scene = load_scene(folder.write("a.off", text + "3 0 1 2\n"));
+        EXPECT_EQ(warns(scene, "colours of vertices stand before their normals"), terms.ends_with("0 0 -1")) << terms;
+        return scene.normals.at(2);
+    };
+    const vec3 normal(0, 0, -1);
+    for (const char* magic : {"NCOFF", "CNOFF"}) {
+        EXPECT_EQ(normal_of(magic, "255 255 0 255 0 0 -1"), normal) << magic;
+        EXPECT_EQ(normal_of(magic, "255 0 0 0 0 -1"), normal) << magic;
+        EXPECT_EQ(normal_of(magic, "0 0 -1 255 255 0"), normal) << magic;
+        EXPECT_EQ(normal_of(magic, "0 0 -1 0.5 0.5 0.1 1"), normal) << magic;
+    }
+    EXPECT_EQ(normal_of("STNCOFF", "0 0 -1 12 13 14 255 0.5 1"), normal);
+    EXPECT_EQ(normal_of("NCOFF", "1 0 0 1 0 0 -1"), normal) << "both are unit vectors: the order of the letters";
+    EXPECT_EQ(normal_of("CNOFF", "0 0 -1 1 0 0 1"), normal);
+    EXPECT_EQ(normal_of("NCOFF", "\n0 0 -1 128 128 128"), normal) << "on lines of their own";
+}
+
+TEST(Ply, Words) {
+    const TemporaryFolder folder;
+    for (const auto& [from, to] : {std::pair<std::string, std::string>{"uchar int", "UCHAR INT"},
+                                   {"float z", "Float32 Z"},
+                                   {"property list", "PROPERTY LIST"},
+                                   {"ascii", "ASCII"},
+                                   {"ply\n", "PLY\n"},
+                                   {"element face", "Element Face"},
+                                   {"end_header", "END_HEADER"},
+                                   {"vertex_indices", "vertex_indexes"},
+                                   {"vertex_indices", "vertexIndices"},
+                                   {"vertex_indices", "VERTEX_INDEX"},
+                                   {"vertex_indices", "vert_ind"},
+                                   {"by hand", "by C:\\hand\\"},
+                                   {"ply\n", "\xef\xbb\xbfply\n"}}) {
+        const auto file = folder.write("a.ply", with(kPly, from, to));
+        ASSERT_EQ(refusal(file), "") << to;
+        EXPECT_EQ(load_scene(file).triangles.size(), 2u) << to;
+    }
+}
+
+/// The header's lines may end in CR alone: then an LF behind it is the first byte of the data.
+TEST(Ply, LinesThatEndInCr) {
+    const TemporaryFolder folder;
+    const auto with_cr = [](std::string text) {
+        std::replace(text.begin(), text.end(), '\n', '\r');
+        return text;
+    };
+    EXPECT_EQ(load_scene(folder.write("a.ply", with_cr(kPly))).triangles.size(), 2u);
+    const std::string head = with(with(kPlyHead, "ascii", "binary_little_endian"), "element vertex 4\n",
+                                  "element vertex 3\nproperty uchar ten\n");
+    std::string data;
+    for (const vec3 p : {vec3(0), vec3(1, 0, 0), vec3(0, 1, 0)})
+        data += '\n' + bytes_of(p.x) + bytes_of(p.y) + bytes_of(p.z);
+    data += '\3' + bytes_of(0u) + bytes_of(1u) + bytes_of(2u);
+    for (const std::string& header : {head, with_cr(head)}) {
+        const Scene scene = load_scene(folder.write("b.ply", header + data));
+        ASSERT_EQ(scene.triangles.size(), 1u);
+        EXPECT_EQ(scene.vertex(0, 2), vec3(0, 1, 0));
+    }
+}
+
+TEST(Ply, FacesOfFewCornersAreLeftOut) {
+    const TemporaryFolder folder;
+    for (const char* faces : {"2 0 1\n1 0\n0\n4 0 1 2 3\n", "4 0 1 2 3\n0\n1 3\n2 0 1\n"}) {
+        const Scene scene =
+            load_scene(folder.write("a.ply", with(with(kPly, "face 1", "face 4"), "4 0 1 2 3\n", faces)));
+        EXPECT_EQ(scene.triangles.size(), 2u);
+        EXPECT_TRUE(warns(scene, "3 faces have fewer than 3 corners"));
+    }
+}
+
+TEST(Stl, TextInAnyCaseAndAsItIsWritten) {
+    const TemporaryFolder folder;
+    const auto upper = [](std::string text) {
+        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::toupper(c); });
+        return text;
+    };
+    for (const std::string& text :
+         {upper(kStl), with(kStl, "solid", "Solid"), "\xef\xbb\xbf" + kStl, with(kStl, "endloop", "end loop"),
+          with(with(kStl, "endfacet", "end facet"), "endsolid", "END SOLID"), with(kStl, "solid a thing", "solid")}) {
+        const Scene scene = load_scene(folder.write("a.stl", text));
+        EXPECT_EQ(scene.triangles.size(), 1u) << text;
+        EXPECT_FALSE(warns(scene, "endsolid")) << text;
+    }
+    std::string crs = kStl;
+    std::replace(crs.begin(), crs.end(), '\n', '\r');
+    EXPECT_EQ(load_scene(folder.write("a.stl", crs)).objects.at(0).name, "a thing");
+}
+
+TEST(Stl, SolidsWithoutAnEnd) {
+    const TemporaryFolder folder;
+    const std::string open = kStl.substr(0, kStl.find("endsolid"));
+    for (const auto& [text, objects, warning] : {std::tuple{open, 1u, "1 solids have no endsolid"},
+                                                 {open + open, 2u, "2 solids have no endsolid"},
+                                                 {open + kStl, 2u, "1 solids have no endsolid"},
+                                                 {kStl + open, 2u, "1 solids have no endsolid"}}) {
+        const Scene scene = load_scene(folder.write("a.stl", text));
+        EXPECT_EQ(scene.objects.size(), objects) << text;
+        EXPECT_TRUE(warns(scene, warning)) << text;
+    }
+}
+
+/// The number of facets may be unknown when the header is written; what lies behind the facets is told of.
+TEST(Stl, BinaryWithANumberOfFacetsThatIsNone) {
+    const TemporaryFolder folder;
+    for (const char* beginning : {"solid", "heavy", "SOLID"}) {
+        for (const std::uint32_t says : {0u, ~0u}) {
+            const Scene scene = load_scene(folder.write("a.stl", with(binary_stl(says, 5), "solid", beginning)));
+            EXPECT_EQ(scene.triangles.size(), 5u);
+            EXPECT_TRUE(warns(scene, "facets, the file has 5"));
+        }
+        for (const std::string& behind : {std::string("\n"), std::string(7, '\0'), std::string(120, 'x')}) {
+            const Scene scene = load_scene(folder.write("a.stl", with(binary_stl(2, 2), "solid", beginning) + behind));
+            EXPECT_EQ(scene.triangles.size(), 2u);
+            EXPECT_TRUE(warns(scene, fmt::format("{} bytes behind the 2 facets", behind.size())));
+        }
+    }
+}
 
 TEST(Ply, AnyNumberOfElementsWithoutPropertiesIsNothing) {
     const TemporaryFolder folder;

@@ -1,4 +1,5 @@
 // The native format: what its keys mean, and where and how its errors are reported.
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -133,6 +134,38 @@ TEST(NativeScene, LightsOfEveryKind) {
     EXPECT_EQ(s.lights[6].direction, vec3(0, 0, 1));
     EXPECT_EQ(s.lights[6].radius, 0.5f);
     EXPECT_EQ(s.lights[7].radius, 0.25f);
+}
+
+TEST(NativeScene, ASphereLightWithoutARadiusIsAPoint) {
+    for (const char* zero : {"0", "0.0", "-0.0", "0e3"}) {
+        const Scene s = load_light(fmt::format(
+            R"({{"type": "sphere", "position": [1, 2, 3], "attenuation": [0, 0, 1], "radius": {0}}},
+               {{"type": "sphere", "position": [1, 2, 3], "radius": {0}}})",
+            zero));
+        ASSERT_EQ(s.lights.size(), 2u);
+        EXPECT_EQ(s.lights[0].kind, LightKind::point) << zero;
+        EXPECT_EQ(s.lights[0].position, vec3(1, 2, 3));
+        EXPECT_EQ(s.lights[0].attenuation.c3, 1);
+        EXPECT_EQ(std::ranges::count(s.warnings, "A sphere light of radius 0 is taken as a point light."), 1) << zero;
+    }
+}
+
+/// One photometric file for two lights: its warning once.
+TEST(NativeScene, WarningsOfPhotometricFilesAreTold) {
+    const TemporaryFolder folder;
+    (void)folder.write("l.ies", "TILT=NONE\n1 1000 1 4 1 1 2 0 0 0\n1 1 50\n0 30 60 90\n0\n100 80 20 0\nEND\n");
+    const std::string light = R"({"type": "point", "position": [0, 3, 0], "ies": "l.ies"})";
+    const Scene s           = load(
+                  folder, fmt::format(R"({{{}, "objects": [{{"type": "box"}}], "lights": [{}, {}]}})", kCamera, light, light));
+    EXPECT_EQ(
+        std::ranges::count_if(s.warnings, [](const std::string& w) { return w.find("1 words behind") != w.npos; }), 1);
+}
+
+/// A hard edge, as a scene that was written has it.
+TEST(NativeScene, ASpotMayHaveEqualAngles) {
+    const Scene s = load_light(
+        R"({"type": "spot", "position": [0, 4, 0], "target": [0, 0, 0], "falloff": "smooth", "cutoff": 20, "inner": 20})");
+    EXPECT_EQ(s.lights.at(0).spot.inner, s.lights.at(0).spot.cutoff);
 }
 
 TEST(NativeScene, ARectangleFacesItsTargetAndKeepsItsSize) {
@@ -361,10 +394,13 @@ const Fault kFaults[] = {
     {R"({"lights": [{"type": "spot", "position": [1, 2, 3], "target": [0, 0, 0], "direction": @[1, 0, 0]}]})", "both"},
     {R"({"lights": [@{"type": "spot", "position": [1, 2, 3]}]})", "no \"direction\""},
     {R"({"lights": [{"type": "spot", "position": [1, 2, 3], "direction": [1, 0, 0], "cutoff": @91}]})", "cutoff is 91"},
-    {R"({"lights": [{"type": "spot", "position": [1, 2, 3], "direction": [1, 0, 0], "cutoff": 20, "inner": @20}]})",
-     "inner is 20 degrees, cutoff 20, expected inner below cutoff"},
-    {R"({"lights": [{"type": "sphere", "position": [0, 0, 0], "radius": @0}]})",
+    {R"({"lights": [{"type": "spot", "position": [1, 2, 3], "direction": [1, 0, 0], "cutoff": 20, "inner": @21}]})",
+     "inner is 21 degrees, cutoff 20, expected inner at most cutoff"},
+    {R"({"lights": [{"type": "disk", "position": [0, 0, 0], "radius": @0}]})",
      "radius is 0, expected a positive number"},
+    {R"({"lights": [{"type": "sphere", "position": [0, 0, 0], "radius": @-1}]})",
+     "radius is -1, expected a positive number"},
+    {R"({"lights": [{"type": "sphere", "position": [0, 0, 0], "radius": @"0"}]})", "radius is the string"},
     {R"({"lights": [@{"type": "disk", "position": [0, 0, 0]}]})", "a disk light has no \"radius\""},
     {R"({"lights": [{"type": "rectangle", "position": [0, 0, 0], "size": @2}]})", "two numbers [width, height]"},
     {R"({"lights": [{"type": "rectangle", "position": [0, 0, 0], "size": [2, @0]}]})", "height is 0"},

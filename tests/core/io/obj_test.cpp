@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "umbra/tests/support/scene_files.h"
 
 namespace umbra {
@@ -179,6 +181,115 @@ TEST(Obj, SeveralMtlFilesOnOneLineAndMissingOnes) {
     EXPECT_EQ(windows.materials[0].k_d, vec3(1, 0, 0)) << "looked for beside the OBJ too";
 }
 
+TEST(Obj, MaterialFilesAreFoundAsTheyAreNamed) {
+    const TemporaryFolder folder;
+    (void)folder.write("my scene final.mtl", "newmtl red wall\nKd 1 0 0\n");
+    (void)folder.write("sub/Other.MTL", "newmtl red wall\nKd 1 0 0\n");
+    const std::string rest = "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red wall\nf 1 2 3\n";
+    for (const char* library :
+         {"my scene final.mtl", "my\\ scene\\ final.mtl", "\"my scene final.mtl\"", "My Scene Final.mtl",
+          "\"MY SCENE FINAL.MTL\" # the materials", "my scene final.mtl # the materials", "sub/other.mtl",
+          "sub\\Other.mtl", "\"my scene final.mtl\" sub/Other.MTL"}) {
+        const Scene scene = load_scene(folder.write("a.obj", std::string("mtllib ") + library + rest));
+        EXPECT_EQ(scene.materials.at(0).k_d, vec3(1, 0, 0)) << library;
+        EXPECT_FALSE(warns(scene, "does not exist")) << library;
+    }
+    const Scene none = load_scene(folder.write("a.obj", "mtllib my\\ scene\\ final.mtl none.mtl" + rest));
+    EXPECT_TRUE(warns(none, "the material file \"none.mtl\" does not exist"));
+}
+
+/// A # in a name is part of it, as 3ds Max has it ("Material #25"); behind a name that is known without, it is a
+/// comment.
+TEST(Obj, HashesInNames) {
+    const TemporaryFolder folder;
+    (void)folder.write("a.mtl",
+                       "newmtl Material #25\nKd 1 0 0\nnewmtl Material #26\nKd 0 1 0\nnewmtl plain\nKd 0 0 1\n"
+                       "newmtl noted # a comment\nKd 1 1 0\nnewmtl #1\nKd 0 1 1\n");
+    const std::string triangle = "\nf 1 2 3\n";
+    const Scene scene          = load_scene(folder.write(
+                 "a.obj", "mtllib a.mtl # materials\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\no Box#1\nusemtl Material #25" +
+                              triangle + "o Box#2\nusemtl Material #26" + triangle + "o Box #3\nusemtl plain # left" + triangle +
+                              "usemtl plain # right" + triangle + "usemtl noted" + triangle + "usemtl #1" + triangle));
+    ASSERT_EQ(scene.materials.size(), 5u);
+    const std::vector<vec3> colours{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}};
+    for (std::size_t m = 0; m < 5; ++m) EXPECT_EQ(scene.materials[m].k_d, colours[m]) << m;
+    EXPECT_EQ(scene.objects.at(0).name, "Box#1");
+    EXPECT_EQ(scene.objects.at(1).name, "Box#2");
+    EXPECT_EQ(scene.objects.at(2).name, "Box #3");
+}
+
+TEST(Obj, CommasBetweenNumbers) {
+    const TemporaryFolder folder;
+    (void)folder.write("a.mtl", "newmtl m\nKd 0.5, 0.25, 1\nKs 0,1,0\n");
+    for (const char* mesh : {"v 0,0,0\nv 2.5,0,0\nv 0,1,0\n", "v 0, 0, 0\nv 2.5, 0, 0\nv 0, 1, 0\n",
+                             "v 0 ,0 ,0\nv 2.5 , 0 , 0\nv 0,1,0,\n", "v 0 0 0\nv 2.5 0 0\nv 0 1 0 # 0,1 0\n"})
+        for (const char* face : {"f 1,2,3", "f 1, 2, 3", "f 1 2 3"}) {
+            const Scene scene =
+                load_scene(folder.write("a.obj", std::string("mtllib a.mtl\n") + mesh + "usemtl m\n" + face + "\n"));
+            EXPECT_EQ(scene.vertex(0, 1), vec3(2.5f, 0, 0)) << mesh << face;
+            EXPECT_EQ(scene.vertex(0, 2), vec3(0, 1, 0)) << mesh << face;
+            EXPECT_EQ(scene.materials.at(0).k_d, vec3(0.5f, 0.25f, 1));
+            EXPECT_EQ(scene.materials.at(0).k_s, vec3(0, 1, 0));
+        }
+}
+
+TEST(Obj, AByteOrderMarkEatsNothing) {
+    const TemporaryFolder folder;
+    (void)folder.write("a.mtl", "\xef\xbb\xbfnewmtl m\nKd 1 0 0\n");
+    const Scene scene =
+        load_scene(folder.write("a.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 0 1 0\nmtllib a.mtl\nusemtl m\nf 1 2 3\n"));
+    EXPECT_EQ(scene.vertex(0, 1), vec3(1, 0, 0));
+    EXPECT_EQ(scene.materials.at(0).k_d, vec3(1, 0, 0));
+    EXPECT_FALSE(warns(scene, "statement"));
+}
+
+TEST(Obj, LinesThatEndInCr) {
+    const TemporaryFolder folder;
+    std::string text = "# made elsewhere\nmtllib a.mtl\ng one\n" + kBox + "# end\n";
+    std::replace(text.begin(), text.end(), '\n', '\r');
+    (void)folder.write("a.mtl", "newmtl m\rKd 1 0 0\r");
+    const Scene scene = load_scene(folder.write("a.obj", text));
+    EXPECT_EQ(scene.triangles.size(), 12u);
+    EXPECT_EQ(scene.objects.at(0).name, "one");
+}
+
+TEST(Obj, WhatFollowsPositionsIsToldOf) {
+    const TemporaryFolder folder;
+    const auto load = [&](const std::string& behind) {
+        return load_scene(folder.write("a.obj", "v 0 0 0" + behind + "\nv 1 0 0" + behind + "\nv 0 1 0\nf 1 2 3\n"));
+    };
+    for (const char* colour : {" 1 0.5 0", " 1 1 0.5 0", " 255 0 0 255"})
+        EXPECT_TRUE(warns(load(colour), "a.obj:1: the colour of a vertex is ignored, 2 times")) << colour;
+    for (const char* weight : {" 2", " 10", " 0.5"})
+        EXPECT_TRUE(warns(load(weight), "the weight w of a vertex is ignored, 2 times")) << weight;
+    for (const char* nothing : {"", " 1", " 1.000"}) EXPECT_FALSE(warns(load(nothing), "ignored")) << nothing;
+}
+
+/// d and Tr in either order, in agreement, in contradiction, alone.
+TEST(Obj, OpacityByDissolveOrTransparency) {
+    const TemporaryFolder folder;
+    struct Case {
+        std::string lines;
+        float opacity;
+        bool contradicts;
+    };
+    for (const Case& c : std::vector<Case>{{"d 1\nTr 1\n", 1, true},
+                                           {"Tr 1\nd 1\n", 1, true},
+                                           {"d 0.25\nTr 0.75\n", 0.25f, false},
+                                           {"Tr 0.75\nd 0.25\n", 0.25f, false},
+                                           {"d 0\nTr 0\n", 0, true},
+                                           {"Tr 0.25\n", 0.75f, false},
+                                           {"d 0.25\n", 0.25f, false},
+                                           {"", 1, false}}) {
+        (void)folder.write("a.mtl", "newmtl m\n" + c.lines);
+        const Scene scene =
+            load_scene(folder.write("a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"));
+        EXPECT_EQ(scene.materials.at(0).opacity, c.opacity) << c.lines;
+        EXPECT_EQ(warns(scene, "a.mtl:3: a Tr other than 1 - d is ignored."), c.contradicts) << c.lines;
+        EXPECT_EQ(warns(scene, "They throw no shadow (transparent_occluders: ignore)"), c.opacity < 1) << c.lines;
+    }
+}
+
 TEST(Obj, NegativeColoursOfAnMtlFileAreRefusedWhereTheyStand) {
     const TemporaryFolder folder;
     const auto mesh = folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n");
@@ -222,7 +333,10 @@ INSTANTIATE_TEST_SUITE_P(
         {"prose", "Dear reader,\nthis is no mesh.\n", "holds no faces"},
         {"word_for_a_number", "v 0 zero 0\n", ":1:5: a vertex coordinate is \"zero\""},
         {"number_with_a_tail", "v 0 1.5x 0\n", ":1:5: a vertex coordinate is \"1.5x\""},
-        {"comma_for_a_point", "v 0 1,5 0\n", "is \"1,5\""},
+        {"comma_for_a_point", "v 0 1,5 0\n", ":1:5: a vertex coordinate is \"1,5\", expected a number with a decimal"},
+        {"commas_for_points", "v 1,0 1,5 -2,0\n", ":1:3: a vertex coordinate is \"1,0\""},
+        {"comma_at_the_end", "v 1 1 -2,5\n", ":1:7: a vertex coordinate is \"-2,5\""},
+        {"comma_in_a_normal", "vn 0 0 1,0\n", ":1:8: a component of a normal is \"1,0\""},
         {"two_coordinates", "v 0 1\n" + kThree, ":1:6: a vertex coordinate is missing"},
         {"nan", "v 0 nan 0\n", "a vertex coordinate is \"nan\""},
         {"infinity", "v 0 -inf 0\n", "is \"-inf\""},
@@ -266,6 +380,7 @@ INSTANTIATE_TEST_SUITE_P(All, BadMtl,
                              {"no_name", "newmtl\n", ":1:7: newmtl without a name"},
                              {"negative", "newmtl a\nKd 1 -1 1\n", ":2:4: Kd is negative"},
                              {"two_channels", "newmtl a\nKd 1 1\n", "Kd is missing"},
+                             {"comma", "newmtl a\nKd 0,8 0,8 0,8\n", ":2:4: Kd is \"0,8\", expected a number with"},
                              {"nan", "newmtl a\nNs nan\n", ":2:4: Ns is \"nan\""},
                              {"opacity", "newmtl a\nd 1.5\n", ":2:3: d is \"1.5\", expected a number from 0 to 1"},
                              {"illum", "newmtl a\nillum 99\n", "illum is not a known model"},

@@ -1,7 +1,11 @@
 // What loading does whatever the format: dispatch, unreadable files, the checks and defaults that all share.
 #include "umbra/core/io/scene_io.h"
 
+#include <sys/stat.h>
+
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -67,7 +71,53 @@ TEST(LoadScene, FilesThatCannotBeReadSayWhy) {
     std::filesystem::create_directories(folder.path() / "folder.json");
     EXPECT_NE(message_of(folder.path() / "folder.json").find("is a folder"), std::string::npos);
     std::filesystem::create_symlink("/dev/zero", folder.path() / "endless.json");
-    EXPECT_NE(message_of(folder.path() / "endless.json").find("larger than"), std::string::npos);
+    EXPECT_NE(message_of(folder.path() / "endless.json").find("is a device, expected a file"), std::string::npos);
+    const auto large = folder.write("large.json", "{");
+    std::filesystem::resize_file(large, std::uintmax_t{1} << 34);  // takes no room on the disk
+    EXPECT_NE(message_of(large).find("larger than 32 MB"), std::string::npos);
+}
+
+/// A pipe that nobody writes to: opening it would wait for ever. Also by a link, and as a file that another one names.
+TEST(LoadScene, PipesAndDevicesAreRefused) {
+    const TemporaryFolder folder;
+    const auto pipe = folder.path() / "pipe.obj";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::filesystem::create_symlink(pipe, folder.path() / "link.ply");
+    std::filesystem::create_symlink("/dev/zero", folder.path() / "zero.stl");
+    for (const char* name : {"pipe.obj", "link.ply", "zero.stl"})
+        EXPECT_NE(message_of(folder.path() / name).find("expected a file"), std::string::npos) << name;
+    for (const char* ending : {"gltf", "glb", "nff", "off", "json"}) {
+        const auto other = folder.path() / (std::string("other.") + ending);
+        ASSERT_EQ(::mkfifo(other.c_str(), 0600), 0);
+        EXPECT_NE(message_of(other).find("is a pipe"), std::string::npos) << ending;
+    }
+    const auto scene = folder.write("scene.json", R"({"objects": [{"type": "mesh", "file": "pipe.obj"}]})");
+    EXPECT_NE(message_of(scene).find("is a pipe"), std::string::npos);
+    const auto mesh = folder.write("mesh.obj", "mtllib pipe.obj\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    EXPECT_EQ(message_of(mesh), "loaded") << "with a warning that the materials are not there";
+}
+
+/// Messages go to terminals and into JSON.
+TEST(LoadScene, MessagesShowNoBytesThatAreNoText) {
+    const TemporaryFolder folder;
+    const std::string message = message_of(folder.write("a.off", "OFF \xff\xc3(\xe2\x82 \xc2\x9b\x1b[31m \xc3\xa4\n"));
+    EXPECT_NE(message.find("1 | OFF ?"
+                           "?(?"
+                           "? "),
+              std::string::npos)
+        << message;
+    EXPECT_NE(message.find("\xc3\xa4"), std::string::npos) << message;
+    for (const char* bad : {"\xff", "\x1b", "\xc2\x9b"}) EXPECT_EQ(message.find(bad), std::string::npos) << message;
+}
+
+/// Lines end at LF, CR LF or CR: line, column and the line shown are the same.
+TEST(LoadScene, MessagesCountLinesOfAllKinds) {
+    const TemporaryFolder folder;
+    for (const std::string& end : std::vector<std::string>{"\n", "\r\n", "\r"}) {
+        const std::string message = message_of(folder.write("a.off", "OFF" + end + "1 1 0" + end + "0 0 zero" + end));
+        EXPECT_NE(message.find("a.off:3:5: "), std::string::npos) << message;
+        EXPECT_NE(message.find("\n  3 | 0 0 zero\n"), std::string::npos) << message;
+    }
 }
 
 TEST(CompleteScene, NamesAndSource) {

@@ -327,5 +327,23 @@ TEST(Uncomputed, IsNamedByTermAndByMaterialInUse) {
               "opacity of materials \"a\", \"b\", \"c\" and 1 more\n");
 }
 
+/// Surfaces are drawn opaque whatever their shadows: the sentence says both.
+TEST(Uncomputed, OpacitySaysWhatShadowsDo) {
+    Scene scene;
+    scene.materials.push_back({.name = "glass", .opacity = 0.99f});
+    const Mesh box = make_box({1, 1, 1});
+    add_object(scene, "box", box.positions, box.normals, box.triangles, 0);
+    for (const auto& [transparent, words] :
+         {std::pair{TransparentOccluders::ignore, "They throw no shadow"},
+          {TransparentOccluders::block, "They throw full shadows"},
+          {TransparentOccluders::multiply, "Their shadows let through what they do"}}) {
+        scene.transparent = transparent;
+        const auto found  = find_uncomputed(scene);
+        ASSERT_EQ(found.size(), 1u);
+        EXPECT_TRUE(found[0].consequence.starts_with("surfaces are drawn opaque")) << found[0].consequence;
+        EXPECT_NE(found[0].consequence.find(words), std::string_view::npos) << found[0].consequence;
+    }
+}
+
 }  // namespace
 }  // namespace umbra

@@ -41,6 +41,27 @@ TEST(SpotFactor, SmoothIsASquare) {
     EXPECT_EQ(spot_factor(s, 0.4f), 0);
 }
 
+/// Full in the middle, whatever the angles; in a light, where the cosine is not rounded.
+TEST(SpotFactor, NarrowConesAreFullInTheMiddle) {
+    for (const auto& [outer, inner] : {std::pair{2.0, 1.0}, {1.0, 0.5}, {0.01, 0.005}, {0.001, 0.0}, {1.0, 1.0}}) {
+        Light light;
+        light.kind        = LightKind::spot;
+        light.direction   = {0, -1, 0};
+        light.attenuation = {1, 0, 0, true};
+        light.spot        = {SpotFalloff::smooth, 1, float(glm::radians(outer)), float(glm::radians(inner))};
+        const auto at     = [&](double degrees) {
+            return falloff(light, {static_cast<float>(1e3 * std::tan(glm::radians(degrees))), -1e3f, 0});
+        };
+        EXPECT_EQ(at(0), 1) << outer;
+        EXPECT_EQ(at(0.98 * inner), 1) << outer;
+        EXPECT_EQ(at(1.02 * outer), 0) << outer;
+        if (inner == outer) continue;
+        const double a = (inner + outer) / 2, cos_outer = std::cos(glm::radians(outer));
+        const double t = (std::cos(glm::radians(a)) - cos_outer) / (std::cos(glm::radians(inner)) - cos_outer);
+        EXPECT_NEAR(at(a), t * t, 1e-4) << outer;
+    }
+}
+
 TEST(Attenuation, IsOneOverTheQuadratic) {
     EXPECT_NEAR(attenuation_factor({.c1 = 1, .c2 = 2, .c3 = 3, .clamp = true}, 2), 1.0 / 17, 1e-7);
     EXPECT_EQ(attenuation_factor({.c1 = 0.5f, .c2 = 0, .c3 = 0, .clamp = true}, 2), 1);

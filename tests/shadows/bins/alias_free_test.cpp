@@ -157,7 +157,7 @@ TEST(ShadowPlanes, AreUnsureOnTheBorderAlone) {
                                  {0.5f, 0, 0.5f},   {0, 0.5f, 0.5f},   {0.25f, 1, 0.25f}, {0.3f, 0.999f, 0.3f}};
     for (std::size_t k = 0; k < kLanes; ++k)
         block.x[k] = points[k].x, block.y[k] = points[k].y, block.z[k] = points[k].z;
-    ShadowPlanes::Lanes lanes[kLanes]{};
+    ShadowPlanes::InShadow lanes[kLanes]{};
     EXPECT_EQ(planes.test(0b11000001, block, lanes), 0b01000001u) << "of the last, whose plane is x = 1, no lane";
     for (const std::size_t triangle : {0u, 6u}) {
         EXPECT_EQ(lanes[triangle].inside, 0b10000001);

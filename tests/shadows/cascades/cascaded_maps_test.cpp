@@ -239,7 +239,7 @@ TEST(CascadedMaps, DepthsAreThoseOfWhatIsInView) {
     const Cascades in_view   = Maps(scene, "window=frustum").fit(points);
     const Cascades as_seen   = Maps(scene, "window=frustum,depth_range=visible").fit(points);
     const CameraFrame& frame = *points.raster;
-    Extent seen;
+    MinMax seen;
     for (std::size_t i = 0; i < points.size(); ++i)
         if (points.asks(0, i)) seen.add(frame.project(exact_position(scene, points, i)).z);
     EXPECT_EQ(as_seen.splits.front(), seen.min);

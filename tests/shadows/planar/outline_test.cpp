@@ -177,7 +177,8 @@ struct BoxOverFloor {
         }
     }
     [[nodiscard]] planar::Outline outline(vec3 lamp) const {
-        return planar::OccluderEdges(occluders).outlines(receivers, {false, lamp})[0];
+        const OccluderMesh mesh(scene);
+        return planar::project(occluders, &mesh, receivers, std::vector<planar::Source>{{false, lamp}}, 0)[0][0];
     }
 };
 
@@ -244,7 +245,8 @@ TEST(Outline, BoundsItsRounding) {
         const planar::Source lamp{false, place(3, 5)};
         const planar::LocalSource local(r, lamp);
         if (!local.is_above()) continue;  // the plane's other side is up
-        const planar::Outline outline = planar::OccluderEdges(occluders).outlines(std::vector{r}, lamp)[0];
+        const OccluderMesh mesh(scene);
+        const planar::Outline outline = planar::project(occluders, &mesh, std::vector{r}, std::vector{lamp}, 0)[0][0];
 
         const auto in_plane = [&](Long world) {
             const Long d = world - Long(r.origin);
@@ -292,12 +294,12 @@ TEST(Outline, NamesPointsOnEdges) {
     const BoxOverFloor box;
     const planar::Outline outline = box.outline({0, 4, 0});
     const auto doubtful           = [&](double x, double z) {
-        planar::Places places;
-        for (std::uint32_t i = 0; i < 20; ++i) {
-            const dvec3 at = box.receivers[0].local({x + (i == 7 ? 0 : 0.1 * i + 1), 0, z});
-            places.x.push_back(at.x), places.y.push_back(at.y);
-        }
-        const planar::PlaneTree points(std::move(places));
+        const planar::PlaneTree points(20, [&](auto& to, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const dvec3 at = box.receivers[0].local({x + (i == 7 ? 0 : 0.1 * static_cast<double>(i) + 1), 0, z});
+                to[0][i] = at.x, to[1][i] = at.y;
+            }
+        });
         planar::DarkeningTree tree(points);
         const auto which = tree.darken(outline);
         EXPECT_LE(which.size(), 1u);

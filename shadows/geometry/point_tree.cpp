@@ -1,0 +1,28 @@
+#include "umbra/shadows/geometry/point_tree.h"
+
+#include "umbra/core/base/morton.h"
+#include "umbra/core/base/parallel_sort.h"
+
+namespace umbra {
+
+void sort_by_places(std::span<std::uint32_t> points, std::span<const dvec2> places) {
+    dvec2 low(+kInfinity), high(-kInfinity);
+    for (const dvec2 p : places) low = glm::min(low, p), high = glm::max(high, p);
+    const double extent = std::max({high.x - low.x, high.y - low.y, 1e-300});
+    struct Keyed {
+        std::uint64_t key;
+        std::uint32_t point;
+        auto operator<=>(const Keyed&) const = default;
+    };
+    std::vector<Keyed> order(points.size());
+    parallel_ranges(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const dvec2 p = (places[i] - low) / extent * 0x1p31;
+            order[i]      = {morton_code(static_cast<std::uint32_t>(p.x), static_cast<std::uint32_t>(p.y)), points[i]};
+        }
+    });
+    parallel_sort(order.begin(), order.end());
+    std::ranges::transform(order, points.begin(), &Keyed::point);
+}
+
+}  // namespace umbra
