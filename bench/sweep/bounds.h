@@ -33,8 +33,8 @@ inline constexpr double kMostLeftOut = 0.01;
 ///  - over the views, the upper prediction bound for one more: logarithms are taken to be normally distributed,
 ///    Student's t with the views less one as degrees of freedom. It is no less than the largest error measured.
 ///
-/// Nothing where a view was not judged, where a value is the least that it may be (is_at_least), where there are fewer than two views, and where the method failed or does not
-/// serve.
+/// Nothing where a view was not judged, where a value is the least that it may be (is_at_least), where there are fewer
+/// than two views, and where the method failed or does not serve.
 [[nodiscard]] std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views);
 
 }  // namespace umbra

@@ -77,8 +77,8 @@ std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_jso
     std::vector<TradeLine> lines;
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         settings += scenes[k].settings.size();
-        json scene    = swept_scene_view(scenes[k], methods, fmt::format("scene-{}", k + 1));
-        scene["file"] = url(below(root, scenes[k], folder, k, staged).lexically_relative(folder));
+        json scene        = swept_scene_view(scenes[k], methods, fmt::format("scene-{}", k + 1));
+        scene["file"]     = url(below(root, scenes[k], folder, k, staged).lexically_relative(folder));
         const auto metric = scene["metric"].get<std::string>();
         lines.push_back({scenes[k].title, scene["id"].get<std::string>(),
                          (metric.empty() ? "" : metric + ": ") + scene["finding"].get<std::string>()});
