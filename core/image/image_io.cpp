@@ -207,7 +207,7 @@ LoadedImage joined(const std::filesystem::path& file, std::vector<LoadedImage> p
     Image& image      = whole.image;
     std::set<std::string> taken(image.channels.begin(), image.channels.end());
     const auto take = [&](const std::string& part, const std::string& channel) {
-        const std::string name = channel.starts_with(part + ".") ? channel : part + "." + channel;
+        std::string name = channel.starts_with(part + ".") ? channel : part + "." + channel;
         if (!taken.insert(name).second)
             throw InputError(fmt::format("{}: two channels are called {}", file.string(), name));
         return name;

@@ -42,7 +42,7 @@ template <class Sign>
 [[nodiscard]] int change_of(std::span<const PackedUse> uses, const Sign& sign) {
     int change = 0;
     for (const PackedUse& use : uses) {
-        const int s = sign(TriangleId{use.triangle});
+        const int s = sign(TriangleId{use.triangle});  // NOLINT(bugprone-signed-char-misuse): a sign
         change += use.forward != 0 ? s : -s;
     }
     return change;

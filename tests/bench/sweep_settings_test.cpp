@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
@@ -409,8 +410,10 @@ TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {
     keep({"ray_traced", good, {123456, 1, 1, 1}}, 0.1);
     EXPECT_EQ(lab_.price(rays)->build, 123456);
     EXPECT_EQ(lab_.times({&rays, 1}, turns).settings[0]["build_ms"]["median"], 123456.0);
+    EXPECT_NE(lab_.times({&rays, 1}, turns, 0.05).settings[0]["build_ms"]["median"], 123456.0)
+        << "a noise bar of 10 % is too much";
     keep({"ray_traced", good, {123456, 1, 1, 1}}, 0.1);
-    SceneLab lab(lab_.scene().source, {.size = {16, 9}}, store_);
+    SceneLab lab(std::filesystem::path(UMBRA_SCENES) / "umbra_penumbra.json", {.size = {16, 9}}, store_);
     lab.measure_anew();
     const double price = lab.price(rays)->build;
     EXPECT_NE(price, 123456);
