@@ -98,8 +98,8 @@ private:
             return std::min(below.high_right, above.low_right) - std::max(below.high_left, above.low_left) > kNarrow;
         };
         const auto other_side = [&](std::size_t piece) { return TrapezoidSide{1 - at.turn, all.size() - 1 - piece}; };
-        const auto row_above  = std::ranges::equal_range(all, p.high, {}, &Trapezoid::low);
-        for (auto above = row_above.end(); above != row_above.begin();) {
+        const auto row_begin  = std::ranges::lower_bound(all, p.high, {}, &Trapezoid::low);
+        for (auto above = std::ranges::upper_bound(all, p.high, {}, &Trapezoid::low); above != row_begin;) {
             if (!touch(p, *--above)) continue;
             for (std::size_t k = at.piece + 1; k < all.size() && all[k].low == p.low; ++k)
                 if (touch(all[k], *above)) return other_side(k);
@@ -121,7 +121,7 @@ double twice_area(const std::vector<dvec2>& outline) {
 /// Without points between two others.
 std::vector<dvec2> corners_of(std::vector<dvec2> outline) {
     const auto lowest = [](dvec2 a, dvec2 b) { return a.y < b.y || (a.y == b.y && a.x < b.x); };
-    std::ranges::rotate(outline, std::ranges::min_element(outline, lowest));  // to one that is a corner
+    std::rotate(outline.begin(), std::ranges::min_element(outline, lowest), outline.end());  // to one that is a corner
     outline.push_back(outline.front());
     std::vector<dvec2> corners;
     for (const dvec2 p : outline) {
