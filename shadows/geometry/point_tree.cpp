@@ -1,5 +1,7 @@
 #include "umbra/shadows/geometry/point_tree.h"
 
+#include <utility>
+
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel_sort.h"
 
@@ -9,12 +11,7 @@ void sort_by_places(std::span<std::uint32_t> points, std::span<const dvec2> plac
     dvec2 low(+kInfinity), high(-kInfinity);
     for (const dvec2 p : places) low = glm::min(low, p), high = glm::max(high, p);
     const double extent = std::max({high.x - low.x, high.y - low.y, 1e-300});
-    struct Keyed {
-        std::uint64_t key;
-        std::uint32_t point;
-        auto operator<=>(const Keyed&) const = default;
-    };
-    std::vector<Keyed> order(points.size());
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> order(points.size());  // key, point
     parallel_ranges(points.size(), 65536, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const dvec2 p = (places[i] - low) / extent * 0x1p31;
@@ -22,7 +19,7 @@ void sort_by_places(std::span<std::uint32_t> points, std::span<const dvec2> plac
         }
     });
     parallel_sort(order.begin(), order.end());
-    std::ranges::transform(order, points.begin(), &Keyed::point);
+    std::ranges::transform(order, points.begin(), [](const auto& keyed) { return keyed.second; });
 }
 
 }  // namespace umbra
