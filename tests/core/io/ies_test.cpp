@@ -17,7 +17,7 @@ namespace {
 
 Photometry of_data(const std::string& name) {
     std::vector<std::string> warnings;
-    const Photometry table = read_ies(std::string(UMBRA_TEST_DATA) + "/ies/" + name, warnings);
+    Photometry table = read_ies(std::string(UMBRA_TEST_DATA) + "/ies/" + name, warnings);
     EXPECT_TRUE(warnings.empty()) << warnings[0];
     return table;
 }
@@ -26,7 +26,7 @@ Photometry of_data(const std::string& name) {
 Photometry of_text(const std::string& text, std::string_view warning = "") {
     const TemporaryFolder folder;
     std::vector<std::string> warnings;
-    const Photometry table = read_ies(folder.write("light.ies", text), warnings);
+    Photometry table = read_ies(folder.write("light.ies", text), warnings);
     EXPECT_EQ(warnings.size(), warning.empty() ? 0u : 1u) << text;
     for (const std::string& w : warnings) EXPECT_NE(w.find(warning), std::string::npos) << w;
     return table;
