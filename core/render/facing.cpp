@@ -26,6 +26,13 @@ Facing area_facing(const Light& light, vec3 a, vec3 b, vec3 c, int turn) {
 
 }  // namespace
 
+bool rises_over(const Scene& scene, TriangleId t, TriangleId own, int side) {
+    const vec3 a = scene.vertex(own, 0), b = scene.vertex(own, 1), c = scene.vertex(own, 2);
+    for (int k = 0; k < 3; ++k)
+        if (side_of_plane(a, b, c, scene.vertex(t, k)) == side) return true;
+    return false;
+}
+
 Facing facing_of(const Scene& scene, LightId id, TriangleId t, bool flipped) {
     const Light& light = scene.lights[id];
     const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);

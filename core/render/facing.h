@@ -11,6 +11,10 @@ namespace umbra {
 /// winding faces it, -1 on the other side, 0 in its plane and where the triangle has no area. Exact.
 [[nodiscard]] int side_of_light(const Light& light, vec3 a, vec3 b, vec3 c);
 
+/// Whether some of triangle t is on one side of the plane of triangle `own`, +1 where its winding faces: a triangle
+/// that is not on the light's side hides nothing of it. Exact.
+[[nodiscard]] bool rises_over(const Scene& scene, TriangleId t, TriangleId own, int side);
+
 /// Which part of the light a point of triangle t sees, whose normal is `flipped` against the triangle's winding. Exact.
 [[nodiscard]] Facing facing_of(const Scene& scene, LightId light, TriangleId t, bool flipped);
 

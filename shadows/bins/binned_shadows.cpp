@@ -4,6 +4,8 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <compare>
+#include <mutex>
 #include <optional>
 
 #include "umbra/core/base/geometry.h"
@@ -13,12 +15,14 @@
 #include "umbra/shadows/bins/binned_points.h"
 #include "umbra/shadows/bins/shadow_planes.h"
 #include "umbra/shadows/geometry/coherent_order.h"
+#include "umbra/shadows/geometry/exact_contacts.h"
 #include "umbra/shadows/geometry/exact_segment.h"
 
 namespace umbra {
 namespace {
 
 using namespace bins;
+using exact_visibility::Contacts;
 using exact_visibility::ExactPoint;
 using exact_visibility::Segment;
 
@@ -56,11 +60,27 @@ struct BinnedShadows::Search {
     std::vector<PointBins::Found> found{};
 };
 
+/// A point's segment touches a triangle.
+struct BinnedShadows::Touch {
+    std::uint32_t point;
+    TriangleId triangle;
+    auto operator<=>(const Touch&) const = default;
+};
+
 /// The points that ask, in the light's image.
 struct BinnedShadows::Picture {
     const Light* light;
     LightImage image;
     BinnedPoints asking;
+    std::mutex mutex{};            ///< of `touches`
+    std::vector<Touch> touches{};  ///< that were found, some of them twice
+
+    /// From any thread.
+    void add(std::span<const Touch> found) {
+        if (found.empty()) return;
+        const std::lock_guard lock(mutex);
+        touches.insert(touches.end(), found.begin(), found.end());
+    }
 };
 
 namespace {
@@ -119,20 +139,19 @@ void BinnedShadows::visibility(const PointBatch& points, LightId light, Visibili
     parallel_ranges(bins.tiles(), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t tile = begin; tile < end; ++tile)
             for (std::size_t b = bins.first(tile); b < bins.last(tile); ++b) {
-                const unsigned crossed = bins.marks(b).crossed, touched = bins.marks(b).touched;
-                for (std::size_t lane = 0; lane < kLanes; ++lane) {
-                    const std::uint32_t i = bins.block(b).index[lane];
-                    out.s[i]              = (crossed >> lane & 1u) != 0 ? 0.0f : 1.0f;
-                    if ((touched & ~crossed) >> lane & 1u) out.answer[i] = Answer::on_boundary;
-                }
+                const unsigned crossed = bins.marks(b).crossed;
+                for (std::size_t lane = 0; lane < kLanes; ++lane)
+                    out.s[bins.block(b).index[lane]] = (crossed >> lane & 1u) != 0 ? 0.0f : 1.0f;
             }
     });
     for (const std::uint32_t i : picture.asking.next_to_light) out.s[i] = 1;
-    each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId, Segment::Meeting meeting) {
-        if (meeting == Segment::Meeting::crosses) out.s[i] = 0, out.answer[i] = Answer::given;
-        if (meeting == Segment::Meeting::touches) out.answer[i] = Answer::on_boundary;
-        return meeting != Segment::Meeting::crosses;
-    });
+    each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId) { out.s[i] = 0; });
+    each_touched(
+        picture, points, [&](std::uint32_t i) { return out.s[i] != 0; },
+        [&](std::uint32_t i, TriangleId, Contacts::Together together) {
+            out.s[i] = together.passed.x;
+            if (!together.agreed) out.answer[i] = Answer::on_boundary;
+        });
 }
 
 void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const {
@@ -148,10 +167,12 @@ void BinnedShadows::blame(const PointBatch& points, LightId light, std::span<Tri
         },
         false);
     for (std::size_t i = 0; i < points.size(); ++i) blockers[i] = lowest[i];
-    each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId t, Segment::Meeting meeting) {
-        if (meeting == Segment::Meeting::crosses) blockers[i] = t;
-        return meeting != Segment::Meeting::crosses;
-    });
+    each_next_to_light(picture, points, [&](std::uint32_t i, TriangleId t) { blockers[i] = t; });
+    each_touched(
+        picture, points, [&](std::uint32_t i) { return blockers[i] == kNoTriangle; },
+        [&](std::uint32_t i, TriangleId t, Contacts::Together together) {
+            if (together.passed == vec3(0)) blockers[i] = t;
+        });
 }
 
 BinnedShadows::Picture BinnedShadows::bin(const PointBatch& points, LightId light) const {
@@ -159,18 +180,50 @@ BinnedShadows::Picture BinnedShadows::bin(const PointBatch& points, LightId ligh
     return {&scene_.lights[light], image, bin_points(scene_, points, light, image, centre_)};
 }
 
-/// Points whose places are unknown against every triangle: calls met(i, t, meeting) until that is false.
-template <class Met>
-void BinnedShadows::each_next_to_light(const Picture& picture, const PointBatch& points, const Met& met) const {
+/// Points whose places are unknown against every triangle: calls crossed(i, t) for the first that is.
+template <class Crossed>
+void BinnedShadows::each_next_to_light(Picture& picture, const PointBatch& points, const Crossed& crossed) const {
     parallel_ranges(picture.asking.next_to_light.size(), 4, [&](std::size_t begin, std::size_t end) {
+        std::vector<Touch> touches;
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = picture.asking.next_to_light[k];
             const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
             const Segment segment(point, *picture.light);
-            for (TriangleId t = 0; t < casts_.size(); ++t)
-                if (casts_[t] != 0 && t != points.triangle[i] &&
-                    !met(i, t, segment.meeting(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2))))
-                    break;
+            for (TriangleId t = 0; t < casts_.size(); ++t) {
+                if (casts_[t] == 0 || t == points.triangle[i]) continue;
+                const auto m = segment.meeting(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2));
+                if (m == Segment::Meeting::touches) touches.push_back({i, t});
+                if (m != Segment::Meeting::crosses) continue;
+                crossed(i, t);
+                break;
+            }
+        }
+        picture.add(touches);
+    });
+}
+
+/// Points that are touched and of which asks(i): calls met(i, t, together) with the first triangle that touches each,
+/// and with what all that do make together.
+template <class Asks, class Met>
+void BinnedShadows::each_touched(Picture& picture, const PointBatch& points, const Asks& asks, const Met& met) const {
+    std::vector<Touch>& touches = picture.touches;
+    std::erase_if(touches, [&](const Touch& touch) { return !asks(touch.point); });
+    std::ranges::sort(touches);
+    touches.erase(std::ranges::unique(touches).begin(), touches.end());
+    std::vector<std::size_t> first;  // of each point
+    for (std::size_t k = 0; k < touches.size(); ++k)
+        if (k == 0 || touches[k].point != touches[k - 1].point) first.push_back(k);
+    parallel_ranges(first.size(), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t f = begin; f < end; ++f) {
+            const std::uint32_t i = touches[first[f]].point;
+            const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
+            const Segment segment(point, *picture.light);
+            Contacts contacts(segment);
+            for (std::size_t k = first[f]; k < touches.size() && touches[k].point == i; ++k) {
+                const TriangleId t = touches[k].triangle;
+                contacts.add(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2), vec3(0));
+            }
+            met(i, touches[first[f]].triangle, contacts.together());
         }
     });
 }
@@ -219,7 +272,7 @@ BinnedShadows::Group BinnedShadows::group(std::size_t g, const Picture& picture)
 
 /// Of groups that follow one another: their searches begin together.
 template <class Crossed>
-void BinnedShadows::cast_groups(std::span<const Group> groups, const Picture& picture, const PointBatch& points,
+void BinnedShadows::cast_groups(std::span<const Group> groups, Picture& picture, const PointBatch& points,
                                 const Crossed& crossed, bool once, Search& search) const {
     Extent around = Extent::nothing();
     for (const Group& group : groups)
@@ -273,11 +326,12 @@ ShadowPlanes BinnedShadows::planes(const Group& group, const Picture& picture) c
 
 /// Tests the triangles against the blocks that were found; where these are many, as behind a wall, from all threads.
 template <class Crossed>
-void BinnedShadows::test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed,
+void BinnedShadows::test(const Group& group, Picture& picture, const PointBatch& points, const Crossed& crossed,
                          bool once, const Search& search) const {
     const PointBins& bins = picture.asking.bins;
     std::optional<ShadowPlanes> shadows;
     const auto test_found = [&](std::size_t begin, std::size_t end) {
+        std::vector<Touch> touches;
         for (std::size_t f = begin; f < end; ++f) {
             const PointBins::Found found = search.found[f];
             if (f + kAhead < search.found.size()) bins.prefetch(search.found[f + kAhead].block);
@@ -287,7 +341,7 @@ void BinnedShadows::test(const Group& group, const Picture& picture, const Point
             if (!shadows) shadows.emplace(planes(group, picture));
             const Block& block = bins.block(found.block);
             ShadowPlanes::InShadow lanes[kLanes];
-            Met all;
+            unsigned all = 0;
             for (unsigned rest = shadows->test(found.triangles, block, lanes); rest != 0; rest &= rest - 1) {
                 const auto k       = static_cast<std::size_t>(std::countr_zero(rest));
                 const TriangleId t = group.triangles[k];
@@ -296,15 +350,15 @@ void BinnedShadows::test(const Group& group, const Picture& picture, const Point
                     met = meet_exactly(scene_, *picture.light, t, points, block,
                                        lanes[k].unsure & ~hidden & ~lanes_on(block, t));
                 met.crossed |= lanes[k].inside;
-                all.crossed |= met.crossed, all.touched |= met.touched;
+                all |= met.crossed;
+                for (unsigned hit = met.touched; hit != 0; hit &= hit - 1)
+                    touches.push_back({block.index[static_cast<std::size_t>(std::countr_zero(hit))], t});
                 for (unsigned hit = met.crossed; hit != 0; hit &= hit - 1)
                     crossed(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
             }
-            if ((all.crossed & ~hidden) != 0)
-                marks.crossed.fetch_or(static_cast<std::uint8_t>(all.crossed), std::memory_order_relaxed);
-            if (all.touched != 0)
-                marks.touched.fetch_or(static_cast<std::uint8_t>(all.touched), std::memory_order_relaxed);
+            if ((all & ~hidden) != 0) marks.crossed.fetch_or(static_cast<std::uint8_t>(all), std::memory_order_relaxed);
         }
+        picture.add(touches);
     };
     if (search.found.size() < kMany) return test_found(0, search.found.size());
     shadows.emplace(planes(group, picture));

@@ -28,11 +28,13 @@ public:
     /// The scene must outlive this object. Triangles block as Scene::blocks says.
     explicit BinnedShadows(const Scene& scene);
 
-    /// S_j of a directional, point or spot light, 0 or 1, and the answer `on_boundary` where a segment touches a
-    /// triangle and crosses none. Writes where the points ask the light. Exact. From any number of threads.
+    /// S_j of a directional, point or spot light, 0 or 1, and the answer `on_boundary` where a segment crosses no
+    /// triangle and those that it touches hide some of the lights nearby (exact_visibility::Contacts). Writes where the
+    /// points ask the light. Exact. From any number of threads.
     void visibility(const PointBatch& points, LightId light, Visibility out) const;
 
-    /// Of the triangles that a point's segment crosses, the one of the lowest number; kNoTriangle where there is none.
+    /// Of the triangles that a point's segment crosses, the one of the lowest number; where there is none, of those
+    /// that it touches and that block together; kNoTriangle where the point is lit.
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const;
 
     [[nodiscard]] std::size_t memory_bytes() const {
@@ -40,6 +42,7 @@ public:
     }
 
 private:
+    struct Touch;
     struct Picture;
     struct Group;
     struct Search;
@@ -49,18 +52,20 @@ private:
     enum class Which : std::uint8_t { all, facing_light, later };
 
     [[nodiscard]] Picture bin(const PointBatch& points, LightId light) const;
-    template <class Met>
-    void each_next_to_light(const Picture& picture, const PointBatch& points, const Met& met) const;
+    template <class Crossed>
+    void each_next_to_light(Picture& picture, const PointBatch& points, const Crossed& crossed) const;
+    template <class Asks, class Met>
+    void each_touched(Picture& picture, const PointBatch& points, const Asks& asks, const Met& met) const;
     template <class Crossed>
     void cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once = true) const;
     [[nodiscard]] Group group(std::size_t g, const Picture& picture) const;
     template <class Crossed>
-    void cast_groups(std::span<const Group> groups, const Picture& picture, const PointBatch& points,
-                     const Crossed& crossed, bool once, Search& search) const;
+    void cast_groups(std::span<const Group> groups, Picture& picture, const PointBatch& points, const Crossed& crossed,
+                     bool once, Search& search) const;
     void find(const Group& group, const Picture& picture, Search& search) const;
     [[nodiscard]] bins::ShadowPlanes planes(const Group& group, const Picture& picture) const;
     template <class Crossed>
-    void test(const Group& group, const Picture& picture, const PointBatch& points, const Crossed& crossed, bool once,
+    void test(const Group& group, Picture& picture, const PointBatch& points, const Crossed& crossed, bool once,
               const Search& search) const;
 
     const Scene& scene_;

@@ -50,9 +50,9 @@ struct alignas(32) Block {
     TriangleId triangle[kLanes];  ///< on which the point lies
 };
 
-/// What triangles that were tested so far do to the points of a block: one bit a lane. Bits are only set.
+/// Whether a triangle that was tested so far hides the points of a block: one bit a lane. Bits are only set.
 struct Marks {
-    std::atomic<std::uint8_t> crossed{0}, touched{0};
+    std::atomic<std::uint8_t> crossed{0};
 };
 
 /// The points that ask a light for S_j.

@@ -3,10 +3,14 @@
 //
 // This work is based on:
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
-// Tomas Moeller, Ben Trumbore. Fast, Minimum Storage Ray/Triangle Intersection. 1997
+// Herbert Edelsbrunner, Ernst Muecke. Simulation of Simplicity. 1990
 #include <fmt/format.h>
 
+#include <tuple>
+#include <utility>
+
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/core/render/light_points.h"
 #include "umbra/shadows/method.h"
 
@@ -34,14 +38,27 @@ const std::vector<Parameter> kParameters{
                                         .max   = 50000000}),
 };
 
+/// On which side the ray p + t d passes the edge from a to b, -1 or 1. Both triangles of a shared edge compute the same
+/// number. Where that is 0, the side is that of a ray turned by a little, the same for all edges: a ray through an edge
+/// inside a surface meets one of its triangles, not none or two.
+int side_of_edge(dvec3 p, dvec3 d, dvec3 a, dvec3 b) {
+    const bool swapped = std::tie(b.x, b.y, b.z) < std::tie(a.x, a.y, a.z);
+    if (swapped) std::swap(a, b);
+    const dvec3 across = glm::cross(a - p, b - a);
+    double side        = glm::dot(across, d);
+    for (int k = 0; k < 3 && side == 0; ++k) side = across[k];
+    return (side > 0) == swapped ? -1 : 1;
+}
+
 /// Whether the open segment p + t d, 0 < t < end, passes through the triangle.
 bool crosses(dvec3 p, dvec3 d, double end, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 ab = b - a, ac = c - a, from_a = p - a;
-    const dvec3 n = glm::cross(ab, ac), q = glm::cross(d, from_a);
-    const double slope = -glm::dot(n, d);
+    const dvec3 n      = glm::cross(b - a, c - a);
+    const double slope = glm::dot(n, d);
     if (slope == 0) return false;  // the segment runs along the triangle's plane
-    const double t = glm::dot(n, from_a) / slope, u = -glm::dot(ac, q) / slope, v = glm::dot(ab, q) / slope;
-    return t > 0 && t < end && u >= 0 && v >= 0 && u + v <= 1;
+    const double t = glm::dot(n, a - p) / slope;
+    if (!(t > 0 && t < end)) return false;
+    const int side = side_of_edge(p, d, a, b);
+    return side_of_edge(p, d, b, c) == side && side_of_edge(p, d, c, a) == side;
 }
 
 /// Triangles that take any of the light that meets them.
@@ -82,7 +99,7 @@ public:
                 vec3 sum(0);
                 for (int k = 0; k < samples; ++k) {
                     const Segment s = segment(aimed, points, i, k);
-                    if (!s.behind) sum += passed(aimed, points.triangle[i], s);
+                    if (!s.behind) sum += passed(aimed, s);
                 }
                 sum /= static_cast<float>(samples);
                 out.s[i] = mean_of(sum);
@@ -99,7 +116,7 @@ public:
                 blockers[i] = kNoTriangle;
                 if (!points.asks(aimed.light, i)) continue;
                 for (int k = 0; k < samples && blockers[i] == kNoTriangle; ++k)
-                    blockers[i] = first_blocker(aimed, points.triangle[i], segment(aimed, points, i, k));
+                    blockers[i] = first_blocker(aimed, segment(aimed, points, i, k));
             }
         });
     }
@@ -112,8 +129,7 @@ public:
         }
         const Segment s     = segment(aimed, looked.points, i, 0);
         std::size_t crossed = 0;
-        for (const TriangleId t : as<Occluders>(aimed.built).triangles)
-            crossed += t != looked.points.triangle[i] && is_crossed(aimed.scene(), t, s);
+        for (const TriangleId t : as<Occluders>(aimed.built).triangles) crossed += is_crossed(aimed.scene(), t, s);
         reason.evidence.push_back({"triangles crossed", static_cast<double>(crossed)});
         return reason;
     }
@@ -123,7 +139,9 @@ private:
     struct Segment {
         dvec3 p, d;
         double end;
-        bool behind;  ///< runs behind the plane of the point's triangle: that part of the light is not seen
+        bool behind;     ///< runs behind the plane of the point's triangle: that part of the light is not seen
+        TriangleId own;  ///< the point's triangle
+        int side;        ///< of it, that sees: 1 where its winding faces, else -1
     };
 
     [[nodiscard]] int samples_of(const Light& light) const { return is_area(light.kind) ? options.samples : 1; }
@@ -132,31 +150,36 @@ private:
     [[nodiscard]] static Segment segment(const Aimed& aimed, const PointBatch& points, std::size_t i, int k) {
         const Light& light = aimed.source();
         const dvec3 p      = exact_position(aimed.scene(), points, i);
-        if (light.kind == LightKind::directional) return {p, -dvec3(light.direction), double(kInfinity), false};
-        if (!is_area(light.kind)) return {p, dvec3(light.position) - p, 1, false};
-        const dvec3 d = light_point(light, p, k) - p;
-        return {p, d, 1, points.facing[aimed.light][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), d) <= 0};
+        Segment s{p, -dvec3(light.direction), double(kInfinity), false, points.triangle[i], points.flipped[i] ? -1 : 1};
+        if (light.kind == LightKind::directional) return s;
+        s.d      = (is_area(light.kind) ? light_point(light, p, k) : dvec3(light.position)) - p;
+        s.end    = 1;
+        s.behind = points.facing[aimed.light][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), s.d) <= 0;
+        return s;
     }
 
+    /// By triangle t. What lies in the plane of the point's own triangle, a copy of it, say, hides nothing.
     [[nodiscard]] static bool is_crossed(const Scene& scene, TriangleId t, const Segment& s) {
-        return crosses(s.p, s.d, s.end, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
-                       dvec3(scene.vertex(t, 2)));
+        return t != s.own &&
+               crosses(s.p, s.d, s.end, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
+                       dvec3(scene.vertex(t, 2))) &&
+               rises_over(scene, t, s.own, s.side);
     }
 
     /// The fraction of the light that arrives, per channel: 1 where no triangle lies between, 0 where one blocks.
-    [[nodiscard]] static vec3 passed(const Aimed& aimed, TriangleId own, const Segment& s) {
+    [[nodiscard]] static vec3 passed(const Aimed& aimed, const Segment& s) {
         vec3 fraction(1);
         for (const TriangleId t : as<Occluders>(aimed.built).triangles) {
-            if (t == own || !is_crossed(aimed.scene(), t, s)) continue;
+            if (!is_crossed(aimed.scene(), t, s)) continue;
             fraction *= aimed.scene().lets_through(t);
             if (fraction == vec3(0)) break;
         }
         return fraction;
     }
 
-    [[nodiscard]] static TriangleId first_blocker(const Aimed& aimed, TriangleId own, const Segment& s) {
+    [[nodiscard]] static TriangleId first_blocker(const Aimed& aimed, const Segment& s) {
         for (const TriangleId t : as<Occluders>(aimed.built).triangles)
-            if (t != own && is_crossed(aimed.scene(), t, s)) return t;
+            if (is_crossed(aimed.scene(), t, s)) return t;
         return kNoTriangle;
     }
 };

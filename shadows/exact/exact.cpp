@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -22,6 +23,7 @@
 #include "umbra/core/scene/topology.h"
 #include "umbra/shadows/bins/binned_shadows.h"
 #include "umbra/shadows/exact/exact_area.h"
+#include "umbra/shadows/geometry/exact_contacts.h"
 #include "umbra/shadows/geometry/exact_segment.h"
 #include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/shadows/method.h"
@@ -120,18 +122,20 @@ public:
         return met;
     }
 
-    /// What all triangles that are crossed let through together, per channel, though none of them blocks. `met` becomes
-    /// `touches` where one is touched.
-    [[nodiscard]] vec3 passed(const Segment& segment, TriangleId own, Segment::Meeting& met) const {
+    /// What arrives past all triangles, though the segment crosses none that blocks.
+    [[nodiscard]] Contacts::Together passed(const Segment& segment, TriangleId own) const {
         dvec3 fraction(1);
+        std::optional<Contacts> touched;
         tree_.visit(segment.piece(), [&](TriangleId t) {
-            if (t == own || takes_[t] != Takes::part) return true;
+            if (t == own || takes_[t] == Takes::nothing) return true;
             const auto m = meeting(segment, t);
             if (m == Segment::Meeting::crosses) fraction *= dvec3(scene.lets_through(t));
-            if (m == Segment::Meeting::touches) met = m;
+            if (m == Segment::Meeting::touches) add(t, segment, touched);
             return true;
         });
-        return vec3(fraction);
+        if (!touched) return {vec3(fraction), true};
+        const Contacts::Together together = touched->together();
+        return {vec3(fraction) * together.passed, together.agreed};
     }
 
     /// How many triangles that take light the segment crosses, and touches.
@@ -147,26 +151,40 @@ public:
         return count;
     }
 
-    /// What is crossed is decided exactly, and which of that is nearest in double.
+    /// What is crossed is decided exactly, and which of that is nearest in double. Where nothing is, the nearest of the
+    /// triangles that take light together though each is only touched.
     [[nodiscard]] TriangleId nearest_crossed(const Segment& segment, TriangleId own) const {
+        struct Nearest {
+            double distance     = std::numeric_limits<double>::infinity();
+            TriangleId triangle = kNoTriangle;
+        } crossed, touching;
         const BoxTree::Piece piece = segment.piece();
-        TriangleId nearest         = kNoTriangle;
-        double least               = std::numeric_limits<double>::infinity();
+        std::optional<Contacts> touched;
         tree_.visit(piece, [&](TriangleId t) {
-            if (t == own || takes_[t] == Takes::nothing || meeting(segment, t) != Segment::Meeting::crosses)
-                return true;
+            if (t == own || takes_[t] == Takes::nothing) return true;
+            const auto m = meeting(segment, t);
+            if (m == Segment::Meeting::none) return true;
+            if (m == Segment::Meeting::touches) add(t, segment, touched);
+            Nearest& nearest = m == Segment::Meeting::crosses ? crossed : touching;
             const dvec3 x(scene.vertex(t, 0)), y(scene.vertex(t, 1)), z(scene.vertex(t, 2));
             const dvec3 n         = glm::cross(y - x, z - x);
             const double distance = std::abs(glm::dot(n, x - piece.from) / glm::dot(n, piece.direction));
-            if (distance < least || (distance == least && t < nearest)) least = distance, nearest = t;
+            if (distance < nearest.distance || (distance == nearest.distance && t < nearest.triangle))
+                nearest = {distance, t};
             return true;
         });
-        return nearest;
+        if (crossed.triangle != kNoTriangle || !touched || touched->together().passed == vec3(1))
+            return crossed.triangle;
+        return touching.triangle;
     }
 
 private:
     [[nodiscard]] Segment::Meeting meeting(const Segment& segment, TriangleId t) const {
         return segment.meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+    }
+    void add(TriangleId t, const Segment& segment, std::optional<Contacts>& touched) const {
+        if (!touched) touched.emplace(segment);
+        touched->add(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2), scene.lets_through(t));
     }
 
     const std::vector<Takes> takes_;  ///< one a triangle
@@ -294,13 +312,13 @@ private:
                 if (points.facing[aimed.light][i] != Facing::front) continue;
                 const ExactPoint point = exact_point(aimed.scene(), points, i);
                 const Segment segment(point, aimed.source());
-                Segment::Meeting met = geometry.first_meeting(segment, points.triangle[i], last);
-                vec3 colour(met == Segment::Meeting::crosses ? 0.0f : 1.0f);
-                if (has_filters && met != Segment::Meeting::crosses)
-                    colour = geometry.passed(segment, points.triangle[i], met);
-                out.s[i] = mean_of(colour);
-                if (!out.colour.empty()) out.colour[i] = colour;
-                out.answer[i] = met == Segment::Meeting::touches ? Answer::on_boundary : Answer::given;
+                const auto met = geometry.first_meeting(segment, points.triangle[i], last);
+                Contacts::Together seen{vec3(met == Segment::Meeting::crosses ? 0.0f : 1.0f), true};
+                if (met == Segment::Meeting::touches || (met == Segment::Meeting::none && has_filters))
+                    seen = geometry.passed(segment, points.triangle[i]);
+                out.s[i] = mean_of(seen.passed);
+                if (!out.colour.empty()) out.colour[i] = seen.passed;
+                if (!seen.agreed) out.answer[i] = Answer::on_boundary;
             }
         });
     }

@@ -86,6 +86,11 @@ public:
     [[nodiscard]] const Rational3& exact() const;
 
     [[nodiscard]] vec3 corner() const { return a_; }
+    [[nodiscard]] std::array<vec3, 3> corners() const { return {a_, b_, c_}; }
+    /// Which of the barycentric coordinates of these corners are 0. Exact.
+    [[nodiscard]] std::array<bool, 3> is_zero() const {
+        return {Rational(double(u_)) + Rational(double(v_)) == 1, u_ == 0, v_ == 0};
+    }
     [[nodiscard]] Entries from_corner() const { return {from_corner_, from_corner_error_}; }
     /// In double, and how far each coordinate may be off.
     [[nodiscard]] dvec3 rounded() const { return rounded_; }

@@ -38,8 +38,7 @@ Filtered<int> Segment::quick_edge_side(vec3 x, vec3 y) const {
 }
 
 int Segment::edge_side(vec3 x, vec3 y) const {
-    return sign_of_determinant(rational(x) - start_.exact(), rational(y) - start_.exact(),
-                               infinite_ ? rational(end_) : rational(end_) - start_.exact());
+    return sign_of_determinant(rational(x) - start_.exact(), rational(y) - start_.exact(), direction());
 }
 
 /// Whether some of the triangle is in front of the plane of the surface point's triangle, where the light is.

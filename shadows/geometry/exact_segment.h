@@ -13,11 +13,15 @@ public:
     Segment(const ExactPoint& start, const Light& light);
 
     [[nodiscard]] BoxTree::Piece piece() const;
+    [[nodiscard]] const ExactPoint& start() const { return start_; }
+    /// From the start to the end; of a direction at infinity any length of it.
+    [[nodiscard]] Rational3 direction() const { return infinite_ ? rational(end_) : rational(end_) - start_.exact(); }
 
     /// `crosses`: passes through the inside of the triangle, from one of its sides to the other. `touches`: meets an
-    /// edge or a corner, lies in the triangle's plane, or begins on the triangle. Not counted is what lies in or behind
-    /// the plane of the surface point's own triangle, and what is met in the light alone: no movement of the surface
-    /// point in that plane would make the segment cross it.
+    /// edge or a corner, lies in the triangle's plane, or begins on the triangle; what the touched triangles hide
+    /// together is for Contacts to say. Not counted is what lies in or behind the plane of the surface point's own
+    /// triangle, and what is met in the light alone: no movement of the surface point in that plane would make the
+    /// segment cross it.
     enum class Meeting : std::uint8_t { none, touches, crosses };
     /// With a triangle that has an area. The light is in front of the surface point.
     [[nodiscard]] Meeting meeting(vec3 x, vec3 y, vec3 z) const;

@@ -18,7 +18,6 @@
 #include <tuple>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/base/predicates.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/scanline/light_cells.h"
@@ -125,12 +124,22 @@ struct Shadow {
     /// dot(normal, p - from).
     struct SidePlane {
         dvec3 normal{0}, from{0};
+        dvec3 edge{0};  ///< of a plane through the light: along the triangle's edge, in the sense of the normal
         [[nodiscard]] double at(dvec3 p) const { return glm::dot(normal, p - from); }
+
+        /// Where the value is 0, the sign is that of a light beside this one, the same for all edges: two triangles
+        /// that share an edge have different signs there, so that a surface has no seams.
+        [[nodiscard]] bool is_positive(dvec3 p) const {
+            const double value = at(p);
+            if (value != 0) return value > 0;
+            const dvec3 moved = glm::cross(p - from, edge);
+            return (moved.x != 0 ? moved.x : moved.y != 0 ? moved.y : moved.z) > 0;
+        }
     };
     std::array<SidePlane, 4> sides{};
 
     [[nodiscard]] bool holds(dvec3 p) const {
-        return std::ranges::all_of(sides, [p](const SidePlane& side) { return side.at(p) > 0; });
+        return std::ranges::all_of(sides, [p](const SidePlane& side) { return side.is_positive(p); });
     }
 };
 
@@ -183,7 +192,7 @@ private:
             // Divided by depth, its value is linear along the row.
             const double a = side.at(span.a) / span.depth_a, b = side.at(span.b) / span.depth_b;
             const double slack = glm::length(side.normal) * span.shift / std::min(span.depth_a, span.depth_b);
-            open               = above(-slack, a, b, span, open);
+            open               = open_above(-slack, a, b, span, open);
             if (open.first > open.last) return;
             sure = above(slack, a, b, span, sure);
         }
@@ -207,13 +216,20 @@ private:
         return among;
     }
 
-    /// Whether some of triangle t is in front of the plane of the receiver, where the light is: else it hides nothing.
+    /// The same and those where it is the limit, and up to one more at each end.
+    static Run open_above(double limit, double a, double b, const Span& span, Run among) {
+        const double pixels = static_cast<double>(span.last - span.first), cut = pixels * (a - limit) / (a - b);
+        if (a < limit && b < limit) return {1, 0};
+        if (a < limit) among.first = std::max(among.first, std::floor(cut));
+        if (b < limit) among.last = std::min(among.last, std::ceil(cut));
+        return among;
+    }
+
+    /// Whether triangle t may hide something of triangle `own`.
     [[nodiscard]] bool rises(TriangleId t, TriangleId own) const {
-        const vec3 a = scene().vertex(own, 0), b = scene().vertex(own, 1), c = scene().vertex(own, 2);
-        const int front = side_of_light(source(), a, b, c);
-        for (int k = 0; k < 3; ++k)
-            if (side_of_plane(a, b, c, scene().vertex(t, k)) == front) return true;
-        return false;
+        const int side =
+            side_of_light(source(), scene().vertex(own, 0), scene().vertex(own, 1), scene().vertex(own, 2));
+        return rises_over(scene(), t, own, side);
     }
 
     /// None for a triangle that the light sees edge-on.
@@ -226,14 +242,14 @@ private:
         if (facing == 0) return std::nullopt;
         const double turn = facing > 0 ? -1 : 1;
         Shadow shadow;
-        shadow.sides[0] = {turn * normal, corner[0]};  // first, since it rules out most
+        shadow.sides[0] = {turn * normal, corner[0], dvec3(0)};  // first, since it rules out most
         for (std::size_t k = 0; k < 3; ++k) {
             // From a corner, since a far light is known less well than the corners' distance; from the same one for the
             // triangle on the edge's other side, so that no point is between the two.
             dvec3 p = corner[k], q = corner[(k + 1) % 3];
             double sign = turn;
             if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q), sign = -turn;
-            shadow.sides[k + 1] = {sign * glm::cross(q - p, infinite ? end : end - p), p};
+            shadow.sides[k + 1] = {sign * glm::cross(q - p, infinite ? end : end - p), p, sign * (q - p)};
         }
         return shadow;
     }

@@ -214,6 +214,59 @@ void smear_zeros(Soup& soup, Dice& dice) {
         }
 }
 
+/// A surface that has seams: closed, or a sheet of many triangles.
+void add_surface(Soup& soup, Dice& dice) {
+    const dvec3 low{double(dice.from_to(-2, 1)), double(dice.from_to(1, 2)), double(dice.from_to(-2, 1))};
+    const auto add_cuboid = [&](dvec3 corner, dvec3 size) {
+        const auto at        = [&](int k) { return corner + size * dvec3(k & 1, k >> 1 & 1, k >> 2); };
+        const int side[6][4] = {{0, 1, 5, 4}, {0, 4, 6, 2}, {1, 3, 7, 5}, {0, 2, 3, 1}, {4, 5, 7, 6}, {2, 6, 7, 3}};
+        for (const auto& f : side) add_quad(soup, at(f[0]), at(f[1]), at(f[2]), at(f[3]));
+    };
+    switch (dice.below(6)) {
+        case 0: add_cuboid(low, dvec3(1)); break;
+        case 1:  // side by side
+            add_cuboid(low, dvec3(1));
+            add_cuboid(low + dvec3(1, 0, 0), dvec3(1, dice.any({1.0, 2.0}), 1));
+            break;
+        case 2: {  // a sheet over the lattice, its diagonals either way
+            double height[4][4];
+            const int rough = dice.below(2);
+            for (auto& row : height)
+                for (double& y : row) y = low.y + dice.from_to(0, rough);
+            for (int x = 0; x < 3; ++x)
+                for (int z = 0; z < 3; ++z) {
+                    const auto at = [&](int i, int k) {
+                        return dvec3(low.x + x + i, height[x + i][z + k], low.z + z + k);
+                    };
+                    if (dice.one_in(2))
+                        add_quad(soup, at(0, 0), at(1, 0), at(1, 1), at(0, 1));
+                    else
+                        add_quad(soup, at(1, 0), at(1, 1), at(0, 1), at(0, 0));
+                }
+            break;
+        }
+        case 3: {  // two pyramids, base to base
+            const dvec3 rim[] = {{1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, -1}};
+            for (int k = 0; k < 4; ++k)
+                for (const double tip : {1.0, -1.0})
+                    soup.push_back({low + dvec3(0, tip, 0), low + rim[k], low + rim[(k + 1) % 4]});
+            break;
+        }
+        case 4: {  // around one corner, closed or with a gap
+            const dvec3 rim[] = {{2, 0, 0}, {1, 0, 2}, {-1, 0, 2}, {-2, 0, 0}, {-1, 0, -2}, {1, 0, -2}};
+            const dvec3 tip{0, double(dice.from_to(-1, 1)), 0};
+            const int count = dice.from_to(4, 6);
+            for (int k = 0; k < count; ++k) soup.push_back({low + tip, low + rim[k], low + rim[(k + 1) % 6]});
+            break;
+        }
+        default: {  // twins, one of them turned over
+            const dvec3 a = low, b = low + dvec3(2, 0, 0), c = low + dvec3(2, 0, 2), d = low + dvec3(0, 0, 2);
+            add_quad(soup, a, b, c, d);
+            add_quad(soup, b, a, d, c);
+        }
+    }
+}
+
 struct Part {
     const char* name;
     void (*add)(Soup&, Dice&);
@@ -283,11 +336,18 @@ vec2 any_name(Dice& dice) {
     }
 }
 
+/// Eighths: what is named so is a float, and doubles hold what is computed from it.
+vec2 lattice_name(Dice& dice) {
+    const int u = dice.from_to(0, 8), v = dice.from_to(0, 8 - u);
+    return vec2(u, v) / 8.0f;
+}
+
 class Lighting {
 public:
     Lighting(const Soup& soup, Dice& dice) : soup_(soup), dice_(dice) {}
 
     Light hard(const Placement& place);
+    Light behind_a_seam();
     Light area(const Placement& place, bool round);
 
     /// The point that the last light was aimed from, if it was.
@@ -303,7 +363,7 @@ private:
     }
     static dvec3 corner(const Corners& t, int k) { return k == 0 ? t.a : k == 1 ? t.b : t.c; }
     dvec3 position();
-    dvec3 beside_an_edge(double past);
+    dvec3 beside_an_edge(double past, bool on_lattice = false);
 
     const Soup& soup_;
     Dice& dice_;
@@ -335,16 +395,17 @@ dvec3 Lighting::position() {
 }
 
 /// Behind an edge of the scene, as some point of it sees that edge.
-dvec3 Lighting::beside_an_edge(double past) {
+dvec3 Lighting::beside_an_edge(double past, bool on_lattice) {
     const auto own       = static_cast<std::size_t>(dice_.below(static_cast<int>(soup_.size())));
-    const vec2 name      = any_name(dice_);
+    const vec2 name      = on_lattice ? lattice_name(dice_) : any_name(dice_);
     const Corners& t     = soup_[own];
     const Corners& other = any_triangle();
     const dvec3 from     = t.a + double(name.x) * (t.b - t.a) + double(name.y) * (t.c - t.a);
     const int k          = dice_.below(3);
     const dvec3 start = corner(other, k), end = corner(other, (k + 1) % 3);
-    const dvec3 edge = start + dice_.any({0.0, 0.5, 0.3, 0.8}) * (end - start);
-    aimed_           = Aimed{own, name};
+    const dvec3 edge =
+        start + (on_lattice ? dice_.any({0.0, 0.5, 0.5, 0.25}) : dice_.any({0.0, 0.5, 0.3, 0.8})) * (end - start);
+    aimed_ = Aimed{own, name};
     return from + past * (edge - from);
 }
 
@@ -364,6 +425,21 @@ Light Lighting::hard(const Placement& place) {
     }
     light.kind     = LightKind::point;
     light.position = place.position(dice_.one_in(4) ? beside_an_edge(dice_.any({1.0, 1.5, 2.0})) : position());
+    return light;
+}
+
+Light Lighting::behind_a_seam() {
+    Light light;
+    const bool infinite = dice_.one_in(2);
+    const double past   = infinite ? 1.0 : dice_.any({1.5, 2.0, 3.0});
+    light.position      = vec3(beside_an_edge(past, true));
+    if (!infinite) return light;
+    const Corners& own = soup_[aimed_->triangle];
+    const dvec3 from   = own.a + double(aimed_->name.x) * (own.b - own.a) + double(aimed_->name.y) * (own.c - own.a);
+    light.kind         = LightKind::directional;
+    light.direction    = vec3(from - dvec3(light.position));
+    if (light.direction == vec3(0)) light.direction = vec3(0, -1, 0);
+    light.position = vec3(0);
     return light;
 }
 
@@ -406,21 +482,29 @@ AdversarialScene adversarial_scene(std::uint64_t seed, LightsWanted wanted, int 
     Dice dice(seed);
     AdversarialScene made;
     Soup soup;
-    if (!dice.one_in(3)) {
-        add_floor(soup, dice);
-        made.pattern = "floor";
+    const bool on_lattice = wanted == LightsWanted::seams;
+    if (on_lattice) {
+        add_quad(soup, {-8, 0, 8}, {8, 0, 8}, {8, 0, -8}, {-8, 0, -8});
+        add_surface(soup, dice);
+        if (dice.one_in(2)) add_surface(soup, dice);
+        made.pattern = "seams";
+    } else {
+        if (!dice.one_in(3)) {
+            add_floor(soup, dice);
+            made.pattern = "floor";
+        }
+        const int parts = dice.from_to(1, 3);
+        for (int k = 0; k < parts; ++k) {
+            const Part& part = kParts[dice.below(static_cast<int>(std::size(kParts)))];
+            part.add(soup, dice);
+            made.pattern += fmt::format("{}{}", made.pattern.empty() ? "" : " ", part.name);
+        }
+        if (dice.one_in(4)) {
+            smear_zeros(soup, dice);
+            made.pattern += " smeared";
+        }
     }
-    const int parts = dice.from_to(1, 3);
-    for (int k = 0; k < parts; ++k) {
-        const Part& part = kParts[dice.below(static_cast<int>(std::size(kParts)))];
-        part.add(soup, dice);
-        made.pattern += fmt::format("{}{}", made.pattern.empty() ? "" : " ", part.name);
-    }
-    if (dice.one_in(4)) {
-        smear_zeros(soup, dice);
-        made.pattern += " smeared";
-    }
-    const Placement place = any_placement(dice, wanted != LightsWanted::hard);
+    const Placement place = on_lattice ? Placement{} : any_placement(dice, wanted != LightsWanted::hard);
     made.pattern +=
         fmt::format(" x{:.3g}{}{}", place.scale, place.base == dvec3(0) ? "" : " far", place.turned ? " turned" : "");
 
@@ -437,7 +521,7 @@ AdversarialScene adversarial_scene(std::uint64_t seed, LightsWanted wanted, int 
     }
     scene.materials.resize(1);
     scene.materials[0].name      = "paint";
-    scene.materials[0].two_sided = !dice.one_in(4);
+    scene.materials[0].two_sided = on_lattice || !dice.one_in(4);
     add_object(scene, "soup", positions, {}, triangles, 0);
 
     const dvec3 far = dice.step({8.0}), eye = far + dice.cloud(1);
@@ -450,8 +534,9 @@ AdversarialScene adversarial_scene(std::uint64_t seed, LightsWanted wanted, int 
     Lighting lighting(soup, dice);
     std::size_t next = 0;
     for (int k = 0; k < lights; ++k) {
-        scene.lights.push_back(wanted == LightsWanted::hard ? lighting.hard(place)
-                                                            : lighting.area(place, wanted == LightsWanted::round));
+        scene.lights.push_back(on_lattice                     ? lighting.behind_a_seam()
+                               : wanted == LightsWanted::hard ? lighting.hard(place)
+                                                              : lighting.area(place, wanted == LightsWanted::round));
         scene.lights.back().name = fmt::format("light_{}", k);
         const auto aimed         = lighting.aimed();
         if (aimed && next < made.points.size())
@@ -459,7 +544,7 @@ AdversarialScene adversarial_scene(std::uint64_t seed, LightsWanted wanted, int 
                       aimed->name.y);
     }
     for (; next < made.points.size(); ++next) {
-        const vec2 name = any_name(dice);
+        const vec2 name = on_lattice ? lattice_name(dice) : any_name(dice);
         set_point(made.points, next, scene, static_cast<TriangleId>(dice.below(static_cast<int>(soup.size()))), name.x,
                   name.y);
     }

@@ -20,9 +20,11 @@ struct AdversarialScene {
 };
 
 enum class LightsWanted : std::uint8_t {
-    hard,  ///< point, spot and directional lights
-    area,  ///< rectangles, disks and spheres, of any size, most of them beside an edge as some point sees it
-    round  ///< disks and spheres in bad positions: at contacts, in planes of faces, containing points
+    hard,   ///< point, spot and directional lights
+    area,   ///< rectangles, disks and spheres, of any size, most of them beside an edge as some point sees it
+    round,  ///< disks and spheres in bad positions: at contacts, in planes of faces, containing points
+    seams   ///< point and directional lights behind edges and corners of surfaces, exactly, on a lattice that doubles
+            ///< hold
 };
 
 /// With `lights` lights and `points` surface points; fewer points where triangles have no area.

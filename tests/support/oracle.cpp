@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace umbra::oracle {
 namespace {
@@ -86,6 +87,56 @@ Target round_target(const Vector& centre, const Vector& normal, const Rational& 
         return Rational(std::sqrt(rounded(Rational(squared_radius / dot(a, a))))) * a;
     };
     return {centre, scaled(u), scaled(v), true};
+}
+
+}  // namespace
+
+namespace {
+
+/// A triangle that the segment meets in these of its edges.
+struct Touched {
+    const Triangle* triangle;
+    std::vector<int> edges;
+};
+
+/// Whether some of the lights beside this one, at the end of d, are blocked by what is touched, and some not. The light
+/// moves by w, a little: the meeting with a plane moves by a multiple of w - (n w / n d) d, and enters the triangle
+/// where it moves inwards from each edge that is met. Of the directions w between two edges as seen along d, which are
+/// all alike, one is the sum of both, turned one way or the other.
+std::pair<bool, bool> moved_lights(const std::vector<Touched>& touched, const Vector& d) {
+    std::vector<Vector> along, ways;
+    for (const Touched& t : touched)
+        for (const int e : t.edges) {
+            // Less what lies along d, so that sums lie between the two.
+            const Vector edge = t.triangle->corner[(e + 1) % 3] - t.triangle->corner[e];
+            along.push_back(edge - Rational(dot(edge, d) / dot(d, d)) * d);
+        }
+    for (std::size_t i = 0; i < along.size(); ++i) {
+        ways.push_back(cross(along[i], d));
+        for (std::size_t j = 0; j < i; ++j) {
+            ways.push_back(along[i] + along[j]);
+            ways.push_back(along[i] - along[j]);
+        }
+    }
+    bool blocked = false, passed = false;
+    for (const Vector& way : ways)
+        for (const int sign : {-1, 1}) {
+            const Vector w = Rational(sign) * way;
+            bool is_hidden = false, is_between = true;
+            for (const Touched& t : touched) {
+                const Vector& n    = t.triangle->normal;
+                const Vector moved = w - Rational(dot(n, w) / dot(n, d)) * d;
+                bool enters        = true;
+                for (const int e : t.edges) {
+                    const Rational inwards = dot(t.triangle->inward[e], moved);
+                    is_between             = is_between && inwards != 0;
+                    enters                 = enters && inwards > 0;
+                }
+                is_hidden = is_hidden || enters;
+            }
+            if (is_between) (is_hidden ? blocked : passed) = true;
+        }
+    return {blocked, passed};
 }
 
 }  // namespace
@@ -218,39 +269,43 @@ bool Oracle::Model::in_line(const Triangle& t, const Vector& p, const Vector& d,
     return unbounded || from < to || (from == to && !to_is_open);
 }
 
-Verdict Oracle::verdict(const SurfacePoint& point, const Light& light) const {
+Verdict Oracle::verdict(const SurfacePoint& point, const Light& light, bool* touched) const {
     const Vector p      = model_->place(point);
     const bool infinite = light.kind == LightKind::directional;
     const Vector d      = infinite ? Rational(-1) * vector(light.direction) : vector(light.position) - p;
-    Verdict verdict     = Verdict::lit;
+    std::vector<Touched> between;
+    bool others = false;
+    if (touched != nullptr) *touched = false;
     for (TriangleId k = 0; k < model_->triangles.size(); ++k) {
         const Triangle& t = model_->triangles[k];
         if (k == point.triangle || !t.has_area) continue;
         const Rational above = dot(t.normal, t.corner[0] - p), rise = dot(t.normal, d);
         if (rise == 0) {
-            if (above == 0 && model_->rises(point, t) && model_->in_line(t, p, d, infinite))
-                verdict = Verdict::on_boundary;
+            others = others || (above == 0 && model_->rises(point, t) && model_->in_line(t, p, d, infinite));
             continue;
         }
         const Rational s = above / rise;  // of the segment
         if (s < 0 || (!infinite && s >= 1)) continue;
         const Vector meeting = p + s * d;
-        bool inside = true, outside = false;
+        Touched met{&t, {}};
+        bool outside = false;
         for (int e = 0; e < 3; ++e) {
             const Rational depth = dot(t.inward[e], meeting - t.corner[e]);
-            inside               = inside && depth > 0;
             outside              = outside || depth < 0;
+            if (depth == 0) met.edges.push_back(e);
         }
         if (outside) continue;
-        if (s == 0) {
-            if (model_->rises(point, t)) verdict = Verdict::on_boundary;
-        } else if (inside) {
+        if (s == 0)
+            others = others || model_->rises(point, t);
+        else if (met.edges.empty())
             return Verdict::umbra;
-        } else {
-            verdict = Verdict::on_boundary;
-        }
+        else
+            between.push_back(met);
     }
-    return verdict;
+    if (touched != nullptr) *touched = others || !between.empty();
+    const auto [blocked, passed] = moved_lights(between, d);
+    if (!between.empty() && !passed) return Verdict::umbra;
+    return blocked || others ? Verdict::on_boundary : Verdict::lit;
 }
 
 std::optional<Target> Oracle::Model::target(const Light& light, const Vector& p) const {

@@ -2,8 +2,10 @@
 // with it. Every number that decides is a rational.
 //
 // Hard lights: the point in which the segment to the light meets the plane of each triangle, and whether it lies in the
-// triangle. Area lights: every triangle, clipped to what lies between the surface point and the light's plane, is
-// projected onto that plane; the area of the union of these polygons is hidden.
+// triangle. Where it lies on edges and corners alone, the light is moved in every way that differs, and the point in
+// which the segment then meets each plane is followed by its derivative. Area lights: every triangle, clipped to what
+// lies between the surface point and the light's plane, is projected onto that plane; the area of the union of these
+// polygons is hidden.
 //
 // No sweep, no silhouettes, no tree and no filter: slow, and as simple as can be.
 #pragma once
@@ -43,8 +45,10 @@ public:
     [[nodiscard]] std::optional<bool> flipped(TriangleId triangle, vec3 eye) const;
     [[nodiscard]] Facing facing(const SurfacePoint& point, const Light& light) const;
 
-    /// Of a light without an area that is in front of the point.
-    [[nodiscard]] Verdict verdict(const SurfacePoint& point, const Light& light) const;
+    /// Of a light without an area that is in front of the point. `on_boundary` where lights beside it disagree, and
+    /// where they agree on `lit` though a triangle is seen edge-on or meets the point. `touched`: no triangle is
+    /// crossed, and an edge, a corner or an edge-on triangle is met.
+    [[nodiscard]] Verdict verdict(const SurfacePoint& point, const Light& light, bool* touched = nullptr) const;
     /// Of an area light. Rounded where the polygons' areas are summed up: off by less than 1e-12.
     [[nodiscard]] Fraction fraction(const SurfacePoint& point, const Light& light) const;
 

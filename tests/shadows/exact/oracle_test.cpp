@@ -2,8 +2,8 @@
 // decision about hard lights must agree, and every visible fraction of an area light within the half width that `exact`
 // states. Also the facing of points, on which all methods build.
 //
-// UMBRA_ORACLE_HARD, UMBRA_ORACLE_AREA: how many decisions; UMBRA_ORACLE_SEED: where the scenes begin;
-// UMBRA_ORACLE_OUT: a folder for the scenes of mismatches. `./umbra oracle` sets them.
+// UMBRA_ORACLE_HARD, UMBRA_ORACLE_SEAMS, UMBRA_ORACLE_AREA: how many decisions; UMBRA_ORACLE_SEED: where the scenes
+// begin; UMBRA_ORACLE_OUT: a folder for the scenes of mismatches. `./umbra oracle` sets them.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,6 +11,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <vector>
 
 #include "umbra/core/io/scene_writer.h"
 #include "umbra/core/scene/primitives.h"
@@ -102,6 +104,47 @@ void judge_hard(const AdversarialScene& made, Tally& tally) {
     }
 }
 
+/// How all methods that claim to be right do where a segment meets edges and corners alone. Methods that round are
+/// right there, too: doubles hold all that is computed from the lattice.
+void judge_seams(const AdversarialScene& made, Tally& tally) {
+    const Oracle truth(made.scene);
+    std::vector<std::string> choices{"exact:hard_lights=segments", "shadow_volumes:counting=depth_fail"};
+    for (const MethodInfo* info : methods()) choices.emplace_back(info->name);
+    std::vector<std::unique_ptr<MethodCase>> cases;
+    std::erase_if(choices, [&](const std::string& choice) {
+        auto method       = std::make_unique<MethodCase>(std::string_view(choice), made.scene);
+        const bool claims = method->serves().how >= How::to_rounding;
+        if (claims) cases.push_back(std::move(method));
+        return !claims;
+    });
+    for (const auto& method : cases) method->build();
+    for (LightId light = 0; light < made.scene.lights.size(); ++light) {
+        std::vector<VisibilityPlane> planes;
+        for (const auto& method : cases) {
+            method->aim(light);
+            planes.push_back(method->visibility(made.points, light));
+        }
+        for (std::size_t i = 0; i < made.points.size(); ++i) {
+            if (made.points.triangle[i] == kNoTriangle || !judge_facing(made, truth, light, i, tally)) continue;
+            bool touched        = false;
+            const Verdict right = truth.verdict(name_of(made.points, i), made.scene.lights[light], &touched);
+            if (!touched) continue;
+            ++tally.decisions;
+            ++(right == Verdict::umbra ? tally.umbra : tally.on_boundary);
+            for (std::size_t m = 0; m < cases.size(); ++m) {
+                const std::string& name = choices[m];
+                const Answer answer     = planes[m].answer[i];
+                const bool says_where   = name.starts_with("exact") || name == "alias_free";
+                if (says_where && (answer == Answer::on_boundary) != (right == Verdict::on_boundary))
+                    tally.mismatch(made, light, i,
+                                   fmt::format("{}: answer {}, expected {}", name, int(answer), int(right)));
+                if (right == Verdict::umbra && answer == Answer::given && planes[m].s[i] != 0)
+                    tally.mismatch(made, light, i, fmt::format("{}: light through a seam", name));
+            }
+        }
+    }
+}
+
 void judge_area(const AdversarialScene& made, Tally& tally) {
     const Oracle truth(made.scene);
     MethodCase exact("exact", made.scene);
@@ -184,6 +227,18 @@ TEST(ExactAgainstOracle, HardLights) {
     EXPECT_GT(tally.lit, wanted / 20);
     EXPECT_GT(tally.umbra, wanted / 20);
     EXPECT_GT(tally.on_boundary, wanted / 200);
+}
+
+TEST(ExactAgainstOracle, Seams) {
+    const std::uint64_t wanted = from_environment("UMBRA_ORACLE_SEAMS", 3000);
+    std::uint64_t seed         = from_environment("UMBRA_ORACLE_SEED", 1);
+    Tally tally;
+    for (; tally.decisions < wanted; ++seed) judge_seams(adversarial_scene(seed, LightsWanted::seams, 8, 8), tally);
+    fmt::print("seams, {}; next seed {}\n", tally.text(), seed);
+    if (wanted == 0) return;
+    EXPECT_EQ(tally.mismatches, 0u);
+    EXPECT_GT(tally.umbra, wanted / 5);
+    EXPECT_GT(tally.on_boundary, wanted / 5);
 }
 
 TEST(ExactAgainstOracle, AreaLights) {
