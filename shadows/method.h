@@ -89,7 +89,8 @@ template <class Own>
 class Method;
 
 /// What a method says of a scene (Method::serves); `not_at_all` where occluders let a part of the light through and the
-/// method does not compute that (Method::multiplies).
+/// method does not compute that (Method::multiplies); at best `approximately` where the outline of a surface is not
+/// computed (SceneFacts::has_cutouts).
 [[nodiscard]] Service verdict(const Method& method, const SceneFacts& facts);
 
 /// One method with one set of parameters, which never change. Its phases are functions: each makes a value from what it

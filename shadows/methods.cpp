@@ -102,6 +102,10 @@ Service verdict(const Method& method, const SceneFacts& facts) {
         return {How::not_at_all,
                 "It knows lit and blocked alone, and here occluders let a part of the light through "
                 "(\"transparent_occluders\": \"multiply\")."};
+    if (service && facts.has_cutouts)
+        return {How::approximately, service.why +
+                                        " The outlines that a texture cuts out of surfaces are missing: the "
+                                        "shadows are those of whole surfaces."};
     return service;
 }
 

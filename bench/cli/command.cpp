@@ -103,6 +103,11 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
     for (const Command& command : kCommands)
         actions.push_back(
             command.define(*app.add_subcommand(std::string(command.name), std::string(command.about)), common));
+    for (CLI::App* command : app.get_subcommands(nullptr))
+        if (command->get_option_no_throw("SCENE") != nullptr)
+            command->add_option("--up", common.up, "Which axis of mesh files points up: y, z or =-y (also: FILE@z)")
+                ->check(CLI::IsMember({"y", "z", "-y"}))
+                ->type_name("AXIS");
     // After the commands were added, which would inherit it.
     app.footer(
         "SCENE is a file or the name of a canonical scene; METHOD is NAME or NAME:setting=value,setting=value (see "

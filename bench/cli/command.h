@@ -14,9 +14,10 @@ enum Exit : int { kDone = 0, kNo = 1, kUnreadable = 4, kInternal = 5, kUsage = 6
 
 /// Options of all commands.
 struct Common {
-    int threads = 0;  ///< 0: all
-    bool quiet  = false;
-    std::string command;  ///< the whole command line, for the records
+    int threads    = 0;  ///< 0: all
+    bool quiet     = false;
+    std::string up = "y";  ///< which axis of mesh files points up, of commands that take scenes
+    std::string command;   ///< the whole command line, for the records
 };
 
 /// Runs a command after its command line was parsed; returns the exit code. Throws UsageError, InputError.

@@ -24,6 +24,14 @@ std::string mesh_state(const Json& o) {
     return "not closed: " + text;
 }
 
+/// ", casts_shadows is false" for each switch that is off.
+std::string what_is_off(const Json& o) {
+    std::string text;
+    for (const ObjectSwitch& each : kObjectSwitches)
+        if (o.contains(std::string(each.key))) text += fmt::format(", {} is false", each.key);
+    return text;
+}
+
 }  // namespace
 
 Json inspect_json(const Scene& scene, const SceneFacts& facts, const SilhouetteOptions& silhouettes) {
@@ -57,8 +65,13 @@ std::string inspect_text(const Json& record) {
 
     text += fmt::format("\nObjects ({} triangles)\n", facts["triangles"].get<std::uint64_t>());
     for (const Json& o : facts["objects"])
-        text += fmt::format("  {}: {} triangles, {}{}\n", o["name"].get<std::string>(),
-                            o["triangles"].get<std::uint64_t>(), mesh_state(o), o["planar"] ? ", planar" : "");
+        text += fmt::format("  {}: {} triangles, {}{}{}\n", o["name"].get<std::string>(),
+                            o["triangles"].get<std::uint64_t>(), mesh_state(o), o["planar"] ? ", planar" : "",
+                            what_is_off(o));
+    if (scene.contains("origin"))
+        text += fmt::format("\nOrigin: ({}, {}, {}) of the file; all numbers are relative to it\n",
+                            scene["origin"][0].get<double>(), scene["origin"][1].get<double>(),
+                            scene["origin"][2].get<double>());
     text += fmt::format("\nPlanar receivers: {}, {:.1f} % of the area\n", facts["planes"].size(),
                         100 * facts["planar_area_share"].get<double>());
 

@@ -26,24 +26,24 @@ public:
     LitTriangle(const LitPolygons& polygons, TriangleId t)
         : polygons_(polygons),
           t_(t),
+          seen_(polygons.seen(t) == Seen::unknown || polygons.scene().switches(t).receives_shadows ? polygons.seen(t)
+                                                                                                   : Seen::lit),
           a_(polygons.scene().vertex(t, 0)),
           ab_(dvec3(polygons.scene().vertex(t, 1)) - a_),
           ac_(dvec3(polygons.scene().vertex(t, 2)) - a_) {}
 
     [[nodiscard]] dvec3 at(dvec2 uv) const { return a_ + uv.x * ab_ + uv.y * ac_; }
-    [[nodiscard]] double area() const {
-        return polygons_.seen(t_) == Seen::unknown ? 0 : glm::length(glm::cross(ab_, ac_)) / 2;
-    }
+    [[nodiscard]] double area() const { return seen_ == Seen::unknown ? 0 : glm::length(glm::cross(ab_, ac_)) / 2; }
     /// The lit polygons' triangles.
     [[nodiscard]] std::vector<std::array<dvec2, 3>> triangles() const {
-        if (polygons_.seen(t_) == Seen::parts) return polygons_.lit_triangles(t_);
-        if (polygons_.seen(t_) == Seen::lit) return {{dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)}};
+        if (seen_ == Seen::parts) return polygons_.lit_triangles(t_);
+        if (seen_ == Seen::lit) return {{dvec2(0, 0), dvec2(1, 0), dvec2(0, 1)}};
         return {};
     }
     /// Their outlines.
     [[nodiscard]] std::vector<std::vector<dvec2>> loops() const {
-        if (polygons_.seen(t_) == Seen::parts) return polygons_.lit_loops(t_);
-        if (polygons_.seen(t_) == Seen::lit) return {whole()};
+        if (seen_ == Seen::parts) return polygons_.lit_loops(t_);
+        if (seen_ == Seen::lit) return {whole()};
         return {};
     }
     [[nodiscard]] static std::vector<dvec2> whole() { return {{0, 0}, {1, 0}, {0, 1}}; }
@@ -57,6 +57,7 @@ public:
 private:
     const LitPolygons& polygons_;
     TriangleId t_;
+    Seen seen_;
     dvec3 a_, ab_, ac_;
 };
 

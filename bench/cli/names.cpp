@@ -104,7 +104,15 @@ std::vector<std::string> frames_of(const std::string& scene) {
     return names;
 }
 
-fs::path scene_file(const std::string& scene) {
+fs::path scene_file(const std::string& scene, const std::string& up) {
+    if (up != "y") {
+        const fs::path file     = scene_file(scene);
+        const auto [base, tail] = split_frame(file.string());
+        if (!is_mesh_file(base))
+            throw UsageError(fmt::format("--up {}: {} says itself which way is up, expected a mesh file ({})", up,
+                                         file.string(), mesh_endings()));
+        return tail.empty() ? fs::path(base + "@" + up) : file;
+    }
     if (is_file(scene)) return scene;
     const std::vector<std::string> known = scene_names();
     if (contains(canonical_names(), scene))
@@ -118,12 +126,17 @@ fs::path scene_file(const std::string& scene) {
                                  scenes_folder().string(), did_you_mean(scene, known)));
 }
 
-std::vector<fs::path> scene_files(const std::vector<std::string>& scenes) {
+std::vector<fs::path> scene_files(const std::vector<std::string>& scenes, const std::string& up) {
     std::vector<fs::path> files;
     for (const std::string& scene : scenes) {
         const std::vector<std::string> frames = frames_of(scene);
         for (const std::string& frame : frames) files.push_back(scene_file(frame));
     }
+    const auto is_mesh = [](const fs::path& file) { return is_mesh_file(split_frame(file.string()).file); };
+    // Where none is, the first says so.
+    const bool all = std::ranges::none_of(files, is_mesh);
+    for (fs::path& file : files)
+        if (all || is_mesh(file)) file = scene_file(file.string(), up);
     return files;
 }
 

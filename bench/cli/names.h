@@ -21,11 +21,13 @@ namespace umbra {
 
 /// The file that SCENE names: itself where there is such a file; else the scene of that name in scenes_folder(); else,
 /// where it looks like a file name (a separator or an extension), itself. Throws UsageError with near matches.
-[[nodiscard]] std::filesystem::path scene_file(const std::string& scene);
+/// With another axis `up` than y it is FILE@up, and UsageError where it is no mesh file.
+[[nodiscard]] std::filesystem::path scene_file(const std::string& scene, const std::string& up = "y");
 /// SCENE@FIRST..LAST as SCENE@FIRST, SCENE@FIRST+1 and so on; anything else as itself. Throws UsageError.
 [[nodiscard]] std::vector<std::string> frames_of(const std::string& scene);
-/// The files of all of them, frames_of each.
-[[nodiscard]] std::vector<std::filesystem::path> scene_files(const std::vector<std::string>& scenes);
+/// The files of all of them, frames_of each. `up` is for the mesh files among them, of which there must be one.
+[[nodiscard]] std::vector<std::filesystem::path> scene_files(const std::vector<std::string>& scenes,
+                                                             const std::string& up = "y");
 
 /// An option that takes a list also takes the positionals that follow it. Moves to `positionals` what is a scene (a
 /// file, or a name in scenes_folder()) and no method.

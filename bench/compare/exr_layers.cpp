@@ -93,7 +93,7 @@ void add_geometry(FloatChannels& floats, Image& image, const Scene& scene, const
     image.matrices["worldToCamera"] = world_to_camera(*points.raster);
     image.matrices["worldToNDC"]    = world_to_ndc(*points.raster);
     image.metadata["umbra:objects"] = objects_text(scene);
-    image.metadata["umbra:facing"]  = "0 no_surface, 1 away, 2 partly, 3 front";
+    image.metadata["umbra:facing"]  = "0 no_surface, 1 away, 2 partly, 3 front, 4 unshadowed";
     image.metadata["umbra:units"] =
         "P and Z: world units; N: unit vectors in world space; S and half_width: fractions of the light";
 }

@@ -57,10 +57,10 @@ Json write_files(const FilePlace& place, const PreparedScene& prepared, const An
 }
 
 /// The differences of the pictures; their map goes into a file.
-Json image_json(const std::filesystem::path& map, const Answers& method, const Rendered& reference) {
-    const int width = reference.shown.width, height = reference.shown.height;
+Json image_json(const std::filesystem::path& map, const PointBatch& points, const Answers& method,
+                const Rendered& reference) {
     ImageFigures found = image_figures(method.run.planes, method.rendered, reference);
-    write_image(map, flip_picture(width, height, found.flip.map));
+    write_image(map, flip_picture(points, method.run.planes, found.flip.map));
     return std::move(found.figures);
 }
 
@@ -68,11 +68,13 @@ Json image_json(const std::filesystem::path& map, const Answers& method, const R
 
 std::map<std::string, std::string> run_metadata(const Scene& scene, const MethodChoice& choice,
                                                 const std::string& command) {
-    return {{"umbra:scene", scene.source},
-            {"umbra:method", std::string(choice.info->name)},
-            {"umbra:parameters", choice.text()},
-            {"umbra:version", std::string(version())},
-            {"umbra:command", command}};
+    std::map<std::string, std::string> metadata{{"umbra:scene", scene.source},
+                                                {"umbra:method", std::string(choice.info->name)},
+                                                {"umbra:parameters", choice.text()},
+                                                {"umbra:version", std::string(version())},
+                                                {"umbra:command", command}};
+    if (const dvec3 o = scene.origin; o != dvec3(0)) metadata["umbra:origin"] = fmt::format("{} {} {}", o.x, o.y, o.z);
+    return metadata;
 }
 
 Json write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference) {
@@ -85,7 +87,7 @@ ComparedFiles write_compared_files(const FilePlace& place, const PreparedScene& 
     ComparedFiles written;
     // Each has parts that one thread does alone.
     parallel_pair([&] { written.files = write_files(place, prepared, method, reference.run, explained); },
-                  [&] { written.image = image_json(place.folder / map, method, reference.rendered); });
+                  [&] { written.image = image_json(place.folder / map, prepared.points, method, reference.rendered); });
     written.files["flip"] = map;
     return written;
 }

@@ -83,6 +83,7 @@ Image class_picture(const PointBatch& points, const ClassPlane& classes, const V
             case ErrorClass::undefined: return hatched(x, y);
             case ErrorClass::away:
             case ErrorClass::terminator_away: return kAway;
+            case ErrorClass::unshadowed: return kRightLit;
             case ErrorClass::not_judged: return 0.6f * glm::mix(kRightUmbra, kRightLit, reference.s[i]);
             case ErrorClass::right:
             case ErrorClass::terminator: return glm::mix(kRightUmbra, kRightLit, reference.s[i]);
@@ -91,8 +92,11 @@ Image class_picture(const PointBatch& points, const ClassPlane& classes, const V
     });
 }
 
-Image flip_picture(int width, int height, std::span<const float> map) {
-    return picture(width, height, [&](std::size_t i, std::size_t, std::size_t) { return ramp(kError, map[i]); });
+Image flip_picture(const PointBatch& points, std::span<const VisibilityPlane> planes, std::span<const float> map) {
+    return picture(points.raster->width, points.raster->height, [&](std::size_t i, std::size_t x, std::size_t y) {
+        const bool answered = std::all_of(planes.begin(), planes.end(), [&](const auto& p) { return p.defined(i); });
+        return answered || points.triangle[i] == kNoTriangle ? ramp(kError, map[i]) : hatched(x, y);
+    });
 }
 
 }  // namespace umbra

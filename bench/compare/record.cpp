@@ -143,8 +143,11 @@ Json served_json(const std::string& id, const PreparedScene& prepared, const Met
     entry["measures"]      = to_string(run.work->method().measures());
     entry["compared_with"] = reference;
     Json& errors = entry["errors"] = Json::array();
-    for (LightId j = 0; j < prepared.scene.lights.size(); ++j)
+    for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
         errors.push_back(error_json(prepared.scene.lights[j].name, explained[j]));
+        if (const auto unshadowed = explained[j].error.unshadowed; unshadowed > 0)
+            errors.back()["unshadowed"] = unshadowed;
+    }
     return entry;
 }
 

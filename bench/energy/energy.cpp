@@ -130,7 +130,7 @@ std::vector<ReceivedEnergy> received_by_faces(const Scene& scene, const SceneFac
         face.area            = areas[t];
         for (std::size_t i = spread.first[t]; i < spread.first[t + 1]; ++i)
             for (LightId j = 0; j < scene.lights.size(); ++j) {
-                if (points.triangle[i] == kNoTriangle || !points.asks(j, i)) continue;
+                if (points.triangle[i] == kNoTriangle || !points.faces(j, i)) continue;
                 const double all = arriving(scene, points, j, i);
                 face.asked += all;
                 if (!visibility[j].defined(i)) continue;

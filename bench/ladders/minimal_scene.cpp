@@ -32,8 +32,10 @@ Scene with_triangles(const Scene& whole, const std::vector<TriangleId>& kept) {
                     std::lower_bound(used.begin(), used.end(), whole.triangles[*t][k]) - used.begin());
             triangles.push_back(corners);
         }
-        add_object(part, whole.objects[o].name, positions, normals, triangles, whole.objects[o].material);
-        first = last;
+        const auto added =
+            add_object(part, whole.objects[o].name, positions, normals, triangles, whole.objects[o].material);
+        part.objects[added].switches = whole.objects[o].switches;
+        first                        = last;
     }
     return part;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/render/ask_visibility.h"
 
 namespace umbra {
 
@@ -91,6 +92,7 @@ private:
 VisibilityPlane between_centres(const Scene& scene, const PointBatch& centres, const VisibilityPlane& at_centres,
                                 const PointBatch& subpixels, int side, LightId light, std::vector<std::uint32_t>& ask) {
     VisibilityPlane plane(subpixels.size(), !at_centres.colour.empty());
+    write_decided(scene, subpixels, light, plane.out());
     ask.clear();
     const SmoothPixels smooth(scene, centres, at_centres, light);
     const int width = centres.raster->width, height = centres.raster->height;

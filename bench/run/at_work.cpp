@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "umbra/core/render/ask_visibility.h"
+
 namespace umbra {
 namespace {
 
@@ -83,9 +85,15 @@ void MethodAtWork::drop_aims_over_budget() {
     }
 }
 
+void MethodAtWork::visibility(LightId light, const Visibility& out) {
+    write_decided(*scene_, looked().points, light, out);
+    method_->visibility(aimed(light), looked(), out);
+}
+
 VisibilityPlane MethodAtWork::ask(const PointBatch& points, LightId light) {
     const auto looked = method_->look(built(), points);
     VisibilityPlane plane(points.size(), facts_->has_coloured_filters);
+    write_decided(*scene_, points, light, plane.out());
     method_->visibility(aimed(light), *looked, plane.out());
     return plane;
 }

@@ -58,16 +58,18 @@ Json machine_json(int threads) {
 }
 
 Json scene_json(const Scene& scene) {
-    return {{"name", scene.name},
-            {"title", scene.title},
-            {"shows", scene.shows},
-            {"source", scene.source},
-            {"warnings", scene.warnings}};
+    Json record = {{"name", scene.name},
+                   {"title", scene.title},
+                   {"shows", scene.shows},
+                   {"source", scene.source},
+                   {"warnings", scene.warnings}};
+    if (scene.origin != dvec3(0)) record["origin"] = vector_json(scene.origin);
+    return record;
 }
 
 Json facts_json(const SceneFacts& facts) {
     Json objects = Json::array();
-    for (const ObjectFacts& o : facts.objects)
+    for (const ObjectFacts& o : facts.objects) {
         objects.push_back({{"name", o.name},
                            {"triangles", o.triangles},
                            {"vertices", o.vertices},
@@ -83,6 +85,9 @@ Json facts_json(const SceneFacts& facts) {
                            {"planar", o.planar},
                            {"area", number(o.area)},
                            {"volume", number(o.volume)}});
+        for (const ObjectSwitch& each : kObjectSwitches)
+            if (!(o.switches.*each.is_on)) objects.back()[std::string(each.key)] = false;
+    }
     Json planes = Json::array();
     for (const PlanarReceiver& p : facts.planes)
         planes.push_back({{"normal", vector_json(p.normal)},

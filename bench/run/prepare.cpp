@@ -33,7 +33,7 @@ bool any(vec3 v) { return v != vec3(0); }
 /// Some point of the picture is reached by the light, if nothing occludes it.
 bool adds_anything(const Light& light, LightId id, const PointBatch& points) {
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (points.asks(id, i) && falloff(light, points.position(i)) > 0) return true;
+        if (points.faces(id, i) && falloff(light, points.position(i)) > 0) return true;
     return false;
 }
 

@@ -96,6 +96,12 @@ bool is_crease(const Scene& scene, const Topology& topology, const Edge& edge) {
     return !(glm::dot(a, b) > (1 - kFlat) * glm::length(a) * glm::length(b));
 }
 
+bool is_of_seen_object(const Scene& scene, const Topology& topology, const Edge& edge) {
+    for (std::uint32_t k = edge.first; k < edge.first + edge.count; ++k)
+        if (scene.switches(topology.uses[k].triangle).seen_by_camera) return true;
+    return false;
+}
+
 /// Without lights: the ambient term and emission are left, those of lights included.
 Scene without_light(const Scene& scene) {
     Scene dim = scene;
@@ -116,7 +122,7 @@ Image draw_lines(const RayScene& rays, const Scene& scene, int width, int height
     const Topology topology = find_topology(scene, 0, static_cast<std::uint32_t>(scene.triangles.size()));
     Drawing drawing(*fine.raster, lines == Lines::seen ? depths_of(fine) : std::vector<double>{});
     for (const Edge& edge : topology.edges)
-        if (is_crease(scene, topology, edge))
+        if (is_of_seen_object(scene, topology, edge) && is_crease(scene, topology, edge))
             drawing.segment(dvec3(scene.positions[topology.position[edge.a]]),
                             dvec3(scene.positions[topology.position[edge.b]]));
     return box_filtered(drawing.image(), kFine);

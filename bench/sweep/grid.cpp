@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/trimmed.h"
 
 namespace umbra {
 namespace {
@@ -100,11 +101,10 @@ std::vector<MethodChoice> settings_in_file(const std::string& file) {
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
         line.resize(std::min(line.find('#'), line.size()));
-        const std::size_t first = line.find_first_not_of(" \t\r"), last = line.find_last_not_of(" \t\r");
-        if (first == std::string::npos) continue;
+        const std::string_view setting = trimmed(line);
+        if (setting.empty()) continue;
         try {
-            for (MethodChoice& choice : expand_settings(std::string_view(line).substr(first, last - first + 1)))
-                all.push_back(std::move(choice));
+            for (MethodChoice& choice : expand_settings(setting)) all.push_back(std::move(choice));
         } catch (const UsageError& e) {
             throw InputError(fmt::format("{}:{}: {}", file, number, e.what()));
         }

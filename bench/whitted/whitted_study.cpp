@@ -254,7 +254,7 @@ Json blind_json(const Study& study, AskedMethod& shadows, const Image& shown, co
         for (std::size_t i = 0; i < points.size(); ++i) {
             if (lit[i] == 0 || !is_diffuse(study.scene().material(points.triangle[i]))) continue;
             reached[i] = 1;
-            if (!points.asks(j, i) || (straight[j].defined(i) && straight[j].s[i] == 0)) dark[i] = 1;
+            if (!points.faces(j, i) || (straight[j].defined(i) && straight[j].s[i] == 0)) dark[i] = 1;
         }
     }
     Image map = shown;
@@ -369,6 +369,7 @@ std::string in_text(const Json& value, const char* format) {
 
 void correct_warnings(Scene& scene) {
     for (const UncomputedTerm& term : find_uncomputed(scene)) {
+        if (term.term == kCutout) continue;
         const std::string beginning = fmt::format("The {} is not computed", in_words(term));
         std::erase_if(scene.warnings, [&](const std::string& w) { return w.starts_with(beginning); });
     }

@@ -113,8 +113,8 @@ void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& 
     parallel_ranges(classes.size(), 4096, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             ErrorClass& c = classes[i];
-            if (c == ErrorClass::no_surface || c == ErrorClass::not_judged || c == ErrorClass::undefined ||
-                c == ErrorClass::on_boundary)
+            if (c == ErrorClass::no_surface || c == ErrorClass::unshadowed || c == ErrorClass::not_judged ||
+                c == ErrorClass::undefined || c == ErrorClass::on_boundary)
                 continue;
             const bool facet   = c != ErrorClass::away;
             const dvec3 normal = shading_normal(scene, points, i);

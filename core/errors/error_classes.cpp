@@ -58,6 +58,7 @@ ClassPlane error_classes(const PointBatch& points, LightId light, const Visibili
         const Facing facing = points.facing[light][i];
         if (facing == Facing::none) return ErrorClass::no_surface;
         if (facing == Facing::away) return ErrorClass::away;
+        if (facing == Facing::unshadowed) return ErrorClass::unshadowed;
         if (s.defined(i) && !judged.empty() && judged[i] == 0) return ErrorClass::not_judged;
         if (reference.answer[i] == Answer::on_boundary) return ErrorClass::on_boundary;
         if (!s.defined(i) || !reference.defined(i)) return ErrorClass::undefined;

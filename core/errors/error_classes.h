@@ -32,11 +32,12 @@ enum class ErrorClass : std::uint8_t {
     detachment,   ///< interior, at a contact ("peter-panning")
     leak,         ///< interior, elsewhere
     penumbra,     ///< interior, where the reference has a penumbra of an area light: it is missing, or wrong
-    noise         ///< interior, and the mean of runs with other random numbers is right
+    noise,        ///< interior, and the mean of runs with other random numbers is right
+    unshadowed    ///< some of the light is in front, and the object receives no shadows: S_j = 1 for every method
 };
 
 /// The names of the classes in the order of their codes, as files and pages write them.
-inline constexpr std::array<std::string_view, 18> kErrorClassNames = {"no_surface",
+inline constexpr std::array<std::string_view, 19> kErrorClassNames = {"no_surface",
                                                                       "away",
                                                                       "terminator_away",
                                                                       "not_judged",
@@ -53,8 +54,9 @@ inline constexpr std::array<std::string_view, 18> kErrorClassNames = {"no_surfac
                                                                       "detachment",
                                                                       "leak",
                                                                       "penumbra",
-                                                                      "noise"};
-static_assert(kErrorClassNames.size() == static_cast<std::size_t>(ErrorClass::noise) + 1);
+                                                                      "noise",
+                                                                      "unshadowed"};
+static_assert(kErrorClassNames.size() == static_cast<std::size_t>(ErrorClass::unshadowed) + 1);
 
 /// S_j above 1 - kFullOrNone is lit, below kFullOrNone umbra, between them penumbra.
 inline constexpr float kFullOrNone = 1.0f / 1024;
@@ -62,7 +64,7 @@ inline constexpr float kFullOrNone = 1.0f / 1024;
 [[nodiscard]] constexpr bool is_penumbra(float s) { return s >= kFullOrNone && s <= 1 - kFullOrNone; }
 
 /// Do both planes define the point, so that it is right or wrong?
-[[nodiscard]] constexpr bool is_compared(ErrorClass c) { return c >= ErrorClass::right; }
+[[nodiscard]] constexpr bool is_compared(ErrorClass c) { return c >= ErrorClass::right && c != ErrorClass::unshadowed; }
 
 /// Does it say where boundaries are? A value that is not judged does, too.
 [[nodiscard]] constexpr bool is_drawn(ErrorClass c) { return is_compared(c) || c == ErrorClass::not_judged; }

@@ -50,6 +50,7 @@ VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes
             case ErrorClass::no_surface: continue;
             case ErrorClass::away: ++e.away; continue;
             case ErrorClass::terminator_away: ++e.away, ++e.terminator.facet_away; continue;
+            case ErrorClass::unshadowed: ++e.unshadowed; continue;
             case ErrorClass::not_judged: ++e.not_judged; continue;
             case ErrorClass::undefined: ++e.undefined; continue;
             case ErrorClass::on_boundary: ++e.on_boundary; continue;

@@ -140,13 +140,17 @@ void round_once(Image& image, double levels) {
     for (float& x : image.data) x = float(std::floor(double(x) * levels + 0.5) / levels);  // none is negative
 }
 
+constexpr const char* kDisplayWindows = "display windows";
+
+std::string window_text(int width, int height, int x, int y) {
+    return fmt::format("{}x{} from ({}, {})", width, height, x, y);
+}
+
 /// What the file says about how its pixels are shown. Words that mean what a file without them means are left out.
 std::map<std::string, std::string> shown_as(const OIIO::ImageSpec& spec, Encoding encoding) {
     std::map<std::string, std::string> said;
-    if (spec.full_x != spec.x || spec.full_y != spec.y || spec.full_width != spec.width ||
-        spec.full_height != spec.height)
-        said["display windows"] =
-            fmt::format("{}x{} from ({}, {})", spec.full_width, spec.full_height, spec.full_x, spec.full_y);
+    const std::string shown = window_text(spec.full_width, spec.full_height, spec.full_x, spec.full_y);
+    if (shown != window_text(spec.width, spec.height, spec.x, spec.y)) said[kDisplayWindows] = shown;
     if (const int way = spec.get_int_attribute("Orientation", 1); way != 1)
         said["orientations"] = fmt::format("{} of EXIF", way);
     if (const std::string aspect = fmt::format("{:.4g}", spec.get_float_attribute("PixelAspectRatio", 1));
@@ -368,7 +372,9 @@ std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedIm
     for (const auto& [what, unused] : either) {
         const auto in = [&, &of = what](const LoadedImage& x) {
             const auto said = x.shown_as.find(of);
-            return said == x.shown_as.end() ? "nothing said" : said->second;
+            if (said != x.shown_as.end()) return said->second;
+            return of == kDisplayWindows ? window_text(x.image.width, x.image.height, x.x, x.y)
+                                         : std::string("nothing said");
         };
         if (in(a) != in(b)) reasons.push_back(fmt::format("{} differ: {} against {}", what, in(a), in(b)));
     }

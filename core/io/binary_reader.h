@@ -36,9 +36,9 @@ public:
         return x;
     }
     /// `x`, which was read at `offset`, as a coordinate: finite and within kMaxCoordinate.
-    [[nodiscard]] float coordinate(std::size_t offset, double x, std::string_view what) const {
+    [[nodiscard]] double coordinate(std::size_t offset, double x, std::string_view what) const {
         if (!kAnyNumber.holds(x)) fail(offset, fmt::format("{} is {:g}, expected {}", what, x, kAnyNumber.words));
-        return static_cast<float>(x);
+        return x;
     }
 
 private:

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/paths.h"
+#include "umbra/core/base/trimmed.h"
 #include "umbra/core/io/limits.h"
 #include "umbra/core/io/source_text.h"
 #include "umbra/core/io/tokens.h"
@@ -19,12 +20,6 @@ namespace umbra {
 namespace {
 
 constexpr std::size_t kMaxIesFile = std::size_t{4} << 20;  ///< bytes
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r";
-    const std::size_t begin            = text.find_first_not_of(kBlanks);
-    return begin == text.npos ? "" : text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
-}
 
 /// The line TILT=..., in any case, with blanks anywhere.
 struct TiltLine {

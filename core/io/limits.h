@@ -43,6 +43,8 @@ inline constexpr std::uint64_t kMaxVertices  = 0xfffffffeu;  ///< what 32-bit in
 /// A few bytes of these files make thousands of triangles, so the limit is lower than for triangles written out.
 inline constexpr std::uint64_t kMaxTessellated = 20'000'000;
 
+inline constexpr std::size_t kMaxCutTriangles = 2'000'000;  ///< that masks leave of surfaces; beyond it they are whole
+
 inline constexpr std::size_t kMaxNativeFile = std::size_t{32} << 20;  ///< bytes
 inline constexpr int kMaxSegments           = 4096;                   ///< of a native object along one circle
 inline constexpr int kMaxSteps              = 1024;  ///< along each of two directions: two million triangles at most

@@ -51,6 +51,7 @@ int segments_around(const View& view, dvec3 centre, double reach, double radius,
 
 struct Reader {
     const SourceText& source;
+    const Reading& reading;
     Tokens tokens;
     SceneFile read;
     View view;
@@ -62,8 +63,9 @@ struct Reader {
     FileNormals normals;
     bool any_light_has_colour = false;
 
-    explicit Reader(const SourceText& text) : source(text), tokens(text) {}
+    Reader(const SourceText& text, const Reading& how) : source(text), reading(how), tokens(text) {}
     Scene& scene() { return read.scene; }
+    vec3 position(std::string_view what) { return reading.position(tokens.point(what)); }
 
     void expect(std::string_view name) {
         const Token token = tokens.next();
@@ -75,11 +77,11 @@ struct Reader {
     void read_view() {
         Camera& camera = scene().camera;
         expect("from");
-        camera.eye = tokens.point("a coordinate of the eye");
+        camera.eye = position("a coordinate of the eye");
         expect("at");
-        camera.target = tokens.point("a coordinate of the target");
+        camera.target = position("a coordinate of the target");
         expect("up");
-        camera.up = tokens.point("a component of up");
+        camera.up = vec3(tokens.point("a component of up"));
         expect("angle");
         const std::size_t at_angle = tokens.offset();
         camera.fov_y               = tokens.real("the angle of view");
@@ -107,7 +109,7 @@ struct Reader {
         Light light;
         light.kind     = LightKind::point;
         light.name     = fmt::format("light_{}", scene().lights.size() + 1);
-        light.position = tokens.point("a coordinate of the light");
+        light.position = position("a coordinate of the light");
         if (const Token red = tokens.next_on_line()) {
             light.diffuse.r      = tokens.as_real(red, "the light's red");
             light.diffuse.g      = tokens.real_on_line("the light's green");
@@ -176,7 +178,7 @@ struct Reader {
         for (std::int64_t i = 0; i < n; ++i) {
             if (tokens.at_end())
                 tokens.fail(entity, fmt::format("the file ends after {} of this polygon's {} corners", i, n));
-            part.positions.push_back(tokens.point("a corner's coordinate"));
+            part.positions.push_back(position("a corner's coordinate"));
             part.normals.push_back(patch ? normals.usable(tokens.normal()) : vec3(0));
             polygon.push_back(std::uint32_t(i));
         }
@@ -192,7 +194,7 @@ struct Reader {
     }
 
     void read_sphere(Token entity) {
-        const vec3 centre  = tokens.point("a coordinate of the centre");
+        const vec3 centre  = position("a coordinate of the centre");
         const float radius = tokens.real("the radius");
         if (radius == 0) tokens.fail(entity, "a sphere of radius 0");
         const float size = std::abs(radius);
@@ -210,15 +212,16 @@ struct Reader {
     }
 
     void read_cone(Token entity) {
-        const dvec3 base(tokens.point("a coordinate of the base"));
-        const double r_base = tokens.real("the base radius");
-        const dvec3 apex(tokens.point("a coordinate of the apex"));
-        const double r_apex = tokens.real("the apex radius");
+        const dvec3 base_read = tokens.point("a coordinate of the base");
+        const double r_base   = tokens.real("the base radius");
+        const dvec3 apex_read = tokens.point("a coordinate of the apex");
+        const double r_apex   = tokens.real("the apex radius");
         if (r_base * r_apex < 0)
             tokens.fail(entity, "one radius of this cone is negative, one is not (both have one sign, or one is 0)");
         if (r_base == 0 && r_apex == 0) tokens.fail(entity, "both radii of this cone are 0");
+        if (base_read == apex_read && r_base == r_apex) tokens.fail(entity, "base and apex of this cone are the same");
+        const dvec3 base(reading.position(base_read)), apex(reading.position(apex_read));
         const double height = glm::length(apex - base);
-        if (height == 0 && r_base == r_apex) tokens.fail(entity, "base and apex of this cone are the same");
 
         // Across the axis: any two unit vectors, right-handed with it. Coincident ends are a ring, facing +z.
         const dvec3 axis  = height > 0 ? (apex - base) / height : dvec3(0, 0, 1);
@@ -258,7 +261,7 @@ struct Reader {
             if (e == "v")
                 read_view();
             else if (e == "b")
-                scene().background = tokens.point("a channel of the background");
+                scene().background = vec3(tokens.point("a channel of the background"));
             else if (e == "l")
                 read_light();
             else if (e == "f")
@@ -279,9 +282,9 @@ struct Reader {
 
 }  // namespace
 
-SceneFile read_nff(const std::filesystem::path& file) {
+SceneFile read_nff(const std::filesystem::path& file, const Reading& reading) {
     const SourceText source = read_text(file);
-    Reader reader(source);
+    Reader reader(source, reading);
     reader.read_entities();
     Scene& scene = reader.scene();
     if (reader.triangles == 0)

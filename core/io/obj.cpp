@@ -124,7 +124,7 @@ void note_terms_of_vertex(Tokens& tokens, IgnoredLines& skipped) {
         skipped.add("the weight w of a vertex is", tokens.line());
 }
 
-Obj read_lines(const SourceText& source) {
+Obj read_lines(const SourceText& source, const Reading& reading) {
     Obj obj;
     Tokens tokens(source, 0, true);
     // A group is what lies between lines that change object, group, material or smoothing; coming back to an earlier
@@ -151,11 +151,11 @@ Obj read_lines(const SourceText& source) {
         const std::string_view key = keyword.text;
         if (key == "v") {
             tokens.refuse_decimal_commas("a vertex coordinate");
-            obj.positions.push_back(tokens.point_on_line("a vertex coordinate"));
+            obj.positions.push_back(reading.position(tokens.point_on_line("a vertex coordinate")));
             note_terms_of_vertex(tokens, obj.skipped);
         } else if (key == "vn") {
             tokens.refuse_decimal_commas("a component of a normal");
-            obj.normals.push_back(obj.normal_check.usable(tokens.normal_on_line()));
+            obj.normals.push_back(reading.normal(obj.normal_check.usable(tokens.normal_on_line())));
         } else if (key == "vt") {
             while (const Token token = tokens.next_on_line()) (void)tokens.as_real(token, "a texture coordinate");
         } else if (key == "f" || key == "fo") {
@@ -304,9 +304,9 @@ Mesh mesh_of(const Obj& obj, const std::vector<std::uint32_t>& faces, std::size_
 
 }  // namespace
 
-SceneFile read_obj(const path& file) {
+SceneFile read_obj(const path& file, const Reading& reading) {
     const SourceText source = read_text(file);
-    const Obj obj           = read_lines(source);
+    const Obj obj           = read_lines(source, reading);
     if (obj.faces.empty())
         throw InputError(fmt::format("{}: holds no faces, expected lines \"v x y z\" and \"f 1 2 3\"", source.file));
     SceneFile read;

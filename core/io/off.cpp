@@ -111,7 +111,7 @@ public:
     }
 
     // Either order of normals and colours is in use: where unit vectors are tells which; the header, where both are.
-    void take_normals(MeshPart& part, std::vector<std::string>& warnings) const {
+    void take_normals(MeshPart& part, const Reading& reading, std::vector<std::string>& warnings) const {
         const auto units = [](const std::vector<vec3>& vectors) {
             return std::ranges::count_if(vectors, [](vec3 v) { return std::abs(glm::length(v) - 1) < 1e-2f; });
         };
@@ -121,7 +121,7 @@ public:
         if (colours_first && header_.has_normals)
             warnings.emplace_back("colours of vertices stand before their normals.");
         for (const vec3 normal : colours_first ? last_ : first_)
-            part.mesh.normals.push_back(part.normals.usable(normal));
+            part.mesh.normals.push_back(reading.normal(part.normals.usable(normal)));
         if (coloured_ > 0) warnings.push_back(fmt::format("colours of {} vertices are ignored.", coloured_));
     }
 
@@ -133,32 +133,32 @@ private:
     std::size_t coloured_ = 0;  ///< vertices
 };
 
-vec3 read_position(Tokens& tokens, bool is_homogeneous) {
+dvec3 read_position(Tokens& tokens, bool is_homogeneous) {
     constexpr std::string_view kWhat = "a vertex coordinate";
-    const vec3 position              = tokens.point(kWhat);
+    const dvec3 position             = tokens.point(kWhat);
     if (!is_homogeneous) return position;
     const Token token = tokens.next();
-    const double w    = static_cast<double>(tokens.as_real(token, kWhat));
-    const dvec3 p     = dvec3(position) / w;
+    const double w    = tokens.as_number(token, kWhat);
+    const dvec3 p     = position / w;
     if (!(kAnyNumber.holds(p.x) && kAnyNumber.holds(p.y) && kAnyNumber.holds(p.z)))
         tokens.fail(token, fmt::format("the fourth coordinate is {:g}, which puts the vertex out of reach, expected {}",
                                        w, "a number other than 0"));
-    return vec3(p);
+    return p;
 }
 
-void read_vertices(Tokens& tokens, const OffHeader& header, std::uint64_t vertices, std::uint64_t faces, MeshPart& part,
-                   std::vector<std::string>& warnings) {
+void read_vertices(Tokens& tokens, const OffHeader& header, std::uint64_t vertices, std::uint64_t faces,
+                   const Reading& reading, MeshPart& part, std::vector<std::string>& warnings) {
     OffVertexTerms terms(header);
     bool own_lines = false;
     for (std::uint64_t i = 0; i < vertices; ++i) {
         if (tokens.at_end())
             tokens.fail(tokens.next(), fmt::format("the file ends after {} of {} vertices", i, vertices));
-        part.mesh.positions.push_back(read_position(tokens, header.is_homogeneous));
+        part.mesh.positions.push_back(reading.position(read_position(tokens, header.is_homogeneous)));
         if (i == 0 && (header.has_normals || header.has_colours || header.has_texture))
             own_lines = !Tokens(tokens).next_on_line() && lines_from(tokens) >= 2 * vertices - 1 + faces;
         terms.read(tokens, own_lines);
     }
-    terms.take_normals(part, warnings);
+    terms.take_normals(part, reading, warnings);
 }
 
 // Whether the next line is a colour of the face before it, and no face.
@@ -203,7 +203,7 @@ void read_faces(Tokens& tokens, std::uint64_t vertices, std::uint64_t faces, Mes
     if (coloured > 0) warnings.push_back(fmt::format("colours of {} faces are ignored.", coloured));
 }
 
-MeshPart off_part(const SourceText& source, std::vector<std::string>& warnings) {
+MeshPart off_part(const SourceText& source, const Reading& reading, std::vector<std::string>& warnings) {
     Tokens tokens(source);
     const OffHeader header       = read_off_header(tokens, warnings);
     const std::uint64_t vertices = read_count(tokens, header.vertices, "the number of vertices");
@@ -216,17 +216,17 @@ MeshPart off_part(const SourceText& source, std::vector<std::string>& warnings) 
     if (faces > left / 2) tokens.fail(header.faces, fmt::format("{} faces, but only {} bytes follow", faces, left - 1));
 
     MeshPart part;
-    read_vertices(tokens, header, vertices, faces, part, warnings);
+    read_vertices(tokens, header, vertices, faces, reading, part, warnings);
     read_faces(tokens, vertices, faces, part, warnings);
     return part;
 }
 
 }  // namespace
 
-SceneFile read_off(const std::filesystem::path& file) {
+SceneFile read_off(const std::filesystem::path& file, const Reading& reading) {
     const SourceText source = read_text(file);
     std::vector<std::string> warnings;
-    const MeshPart part = off_part(source, warnings);
+    const MeshPart part = off_part(source, reading, warnings);
     return scene_of({part}, file, warnings);
 }
 

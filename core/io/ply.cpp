@@ -154,14 +154,14 @@ public:
           tokens_(source, header.end),
           bytes_(source, header.end, header.encoding == Encoding::big ? std::endian::big : std::endian::little) {}
 
-    float real(Type type, std::string_view what) {
-        if (ascii_) return tokens_.real(what);
+    double real(Type type, std::string_view what) {
+        if (ascii_) return tokens_.as_number(tokens_.next(), what);
         const std::size_t at = bytes_.offset();
         return bytes_.coordinate(at, number(type, what), what);
     }
     /// NaN and infinity included, for what may be wrong.
-    float any_real(Type type, std::string_view what) {
-        return ascii_ ? tokens_.any_real(what) : static_cast<float>(number(type, what));
+    double any_real(Type type, std::string_view what) {
+        return ascii_ ? static_cast<double>(tokens_.any_real(what)) : number(type, what);
     }
     std::int64_t whole(Type type, std::string_view what) {
         last_ = ascii_ ? tokens_.offset() : bytes_.offset();
@@ -261,20 +261,20 @@ void read_indices(Body& body, const Property& property, std::int64_t n, bool is_
     }
 }
 
-void read_element(Body& body, const Element& element, MeshPart& part, std::uint64_t vertices) {
+void read_element(Body& body, const Element& element, const Reading& reading, MeshPart& part, std::uint64_t vertices) {
     const Roles roles = find_roles(body, element);
     if (roles.of.empty()) return;  // any number of nothing
 
     std::vector<std::uint32_t> polygon;
     std::vector<std::int64_t> list;
     for (std::uint64_t i = 0; i < element.count; ++i) {
-        std::array<float, 6> c{};  // x y z nx ny nz
+        std::array<double, 6> c{};  // x y z nx ny nz
         for (std::size_t p = 0; p < roles.of.size(); ++p) {
             const Property& property = element.properties[p];
             const int role           = roles.of[p];
             if (!property.is_list) {
                 const bool is_normal = roles.is_vertex && role >= 3;
-                const float x =
+                const double x =
                     is_normal ? body.any_real(property.type, property.name) : body.real(property.type, property.name);
                 if (roles.is_vertex && role != kUnused) c[std::size_t(role)] = x;
                 continue;
@@ -294,13 +294,14 @@ void read_element(Body& body, const Element& element, MeshPart& part, std::uint6
             }
         }
         if (roles.is_vertex) {
-            part.mesh.positions.emplace_back(c[0], c[1], c[2]);
-            if (roles.has_normals) part.mesh.normals.push_back(part.normals.usable({c[3], c[4], c[5]}));
+            part.mesh.positions.push_back(reading.position({c[0], c[1], c[2]}));
+            if (roles.has_normals)
+                part.mesh.normals.push_back(reading.normal(part.normals.usable(vec3(dvec3(c[3], c[4], c[5])))));
         }
     }
 }
 
-MeshPart ply_part(const SourceText& source, std::vector<std::string>& warnings) {
+MeshPart ply_part(const SourceText& source, const Reading& reading, std::vector<std::string>& warnings) {
     const Header header = read_header(source);
     const auto named    = [](std::string_view name) { return [name](const Element& e) { return e.name == name; }; };
     const auto vertex   = std::find_if(header.elements.begin(), header.elements.end(), named("vertex"));
@@ -325,16 +326,16 @@ MeshPart ply_part(const SourceText& source, std::vector<std::string>& warnings) 
         warnings.push_back(fmt::format("colours of {} vertices are ignored.", vertex->count));
     MeshPart part;
     Body body(source, header);
-    for (const Element& e : header.elements) read_element(body, e, part, vertex->count);
+    for (const Element& e : header.elements) read_element(body, e, reading, part, vertex->count);
     return part;
 }
 
 }  // namespace
 
-SceneFile read_ply(const std::filesystem::path& file) {
+SceneFile read_ply(const std::filesystem::path& file, const Reading& reading) {
     const SourceText source = read_text(file);
     std::vector<std::string> warnings;
-    const MeshPart part = ply_part(source, warnings);
+    const MeshPart part = ply_part(source, reading, warnings);
     return scene_of({part}, file, warnings);
 }
 

@@ -6,31 +6,37 @@
 #include <string_view>
 #include <vector>
 
+#include "umbra/core/io/reading.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
 
-/// A scene as its file says it, everything in world space. `name`, `title` and `source` may stay empty. Lights may have
-/// any names and any length of `direction`; a rectangle's `direction` follows from its edges. check_scene and
-/// complete_scene do the rest.
+/// A scene as its file says it, everything in world space, relative to Reading::origin. `name`, `title` and `source`
+/// may stay empty. Lights may have any names and any length of `direction`; a rectangle's `direction` follows from its
+/// edges. check_scene and complete_scene do the rest.
 struct SceneFile {
     Scene scene;
     bool has_camera  = false;  ///< the file says where the eye is
     bool may_be_dark = false;  ///< the file means to have no light (an explicit empty list)
+    bool has_origin  = false;  ///< the file says what its numbers are relative to: Scene::origin
+    Box at_rest;               ///< bounds of the objects before an animation moves them; empty: those of the scene
 };
 
-[[nodiscard]] SceneFile read_native(const std::filesystem::path& file);  ///< .json
-/// A frame of its animation, counted from 0; read_native without a frame reads the first.
-[[nodiscard]] SceneFile read_native(const std::filesystem::path& file, int frame);
-[[nodiscard]] SceneFile read_gltf(const std::filesystem::path& file);  ///< .gltf .glb
-[[nodiscard]] SceneFile read_obj(const std::filesystem::path& file);   ///< .obj, with its .mtl
-[[nodiscard]] SceneFile read_nff(const std::filesystem::path& file);   ///< .nff
-[[nodiscard]] SceneFile read_ply(const std::filesystem::path& file);   ///< .ply
-[[nodiscard]] SceneFile read_off(const std::filesystem::path& file);   ///< .off
-[[nodiscard]] SceneFile read_stl(const std::filesystem::path& file);   ///< .stl
+/// .json: the frame of its animation that `reading` names. The axis that points up is that of mesh files alone. Where
+/// the scene is to be moved (local_origin), and `reading` has no origin yet, it has its objects alone.
+[[nodiscard]] SceneFile read_native(const std::filesystem::path& file, const Reading& reading);
+[[nodiscard]] SceneFile read_gltf(const std::filesystem::path& file, const Reading& reading);  ///< .gltf .glb
+[[nodiscard]] SceneFile read_obj(const std::filesystem::path& file, const Reading& reading);   ///< .obj, with its .mtl
+[[nodiscard]] SceneFile read_nff(const std::filesystem::path& file, const Reading& reading);   ///< .nff
+[[nodiscard]] SceneFile read_ply(const std::filesystem::path& file, const Reading& reading);   ///< .ply
+[[nodiscard]] SceneFile read_off(const std::filesystem::path& file, const Reading& reading);   ///< .off
+[[nodiscard]] SceneFile read_stl(const std::filesystem::path& file, const Reading& reading);   ///< .stl
 
-/// The reader that the ending names; `endings` are those allowed here. Throws InputError that lists them.
-[[nodiscard]] SceneFile read_by_ending(const std::filesystem::path& file, const std::vector<std::string_view>& endings);
+/// The reader that the ending names; `endings` are those allowed here. A file whose scene lies far from its origin is
+/// read again relative to an origin of its own (local_origin), which Scene::origin then says. Throws InputError that
+/// lists the endings, or where another axis than y is to point up of a file that says itself which does.
+[[nodiscard]] SceneFile read_by_ending(const std::filesystem::path& file, const std::vector<std::string_view>& endings,
+                                       Reading reading = {});
 
 /// What every format shares, first half: refuses what cannot be rendered and changes nothing. Numbers are finite and
 /// within those of io/limits.h, indices in range, the camera of the file can see, the lights can shine. Throws

@@ -68,8 +68,13 @@ const std::vector<std::string_view>& material_keys() {
     static const std::vector<std::string_view> keys{
         "k_a",   "k_d",       "k_s",     "O_d",     "O_s",      "emission",        "shininess",
         "lobe",  "two_sided", "opacity", "reflect", "transmit", "transmit_colour", "index_of_refraction",
-        "lobes", "tangent"};
+        "lobes", "tangent",   "cutout"};
     return keys;
+}
+
+void apply_object_switches(const JsonFields& fields, ObjectSwitches& switches) {
+    for (const ObjectSwitch& each : kObjectSwitches)
+        switches.*each.is_on = fields.boolean(each.key, switches.*each.is_on);
 }
 
 namespace {
@@ -112,6 +117,7 @@ void apply_material_terms(const JsonText& json, const JsonFields& fields, Materi
     if (const JsonValue* lobe = fields.find("lobe")) m.lobe = json.choice<Lobe>(*lobe, "lobe");
     m.shininess = number_or(fields, "shininess", kNotNegative, m.shininess);
     m.two_sided = fields.boolean("two_sided", m.two_sided);
+    m.cutout    = fields.boolean("cutout", m.cutout);
     m.opacity   = number_or(fields, "opacity", kShare, m.opacity);
     m.reflect   = number_or(fields, "reflect", kShare, m.reflect);
     m.transmit  = number_or(fields, "transmit", kShare, m.transmit);

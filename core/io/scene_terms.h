@@ -23,6 +23,9 @@ void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene);
 [[nodiscard]] const std::vector<std::string_view>& material_keys();
 void apply_material_terms(const JsonText& json, const JsonFields& fields, Material& material);
 
+/// The keys of kObjectSwitches; a switch that is not given keeps its value.
+void apply_object_switches(const JsonFields& fields, ObjectSwitches& switches);
+
 /// ambient, background, tone, exposure, viewer, the variants of the sum, and fog; a term that is not given keeps its
 /// value.
 void apply_picture_terms(const JsonText& json, const JsonFields& fields, Scene& scene);

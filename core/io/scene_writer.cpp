@@ -10,6 +10,7 @@
 #include <set>
 #include <vector>
 
+#include "umbra/core/io/reading.h"
 #include "umbra/core/scene/names.h"
 
 namespace umbra {
@@ -97,6 +98,7 @@ std::string material_text(const Material& material) {
     m.differing("shininess", material.shininess, fallback.shininess);
     if (material.lobe != fallback.lobe) m.add("lobe", json_string(name_of(material.lobe)));
     if (!material.two_sided) m.add("two_sided", "false");
+    if (material.cutout) m.add("cutout", "true");
     m.differing("opacity", material.opacity, fallback.opacity);
     m.differing("reflect", material.reflect, fallback.reflect);
     m.differing("transmit", material.transmit, fallback.transmit);
@@ -183,10 +185,13 @@ std::string object_text(const Scene& scene, const Object& object, const std::str
     for (auto t = first; t != first + object.triangle_count; ++t)
         triangles += fmt::format("{}[{}, {}, {}]", triangles.empty() ? "" : ", ", index.at((*t)[0]), index.at((*t)[1]),
                                  index.at((*t)[2]));
+    std::string off;
+    for (const ObjectSwitch& each : kObjectSwitches)
+        if (!(object.switches.*each.is_on)) off += fmt::format(", \"{}\": false", each.key);
     return fmt::format(
-        "{{\"type\": \"triangles\", \"name\": {}, \"material\": {},\n     \"positions\": [{}],\n{}     \"triangles\": "
-        "[{}]}}",
-        json_string(object.name), json_string(material), positions,
+        "{{\"type\": \"triangles\", \"name\": {}, \"material\": {}{},\n     \"positions\": [{}],\n{}     "
+        "\"triangles\": [{}]}}",
+        json_string(object.name), json_string(material), off, positions,
         smooth ? fmt::format("     \"normals\": [{}],\n", normals) : "", triangles);
 }
 
@@ -233,6 +238,9 @@ std::string native_text(const Scene& scene) {
     std::string text = "{\n";
     if (!scene.title.empty()) text += fmt::format("  \"title\": {},\n", json_string(scene.title));
     if (!scene.shows.empty()) text += fmt::format("  \"shows\": {},\n", json_string(scene.shows));
+    // Also where it is 0 and the reader would move the scene.
+    if (scene.origin != dvec3(0) || local_origin(bounds(scene)) != dvec3(0))
+        text += fmt::format("  \"origin\": [{}, {}, {}],\n", scene.origin.x, scene.origin.y, scene.origin.z);
     text +=
         fmt::format("  \"size\": [{}, {}],\n  \"camera\": {},\n", scene.width, scene.height, camera_text(scene.camera));
     text +=

@@ -23,7 +23,8 @@ Token next_word(Tokens& tokens, std::string& word) {
 
 // Facets share no positions. Their normals say nothing that their corners do not: they are read and left out, whatever
 // their values.
-std::vector<MeshPart> read_text_stl(const SourceText& source, std::vector<std::string>& warnings) {
+std::vector<MeshPart> read_text_stl(const SourceText& source, const Reading& reading,
+                                    std::vector<std::string>& warnings) {
     Tokens tokens(source);
     std::vector<MeshPart> parts;
     std::string word;
@@ -59,7 +60,7 @@ std::vector<MeshPart> read_text_stl(const SourceText& source, std::vector<std::s
             const auto first = std::uint32_t(part.mesh.positions.size());
             for (int k = 0; k < 3; ++k) {
                 expect("vertex");
-                part.mesh.positions.push_back(tokens.point("a vertex coordinate"));
+                part.mesh.positions.push_back(reading.position(tokens.point("a vertex coordinate")));
             }
             part.mesh.triangles.emplace_back(first, first + 1, first + 2);
             expect("endloop");
@@ -73,7 +74,7 @@ std::vector<MeshPart> read_text_stl(const SourceText& source, std::vector<std::s
 
 constexpr std::size_t kStlHeader = 84, kStlFacet = 50;
 
-std::vector<MeshPart> read_binary_stl(const SourceText& source, std::uint64_t facets) {
+std::vector<MeshPart> read_binary_stl(const SourceText& source, const Reading& reading, std::uint64_t facets) {
     BinaryReader bytes(source, kStlHeader, std::endian::little);
     std::vector<MeshPart> parts(1);
     Mesh& mesh = parts[0].mesh;
@@ -81,12 +82,12 @@ std::vector<MeshPart> read_binary_stl(const SourceText& source, std::uint64_t fa
         bytes.skip(12, "a facet");  // the normal
         const auto first = std::uint32_t(mesh.positions.size());
         for (int k = 0; k < 3; ++k) {
-            vec3 corner;
+            dvec3 corner;
             for (int axis = 0; axis < 3; ++axis) {
                 const std::size_t at = bytes.offset();
                 corner[axis] = bytes.coordinate(at, double(bytes.take<float>("a facet")), "a coordinate of a facet");
             }
-            mesh.positions.push_back(corner);
+            mesh.positions.push_back(reading.position(corner));
         }
         bytes.skip(2, "a facet");  // the attribute
         mesh.triangles.emplace_back(first, first + 1, first + 2);
@@ -103,10 +104,10 @@ bool is_text(const SourceText& source) {
 
 // Binary: 80 bytes, the number of facets, 50 bytes each. Programs that write facets as they find them leave the number
 // at 0 or -1: then the size of the file says it.
-std::vector<MeshPart> read_parts(const SourceText& source, std::vector<std::string>& warnings) {
+std::vector<MeshPart> read_parts(const SourceText& source, const Reading& reading, std::vector<std::string>& warnings) {
     const std::size_t size = source.text.size();
     if (size < kStlHeader) {
-        if (is_text(source)) return read_text_stl(source, warnings);
+        if (is_text(source)) return read_text_stl(source, reading, warnings);
         throw InputError(fmt::format(
             "{}: neither text STL nor binary STL, expected \"solid\" as its first word or at least {} bytes "
             "({} found)",
@@ -114,27 +115,27 @@ std::vector<MeshPart> read_parts(const SourceText& source, std::vector<std::stri
     }
     const auto says = BinaryReader(source, kStlHeader - 4, std::endian::little).take<std::uint32_t>("the header");
     const std::uint64_t room = (size - kStlHeader) / kStlFacet, rest = (size - kStlHeader) % kStlFacet;
-    if (says == room && rest == 0) return read_binary_stl(source, says);
-    if (is_text(source)) return read_text_stl(source, warnings);
+    if (says == room && rest == 0) return read_binary_stl(source, reading, says);
+    if (is_text(source)) return read_text_stl(source, reading, warnings);
     if ((says == 0 || says == ~std::uint32_t{0}) && rest == 0) {
         warnings.push_back(
             fmt::format("the header says {} facets, the file has {}: all are read.", std::int32_t(says), room));
-        return read_binary_stl(source, room);
+        return read_binary_stl(source, reading, room);
     }
     if (says > room || says == 0)
         throw InputError(fmt::format("{}: byte {}: {} facets take {} bytes, but the file has {}", source.file,
                                      kStlHeader - 4, says, kStlHeader + std::uint64_t(says) * kStlFacet, size));
     warnings.push_back(fmt::format("{} bytes behind the {} facets that the header says are ignored.",
                                    size - kStlHeader - says * kStlFacet, says));
-    return read_binary_stl(source, says);
+    return read_binary_stl(source, reading, says);
 }
 
 }  // namespace
 
-SceneFile read_stl(const std::filesystem::path& file) {
+SceneFile read_stl(const std::filesystem::path& file, const Reading& reading) {
     const SourceText source = read_text(file);
     std::vector<std::string> warnings;
-    const std::vector<MeshPart> parts = read_parts(source, warnings);
+    const std::vector<MeshPart> parts = read_parts(source, reading, warnings);
     return scene_of(parts, file, warnings);
 }
 

@@ -123,12 +123,13 @@ double Tokens::as_double(Token token, std::string_view what) const {
     return value;
 }
 
-float Tokens::as_real(Token token, std::string_view what) const {
+double Tokens::as_number(Token token, std::string_view what) const {
     const double value = as_double(token, what);
     if (!kAnyNumber.holds(value))
         fail(token, fmt::format("{} is {}, expected {}", what, in_quotes(token.text), kAnyNumber.words));
-    return static_cast<float>(value);
+    return value;
 }
+float Tokens::as_real(Token token, std::string_view what) const { return static_cast<float>(as_number(token, what)); }
 
 std::int64_t Tokens::as_integer(Token token, std::string_view what) const {
     if (!token) fail(token, fmt::format("{} is missing, expected a whole number", what));
@@ -144,13 +145,14 @@ float Tokens::real(std::string_view what) { return as_real(next(), what); }
 float Tokens::real_on_line(std::string_view what) { return as_real(next_on_line(), what); }
 std::int64_t Tokens::integer(std::string_view what) { return as_integer(next(), what); }
 
-vec3 Tokens::point(std::string_view what) {
-    const float x = real(what), y = real(what), z = real(what);
+dvec3 Tokens::point(std::string_view what) {
+    const double x = as_number(next(), what), y = as_number(next(), what), z = as_number(next(), what);
     return {x, y, z};
 }
 
-vec3 Tokens::point_on_line(std::string_view what) {
-    const float x = real_on_line(what), y = real_on_line(what), z = real_on_line(what);
+dvec3 Tokens::point_on_line(std::string_view what) {
+    const auto coordinate = [&] { return as_number(next_on_line(), what); };
+    const double x = coordinate(), y = coordinate(), z = coordinate();
     return {x, y, z};
 }
 

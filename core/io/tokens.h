@@ -35,8 +35,8 @@ public:
     /// infinity, what lies outside kAnyNumber.
     float real(std::string_view what);
     float real_on_line(std::string_view what);
-    vec3 point(std::string_view what);  ///< three numbers, across lines
-    vec3 point_on_line(std::string_view what);
+    dvec3 point(std::string_view what);  ///< three numbers, across lines; not rounded to float
+    dvec3 point_on_line(std::string_view what);
     /// The same, but NaN, infinity and any magnitude pass, as in normals of triangles without area (see FileNormals).
     float any_real(std::string_view what);
     [[nodiscard]] float as_any_real(Token token, std::string_view what) const;
@@ -44,6 +44,7 @@ public:
     vec3 normal_on_line();
     std::int64_t integer(std::string_view what);  ///< across lines
     [[nodiscard]] float as_real(Token token, std::string_view what) const;
+    [[nodiscard]] double as_number(Token token, std::string_view what) const;  ///< as_real() before it is rounded
     [[nodiscard]] std::int64_t as_integer(Token token, std::string_view what) const;
 
     /// Refuses a line on which blanks separate numbers, and a comma lies between two digits of one: a decimal comma.

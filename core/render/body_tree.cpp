@@ -70,13 +70,14 @@ OnSurface onto_surface(const Body& body, dvec3 p) {
 
 struct BodyTree::Impl : EmbreeScene {
     std::vector<Body> bodies;
-    std::vector<vec3> passes;  ///< one a body
-    dvec3 centre{0};           ///< tree space: (p - centre) * scale
+    std::vector<vec3> passes;        ///< one a body
+    std::vector<std::uint8_t> seen;  ///< the same; empty: all are
+    dvec3 centre{0};                 ///< tree space: (p - centre) * scale
     double scale = 1;
     double least = 0;  ///< world units
 
-    Impl(std::vector<Body> bodies_, std::vector<vec3> passes_)
-        : bodies(std::move(bodies_)), passes(std::move(passes_)) {
+    Impl(std::vector<Body> bodies_, std::vector<vec3> passes_, std::vector<std::uint8_t> seen_)
+        : bodies(std::move(bodies_)), passes(std::move(passes_)), seen(std::move(seen_)) {
         fit_space();
         build();
     }
@@ -156,6 +157,7 @@ struct BodyTree::Impl : EmbreeScene {
         if (arguments->valid[0] == 0) return;
         Query& query          = static_cast<Query&>(query_of(arguments));
         const std::uint32_t b = arguments->primID;
+        if (query.ray.is_of_eye && !query.tree.seen.empty() && query.tree.seen[b] == 0) return;
         const Crossings found = query.crossings_of(b);
         if (found.count == 0) return;
         BodyMeeting& nearest = query.nearest;
@@ -177,8 +179,8 @@ struct BodyTree::Impl : EmbreeScene {
     }
 };
 
-BodyTree::BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through)
-    : impl_(std::make_unique<Impl>(std::move(bodies), std::move(lets_through))) {}
+BodyTree::BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through, std::vector<std::uint8_t> seen)
+    : impl_(std::make_unique<Impl>(std::move(bodies), std::move(lets_through), std::move(seen))) {}
 BodyTree::~BodyTree()                              = default;
 BodyTree::BodyTree(BodyTree&&) noexcept            = default;
 BodyTree& BodyTree::operator=(BodyTree&&) noexcept = default;

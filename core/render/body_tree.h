@@ -23,10 +23,11 @@ struct OnSurface {
 
 /// A ray, in world space.
 struct BodyRay {
-    dvec3 origin{0}, direction{0, 0, 1};            ///< the latter unit
-    std::uint32_t from = kNoBody;                   ///< on whose surface it starts: it meets that body where it
-                                                    ///< leaves it, if it runs inwards, and else not at all
-    double reach = static_cast<double>(kInfinity);  ///< what is farther away is not met
+    dvec3 origin{0}, direction{0, 0, 1};              ///< the latter unit
+    std::uint32_t from = kNoBody;                     ///< on whose surface it starts: it meets that body where it
+                                                      ///< leaves it, if it runs inwards, and else not at all
+    double reach   = static_cast<double>(kInfinity);  ///< what is farther away is not met
+    bool is_of_eye = false;                           ///< it passes through bodies that the camera does not see
 };
 
 /// What a ray meets first.
@@ -39,9 +40,9 @@ struct BodyMeeting {
 /// than the rounding of double, for bodies whose surfaces coincide.
 class BodyTree {
 public:
-    /// `lets_through`: one a body, the fraction of light that passes its surface once, per channel. Throws
-    /// std::runtime_error where Embree fails.
-    BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through);
+    /// `lets_through`: one a body, the fraction of light that passes its surface once, per channel. `seen`: one a body,
+    /// 0 where the camera does not see it; empty: it sees all. Throws std::runtime_error where Embree fails.
+    BodyTree(std::vector<Body> bodies, std::vector<vec3> lets_through, std::vector<std::uint8_t> seen = {});
     ~BodyTree();
     BodyTree(BodyTree&&) noexcept;
     BodyTree& operator=(BodyTree&&) noexcept;

@@ -13,6 +13,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "umbra/core/render/ray.h"
 
@@ -141,6 +142,7 @@ struct EmbreeScene {
 struct RayScene::Impl : EmbreeScene {
     std::span<const vec3> vertices;  ///< Embree's own copies, in ray space
     std::span<const uvec3> triangles;
+    std::vector<std::uint8_t> seen;  ///< by the eye, one a triangle; empty: all are
 };
 
 }  // namespace umbra

@@ -33,12 +33,17 @@ bool rises_over(const Scene& scene, TriangleId t, TriangleId own, int side) {
     return false;
 }
 
+Facing as_received(const Scene& scene, TriangleId t, Facing facing) {
+    return is_asked(facing) && !scene.switches(t).receives_shadows ? Facing::unshadowed : facing;
+}
+
 Facing facing_of(const Scene& scene, LightId id, TriangleId t, bool flipped) {
     const Light& light = scene.lights[id];
     const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
     const int turn = flipped ? -1 : 1;
-    if (is_area(light.kind)) return area_facing(light, a, b, c, turn);
-    return turn * side_of_light(light, a, b, c) > 0 ? Facing::front : Facing::away;
+    if (is_area(light.kind)) return as_received(scene, t, area_facing(light, a, b, c, turn));
+    const bool is_front = turn * side_of_light(light, a, b, c) > 0;
+    return as_received(scene, t, is_front ? Facing::front : Facing::away);
 }
 
 bool centre_of_cut_light_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {

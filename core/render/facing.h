@@ -15,6 +15,9 @@ namespace umbra {
 /// that is not on the light's side hides nothing of it. Exact.
 [[nodiscard]] bool rises_over(const Scene& scene, TriangleId t, TriangleId own, int side);
 
+/// `facing` of a point of triangle t, as its object takes it.
+[[nodiscard]] Facing as_received(const Scene& scene, TriangleId t, Facing facing);
+
 /// Which part of the light a point of triangle t sees, whose normal is `flipped` against the triangle's winding. Exact.
 [[nodiscard]] Facing facing_of(const Scene& scene, LightId light, TriangleId t, bool flipped);
 

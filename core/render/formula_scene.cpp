@@ -8,6 +8,8 @@
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/stopwatch.h"
+#include "umbra/core/render/ask_visibility.h"
+#include "umbra/core/render/facing.h"
 #include "umbra/core/render/sampling.h"
 
 namespace umbra {
@@ -58,6 +60,12 @@ std::vector<vec3> surfaces_let_through(const Scene& scene, const Bodies& bodies)
     return passes;
 }
 
+std::vector<std::uint8_t> seen_bodies(const Scene& scene, const Bodies& bodies) {
+    std::vector<std::uint8_t> seen;
+    for (const Body& body : bodies.list) seen.push_back(scene.switches(body.holder).seen_by_camera ? 1 : 0);
+    return seen;
+}
+
 /// Least and greatest height of a light over the plane through p with the unit normal n.
 std::pair<double, double> heights_of(const Light& light, dvec3 p, dvec3 n) {
     if (light.kind == LightKind::directional) {
@@ -85,7 +93,8 @@ void face_level(RayLevel& level, const Scene& scene) {
     parallel_ranges(level.points.size(), 1024, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
             for (LightId j = 0; j < scene.lights.size() && level.on_body[i].body != kNoBody; ++j)
-                level.points.facing[j][i] = facing_of(scene.lights[j], level.on_body[i]);
+                level.points.facing[j][i] =
+                    as_received(scene, level.points.triangle[i], facing_of(scene.lights[j], level.on_body[i]));
     });
 }
 
@@ -125,7 +134,7 @@ FormulaScene::FormulaScene(const Scene& scene, const Bodies& bodies)
       rest_(rest_of(scene, bodies)),
       shadow_rest_(rest_of(scene, bodies),
                    scene.transparent == TransparentOccluders::multiply ? Met::all : Met::blocking),
-      bodies_(bodies.list, surfaces_let_through(scene, bodies)) {}
+      bodies_(bodies.list, surfaces_let_through(scene, bodies), seen_bodies(scene, bodies)) {}
 
 TriangleId FormulaScene::first_triangle(const RayScene& rays, Ray ray) const {
     if (ray.from != kNoTriangle) ray.from = in_rest_[ray.from];
@@ -164,7 +173,8 @@ void FormulaScene::meet(RayLevel& level, std::size_t count, const std::function<
                 if (t != kNoTriangle) reach = distance_to_plane(*scene_, start.ray, t);
                 if (!std::isfinite(reach)) reach = kForever;
                 triangles[i - begin] = t;
-                bodies[i - begin]    = bodies_.first({start.ray.origin, start.ray.direction, start.body, reach});
+                bodies[i - begin] =
+                    bodies_.first({start.ray.origin, start.ray.direction, start.body, reach, start.ray.is_of_eye});
             }
         }
         for (std::size_t i = begin; i < end; ++i) {
@@ -181,9 +191,9 @@ RayTree FormulaScene::trace(const CameraFrame& raster, const TreeOptions& option
     const auto width  = static_cast<std::size_t>(raster.width);
     const auto eye_at = [&](std::size_t i) {
         const dvec2 at = eye_place(raster, options.eye_places, options.side, i);
-        return Start{
-            {raster.ray_origin(at.x, at.y), glm::normalize(raster.ray_direction(at.x, at.y)), kNoTriangle, dvec3(0)},
-            kNoBody};
+        return Start{{raster.ray_origin(at.x, at.y), glm::normalize(raster.ray_direction(at.x, at.y)), kNoTriangle,
+                      dvec3(0), kForever, true},
+                     kNoBody};
     };
     RayLevel eye;
     eye.points.raster = raster;
@@ -247,6 +257,7 @@ std::vector<VisibilityPlane> FormulaScene::visibility(const RayTree& tree, std::
         return start.ray.reach > 0 ? passes(start) : dvec3(1);
     };
     for (LightId j = 0; j < planes.size(); ++j) {
+        write_decided(*scene_, points, j, planes[j].out());
         const Light& light   = scene_->lights[j];
         const auto s_of_area = [&](std::size_t i, const Start& start) {
             const dvec3 normal = start.body == kNoBody ? start.ray.normal : here.on_body[i].normal;

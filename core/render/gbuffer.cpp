@@ -56,7 +56,7 @@ public:
     void start(RTCRay8& ray) const {
         fill(window_ ? forward_ : eye_, window_ ? ray.dir_x : ray.org_x, window_ ? ray.dir_y : ray.org_y,
              window_ ? ray.dir_z : ray.org_z);
-        std::fill_n(ray.mask, 8, ~0u);
+        std::fill_n(ray.mask, 8, kEyeRay);
     }
 
     /// Clears `valid` of rays that pass far from the scene. `hits` gets the rays in double.

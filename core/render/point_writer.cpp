@@ -100,6 +100,7 @@ void face_eight(const Light& light, const Triangles8& t, const Doubles& flipped,
 PointWriter::PointWriter(const Scene& scene, PointBatch& batch) : scene_(scene), batch_(batch) {
     window_ = batch.raster->projection == Projection::orthographic;
     for (const Material& m : scene.materials) all_two_sided_ &= m.two_sided;
+    for (const Object& object : scene.objects) all_receive_ &= object.switches.receives_shadows;
     batch.facing.resize(scene.lights.size());
     for (std::vector<Facing>& plane : batch.facing) plane.resize(batch.size());
 }
@@ -259,6 +260,9 @@ UMBRA_FOR_EACH_PROCESSOR bool PointWriter::write(const Hits8& hits, int x, int y
     for (LightId j = 0; j < scene_.lights.size(); ++j) {
         int facing[8]{};
         if (!nothing) face_eight(scene_.lights[j], triangles, points.flipped, points.done, facing);
+        for (int k = 0; k < 8 && !all_receive_; ++k)
+            if (hits.triangle[k] != kNoTriangle && !scene_.switches(hits.triangle[k]).receives_shadows)
+                facing[k] = static_cast<int>(kOpen);
         for_each_row([&](int lane, std::size_t i) {
             Facing* to = batch_.facing[j].data() + i;
             for (int k = 0; k < count; ++k) {

@@ -54,6 +54,7 @@ private:
     PointBatch& batch_;
     bool window_        = false;
     bool all_two_sided_ = true;
+    bool all_receive_   = true;  ///< shadows
 };
 
 }  // namespace umbra

@@ -12,11 +12,15 @@ namespace umbra {
 
 /// Which part of light j lies in front of the plane of the point's triangle (on the side of the batch's normal).
 enum class Facing : std::uint8_t {
-    none,    ///< no surface point here (the eye ray met nothing)
-    away,    ///< the whole light is behind, or exactly in the plane: S_j = 0 for every method
-    partly,  ///< an area light that the plane cuts
-    front    ///< all of the light is in front
+    none,       ///< no surface point here (the eye ray met nothing)
+    away,       ///< the whole light is behind, or exactly in the plane: S_j = 0 for every method
+    partly,     ///< an area light that the plane cuts
+    front,      ///< all of the light is in front
+    unshadowed  ///< some of the light is in front, and the object receives no shadows: S_j = 1 for every method
 };
+
+/// Whether methods are asked for S_j.
+[[nodiscard]] constexpr bool is_asked(Facing facing) { return facing == Facing::partly || facing == Facing::front; }
 
 /// Surface points. Triangle id and barycentrics name a point *exactly*: (1-u-v) a + u b + v c with u, v as stored,
 /// u, v >= 0 and u + v <= 1 in exact arithmetic. The position is that point rounded to float once.
@@ -33,9 +37,14 @@ struct PointBatch {
     std::vector<std::vector<Facing>> facing;  ///< [light][point]; filled by face_lights
 
     [[nodiscard]] std::size_t size() const { return triangle.size(); }
-    /// Whether S_j is asked of point i: some of the light is in front of its plane. Elsewhere S_j is 0 for every
-    /// method.
-    [[nodiscard]] bool asks(LightId light, std::size_t i) const { return facing[light][i] >= Facing::partly; }
+    /// Whether S_j is asked of point i: some of the light is in front of its plane, and its object receives shadows.
+    [[nodiscard]] bool asks(LightId light, std::size_t i) const { return is_asked(facing[light][i]); }
+    /// S_j of point i for every method, where it is not asked.
+    [[nodiscard]] float decided(LightId light, std::size_t i) const {
+        return facing[light][i] == Facing::unshadowed ? 1.0f : 0.0f;
+    }
+    /// Whether some of the light is in front of the plane of point i.
+    [[nodiscard]] bool faces(LightId light, std::size_t i) const { return facing[light][i] >= Facing::partly; }
     [[nodiscard]] vec3 position(std::size_t i) const { return {px[i], py[i], pz[i]}; }
     [[nodiscard]] vec3 normal(std::size_t i) const { return {nx[i], ny[i], nz[i]}; }
     void resize(std::size_t n);

@@ -33,6 +33,25 @@ void skip_own_triangle(const RTCFilterFunctionNArguments* arguments) {
             arguments->valid[k] = 0;
 }
 
+/// Eye rays meet no triangle whose entry is 0. Embree calls this for all triangles that a ray may meet first, where the
+/// scene has objects that the eye does not see.
+void skip_unseen(const RTCFilterFunctionNArguments* arguments) {
+    const auto* seen = static_cast<const std::uint8_t*>(arguments->geometryUserPtr);
+    for (unsigned k = 0; k < arguments->N; ++k)
+        if (RTCRayN_mask(arguments->ray, arguments->N, k) == kEyeRay && arguments->valid[k] != 0 &&
+            seen[RTCHitN_primID(arguments->hit, arguments->N, k)] == 0)
+            arguments->valid[k] = 0;
+}
+
+/// One entry a triangle; none where the eye sees all objects.
+std::vector<std::uint8_t> seen_triangles(const Scene& scene) {
+    if (std::ranges::all_of(scene.objects, [](const Object& object) { return object.switches.seen_by_camera; }))
+        return {};
+    std::vector<std::uint8_t> seen(scene.triangles.size());
+    for (TriangleId t = 0; t < seen.size(); ++t) seen[t] = scene.switches(t).seen_by_camera ? 1 : 0;
+    return seen;
+}
+
 RaySpace fit_space(const Box& box) {
     RaySpace space;
     if (box.empty()) return space;
@@ -67,6 +86,11 @@ RayScene::RayScene(const Scene& scene, Met met) : impl_(std::make_unique<Impl>()
             impl_->vertices  = {vertices, scene.positions.size()};
             impl_->triangles = {indices, triangles};
             rtcSetGeometryOccludedFilterFunction(geometry, skip_own_triangle);
+            impl_->seen = seen_triangles(scene);
+            if (!impl_->seen.empty()) {
+                rtcSetGeometryUserData(geometry, impl_->seen.data());
+                rtcSetGeometryIntersectFilterFunction(geometry, skip_unseen);
+            }
             rtcCommitGeometry(geometry);
             rtcAttachGeometryByID(impl_->scene, geometry, 0);
         }

@@ -46,6 +46,9 @@ struct alignas(16) ShadowRay {
     std::uint32_t flags = 0;
 };
 
+/// `mask` of rays from the eye, which pass through objects that it does not see; all others have ~0.
+inline constexpr std::uint32_t kEyeRay = 1;
+
 /// Flushes denormal floats to zero on this thread while it lives, which Embree is several times faster with. Keep it
 /// around the tracing alone: exact arithmetic needs denormals.
 class FlushDenormals {

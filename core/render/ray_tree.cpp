@@ -48,6 +48,7 @@ ShadowRay in_ray_space(const RaySpace& space, const Ray& ray) {
     traced.tnear = ray.from == kNoTriangle ? 0 : start_height(o, n) / std::max(std::abs(glm::dot(n, d)), 1e-30f);
     traced.tfar  = static_cast<float>(ray.reach * static_cast<double>(space.scale));
     traced.id    = ray.from;
+    traced.mask  = ray.is_of_eye ? kEyeRay : ~0u;
     return traced;
 }
 
@@ -318,13 +319,14 @@ PointBatch trace_eye_rays(const RayScene& rays, const Scene& scene, const Camera
     const double scale = static_cast<double>(space.scale), unit = 1 / scale;
     // As EyeRays in gbuffer.cpp has them, operation by operation.
     const auto ray_of = [&](std::size_t i) {
-        const dvec2 at_pixel = eye_place(raster, places, side, i);
-        const double zoom    = window ? scale : 1;
-        const dvec3 column   = raster.half_width * (2 * at_pixel.x / raster.width - 1) * raster.right * zoom,
-                    row      = raster.half_height * (2 * at_pixel.y / raster.height - 1) * raster.up * zoom;
-        if (!window) return Ray{raster.eye, raster.forward + (column - row), kNoTriangle, dvec3(0)};
+        const dvec2 at_pixel     = eye_place(raster, places, side, i);
+        const double zoom        = window ? scale : 1;
+        const dvec3 column       = raster.half_width * (2 * at_pixel.x / raster.width - 1) * raster.right * zoom,
+                    row          = raster.half_height * (2 * at_pixel.y / raster.height - 1) * raster.up * zoom;
+        constexpr double forever = static_cast<double>(kInfinity);
+        if (!window) return Ray{raster.eye, raster.forward + (column - row), kNoTriangle, dvec3(0), forever, true};
         const dvec3 at = (raster.eye - dvec3(space.centre)) * scale + (column - row);
-        return Ray{at * unit + dvec3(space.centre), raster.forward, kNoTriangle, dvec3(0)};
+        return Ray{at * unit + dvec3(space.centre), raster.forward, kNoTriangle, dvec3(0), forever, true};
     };
     parallel_ranges(points.size(), 512, [&](std::size_t begin, std::size_t end) {
         std::vector<TriangleId> met(end - begin);
@@ -358,7 +360,7 @@ TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& 
     TriangleId first = kNoTriangle;
     double nearest   = ray.reach;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
-        if (t == ray.from) continue;
+        if (t == ray.from || (ray.is_of_eye && !scene.switches(t).seen_by_camera)) continue;
         const OnPlane on = meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
                                       dvec3(scene.vertex(t, 2)));
         if (on.u >= 0 && on.v >= 0 && on.u + on.v <= 1 && on.t > start && on.t < nearest) first = t, nearest = on.t;

@@ -132,10 +132,11 @@ using MeetRays = std::function<void(RayTree& tree, std::size_t level)>;
 
 /// One ray, in world space.
 struct Ray {
-    dvec3 origin{0}, direction{0};                  ///< the latter unit
-    TriangleId from = kNoTriangle;                  ///< on which it starts, and which it does not meet
-    dvec3 normal{0};                                ///< of that triangle, unit, any side
-    double reach = static_cast<double>(kInfinity);  ///< what is farther away is not met
+    dvec3 origin{0}, direction{0};                    ///< the latter unit
+    TriangleId from = kNoTriangle;                    ///< on which it starts, and which it does not meet
+    dvec3 normal{0};                                  ///< of that triangle, unit, any side
+    double reach   = static_cast<double>(kInfinity);  ///< what is farther away is not met
+    bool is_of_eye = false;                           ///< it passes through objects that the camera does not see
 };
 /// Ray i of a level after the first. One that starts on a body starts on no triangle.
 [[nodiscard]] Ray secondary_ray(const Scene& scene, const RayTree& tree, std::size_t level, std::size_t i);

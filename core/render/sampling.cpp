@@ -5,11 +5,12 @@
 // Martin Roberts. The Unreasonable Effectiveness of Quasirandom Sequences. 2018
 // Peter Shirley, Kenneth Chiu. A Low Distortion Map Between Disk and Square. 1997
 #include "umbra/core/render/sampling.h"
-#include "umbra/core/base/lanes.h"
 
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+
+#include "umbra/core/base/lanes.h"
 
 namespace umbra {
 namespace {

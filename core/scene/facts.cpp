@@ -101,6 +101,7 @@ ObjectFacts object_facts(const Scene& scene, const Object& object) {
     ObjectFacts f;
     f.name      = object.name;
     f.triangles = object.triangle_count;
+    f.switches  = object.switches;
     f.vertices  = static_cast<std::uint32_t>(topology.position.size());
     for (const std::uint32_t p : topology.position) f.box = extend(f.box, scene.positions[p]);
 
@@ -173,9 +174,11 @@ void find_terms(const Scene& scene, SceneFacts& facts) {
         facts.has_lobes |= specular_light && !m.lobes.empty();
         facts.has_emission |= any(m.emission);
         facts.has_transparency |= transmittance(m) > 0;
-        facts.has_filters |= scene.transparent == TransparentOccluders::multiply && transmittance(m) > 0;
+        facts.has_filters |= scene.transparent == TransparentOccluders::multiply && transmittance(m) > 0 &&
+                             object.switches.casts_shadows;
         facts.has_mirrors |= m.reflect > 0;
         facts.has_one_sided |= !m.two_sided;
+        facts.has_cutouts |= m.cutout;
     }
     facts.has_coloured_filters = has_coloured_filters(scene);
     for (const Light& light : scene.lights) {
@@ -226,6 +229,7 @@ std::vector<Trait> traits(const SceneFacts& facts) {
         {facts.has_fog, "fog"},
         {facts.has_transparency, "transparency"},
         {facts.has_filters, "shadows of what lets a part of the light through"},
+        {facts.has_cutouts, "outlines cut by a texture"},
         {facts.has_mirrors, "mirrors"},
         {!facts.hard_lights_only, "penumbra (area light)"},
         {facts.open_objects + facts.nonmanifold_objects + facts.misoriented_objects > 0,

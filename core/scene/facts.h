@@ -31,6 +31,7 @@ struct ObjectFacts {
     double area = 0, volume = 0;  ///< volume by the divergence theorem; where the object is not closed,
                                   ///< that of the cones from the world's origin to its triangles
     Box box;
+    ObjectSwitches switches;
 };
 
 /// The position of a light relative to the eye, the lecture's four cases.
@@ -58,6 +59,7 @@ struct SceneFacts {
          has_fixed_light = false, has_exceptions = false, has_lobes = false, has_attenuated_ambient = false;
     bool has_coloured_filters = false;       ///< and of some channel more than of another
     bool has_filters          = false;       ///< some triangle lets a part of the light through (Scene::lets_through)
+    bool has_cutouts          = false;       ///< some triangle has an outline that is not computed (Material::cutout)
     std::vector<UncomputedTerm> uncomputed;  ///< what materials ask for and pictures of the sum do not have
     bool hard_lights_only         = true;
     bool eye_inside_closed_object = false;

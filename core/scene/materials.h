@@ -37,6 +37,7 @@ struct Material {
     float shininess = 1;  ///< n, >= 0
     Lobe lobe       = Lobe::phong;
     bool two_sided  = true;   ///< the side that faces the eye is lit; otherwise the side of the winding only
+    bool cutout     = false;  ///< a texture's alpha cuts its outline, which is not computed: it is whole
     float opacity   = 1;      ///< 1 opaque
     float reflect   = 0;      ///< k_r, Whitted's mirrored share; in ray_tree.h alone
     float transmit  = 0;      ///< k_t, Whitted's transmitted share

@@ -77,6 +77,11 @@ struct EnumNames<TransparentOccluders> {
 };
 
 template <>
+struct EnumNames<UpAxis> {
+    static constexpr std::array<Named<UpAxis>, 3> table{{{UpAxis::y, "y"}, {UpAxis::z, "z"}, {UpAxis::minus_y, "-y"}}};
+};
+
+template <>
 struct EnumNames<NormalWeights> {
     static constexpr std::array<Named<NormalWeights>, 3> table{
         {{NormalWeights::angle, "angle"}, {NormalWeights::area, "area"}, {NormalWeights::equal, "equal"}}};

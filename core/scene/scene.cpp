@@ -12,7 +12,7 @@ bool has_coloured_filters(const Scene& scene) {
     return scene.transparent == TransparentOccluders::multiply &&
            std::ranges::any_of(scene.objects, [&](const Object& object) {
                const vec3 passes = coloured_transmittance(scene.materials[object.material]);
-               return object.triangle_count > 0 && passes != vec3(passes.r);
+               return object.triangle_count > 0 && object.switches.casts_shadows && passes != vec3(passes.r);
            });
 }
 

@@ -1,7 +1,9 @@
 // The scene: world-space triangles with objects and materials, lights, one camera. Made once, read by all.
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbra/core/base/math.h"
@@ -16,12 +18,30 @@ using TriangleId                        = std::uint32_t;
 inline constexpr TriangleId kNoTriangle = 0xffffffffu;
 inline constexpr double kMaxCoordinate  = 1e18;  ///< larger magnitudes are refused where scenes are read
 
+/// What an object takes part in.
+struct ObjectSwitches {
+    bool casts_shadows    = true;  ///< false: it blocks and filters no light
+    bool receives_shadows = true;  ///< false: S_j is 1 where some of the light is in front (Facing::unshadowed)
+    bool seen_by_camera   = true;  ///< false: eye rays pass through it; mirrored and refracted rays do not
+    [[nodiscard]] bool operator==(const ObjectSwitches&) const = default;
+};
+
+/// A switch, and what files call it.
+struct ObjectSwitch {
+    std::string_view key;
+    bool ObjectSwitches::*is_on;
+};
+inline constexpr std::array kObjectSwitches{ObjectSwitch{"casts_shadows", &ObjectSwitches::casts_shadows},
+                                            ObjectSwitch{"receives_shadows", &ObjectSwitches::receives_shadows},
+                                            ObjectSwitch{"seen_by_camera", &ObjectSwitches::seen_by_camera}};
+
 /// A run of consecutive triangles that moves together and has one material.
 struct Object {
     std::string name;
     std::uint32_t first_triangle = 0;
     std::uint32_t triangle_count = 0;
     std::uint32_t material       = 0;
+    ObjectSwitches switches{};
 };
 
 enum class ToneMap : std::uint8_t {
@@ -46,6 +66,9 @@ enum class TransparentOccluders : std::uint8_t {
                ///< product
 };
 
+/// Which axis of a mesh file points up. Scenes have y.
+enum class UpAxis : std::uint8_t { y, z, minus_y };
+
 /// Pixels along a side of a picture, in a scene file and on the command line.
 inline constexpr int kMaxPictureSide = 16384;
 
@@ -54,6 +77,9 @@ struct Scene {
     std::string title;   ///< for people; defaults to `name`
     std::string shows;   ///< one sentence: what this scene shows
     std::string source;  ///< the file it came from; empty if made in memory
+
+    dvec3 origin{0};  ///< where (0, 0, 0) is in the file's numbers: all positions here, lights and camera included, are
+                      ///< relative to it. Not 0 only for a scene far from the file's own origin
 
     std::vector<vec3> positions;                 ///< finite
     std::vector<vec3> normals;                   ///< one a position, unit; zero where the face normal is meant
@@ -86,14 +112,17 @@ struct Scene {
     [[nodiscard]] const Material& material(TriangleId t) const {
         return materials[objects[triangle_object[t]].material];
     }
+    [[nodiscard]] const ObjectSwitches& switches(TriangleId t) const { return objects[triangle_object[t]].switches; }
     /// Whether triangle t takes all light that meets it.
     [[nodiscard]] bool blocks(TriangleId t) const {
-        return transparent == TransparentOccluders::block || coloured_transmittance(material(t)) == vec3(0);
+        return switches(t).casts_shadows &&
+               (transparent == TransparentOccluders::block || coloured_transmittance(material(t)) == vec3(0));
     }
     /// What triangle t leaves of light that passes through it, per channel: 0 where it blocks.
     [[nodiscard]] vec3 lets_through(TriangleId t) const {
         if (blocks(t)) return vec3(0);
-        return transparent == TransparentOccluders::multiply ? coloured_transmittance(material(t)) : vec3(1);
+        const bool filters = transparent == TransparentOccluders::multiply && switches(t).casts_shadows;
+        return filters ? coloured_transmittance(material(t)) : vec3(1);
     }
 };
 

@@ -16,6 +16,7 @@ constexpr Term kTerms[] = {
     {"transmit", "", [](const Material& m) { return m.transmit > 0; }},
     {"reflect", "surfaces show no mirror images", [](const Material& m) { return m.reflect > 0; }},
     {"index_of_refraction", "nothing is refracted", [](const Material& m) { return m.index_of_refraction != 1; }},
+    {kCutout, "surfaces are whole, and so are their shadows", [](const Material& m) { return m.cutout; }},
 };
 
 /// The same surfaces in S_j, which is not as they are drawn.

@@ -17,7 +17,11 @@ struct UncomputedTerm {
     std::vector<std::string> materials;  ///< their names, in the scene's order; not empty
 };
 
-/// In a fixed order: opacity, transmit, reflect, index_of_refraction; those that no material asks for are left out.
+/// The term that `umbra whitted` does not have either, and the one that S_j lacks.
+inline constexpr std::string_view kCutout = "cutout";
+
+/// In a fixed order: opacity, transmit, reflect, index_of_refraction, cutout; those that no material asks for are left
+/// out.
 [[nodiscard]] std::vector<UncomputedTerm> find_uncomputed(const Scene& scene);
 
 /// "opacity of material \"glass\"", "opacity of materials \"a\", \"b\", \"c\" and 4 more".

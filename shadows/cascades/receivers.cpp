@@ -206,7 +206,7 @@ public:
 private:
     /// The point, where it counts.
     [[nodiscard]] std::optional<dvec3> at(std::size_t i) const {
-        if (facing_[i] < Facing::partly) return {};
+        if (!is_asked(facing_[i])) return {};
         const dvec3 p = exact_position(*scene_, *points_, i);
         for (const dvec4& plane : planes_)
             if (distance(plane, p - view_.eye()) < 0) return {};

@@ -55,13 +55,15 @@ Corner meeting(const HalfPlane& a, const HalfPlane& b) {
     return Corner(c);
 }
 
-/// A convex polygon, anticlockwise: edge k lies on the border of a half plane and ends at its corner. Corners are
-/// meetings of two borders that were given, so that their digits do not grow from cut to cut.
+/// An edge on the border of a half plane, and the corner that it ends at.
+struct CellEdge {
+    HalfPlane border;
+    Corner end;
+};
+
+/// A convex polygon, anticlockwise. Corners are meetings of two borders that were given, so that their digits do not
+/// grow from cut to cut.
 struct Cell {
-    struct CellEdge {
-        HalfPlane border;
-        Corner end;
-    };
     std::vector<CellEdge> edges;
     dvec3 share{1};  ///< of the light that passes what lies before it, per channel
 };
@@ -80,7 +82,7 @@ Cell clipped(const Cell& cell, const HalfPlane& g) {
     if (!any_outside) return cell;
     Cell part{{}, cell.share};
     for (std::size_t k = 0; k < n; ++k) {
-        const Cell::CellEdge& edge = cell.edges[k];
+        const CellEdge& edge = cell.edges[k];
         const int from = side[(k + n - 1) % n], to = side[k];
         if (from < 0 && to > 0) part.edges.push_back({g, meeting(g, edge.border)});
         if (from == 0 && to > 0) part.edges.push_back({g, cell.edges[(k + n - 1) % n].end});
@@ -155,7 +157,7 @@ Cell whole_light() {
 /// Replaces a cell by its parts: what the triangle hides, dimmed, and the rest.
 void divide(Cell cell, const Hidden& hidden, dvec3 passes, std::vector<Cell>& into) {
     const auto is_outside = [&](const HalfPlane& g) {
-        return std::ranges::all_of(cell.edges, [&](const Cell::CellEdge& edge) { return side_of(g, edge.end) <= 0; });
+        return std::ranges::all_of(cell.edges, [&](const CellEdge& edge) { return side_of(g, edge.end) <= 0; });
     };
     if (std::ranges::any_of(hidden.inside, is_outside)) {
         into.push_back(std::move(cell));

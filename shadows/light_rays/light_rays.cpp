@@ -21,7 +21,7 @@ std::size_t LightRays::hard_light_rays(const Starts& starts, const Facing* facin
     const float tfar    = parallel ? kInfinity : target_.reach;
     std::size_t written = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        if (facing[k] < Facing::partly) continue;
+        if (!is_asked(facing[k])) continue;
         rays[written++] = {starts.x[k], starts.y[k], starts.z[k], tnear[k], dx[k],        dy[k],
                            dz[k],       0,           tfar,        ~0u,      starts.id[k], 0};
     }
@@ -98,7 +98,7 @@ void LightRays::blame(const StartPlaces& places, const PointBatch& points, std::
             for (std::size_t k = 0; k < count; ++k) {
                 TriangleId& blocker = blockers[first + k];
                 blocker             = kNoTriangle;
-                if (facing[first + k] < Facing::partly) continue;
+                if (!is_asked(facing[first + k])) continue;
                 blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], first + k);
                 if (blocker == kNoTriangle) blocker = near_light_.blocker(points, first + k);
             }

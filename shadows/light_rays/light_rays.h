@@ -19,7 +19,7 @@ namespace umbra::rays {
 
 /// Whether any of `count` points asks for S_j, by their facing.
 [[nodiscard]] inline bool any_asks(const Facing* facing, std::size_t count) {
-    return std::any_of(facing, facing + count, [](Facing f) { return f >= Facing::partly; });
+    return std::any_of(facing, facing + count, is_asked);
 }
 
 /// An area light as one point sees it, in Target::unit of ray space: the light's points are to_centre + x axis_u +

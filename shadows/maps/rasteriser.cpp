@@ -365,7 +365,7 @@ private:
 
 template <DepthFormat format>
 UMBRA_FOR_EACH_PROCESSOR void Snapper<format>::snap_four(std::span<const uvec3> triangles) {
-    // X, Y, R and W of three corners. Doubles without a triangle take the last one's, and are not drawn.
+    // X, Y, R and W of three corners. Lanes without a triangle take the last one's, and are not drawn.
     std::array<std::array<Doubles, 3>, 4> c;
     std::array<const uvec3*, kFour> from;
     Masks drawn{};

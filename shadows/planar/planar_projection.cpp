@@ -260,7 +260,7 @@ public:
         parallel_ranges(looked.points.size(), 65536, [&](std::size_t begin, std::size_t end) {
             const Facing* const facing = looked.points.facing[aimed.light].data();
             for (std::size_t i = begin; i < end; ++i)
-                out.answer[i] = facing[i] >= Facing::partly ? Answer::undefined : out.answer[i];
+                out.answer[i] = is_asked(facing[i]) ? Answer::undefined : out.answer[i];
         });
         for_each_receiver(light, looked, [&](std::size_t r, Members members, const PlaneTree& places) {
             const Receiver& receiver = planes.receivers[r];

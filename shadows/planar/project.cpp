@@ -24,8 +24,7 @@ float nearest_float(double x) {
     return static_cast<float>(std::clamp(x, -kLargest, kLargest));
 }
 
-}  // namespace
-
+/// A float below, or above, the float nearest to x: the next, or the one beside that.
 float float_below(double x) {
     const float f = nearest_float(x);
     return f - (std::abs(f) * 0x1p-23f + kLeast);
@@ -34,6 +33,8 @@ float float_above(double x) {
     const float f = nearest_float(x);
     return f + (std::abs(f) * 0x1p-23f + kLeast);
 }
+
+}  // namespace
 
 // ---- receivers and sources ------------------------------------------------------------------------------------------
 

@@ -130,8 +130,4 @@ struct EdgeFunction {
 [[nodiscard]] TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,
                                     std::span<const Shadows> runs, dvec2 at);
 
-/// A float below, or above, the float nearest to x: the next, or the one beside that.
-[[nodiscard]] float float_below(double x);
-[[nodiscard]] float float_above(double x);
-
 }  // namespace umbra::planar

@@ -30,7 +30,7 @@ Exchange::Exchange(const Scene& scene, const Options& options)
     parallel_ranges(patches_.size(), 16, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) place(static_cast<PatchId>(k));
     });
-    for (const Shooter& side : sides_) first_ += side.area * mean(side.unshot);
+    for (const PatchSide& side : sides_) first_ += side.area * mean(side.unshot);
 }
 
 std::array<dvec3, 3> Exchange::polygon(PatchId patch) const {
@@ -50,16 +50,16 @@ void Exchange::place(PatchId patch) {
     const Material& material = scene_->material(t);
     if (!(twice > 0)) return;
     for (std::uint32_t flipped = 0; flipped < (material.two_sided ? 2u : 1u); ++flipped) {
-        Shooter& side = sides_[2 * patch + flipped];
-        side.centre   = {(a + b + c) / 3.0, (flipped != 0 ? -1.0 : 1.0) * across / twice, t};
-        side.area     = twice / 2;
-        side.reflects = dvec3(material.k_d) * dvec3(material.O_d);
-        side.direct   = find_direct(side, material);
-        side.unshot   = side.direct;
+        PatchSide& side = sides_[2 * patch + flipped];
+        side.centre     = {(a + b + c) / 3.0, (flipped != 0 ? -1.0 : 1.0) * across / twice, t};
+        side.area       = twice / 2;
+        side.reflects   = dvec3(material.k_d) * dvec3(material.O_d);
+        side.direct     = find_direct(side, material);
+        side.unshot     = side.direct;
     }
 }
 
-dvec3 Exchange::find_direct(const Shooter& side, const Material& material) const {
+dvec3 Exchange::find_direct(const PatchSide& side, const Material& material) const {
     const std::string& object = scene_->objects[scene_->triangle_object[side.centre.triangle]].name;
     dvec3 light_sum{0};
     for (const Light& light : scene_->lights) {
@@ -68,7 +68,9 @@ dvec3 Exchange::find_direct(const Shooter& side, const Material& material) const
         const double cosine    = glm::dot(side.centre.normal, dvec3(to_light(light, position).direction));
         const double intensity = static_cast<double>(falloff(light, position));
         if (!(cosine > 0) || !(intensity > 0)) continue;
-        const auto share = static_cast<double>(light_share(sight_, side.centre, light, options_.light_samples));
+        const bool shadowed = scene_->switches(side.centre.triangle).receives_shadows;
+        const double share =
+            shadowed ? static_cast<double>(light_share(sight_, side.centre, light, options_.light_samples)) : 1;
         light_sum += share * intensity * cosine * dvec3(light.diffuse);
     }
     return dvec3(material.emission) + side.reflects * light_sum;
@@ -76,12 +78,12 @@ dvec3 Exchange::find_direct(const Shooter& side, const Material& material) const
 
 double Exchange::unshot() const {
     double left = 0;
-    for (const Shooter& side : sides_) left += side.area * mean(side.unshot);
+    for (const PatchSide& side : sides_) left += side.area * mean(side.unshot);
     return first_ > 0 ? left / first_ : 0;
 }
 
 /// Of a side that a patch with these corners and this side sends to.
-double Exchange::form_factor(const Shooter& from, const std::array<dvec3, 3>& polygon, const Shooter& to) const {
+double Exchange::form_factor(const PatchSide& from, const std::array<dvec3, 3>& polygon, const PatchSide& to) const {
     if (from.area == 0 || to.area == 0) return 0;
     const dvec3 p = from.centre.position;
     if (!(glm::dot(to.centre.normal, p - to.centre.position) > 0)) return 0;
@@ -104,7 +106,7 @@ double Exchange::form_factor(SideId from, SideId to) const {
 }
 
 Exchange::SideId Exchange::shoot() {
-    const auto power = [](const Shooter& side) { return side.area * mean(side.unshot); };
+    const auto power = [](const PatchSide& side) { return side.area * mean(side.unshot); };
     const auto best  = std::ranges::max_element(sides_, {}, power);
     const auto from  = static_cast<SideId>(best - sides_.begin());
     const dvec3 sent = best->unshot;
@@ -114,7 +116,7 @@ Exchange::SideId Exchange::shoot() {
     std::vector<double> arrived(sides_.size(), 0);
     parallel_ranges(sides_.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            Shooter& side       = sides_[k];
+            PatchSide& side     = sides_[k];
             const double factor = k == from ? 0 : form_factor(side, part, sides_[from]);
             arrived[k]          = factor * side.area * mean(sent);
             side.indirect += factor * side.reflects * sent;
@@ -147,7 +149,7 @@ std::vector<vec3> Exchange::indirect_at(const PointBatch& points) const {
         for (std::size_t k = 0; k < 3; ++k) use(sums[key_of(corners[k], sides_[id].centre.normal)], k);
     };
     for (SideId id = 0; id < sides_.size(); ++id)
-        if (const Shooter& side = sides_[id]; side.area > 0)
+        if (const PatchSide& side = sides_[id]; side.area > 0)
             visit(id, [&](Sum& sum, std::size_t) { sum.light += side.area * side.indirect, sum.area += side.area; });
     std::vector<std::array<dvec3, 3>> at_corners(sides_.size());
     for (SideId id = 0; id < sides_.size(); ++id)

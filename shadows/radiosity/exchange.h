@@ -59,21 +59,22 @@ public:
     [[nodiscard]] std::vector<vec3> indirect_at(const PointBatch& points) const;
 
 private:
-    struct Shooter {
+    struct PatchSide {
         patches::SurfacePoint centre;
         double area = 0;  ///< 0: it sends and receives nothing
         dvec3 reflects{0}, direct{0}, indirect{0}, unshot{0};
     };
     void place(patches::PatchId patch);
-    [[nodiscard]] dvec3 find_direct(const Shooter& side, const Material& material) const;
-    [[nodiscard]] double form_factor(const Shooter& from, const std::array<dvec3, 3>& polygon, const Shooter& to) const;
+    [[nodiscard]] dvec3 find_direct(const PatchSide& side, const Material& material) const;
+    [[nodiscard]] double form_factor(const PatchSide& from, const std::array<dvec3, 3>& polygon,
+                                     const PatchSide& to) const;
     [[nodiscard]] std::array<dvec3, 3> polygon(patches::PatchId patch) const;
 
     const Scene* scene_ = nullptr;
     Options options_;
     patches::Sight sight_;
     patches::Patches patches_;
-    std::vector<Shooter> sides_;
+    std::vector<PatchSide> sides_;
     double first_ = 0, sent_ = 0, arrived_ = 0;
 };
 

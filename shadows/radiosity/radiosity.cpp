@@ -182,7 +182,8 @@ private:
               Elements& elements) const {
         const Scene& scene = surfaces.scene;
         const TriangleId t = surfaces.patches.triangle(patch);
-        const bool seen    = glm::length(area_normal(scene, t)) > 0 && (!flipped || scene.material(t).two_sided);
+        const bool seen    = glm::length(area_normal(scene, t)) > 0 && (!flipped || scene.material(t).two_sided) &&
+                          scene.switches(t).receives_shadows;  // else nobody asks
         // Small triangles are not cut to less than patches of large ones are.
         const double longest = options.size * surfaces.diagonal;
         int levels           = seen ? options.levels : 0;

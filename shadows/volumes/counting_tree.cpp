@@ -194,7 +194,7 @@ PointCounts::PointCounts(const CountingTree& tree, const PointBatch& points, Lig
         for (std::size_t leaf = begin; leaf < end; ++leaf) {
             unsigned asks = 0;
             for (std::size_t k = leaf * kLeaf; k < std::min(tree_.size, (leaf + 1) * kLeaf); ++k)
-                asks |= static_cast<unsigned>(facing[index_[k]] >= Facing::partly) << k % kLeaf;
+                asks |= static_cast<unsigned>(is_asked(facing[index_[k]])) << k % kLeaf;
             asks_[leaf] = static_cast<std::uint16_t>(asks);
             if (asks != 0) std::fill_n(&count_[leaf * kLeaf], kLeaf, 0);
         }

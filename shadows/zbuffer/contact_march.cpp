@@ -6,7 +6,8 @@
 
 namespace umbra {
 
-std::optional<std::size_t> march(const PointBatch& picture, dvec3 p, const Light& light, const ContactMarch& contact) {
+std::optional<std::size_t> march(const Scene& scene, const PointBatch& picture, dvec3 p, const Light& light,
+                                 const ContactMarch& contact) {
     const CameraFrame& camera = *picture.raster;
     const bool perspective    = camera.projection == Projection::perspective;
     const bool infinite       = light.kind == LightKind::directional;
@@ -22,7 +23,7 @@ std::optional<std::size_t> march(const PointBatch& picture, dvec3 p, const Light
         if (!inside || (perspective && pixel.z <= 0)) return {};
         const std::size_t i = static_cast<std::size_t>(pixel.y) * static_cast<std::size_t>(camera.width) +
                               static_cast<std::size_t>(pixel.x);
-        if (picture.triangle[i] == kNoTriangle) continue;
+        if (picture.triangle[i] == kNoTriangle || !scene.blocks(picture.triangle[i])) continue;
         const dvec3 s(picture.position(i)), n(picture.normal(i));
         const bool faces_eye = glm::dot(n, perspective ? s - camera.eye : camera.forward) < 0;
         const double before  = (faces_eye ? 1 : -1) * glm::dot(n, q - s);

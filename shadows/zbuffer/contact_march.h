@@ -18,9 +18,9 @@ struct ContactMarch {
 };
 
 /// The pixel of the first step that lies behind the plane of the facet seen there, but by no more than the thickness;
-/// none where there is none. It ends at the border of the picture. `picture` has a
+/// none where there is none. It ends at the border of the picture, and passes what lets light through. `picture` has a
 /// raster, and its points are seen from there; p in world space, seen or not. Pure: any number of threads.
-[[nodiscard]] std::optional<std::size_t> march(const PointBatch& picture, dvec3 p, const Light& light,
-                                               const ContactMarch& contact);
+[[nodiscard]] std::optional<std::size_t> march(const Scene& scene, const PointBatch& picture, dvec3 p,
+                                               const Light& light, const ContactMarch& contact);
 
 }  // namespace umbra

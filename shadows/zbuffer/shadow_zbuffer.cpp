@@ -271,7 +271,8 @@ private:
         const ContactMarch contact{options.contact_steps, options.contact_length, options.contact_thickness};
         for_each_facet(aimed.scene(), seen.points, aimed.light, [&](std::size_t i, const Facet&, dvec3 p) {
             if (!asks(i)) return;
-            if (const auto pixel = march(*picture, p, aimed.source(), contact)) found(i, picture->triangle[*pixel]);
+            const auto pixel = march(aimed.scene(), *picture, p, aimed.source(), contact);
+            if (pixel) found(i, picture->triangle[*pixel]);
         });
     }
 

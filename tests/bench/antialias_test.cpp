@@ -8,6 +8,7 @@
 #include <set>
 
 #include "umbra/bench/compare/compare.h"
+#include "umbra/bench/run/asked_method.h"
 #include "umbra/bench/run/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
@@ -105,6 +106,37 @@ TEST(Antialias, SmoothPicturesShowEachMethodsShadows) {
     EXPECT_GT(plain, 20);
     EXPECT_GT(smooth, 0.5 * plain);
     EXPECT_LT(smooth, 3 * plain);
+}
+
+/// Where S_j is decided without a method, subpixels have it.
+TEST(Antialias, WhatReceivesNoShadowsIsLit) {
+    const TemporaryFolder folder;
+    const PreparedScene prepared = prepare_scene(folder.write("lit.json", R"({
+        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]},
+        "lights": [{"type": "directional", "direction": [0.3, -1, -0.2]}],
+        "objects": [{"type": "plane", "size": 8, "receives_shadows": false},
+                    {"type": "box", "size": [2, 0.1, 1], "transform": [{"translate": [0, 1, 0]}]}]})"),
+                                                 {40, 30}, 4);
+    const MethodRun run =
+        run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points, {1, 0});
+    std::vector<std::uint32_t> ask;
+    const VisibilityPlane got =
+        between_centres(prepared.scene, prepared.points, run.planes[0], prepared.subpixels, 2, 0, ask);
+    const auto is_floor   = [&](TriangleId t) { return t != kNoTriangle && prepared.scene.triangle_object[t] == 0; };
+    const auto expect_lit = [&](const PointBatch& points, const VisibilityPlane& plane) {
+        std::size_t floor = 0, lit = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!is_floor(points.triangle[i])) continue;
+            ++floor;
+            lit += plane.s[i] == 1 ? 1 : 0;
+        }
+        EXPECT_GT(floor, points.size() / 5);
+        EXPECT_EQ(lit, floor);
+    };
+    expect_lit(prepared.subpixels, got);
+    expect_lit(prepared.points, run.planes[0]);
+    expect_lit(prepared.points, run.work->ask(prepared.points, 0));
+    expect_lit(prepared.points, AskedMethod(prepared.scene, prepared.facts, std::nullopt)(prepared.points)[0]);
 }
 
 /// A board over a floor under a square light: penumbrae of some pixels, which bend at their ends.

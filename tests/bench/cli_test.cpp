@@ -245,7 +245,7 @@ TEST_F(Cli, WhatAMaterialAsksForAndNothingComputesIsNamedByInspect) {
          {"opacity"}},
         {"a.gltf",
          gltf_scene(R"({"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}})"),
-         {"opacity"}},
+         {}},
         {"a.gltf",
          gltf_scene(
              R"({"alphaMode": "MASK", "alphaCutoff": 0.1, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.2]}})"),
@@ -497,6 +497,23 @@ TEST_F(Cli, InspectSaysWhoServesAndWhy) {
     EXPECT_EQ(umbra("inspect " + kScene + " --silhouettes 50 --seed 3 --json").output, answer.output);
 }
 
+/// A floor under a board that casts no shadow, and under a lid that it takes none of.
+TEST_F(Cli, ObjectsThatTakeNoPartAreNamed) {
+    std::ofstream(file("off.json")) << R"({"camera": {"eye": [0, 3, 6], "target": [0, 0, 0]},
+        "lights": [{"name": "sun", "type": "directional", "direction": [0, -1, 0]}],
+        "objects": [{"name": "ground", "type": "plane", "size": 8, "receives_shadows": false},
+                    {"name": "lid", "type": "plane", "transform": [{"translate": [0, 5, 0]}],
+                     "casts_shadows": false, "seen_by_camera": false}]})";
+    const std::string inspected = umbra("inspect " + file("off.json")).output;
+    EXPECT_TRUE(contains(inspected, "planar, receives_shadows is false\n")) << inspected;
+    EXPECT_TRUE(contains(inspected, "planar, casts_shadows is false, seen_by_camera is false\n")) << inspected;
+    const std::string why = "why " + file("off.json") + " 24 20 --size 48x32 --methods exact";
+    EXPECT_TRUE(contains(umbra(why).output, "The object receives no shadows: S is 1 for every method."));
+    const auto record = nlohmann::json::parse(umbra(why + " --json").output);
+    EXPECT_EQ(record["lights"][0]["unshadowed"], true);
+    EXPECT_FALSE(record["lights"][0].contains("away"));
+}
+
 TEST_F(Cli, InspectSaysHowClosedMeshesAreOriented) {
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     std::ofstream(file("outwards.obj")) << corners << "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
@@ -650,6 +667,37 @@ TEST_F(Cli, CompareThenReportAnewFromFilesAlone) {
     ASSERT_TRUE(fs::exists(file("out/results.json")));
     ASSERT_EQ(umbra("report " + file("out/sun_on_plane") + " -o " + file("anew")).exit_code, 0);
     EXPECT_TRUE(fs::exists(file("anew/index.html")));
+}
+
+TEST_F(Cli, UpTurnsMeshFilesAndSaysWhereThereIsNone) {
+    std::ofstream(file("part.obj")) << "v 1 2 3\nv 4 2 3\nv 1 5 7\nf 1 2 3\n";
+    const auto extent = [&](const std::string& arguments) {
+        return nlohmann::json::parse(
+            run("(" + std::string(UMBRA_PROGRAM) + " inspect --json " + arguments + " 2>/dev/null)")
+                .output)["facts"]["extent"];
+    };
+    const nlohmann::json z = extent(file("part.obj") + " --up z");
+    EXPECT_EQ(z, (nlohmann::json{{"min", {1, 3, -5}}, {"max", {4, 7, -2}}}));
+    EXPECT_EQ(extent(file("part.obj") + "@z"), z);
+    EXPECT_EQ(extent(file("part.obj") + " --up=-y")["min"], (nlohmann::json{1, -5, -7}));
+    const Answer none = umbra("inspect " + kScene + " --up z");
+    EXPECT_EQ(none.exit_code, 64);
+    EXPECT_TRUE(contains(none.output, "says itself which way is up, expected a mesh file")) << none.output;
+    EXPECT_EQ(umbra("inspect " + file("part.obj") + " --up x").exit_code, 64);
+    EXPECT_EQ(umbra("compare " + kScene + " " + file("part.obj") +
+                    " --up z --size 16x12 --methods ray_traced --quiet -o " + file("out"))
+                  .exit_code,
+              0);
+    EXPECT_TRUE(fs::exists(file("out/part/results.json")));
+}
+
+TEST_F(Cli, AFarSceneSaysWhatItsNumbersAreRelativeTo) {
+    std::ofstream(file("far.obj")) << "v 569001 5929000 0\nv 569002 5929000 0\nv 569001 5929001 0\nf 1 2 3\n";
+    EXPECT_TRUE(contains(umbra("inspect " + file("far.obj")).output, "Origin: (569000, 5929000, 0) of the file"));
+    const Answer answer =
+        run("(" + std::string(UMBRA_PROGRAM) + " inspect --json " + file("far.obj") + " 2>/dev/null)");
+    EXPECT_EQ(nlohmann::json::parse(answer.output)["scene"]["origin"], (nlohmann::json{569000, 5929000, 0}));
+    EXPECT_FALSE(contains(umbra("inspect " + kScene).output, "Origin:"));
 }
 
 }  // namespace

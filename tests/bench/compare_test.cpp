@@ -142,6 +142,34 @@ TEST_F(Compare, RecordFollowsItsSchemaAndNamesFilesThatExist) {
     }
 }
 
+/// A floor that receives no shadows, and a box over it: its points are counted, and compared nowhere.
+TEST_F(Compare, PointsThatReceiveNoShadowsAreCountedApart) {
+    const fs::path scene = folder_ / "lit.json";
+    write(scene, R"({
+        "shows": "A floor that no shadow falls on.",
+        "camera": {"eye": [0, 3, 6], "target": [0, 0.5, 0]},
+        "lights": [{"name": "sun", "type": "directional", "direction": [0, -1, -0.5]}],
+        "objects": [{"name": "floor", "type": "plane", "size": [8, 8], "receives_shadows": false},
+                    {"name": "box", "type": "box", "size": [1, 1, 1], "transform": [{"translate": [0, 1, 0]}]}]
+    })");
+    options_.methods  = {"ray_traced", "shadow_zbuffer"};
+    const Json record = compare_scene(scene, options_);
+    expect_valid(record);
+    EXPECT_EQ(record["facts"]["objects"][0]["receives_shadows"], false);
+    EXPECT_FALSE(record["facts"]["objects"][1].contains("receives_shadows"));
+    const PreparedScene prepared = prepare_scene(scene, {96, 54}, 1);
+    int floor = 0, box = 0;
+    for (const TriangleId t : prepared.points.triangle)
+        if (t != kNoTriangle) ++(prepared.scene.triangle_object[t] == 0 ? floor : box);
+    for (const Json& method : record["methods"]) {
+        const Json& e = method["errors"][0];
+        EXPECT_EQ(e["unshadowed"], floor) << "the sun is above all of it";
+        EXPECT_EQ(e["points"].get<int>() + e["undefined"].get<int>() + e["on_boundary"].get<int>() +
+                      e["away"].get<int>() + e["not_judged"].get<int>(),
+                  box);
+    }
+}
+
 TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
     options_.methods = {"ray_traced", "exact"};
     const Json whole = compare_scene(scene_, options_);
@@ -245,6 +273,21 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     }
     EXPECT_EQ(record["methods"][6]["errors"].size(), 2u) << "the others go on";
     EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box/failing-6.exr"));
+}
+
+TEST_F(Compare, AFarSceneRecordsWhatItsNumbersAreRelativeTo) {
+    const fs::path far = folder_ / "far.json";
+    write(far, R"({
+        "camera": {"eye": [5000001, 3, -2999994], "target": [5000000, 0.5, -3000000]},
+        "lights": [{"name": "lamp", "type": "point", "position": [5000002, 4, -2999999]}],
+        "objects": [{"type": "plane", "size": 8, "transform": [{"translate": [5000000, 0, -3000000]}]}]
+    })");
+    options_.methods      = {"ray_traced"};
+    const ScenesDone done = compare_scenes({far}, options_);
+    ASSERT_TRUE(done.failed.empty()) << done.failed[0];
+    const Json json = Json::parse(text_of(options_.out / "results.json"));
+    EXPECT_EQ(json["scene"]["origin"], (Json{5000000, 0, -3000000}));
+    expect_valid(json);
 }
 
 TEST_F(Compare, SchemaRefusesWhatItShould) {

@@ -89,7 +89,7 @@ TEST(Energy, FollowsTheSunFrameByFrame) {
 /// Half of the faces in the umbra, half lit: faces differ where their object is between.
 TEST(Energy, IsOfFacesToo) {
     const TemporaryFolder folder;
-    const Scene scene = [&] {
+    Scene scene = [&] {
         Scene s;
         s.materials.resize(1);
         add_object(s, "ground", {{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
@@ -108,6 +108,9 @@ TEST(Energy, IsOfFacesToo) {
     const std::vector<ReceivedEnergy> objects = received_by_objects(scene, faces);
     EXPECT_NEAR(objects[0].irradiance, 0.5, 1e-6);
     EXPECT_NEAR(objects[0].unshadowed, 1, 1e-6);
+
+    scene.objects[0].switches.receives_shadows = false;
+    EXPECT_NEAR(received_by_faces(scene, find_facts(scene), with("exact", 3000))[0].irradiance, 1, 1e-6);
 }
 
 /// Fog that dims lights dims what arrives, as in the sum.

@@ -113,6 +113,20 @@ TEST_F(ExrLayersOf, FilesHoldWhatTheDocumentSays) {
     EXPECT_EQ(attributes(rendered), expected("attributes", "geometry"));
 }
 
+TEST_F(ExrLayersOf, AFarSceneSaysWhatPositionsAreRelativeTo) {
+    std::ofstream(scene_) << R"({
+        "camera": {"eye": [5000001, 3, -2999994], "target": [5000000, 0.5, -3000000]},
+        "lights": [{"name": "lamp", "type": "point", "position": [5000002, 4, -2999999]}],
+        "objects": [{"type": "plane", "size": 8, "transform": [{"translate": [5000000, 0, -3000000]}]}]
+    })";
+    ASSERT_TRUE(render_scene(scene_, {.method        = "ray_traced",
+                                      .size          = {16, 9},
+                                      .out           = folder_.path() / "a.exr",
+                                      .command       = "umbra render",
+                                      .with_geometry = true}));
+    EXPECT_EQ(read_image(folder_.path() / "a.exr").image.metadata.at("umbra:origin"), "5000000 0 -3000000");
+}
+
 TEST_F(ExrLayersOf, GeometryNamesEveryPointExactly) {
     compare_scene(scene_, options_);
     const PreparedScene prepared = prepare_scene(scene_, options_.size);

@@ -160,6 +160,21 @@ TEST(PolygonFiles, HaveTheAreasThatAreKnownByHand) {
     }
 }
 
+/// A floor that receives no shadows is lit, all of it; a sheet that casts none leaves the floor lit, too.
+TEST(PolygonFiles, AreWholeWhereNoShadowIsReceivedOrCast) {
+    for (const bool receives : {true, false}) {
+        const TemporaryFolder folder;
+        Scene scene                                = sheet_over_floor();
+        scene.objects[0].switches.receives_shadows = receives;
+        scene.objects[1].switches.casts_shadows    = !receives;
+        const Json record                          = write_lit_polygons(scene, find_facts(scene), folder.path());
+        for (const Json& light : record["lights"]) {
+            EXPECT_NEAR(light["lit_area"].get<double>(), 34, 1e-12);
+            EXPECT_NEAR(area(read_mesh(folder.path() / light["mesh"].get<std::string>()).at("floor")), 32, 1e-12);
+        }
+    }
+}
+
 TEST(PolygonFiles, EscapeNames) {
     const TemporaryFolder folder;
     const Scene scene = sheet_over_floor();

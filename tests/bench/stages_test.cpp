@@ -60,6 +60,18 @@ TEST(Lines, AreEdgesAndHiddenWhereASurfaceIsInFront) {
     }
 }
 
+TEST(Lines, AreOfWhatTheCameraSees) {
+    Scene scene = two_squares(Projection::perspective), far = scene;
+    scene.objects[0].switches.seen_by_camera = false;
+    far.triangles.erase(far.triangles.begin(), far.triangles.begin() + 2);
+    far.triangle_object = {0, 0};
+    far.objects.erase(far.objects.begin());
+    far.objects[0].first_triangle = 0;
+    for (const Lines lines : {Lines::all, Lines::seen})
+        EXPECT_EQ(draw_lines(RayScene(scene), scene, 80, 80, lines).data,
+                  draw_lines(RayScene(far), far, 80, 80, lines).data);
+}
+
 /// An edge that passes the eye is cut, and one behind it is not drawn.
 TEST(Lines, BehindTheEyeAreNotDrawn) {
     Scene scene = two_squares(Projection::perspective);

@@ -84,11 +84,14 @@ TEST(SceneKey, ChangesWithEverythingThatAnAnswerDependsOn) {
                    &Fog::near_share, &Fog::far_share, &Fog::dims_lights);
     const auto object = [](Scene& s) -> Object& { return s.objects[0]; };
     change_members(changes, object, &Object::name, &Object::first_triangle, &Object::triangle_count, &Object::material);
+    const auto switches = [](Scene& s) -> ObjectSwitches& { return s.objects[0].switches; };
+    change_members(changes, switches, &ObjectSwitches::casts_shadows, &ObjectSwitches::receives_shadows,
+                   &ObjectSwitches::seen_by_camera);
     const auto material = [](Scene& s) -> Material& { return s.materials[0]; };
     change_members(changes, material, &Material::name, &Material::k_a, &Material::k_d, &Material::k_s, &Material::O_d,
                    &Material::O_s, &Material::emission, &Material::shininess, &Material::lobe, &Material::two_sided,
-                   &Material::opacity, &Material::reflect, &Material::transmit, &Material::transmit_colour,
-                   &Material::index_of_refraction, &Material::tangent);
+                   &Material::cutout, &Material::opacity, &Material::reflect, &Material::transmit,
+                   &Material::transmit_colour, &Material::index_of_refraction, &Material::tangent);
     for (std::size_t row = 0; row < 3; ++row)
         change_each(changes, [=](Scene& s) -> vec3& { return s.materials[0].lobes[0].rows[row]; });
     const auto lobe = [](Scene& s) -> LafortuneLobe& { return s.materials[0].lobes[0]; };

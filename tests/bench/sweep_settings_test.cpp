@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
@@ -151,9 +152,10 @@ struct MadeUp {
     std::string text;
     std::vector<double> rmse;  ///< by view; two views are chosen on
     Phases ms;
-    std::vector<double> rounds{1, 1, 1, 1, 1};  ///< factors on the times of each round
-    std::uint64_t interior = 0;                 ///< wrong points, of a million
+    std::vector<double> rounds{1, 1, 1, 1, 1, 1};  ///< factors on the times of each round
+    std::uint64_t interior = 0;                    ///< wrong points, of a million
     double undefined       = 0;
+    double price           = 0;  ///< ms of visibility, all there is in the first run; 0: as in turns
 };
 
 class RecommendByHand : public testing::Test {
@@ -188,12 +190,13 @@ protected:
                             {"false_shadow", inner},
                             {"false_light", none}}}}});
         }
+        const Phases once = s.price > 0 ? Phases{0, 0, 0, s.price} : s.ms;
         store_.keep({{"key", lab_.machine_key("price", choice)},
                      {"price",
-                      {{"build_ms", s.ms.build},
-                       {"aim_ms", {s.ms.aim}},
-                       {"look_ms", s.ms.look},
-                       {"visibility_ms", {s.ms.visibility}}}}});
+                      {{"build_ms", once.build},
+                       {"aim_ms", {once.aim}},
+                       {"look_ms", once.look},
+                       {"visibility_ms", {once.visibility}}}}});
         if (!noise_bar) return;
         const auto timing = [&](double ms) {
             Json samples = Json::array();
@@ -219,13 +222,13 @@ protected:
     RecommendOptions o_;
 };
 
-const std::vector<double> kDrift{1, 1.1, 0.9, 1, 1.2};  // of the machine, the same for all settings of a round
+const std::vector<double> kDrift{1, 1.1, 0.9, 1, 1.2, 0.95};  // of the machine, the same for all settings of a round
 
 /// 1 + 1 + 1 = 3 ms with too large an error, 4 + 2 + 3 = 9 ms within the limit, and 18 and 36 ms well within it.
 std::vector<MadeUp> four_methods() {
     return {{"shadow_zbuffer", {0.02, 0.02}, {1000, 2, 1, 1}, kDrift},
-            {"ray_traced", {0.008, 0.008, 0.0079, 0.05}, {1000, 8, 2, 3}, kDrift},
-            {"shadow_volumes", {0.001, 0.001}, {1, 16, 4, 6}, kDrift},
+            {"ray_traced", {0.008, 0.008, 0.0079, 0.0095}, {1000, 8, 2, 3}, kDrift},
+            {"shadow_volumes", {0.001, 0.001, 0.002, 0.001}, {1, 16, 4, 6}, kDrift},
             {"brute_force", {0.001, 0.001}, {1, 32, 8, 12}, kDrift}};
 }
 
@@ -241,7 +244,7 @@ TEST_F(RecommendByHand, TheCheapestWithinTheLimitsItsRivalsAndTheStaircase) {
     ASSERT_TRUE(r.runner_up.has_value());
     EXPECT_EQ(text(r, r.runner_up->candidate), "shadow_volumes");
     EXPECT_NEAR(r.runner_up->ratio.median, 2, 1e-12) << "its cost over the recommendation's";
-    EXPECT_EQ(r.runner_up->ratio.pairs, 5);
+    EXPECT_EQ(r.runner_up->ratio.pairs, 6);
     EXPECT_TRUE(r.runner_up->differs);
     ASSERT_TRUE(r.cheapest.has_value());
     EXPECT_EQ(text(r, r.cheapest->candidate), "shadow_zbuffer");
@@ -259,11 +262,131 @@ TEST_F(RecommendByHand, TheCheapestWithinTheLimitsItsRivalsAndTheStaircase) {
     const Json json = recommendation_json(r, o_), &chosen = json["recommendation"];
     EXPECT_EQ(chosen["held_out"]["views"], 2);
     EXPECT_EQ(chosen["held_out"]["holds"]["rmse"], 1);
-    EXPECT_EQ(chosen["held_out"]["largest"]["rmse"], 0.05);
+    EXPECT_EQ(chosen["held_out"]["largest"]["rmse"], 0.0095);
+    EXPECT_EQ(chosen["held_out"]["beyond"], 0);
+    EXPECT_EQ(chosen["held_out"]["tried"], 1);
+    EXPECT_NEAR(chosen["held_out"]["share_beyond"].get<double>(), 1 - std::sqrt(0.05), 1e-12);
+    EXPECT_TRUE(json["dropped"].empty());
     EXPECT_EQ(chosen["errors"]["rmse"]["largest"], 0.008) << "of the views that it was chosen on";
     EXPECT_EQ(json["runner_up"]["cost"], 18.0);
     EXPECT_NEAR(json["runner_up"]["cost_ratio"]["low"].get<double>(), 2, 1e-12);
-    EXPECT_EQ(json["runner_up"]["cost_ratio"]["rounds"], 5);
+    EXPECT_EQ(json["runner_up"]["cost_ratio"]["rounds"], 6);
+    EXPECT_EQ(json["runner_up"]["cost_ratio"]["coverage"], 31.0 / 32);
+    const std::string words = recommendation_text(r, o_);
+    EXPECT_EQ(
+        words.substr(0, words.find("  Next")),
+        "ray_traced: 9.000 ms a frame with " + to_text(o_.workload) +
+            "\n    rmse: at most 0.0095 in 2 views that it was not chosen on; limit 0.01\n"
+            "  None of these 2 views is beyond a limit: with 95 % confidence at most 77.7 % of such views are.\n");
+    EXPECT_NE(words.find("  Next: shadow_volumes (18.000 ms, 2.00 times, 2.00 to 2.00 with 96.9 %, in 6 rounds)\n"),
+              std::string::npos)
+        << words;
+}
+
+/// 0.05 in the second further view is beyond the limit of 0.01: the next cheapest is the answer, at 0.05 / 2.
+TEST_F(RecommendByHand, WhatIsBeyondALimitInAFurtherViewIsDropped) {
+    std::vector<MadeUp> settings = four_methods();
+    settings[1].rmse[3]          = 0.05;
+    const Recommendation r       = recommended(settings);
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "shadow_volumes");
+    ASSERT_EQ(r.dropped.size(), 1u);
+    EXPECT_EQ(text(r, r.dropped[0].candidate), "ray_traced");
+    EXPECT_EQ(r.dropped[0].view, 3);
+    EXPECT_EQ(r.dropped[0].error, 0.05);
+    EXPECT_EQ(text(r, r.runner_up->candidate), "brute_force") << "what is dropped is no rival";
+    const Json json = recommendation_json(r, o_), &held = json["recommendation"]["held_out"];
+    EXPECT_EQ(held["tried"], 2);
+    EXPECT_EQ(held["views"], 2);
+    EXPECT_NEAR(held["share_beyond"].get<double>(), 1 - std::sqrt(0.025), 1e-12);
+    EXPECT_EQ(json["dropped"][0]["method"], "ray_traced");
+    EXPECT_EQ(json["dropped"][0]["beyond"], (Json{{"view", 3}, {"metric", "rmse"}, {"error", 0.05}}));
+    const std::string words = recommendation_text(r, o_);
+    for (const char* line :
+         {"    rmse: at most 0.002 in 2 views that it was not chosen on; limit 0.01\n",
+          "    ray_traced          9.000 ms  rmse at most 0.008, dropped\n",
+          "with 95 % confidence at most 84.2 % of such views are, as it is number 2 of the settings tried on them.\n",
+          "  Dropped: ray_traced (9.000 ms), within the limits in the views that were chosen on: rmse up to 0.05 in "
+          "view "
+          "3\n"})
+        EXPECT_NE(words.find(line), std::string::npos) << line << words;
+}
+
+/// Bisection looks at 256, 16, 4 and 1 samples, and at 64 where 16 are dropped.
+TEST_F(RecommendByHand, BehindADroppedSettingTheNextOfItsFamilyIsTried) {
+    const Recommendation r = recommended({{"ray_traced:samples=1", {0.05, 0.05}, {0, 0, 0, 1}, kDrift},
+                                          {"ray_traced:samples=4", {0.04, 0.04}, {0, 0, 0, 2}, kDrift},
+                                          {"ray_traced:samples=16", {0.005, 0.005, 0.02}, {0, 0, 0, 4}, kDrift},
+                                          {"ray_traced:samples=64", {0.004, 0.004, 0.004, 0.004}, {0, 0, 0, 8}, kDrift},
+                                          {"ray_traced:samples=256", {0.001, 0.001}, {0, 0, 0, 16}, kDrift}});
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced:samples=64");
+    EXPECT_EQ(r.dropped.size(), 1u);
+    EXPECT_EQ(r.looked_at, 5u);
+    EXPECT_EQ(*r.candidates[*r.chosen].cost, 8);
+    EXPECT_EQ(text(r, r.runner_up->candidate), "ray_traced:samples=256");
+    EXPECT_EQ(r.staircase.size(), 5u) << "a step for each";
+}
+
+TEST_F(RecommendByHand, WhereAllAreDroppedNothingIsChosen) {
+    const Recommendation r = recommended({{"ray_traced", {0.001, 0.001, 0.02}, {0, 0, 0, 1}, kDrift}});
+    EXPECT_FALSE(r.chosen.has_value());
+    EXPECT_EQ(r.dropped.size(), 1u);
+    EXPECT_EQ(r.dropped[0].view, 2) << "the view behind it was not needed";
+    EXPECT_TRUE(recommendation_json(r, o_)["recommendation"].is_null());
+    EXPECT_TRUE(
+        recommendation_text(r, o_).starts_with("No setting stays within the limits.\n  Dropped: ray_traced (1.000 ms), "
+                                               "within the limits in the views that were "
+                                               "chosen on: rmse up to 0.02 in view 2\n"))
+        << recommendation_text(r, o_);
+}
+
+TEST_F(RecommendByHand, WithoutFurtherViewsNothingIsSaidOfThem) {
+    o_.held_out            = 0;
+    const Recommendation r = recommended(four_methods());
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(recommendation_json(r, o_)["recommendation"]["held_out"]["share_beyond"], 1.0);
+    const std::string words = recommendation_text(r, o_);
+    EXPECT_NE(
+        words.find("    rmse: bound 0.008 from 2 views that were chosen on, their largest 0.008; limit 0.01\n  It "
+                   "was tried on no view that it was not chosen on: how many are beyond a limit is not known.\n"),
+        std::string::npos)
+        << words;
+}
+
+/// By one run, 60 ms are over five times the 10 ms of `ray_traced`, and 4 times the 15 ms of what is cheapest in turns.
+TEST_F(RecommendByHand, WhatOneRunDoesNotOutdoTakesTurns) {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
+    const Recommendation r = recommended({{"ray_traced", good, {0, 0, 0, 50}, kDrift, 0, 0, 10},
+                                          {"shadow_zbuffer", good, {0, 0, 0, 12}, kDrift, 0, 0, 15},
+                                          {"shadow_volumes", good, {0, 0, 0, 5}, kDrift, 0, 0, 60},
+                                          {"brute_force", good, {0, 0, 0, 7}, kDrift, 0, 0, 900}});
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "shadow_volumes");
+    EXPECT_TRUE(r.tied.empty());
+    EXPECT_EQ(text(r, r.runner_up->candidate), "shadow_zbuffer");
+    const auto brute =
+        std::ranges::find_if(r.candidates, [](const Candidate& c) { return c.choice.info->name == "brute_force"; });
+    EXPECT_TRUE(brute->costs.empty()) << "15 times as long by one run";
+}
+
+/// Edges of the second further view lie 8 pixels off or farther, however large the bound is.
+TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
+    Recommendation r     = recommended(four_methods());
+    const auto with_edge = [&](std::size_t view, const Json& max, int unmatched) {
+        r.held_out.at(view)["errors"][0]["edge_displacement_px"] = {
+            {"mean", max}, {"p95", max}, {"max", max}, {"pieces", 100}, {"unmatched", unmatched}, {"reach", 8}};
+    };
+    with_edge(0, 7, 0);
+    with_edge(1, nullptr, 100);
+    o_.limits                         = {parse_limit("edge_displacement_px.max=40")};
+    r.candidates.at(*r.chosen).bounds = {12.0};
+    const Json held                   = recommendation_json(r, o_)["recommendation"]["held_out"];
+    EXPECT_EQ(held["holds"]["edge_displacement_px.max"], 1);
+    EXPECT_EQ(held["largest"]["edge_displacement_px.max"], 8);
+    const Metric& metric = find_metric("edge_displacement_px.max");
+    EXPECT_EQ(possible_error(metric, r.held_out[0]), 7);
+    EXPECT_FALSE(possible_error(metric, r.held_out[1])) << "such a view is beyond every limit";
 }
 
 /// Also those that were beaten, with their errors and costs: the one of each that is within the limits and cheapest, or
@@ -366,20 +489,37 @@ TEST_F(RecommendByHand, WhatTheNoiseBarCoversIsTied) {
     EXPECT_EQ(loud.staircase.size(), 1u) << "the same cost, as far as can be told, and the same error";
 }
 
-/// One round is one run: there is no interval, and less than five times is no difference.
+/// One round is one run: there is no interval, and less than five times is neither a difference nor as cheap.
 TEST_F(RecommendByHand, OneRunOfEachHasNoInterval) {
     const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
     const Recommendation r = recommended({{"shadow_volumes", good, {0, 0, 0, 21}, {1}},
                                           {"ray_traced", good, {0, 0, 0, 36}, {1}},
                                           {"shadow_zbuffer", good, {0, 0, 0, 9}, {1}}},
                                          std::numeric_limits<double>::infinity());
-    ASSERT_EQ(r.tied.size(), 2u);
+    EXPECT_TRUE(r.tied.empty());
+    ASSERT_EQ(r.untold.size(), 2u);
     const Json json = recommendation_json(r, o_);
-    EXPECT_TRUE(json["tied"][0]["cost_ratio"]["low"].is_null());
-    EXPECT_TRUE(json["tied"][0]["cost_ratio"]["high"].is_null());
-    EXPECT_NE(recommendation_text(r, o_).find("shadow_volumes (21.000 ms, 2.33 times by one run)\n"),
-              std::string::npos);
+    EXPECT_TRUE(json["tied"].empty());
+    EXPECT_TRUE(json["not_compared"][0]["cost_ratio"]["low"].is_null());
+    EXPECT_TRUE(json["not_compared"][0]["cost_ratio"]["high"].is_null());
+    EXPECT_NE(
+        recommendation_text(r, o_).find("  Not timed in turns: shadow_volumes (21.000 ms, 2.33 times by one run)\n"),
+        std::string::npos);
+    EXPECT_EQ(recommendation_text(r, o_).find("As cheap"), std::string::npos);
     EXPECT_EQ(recommendation_text(r, o_).find("2.33 to 2.33"), std::string::npos);
+}
+
+TEST_F(RecommendByHand, FiveTurnsAreTooFewToBeAsCheap) {
+    const std::vector<double> good{0.001, 0.001, 0.001, 0.001}, five(5, 1.0);
+    const Recommendation r =
+        recommended({{"ray_traced", good, {0, 0, 0, 9.1}, five}, {"shadow_zbuffer", good, {0, 0, 0, 9}, five}},
+                    std::numeric_limits<double>::infinity());
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_TRUE(r.tied.empty());
+    EXPECT_NE(recommendation_text(r, o_).find(
+                  "  Timed in fewer than six turns with it: ray_traced (9.100 ms, 1.01 times in 5 rounds)\n"),
+              std::string::npos)
+        << recommendation_text(r, o_);
 }
 
 /// A clock that jumps: each phase takes 1 or 20 ms, as it comes.
@@ -389,7 +529,7 @@ TEST_F(RecommendByHand, NothingIsChosenBelowALoudNoiseBar) {
     keep({"shadow_zbuffer", good, {1, 1, 1, 1}}, std::nullopt);
     std::minstd_rand dice(1);
     double now             = 0;
-    o_.turns               = {.rounds = 5, .budget_ms = 1e12};
+    o_.turns               = {.rounds = 9, .budget_ms = 1e12};
     o_.turns.clock         = [&] { return now += dice() / 16 % 2 == 0 ? 1 : 20; };
     const Recommendation r = recommend(lab_, o_);
     EXPECT_GT(r.noise_bar, 0.3);
@@ -401,6 +541,108 @@ TEST_F(RecommendByHand, NothingIsChosenBelowALoudNoiseBar) {
     EXPECT_TRUE(json["recommendation"].is_null());
     EXPECT_EQ(json["undecided"].size(), 2u);
     EXPECT_EQ(recommendation_text(r, o_).substr(0, 18), "Nothing is chosen:");
+}
+
+// ---- What is said of further views, and what holds
+
+constexpr double kLimit = 0.01;
+
+/// The errors of a setting over views: logarithms are normal, and some views may be ten times as bad.
+struct ErrorModel {
+    double middle = 0, width = 0, bad = 0;
+
+    [[nodiscard]] double draw(std::mt19937_64& dice) const {
+        const double error = std::exp(middle + width * std::normal_distribution<double>()(dice));
+        return std::bernoulli_distribution(bad)(dice) ? 10 * error : error;
+    }
+    [[nodiscard]] double share_beyond_limit() const {
+        const auto above = [&](double shift) {
+            return 0.5 * std::erfc((std::log(kLimit) - middle - shift) / width / std::sqrt(2.0));
+        };
+        return (1 - bad) * above(0) + bad * above(std::log(10));
+    }
+};
+
+Json cell_of(double rmse) {
+    return {{"serves", {{"how", "approximately"}, {"why", "."}}},
+            {"errors", {{{"light", "l"}, {"points", 1000000}, {"bracket", nullptr}, {"rmse", rmse}}}}};
+}
+
+struct Said {
+    int answers = 0, wrong = 0;  ///< the share that was said is less than that of all views
+};
+
+/// As `recommend`: the cheapest whose bound over five views is within the limit, tried on `held_out` views.
+Said said(int settings, int held_out, bool two_modes, int experiments, unsigned seed) {
+    std::mt19937_64 dice(seed);
+    std::uniform_real_distribution<double> even;
+    const Metric& rmse = find_metric("rmse");
+    Said count;
+    for (int experiment = 0; experiment < experiments; ++experiment) {
+        std::size_t tried = 0;
+        for (int s = 0; s < settings; ++s) {
+            const ErrorModel model =
+                two_modes ? ErrorModel{std::log(kLimit * (0.05 + 0.2 * even(dice))), 0.2, 0.3 * even(dice)}
+                          : ErrorModel{std::log(kLimit) - 0.9 * even(dice), 0.3, 0};
+            std::vector<Json> views;
+            for (int v = 0; v < 5; ++v) views.push_back(cell_of(model.draw(dice)));
+            if (upper_bound(rmse, views).value() > kLimit) continue;
+            ++tried;
+            bool within = true;
+            for (int v = 0; v < held_out && within; ++v)
+                within = possible_error(rmse, cell_of(model.draw(dice))).value() <= kLimit;
+            if (!within) continue;
+            ++count.answers;
+            count.wrong += model.share_beyond_limit() > share_beyond(held_out, tried);
+            break;
+        }
+    }
+    return count;
+}
+
+TEST(HeldOut, WhatIsSaidOfFurtherViewsHolds) {
+    constexpr int experiments = 400;
+    const double most         = 0.05 + 2 * std::sqrt(0.05 * 0.95 / experiments);
+    for (const bool two_modes : {false, true})
+        for (const int settings : {1, 10, 40})
+            for (const int held_out : {10, 20, 59}) {
+                const Said s = said(settings, held_out, two_modes, experiments, 1);
+                EXPECT_LE(s.wrong, most * experiments) << two_modes << ", " << settings << ", " << held_out;
+                if (settings == 40) {
+                    EXPECT_GT(s.answers, experiments / 10) << two_modes << ", " << held_out;
+                }
+            }
+}
+
+/// A setting whose share of bad views is just above what is said passes in 5 % of all cases, however many views there
+/// are: what is said is no wider than it need be. Ten of them, tried one after the other, pass in no more.
+TEST(HeldOut, ConfidenceIsWhatIsSaid) {
+    constexpr int experiments = 20000;
+    std::mt19937_64 dice(2);
+    for (const int settings : {1, 10})
+        for (const int views : {3, 10, 20, 59}) {
+            const double bad = share_beyond(views) + 1e-6;
+            int wrong        = 0;
+            for (int experiment = 0; experiment < experiments; ++experiment)
+                for (int s = 1; s <= settings; ++s) {
+                    bool within = true;
+                    for (int v = 0; v < views && within; ++v) within = !std::bernoulli_distribution(bad)(dice);
+                    if (!within) continue;
+                    wrong += bad > share_beyond(views, static_cast<std::size_t>(s));
+                    break;
+                }
+            EXPECT_NEAR(wrong / double(experiments), 0.05, 2 * std::sqrt(0.05 * 0.95 / experiments)) << views;
+        }
+}
+
+TEST(HeldOut, ShareByHand) {
+    EXPECT_NEAR(share_beyond(1), 0.95, 1e-12);
+    EXPECT_NEAR(share_beyond(2), 1 - std::sqrt(0.05), 1e-12);
+    EXPECT_NEAR(share_beyond(10), 0.2589, 5e-5);
+    EXPECT_NEAR(share_beyond(59), 0.0495, 5e-5);
+    EXPECT_NEAR(share_beyond(300), 3.0 / 300, 1e-4) << "the rule of three";
+    EXPECT_NEAR(share_beyond(2, 5), 0.9, 1e-12) << "0.05 / 5 = 0.1^2";
+    EXPECT_EQ(share_beyond(0), 1);
 }
 
 TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {

@@ -107,6 +107,20 @@ TEST_P(EveryMethod, BlocksAsAnOpaqueSurfaceWhereTheSceneSaysSo) {
     }
 }
 
+/// Whole surfaces in the place of leaves: what is computed of them may be exact, but the scene has others.
+TEST_P(EveryMethod, IsApproximateWhereOutlinesAreMissing) {
+    for (const LightKind kind : kKinds) {
+        Scene scene               = sheets(kind, TransparentOccluders::ignore, false);
+        scene.materials[0].cutout = true;
+        const MethodCase run(*GetParam(), scene);
+        if (!run.serves()) continue;
+        EXPECT_EQ(run.verdict().how, How::approximately) << to_string(kind);
+        EXPECT_NE(run.verdict().why.find("outlines that a texture cuts"), std::string::npos) << run.verdict().why;
+        scene.materials[0].cutout = false;
+        EXPECT_EQ(MethodCase(*GetParam(), scene).verdict().how, run.serves().how) << to_string(kind);
+    }
+}
+
 TEST_P(EveryMethod, MultipliesOrSaysThatItCannot) {
     for (const LightKind kind : kKinds) {
         const Scene scene = sheets(kind, TransparentOccluders::multiply);

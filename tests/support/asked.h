@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "umbra/core/render/visibility.h"
+#include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/shadows/method.h"
 
@@ -40,7 +40,8 @@ public:
     [[nodiscard]] std::unique_ptr<const Looked> look(const PointBatch& points) const {
         return method_->look(built(), points);
     }
-    void visibility(const PointBatch& points, LightId light, Visibility out) const {
+    void visibility(const PointBatch& points, LightId light, const Visibility& out) const {
+        write_decided(built().scene, points, light, out);
         method_->visibility(aimed_at(light), *look(points), out);
     }
     [[nodiscard]] VisibilityPlane visibility(const PointBatch& points, LightId light) const {

@@ -130,6 +130,26 @@ KnownScene eye_in_umbra() {
     return known;
 }
 
+/// Three cubes under a sun that falls along x. The first casts no shadow, the second receives none, though a board over
+/// it shades its top, and the eye does not see the third. Shadows of cubes are 2 by 1.
+KnownScene switched_off() {
+    KnownScene known{floor_scene(), {}, 0};
+    for (const float z : {-1.5f, 0.0f, 1.5f}) add(known.scene, "cube", moved(make_box({1, 1, 1}), {-1.5f, 1.5f, z}));
+    add(known.scene, "board", moved(make_plane(1.4f, 1.4f), {-2.5f, 3, 0}));
+    known.scene.objects[1].switches.casts_shadows    = false;
+    known.scene.objects[2].switches.receives_shadows = false;
+    known.scene.objects[3].switches.seen_by_camera   = false;
+    add_sun(known.scene, {1, -1, 0});
+    known.closed_form = [](dvec3 p, LightId) -> std::optional<double> {
+        if (p.y > 1e-9) return std::nullopt;
+        const auto second = outside_rectangle(p.x, p.z, 1, 0.5), third = outside_rectangle(p.x, p.z - 1.5, 1, 0.5),
+                   board = outside_rectangle(p.x - 0.5, p.z, 0.7, 0.7);
+        if (!second || !third || !board) return std::nullopt;
+        return std::min({*second, *third, *board});
+    };
+    return known;
+}
+
 /// A box without its lid, and a bowl.
 KnownScene open_meshes() {
     KnownScene known{floor_scene(), {}, 0};
@@ -398,6 +418,7 @@ const std::vector<NamedScene>& known_scenes() {
         {"box_from_above", box_from_above},
         {"box_orthographic", box_orthographic},
         {"eye_in_umbra", eye_in_umbra},
+        {"switched_off", switched_off},
         {"open_meshes", open_meshes},
         {"badly_oriented", badly_oriented},
         {"interpenetrating", interpenetrating},
@@ -443,7 +464,7 @@ VisibilityPlane brute_force(const Scene& scene, const PointBatch& points, LightI
             const dvec3 to_light = infinite ? -dvec3(light.direction) : dvec3(light.position) - p;
             bool blocked = false, open = false;
             for (TriangleId t = 0; t < scene.triangles.size() && !blocked; ++t) {
-                if (t == points.triangle[i]) continue;
+                if (t == points.triangle[i] || !scene.switches(t).casts_shadows) continue;
                 const int m = meets(p, to_light, infinite,
                                     {dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)), dvec3(scene.vertex(t, 2))});
                 blocked |= m == 1;

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "umbra/core/render/visibility.h"
+#include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/shadows/method.h"
 
@@ -52,6 +52,7 @@ struct PhaseAnswer {
     const Aimed& aimed     = made.aimed ? *made.aimed : *kept.aimed;
     const Looked& looked   = made.looked ? *made.looked : *kept.looked;
     PhaseAnswer answer{VisibilityPlane(in.points.size()), built.memory_bytes() + aimed.memory_bytes()};
+    write_decided(in.scene, in.points, in.light, answer.plane.out());
     method->visibility(aimed, looked, answer.plane.out());
     return answer;
 }

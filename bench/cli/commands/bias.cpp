@@ -26,7 +26,7 @@ int bias(BiasLine line, const Common& common) {
     if (!line.size.empty()) options.size = parse_size(line.size);
     options.command  = common.command;
     options.threads  = thread_count();
-    const auto files = line.scenes.empty() ? canonical_scenes(scenes_folder()) : scene_files(line.scenes);
+    const auto files = line.scenes.empty() ? canonical_scenes(scenes_folder()) : scene_files(line.scenes, common.up);
     check_bias_map(options.map, default_bias_grid());
     check_writable_beside(options.out);
     const PlaceLock lock = PlaceLock::inside(options.out);

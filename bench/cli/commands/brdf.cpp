@@ -17,7 +17,7 @@ struct BrdfLine {
 };
 
 int brdf(const BrdfLine& line, const Common& common) {
-    const Json record = measure_materials(load_scene(scene_file(line.scene)), line.steps, common.command);
+    const Json record = measure_materials(load_scene(scene_file(line.scene, common.up)), line.steps, common.command);
     if (line.as_json)
         print_out("{}", json_text(record));
     else if (!common.quiet)

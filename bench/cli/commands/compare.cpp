@@ -26,7 +26,7 @@ int compare(CompareLine line, const Common& common) {
     if (!line.reference.empty()) line.options.reference = line.reference;
     check_writable_beside(line.options.out);
     const PlaceLock lock  = PlaceLock::inside(line.options.out);
-    const ScenesDone done = compare_on_terminal(scene_files(line.scenes), line.options, common);
+    const ScenesDone done = compare_on_terminal(scene_files(line.scenes, common.up), line.options, common);
     const int code        = exit_code(done);
     return code == kDone && !done.missing.empty() ? kUnreadable : code;
 }

@@ -23,7 +23,7 @@ int energy(const EnergyLine& line, const Common& common) {
     EnergyOptions options = line.options;
     options.command       = common.command;
     if (line.method != "none") options.method = parse_method(line.method);
-    const std::vector<std::filesystem::path> files = scene_files(line.scenes);
+    const std::vector<std::filesystem::path> files = scene_files(line.scenes, common.up);
     StagedFolder staged(line.out);
     Json record;
     {

@@ -19,16 +19,17 @@ struct InspectLine {
     bool as_json = false;
 };
 
-int inspect(const InspectLine& line) {
-    const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});  // with what only the picture shows
-    const Json record            = inspect_json(prepared.scene, prepared.facts, line.silhouettes);
+int inspect(const InspectLine& line, const Common& common) {
+    const PreparedScene prepared =
+        prepare_scene(scene_file(line.scene, common.up), {});  // with what only the picture shows
+    const Json record = inspect_json(prepared.scene, prepared.facts, line.silhouettes);
     print_out("{}", line.as_json ? json_text(record) : without_controls(inspect_text(record)) + "\n");
     return kDone;
 }
 
 }  // namespace
 
-Action inspect_command(CLI::App& app, const Common& /*common*/) {
+Action inspect_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<InspectLine>();
     app.add_option("SCENE", line->scene, "Scene: a file (.json .gltf .glb .obj .nff .ply .off .stl) or a scene's name")
         ->type_name("")
@@ -39,7 +40,7 @@ Action inspect_command(CLI::App& app, const Common& /*common*/) {
         ->type_name("N");
     app.add_option("--seed", line->silhouettes.seed, "Seed of these directions")->type_name("N");
     app.add_flag("--json", line->as_json, "Print JSON");
-    return [line] { return inspect(*line); };
+    return [line, &common] { return inspect(*line, common); };
 }
 
 }  // namespace umbra

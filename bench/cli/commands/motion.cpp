@@ -26,7 +26,7 @@ int motion(MotionLine line, const Common& common) {
     if (!line.size.empty()) command.size = parse_size(line.size);
     command.command  = common.command;
     command.threads  = thread_count();
-    const auto files = scene_files(line.scenes);
+    const auto files = scene_files(line.scenes, common.up);
     check_writable_beside(command.out);
     const PlaceLock lock = PlaceLock::inside(command.out);
     std::vector<std::string> unreadable;

@@ -19,7 +19,7 @@ struct PolygonsLine {
 };
 
 int polygons(const PolygonsLine& line, const Common& common) {
-    const PreparedScene prepared = prepare_scene(scene_file(line.scene), {});
+    const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), {});
     if (const Service service = verdict(*atherton_weiler.make(), prepared.facts); !service) {
         print_error("no lit polygons of this scene: {}\n", service.why);
         return kNo;

@@ -20,7 +20,7 @@ int radiosity(const RadiosityLine& line, const Common& common) {
     ExchangeOptions options = line.options;
     options.command         = common.command;
     const PreparedScene prepared =
-        prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size));
+        prepare_scene(scene_file(line.scene, common.up), line.size.empty() ? Size{} : parse_size(line.size));
     Json record;
     {
         const Terminal terminal(common.quiet);

@@ -56,7 +56,7 @@ int recommend(RecommendLine line, const Common& common) {
         cell.progress = [&](const std::string& what) { terminal.progress(what); };
         const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
         options.kept_in = store.folder().string();
-        SceneLab lab(scene_file(line.scene), cell, store);
+        SceneLab lab(scene_file(line.scene, common.up), cell, store);
         if (line.fresh) lab.measure_anew();
         for (const std::string& warning : lab.scene().warnings)
             terminal.warn(fmt::format("{}: {}", lab.scene().name, warning));
@@ -85,7 +85,9 @@ Action recommend_command(CLI::App& app, const Common& common) {
         ->capture_default_str()
         ->check(CLI::Range(2, 1000))
         ->type_name("N");
-    app.add_option("--held-out", line->options.held_out, "Further views to try the choice on")
+    app.add_option(
+           "--held-out", line->options.held_out,
+           "Further views, in all of which the answer is within the limits: what it says of others is from these")
         ->capture_default_str()
         ->check(CLI::Range(0, 1000))
         ->type_name("N");

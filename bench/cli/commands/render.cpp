@@ -28,7 +28,7 @@ int render(const RenderLine& line, const Common& common) {
             fmt::format("-o {}: not a picture format, expected FILE.exr or FILE.png", options.out.string()));
     const Terminal terminal(common.quiet);
     options.warn          = [&](const std::string& what) { terminal.warn(what); };
-    const Service service = render_scene(scene_file(line.scene), options);
+    const Service service = render_scene(scene_file(line.scene, common.up), options);
     if (service) return kDone;
     print_error("{} does not serve this scene: {}\n", options.method, service.why);
     return kNo;

@@ -24,7 +24,7 @@ int shading(const ShadingLine& line, const Common& common) {
     for (const std::string& limit : line.limits) options.limits.push_back(parse_shading_limit(limit));
     if (!line.no_shadows) options.method = parse_method(line.method);
     const PreparedScene prepared =
-        prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size));
+        prepare_scene(scene_file(line.scene, common.up), line.size.empty() ? Size{} : parse_size(line.size));
     if (options.method)
         if (const Service service = verdict(*options.method->make(), prepared.facts); !service) {
             print_error("{} does not serve this scene: {}\n", options.method->text(), service.why);

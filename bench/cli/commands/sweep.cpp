@@ -76,7 +76,7 @@ int sweep(SweepLine line, const Common& common) {
     }
     if (!line.workload.empty()) options.workload = parse_workload(line.workload);
     options.times = !line.no_times;
-    for (const fs::path& file : scene_files(line.scenes)) options.plan.scenes.push_back(fs::absolute(file));
+    for (const fs::path& file : scene_files(line.scenes, common.up)) options.plan.scenes.push_back(fs::absolute(file));
 
     if (line.list) {
         constexpr std::size_t kMostParts = 1'000'000'000;  // -1 is read as the largest number that there is

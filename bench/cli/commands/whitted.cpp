@@ -33,8 +33,8 @@ int whitted(const WhittedLine& line, const Common& common) {
     options.command        = common.command;
     options.places         = places_named(line.places);
     if (!line.no_shadows) options.method = parse_method(line.method);
-    PreparedScene prepared =
-        prepare_scene(scene_file(line.scene), line.size.empty() ? Size{} : parse_size(line.size), 1, Work::picture);
+    PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up),
+                                           line.size.empty() ? Size{} : parse_size(line.size), 1, Work::picture);
     correct_warnings(prepared.scene);
     if (options.method)
         if (const std::string why = refusal(*options.method, prepared.facts); !why.empty()) {

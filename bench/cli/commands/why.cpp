@@ -98,14 +98,15 @@ std::string text_of(const Json& record) {
     for (const Json& light : record["lights"]) {
         text += fmt::format("light {}\n", light["light"].get<std::string>());
         if (light.contains("away")) text += "  The light is behind the surface: S is 0 for every method.\n";
+        if (light.contains("unshadowed")) text += "  The object receives no shadows: S is 1 for every method.\n";
         for (const Json& a : light["methods"])
             text += fmt::format("  {:24} {}\n", a["method"].get<std::string>(), sentence(a));
     }
     return text;
 }
 
-int why(const WhyLine& line) {
-    const std::filesystem::path file = scene_file(line.scene);
+int why(const WhyLine& line, const Common& common) {
+    const std::filesystem::path file = scene_file(line.scene, common.up);
     const PreparedScene prepared     = prepare_scene(file, line.size.empty() ? Size{} : parse_size(line.size), 1);
     const Scene& scene               = prepared.scene;
     const PointBatch& points         = prepared.points;
@@ -132,7 +133,8 @@ int why(const WhyLine& line) {
     record["point"]["u"]        = points.u[i];
     record["point"]["v"]        = points.v[i];
     record["point"]["position"] = {p.x, p.y, p.z};
-    record["lights"]            = Json::array();
+    if (const dvec3 o = scene.origin; o != dvec3(0)) record["point"]["origin"] = {o.x, o.y, o.z};
+    record["lights"] = Json::array();
     for (const Light& light : scene.lights)
         if (line.light.empty() || light.name == line.light)
             record["lights"].push_back({{"light", light.name}, {"methods", Json::array()}});
@@ -144,7 +146,7 @@ int why(const WhyLine& line) {
                 static_cast<LightId>(std::ranges::find(scene.lights, entry["light"].get<std::string>(), &Light::name) -
                                      scene.lights.begin());
             if (!points.asks(light, i))
-                entry["away"] = true;
+                entry[points.faces(light, i) ? "unshadowed" : "away"] = true;
             else if (!service)
                 entry["methods"].push_back({{"method", choice.text()}, {"not_served", service.why}});
             else
@@ -157,7 +159,7 @@ int why(const WhyLine& line) {
 
 }  // namespace
 
-Action why_command(CLI::App& app, const Common& /*common*/) {
+Action why_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<WhyLine>();
     app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
     app.add_option("X", line->x, "Column of the pixel, from 0")->type_name("")->required();
@@ -167,7 +169,7 @@ Action why_command(CLI::App& app, const Common& /*common*/) {
         ->type_name("METHOD");
     app.add_option("--size", line->size, "Size of the picture (default: the scene's)")->type_name("WIDTHxHEIGHT");
     app.add_flag("--json", line->as_json, "Print the reasons as JSON");
-    return [line] { return why(*line); };
+    return [line, &common] { return why(*line, common); };
 }
 
 }  // namespace umbra

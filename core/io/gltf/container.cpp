@@ -75,14 +75,10 @@ void check_version(const JsonText& json) {
 
 // What is needed to understand the geometry must be known; what only changes the appearance may be ignored.
 void check_extensions(const JsonText& json, std::vector<std::string>& warnings) {
-    static constexpr std::array<std::string_view, 8> kRead{"KHR_lights_punctual",
-                                                           "EXT_mesh_gpu_instancing",
-                                                           "KHR_mesh_quantization",
-                                                           "KHR_materials_unlit",
-                                                           "KHR_materials_emissive_strength",
-                                                           "KHR_materials_transmission",
-                                                           "KHR_materials_ior",
-                                                           "KHR_materials_pbrSpecularGlossiness"};
+    static constexpr std::array<std::string_view, 9> kRead{
+        "KHR_lights_punctual",        "EXT_lights_area",     "EXT_mesh_gpu_instancing",
+        "KHR_mesh_quantization",      "KHR_materials_unlit", "KHR_materials_emissive_strength",
+        "KHR_materials_transmission", "KHR_materials_ior",   "KHR_materials_pbrSpecularGlossiness"};
     static constexpr std::array<std::string_view, 5> kAppearance{"KHR_texture_", "EXT_texture_", "MSFT_texture_",
                                                                  "KHR_materials_", "KHR_animation_"};
     const auto is_read = [](std::string_view name) {

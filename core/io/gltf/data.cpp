@@ -8,6 +8,7 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <glm/gtc/type_ptr.hpp>
 
 #include "umbra/core/base/bytes.h"
 #include "umbra/core/io/gltf/members.h"
@@ -92,6 +93,13 @@ std::string decode_percent(std::string_view uri) {
     return out;
 }
 
+/// The extension whose compressed data a buffer without bytes stands for; empty where there is none.
+std::string_view compression_of(const JsonText& json, const JsonValue& buffer) {
+    for (const std::string_view name : {"EXT_meshopt_compression", "KHR_meshopt_compression"})
+        if (extension(json, buffer, name)) return name;
+    return {};
+}
+
 /// The first component that is NaN or infinite, as a message; empty where there is none.
 std::string find_not_finite(const GltfAccessor& accessor, std::string_view what) {
     if (accessor.component_type != 5126) return {};
@@ -131,13 +139,14 @@ std::set<std::size_t> find_normal_accessors(const JsonText& json) {
 
 }  // namespace
 
-GltfData::GltfData(const JsonText& json, const path& file, std::optional<std::string_view> bin) : json_(json) {
-    read_buffers(file, bin);
+GltfData::GltfData(const JsonText& json, const path& file, std::optional<std::string_view> bin)
+    : json_(json), folder_(file.parent_path()) {
+    read_buffers(bin);
     read_views();
     read_accessors();
 }
 
-std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& uri, const path& folder) {
+std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& uri) {
     if (const auto known = owned_.find(uri); known != owned_.end()) return known->second;
     std::string bytes;
     if (uri.starts_with("data:")) {
@@ -155,7 +164,7 @@ std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& ur
         if (name.empty() || name.find('\0') != name.npos || name.find("://") != name.npos || relative.is_absolute())
             json_.fail(
                 at, fmt::format("the URI \"{:.60}\" is not read, expected a file beside this one or a data URI", uri));
-        const path target = folder / relative;
+        const path target = folder_ / relative;
         std::error_code error;
         if (!std::filesystem::is_regular_file(target, error))
             json_.fail(at, fmt::format("there is no file {}", target.string()));
@@ -164,7 +173,14 @@ std::string_view GltfData::file_bytes(const JsonValue& at, const std::string& ur
     return owned_.emplace(uri, std::move(bytes)).first->second;
 }
 
-void GltfData::read_buffers(const path& file, std::optional<std::string_view> bin) {
+std::string_view GltfData::image(const JsonValue& image) {
+    if (const JsonValue* index = find_member(image, "bufferView")) return view(*index, "bufferView");
+    const JsonValue* uri = find_member(image, "uri");
+    if (!uri) json_.fail(image, "this image has no uri and no bufferView");
+    return file_bytes(*uri, json_.string(*uri, "uri"));
+}
+
+void GltfData::read_buffers(std::optional<std::string_view> bin) {
     const JsonArray& buffers = list_of(json_, json_.root(), "buffers");
     for (std::size_t i = 0; i < buffers.size(); ++i) {
         const JsonValue& b = buffers[i];
@@ -176,9 +192,12 @@ void GltfData::read_buffers(const path& file, std::optional<std::string_view> bi
         const JsonValue* uri = find_member(b, "uri");
         std::string_view held;
         if (uri) {
-            held = file_bytes(*uri, json_.string(*uri, "uri"), file.parent_path());
+            held = file_bytes(*uri, json_.string(*uri, "uri"));
         } else if (i == 0 && bin) {
             held = *bin;
+        } else if (const std::string_view name = compression_of(json_, b); !name.empty()) {
+            json_.fail(b, fmt::format("{} has no uri: its data are compressed by {}, expected an export without it",
+                                      what, name));
         } else {
             json_.fail(b, what + " has no uri (only the first buffer of a .glb with a binary chunk may lack it)");
         }
@@ -315,8 +334,8 @@ std::vector<Vector> read_vectors(const GltfAccessor& accessor) {
     const std::size_t size = component_size(accessor.component_type);
     const auto read        = [&](const char* p) {
         Vector v(0);
-        for (int c = 0; c < std::min<int>(accessor.components, Vector::length()); ++c)
-            v[c] =
+        for (int c = 0; c < std::min<int>(accessor.components, sizeof(Vector) / sizeof(float)); ++c)
+            glm::value_ptr(v)[c] =
                 static_cast<float>(component(p + std::size_t(c) * size, accessor.component_type, accessor.normalized));
         return v;
     };
@@ -333,6 +352,8 @@ std::vector<Vector> read_vectors(const GltfAccessor& accessor) {
 
 std::vector<vec3> GltfData::vectors(const GltfAccessor& accessor) const { return read_vectors<vec3>(accessor); }
 std::vector<vec4> GltfData::quadruples(const GltfAccessor& accessor) const { return read_vectors<vec4>(accessor); }
+
+std::vector<mat4> GltfData::matrices(const GltfAccessor& accessor) const { return read_vectors<mat4>(accessor); }
 
 std::vector<std::uint32_t> GltfData::indices(const GltfAccessor& accessor) const {
     std::vector<std::uint32_t> out(std::size_t(accessor.count), 0);

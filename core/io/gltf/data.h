@@ -44,17 +44,21 @@ public:
     /// Any vector type; normalised integers as the fractions that they represent.
     [[nodiscard]] std::vector<vec3> vectors(const GltfAccessor& accessor) const;
     [[nodiscard]] std::vector<vec4> quadruples(const GltfAccessor& accessor) const;  ///< the same of four numbers
+    [[nodiscard]] std::vector<mat4> matrices(const GltfAccessor& accessor) const;    ///< of sixteen, column by column
     [[nodiscard]] std::vector<std::uint32_t> indices(const GltfAccessor& accessor) const;
 
+    /// The file of images[], wherever it is: kept as long as this object. Throws InputError.
+    [[nodiscard]] std::string_view image(const JsonValue& image);
+
 private:
-    [[nodiscard]] std::string_view file_bytes(const JsonValue& at, const std::string& uri,
-                                              const std::filesystem::path& folder);
+    [[nodiscard]] std::string_view file_bytes(const JsonValue& at, const std::string& uri);
     [[nodiscard]] std::string_view view(const JsonValue& index, std::string_view what) const;
-    void read_buffers(const std::filesystem::path& file, std::optional<std::string_view> bin);
+    void read_buffers(std::optional<std::string_view> bin);
     void read_views();
     void read_accessors();
 
     const JsonText& json_;
+    std::filesystem::path folder_;
     std::map<std::string, std::string> owned_;  // by URI: many buffers may share one file
     std::vector<std::string_view> buffers_;
     std::vector<std::string_view> views_;

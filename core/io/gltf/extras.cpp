@@ -15,7 +15,7 @@
 //   materials         k_a k_d k_s O_d O_s emission   a colour, or one number for grey
 //                     shininess                at least 0
 //                     lobe                     "phong" or "blinn_phong"
-//                     two_sided                true or false
+//                     two_sided, cutout        true or false
 //                     opacity reflect transmit 0 to 1
 //                     transmit_colour          three numbers from 0 to 1
 //                     index_of_refraction      a positive number
@@ -31,6 +31,7 @@
 //                       size                   rectangle: [width, height] along the node's x and y
 //                       radius                 disk, sphere
 //                       name
+//                     casts_shadows, receives_shadows, seen_by_camera   true or false: of the node's mesh
 // A rectangle and a disk face along the node's -z, as the format's own lights shine. The node's scale counts; a disk or
 // sphere that it makes an ellipse is refused. Unless it says otherwise, an area light falls off with 1 / d^2.
 #include "umbra/core/io/gltf/extras.h"
@@ -90,11 +91,10 @@ void apply_light_extras(const JsonText& json, const JsonValue& umbra, Light& lig
     light.spot.exponent = static_cast<float>(fields.number("exponent", kNotNegative, double(light.spot.exponent)));
 }
 
-std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbra, const dmat4& m) {
-    const JsonFields node(json, umbra, "extras.umbra of a node", {"light"});
-    const JsonValue* v = node.find("light");
-    if (!v) return std::nullopt;
-    const JsonFields fields(json, *v, "light",
+namespace {
+
+Light read_area_light(const JsonText& json, const JsonValue& v, const dmat4& m) {
+    const JsonFields fields(json, v, "light",
                             {"type", "name", "size", "radius", "colour", "intensity", "diffuse", "specular", "ambient",
                              "attenuation", "clamp", "range"});
     const JsonValue& type = fields.require("type");
@@ -129,9 +129,24 @@ std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbr
             if (!same(lx, ly) || !same(lx, lz)) json.fail(type, "the node's scale makes this sphere an ellipsoid");
     }
     if (light.kind == LightKind::rectangle ? fields.find("radius") : fields.find("size"))
-        json.fail(*v, "a rectangle has a size, a disk and a sphere a radius");
+        json.fail(v, "a rectangle has a size, a disk and a sphere a radius");
     apply_light_fields(json, fields, light);
     return light;
+}
+
+}  // namespace
+
+NodeExtras read_node_extras(const JsonText& json, const JsonValue& umbra, const dmat4& transform, bool has_mesh) {
+    std::vector<std::string_view> keys{"light"};
+    for (const ObjectSwitch& each : kObjectSwitches) keys.push_back(each.key);
+    const JsonFields fields(json, umbra, "extras.umbra of a node", keys);
+    NodeExtras extras;
+    apply_object_switches(fields, extras.switches);
+    for (const ObjectSwitch& each : kObjectSwitches)
+        if (const JsonValue* v = fields.find(each.key); v && !has_mesh)
+            json.fail(*v, fmt::format("{} is for nodes with a mesh only", each.key));
+    if (const JsonValue* light = fields.find("light")) extras.light = read_area_light(json, *light, transform);
+    return extras;
 }
 
 SceneExtras apply_scene_extras(const JsonText& json, const JsonValue& umbra, Scene& scene) {

@@ -17,9 +17,13 @@ namespace umbra {
 void apply_material_extras(const JsonText& json, const JsonValue& umbra, Material& material);
 void apply_light_extras(const JsonText& json, const JsonValue& umbra, Light& light);
 
-/// The "light" of a node: a rectangle, disk or sphere that `transform` places; nothing where it has none.
-[[nodiscard]] std::optional<Light> read_area_light(const JsonText& json, const JsonValue& umbra,
-                                                   const dmat4& transform);
+struct NodeExtras {
+    std::optional<Light> light;  ///< a rectangle, disk or sphere that `transform` places
+    ObjectSwitches switches{};   ///< of the node's mesh
+};
+/// Refuses switches where there is no mesh to apply them to.
+[[nodiscard]] NodeExtras read_node_extras(const JsonText& json, const JsonValue& umbra, const dmat4& transform,
+                                          bool has_mesh);
 
 struct SceneExtras {
     bool ambient  = false;

@@ -15,26 +15,39 @@
 //   KHR_materials_pbrSpecularGlossiness  O_d = diffuse, F0 = specular, roughness = 1 - glossiness
 //   emissiveFactor                  emission, times KHR_materials_emissive_strength
 //   KHR_materials_unlit             emission = c, nothing else
-//   baseColorFactor's alpha         opacity; alphaMode OPAQUE: 1, MASK: 1 from alphaCutoff on, else 0
+//   baseColorFactor's alpha         alphaMode BLEND: opacity; MASK: below alphaCutoff the primitive is left out
+//   alphaMode MASK with a texture   the texels whose alpha is at least alphaCutoff, as polygons (cutout.h); `cutout`
+//                                   where they would be too many, or the image is not read
 //   KHR_materials_transmission, _ior  transmit, transmit_colour (the base colour), index_of_refraction
 //   doubleSided                     two_sided
 //   KHR_lights_punctual             I_j = colour x intensity, as is (lux or candela); f_att = 1 / d^2 without limit;
 //                                   range as a sharp limit; spots with falloff `smooth`, whose inner angle is moved
 //                                   to where the extension's own formula reaches its largest value; equal angles: a
 //                                   hard edge, with a warning
+//   EXT_lights_area (draft)         rectangle, disk: I_j = colour x intensity (nits) x area: candela along the axis;
+//                                   f_att = 1 / d^2 without limit
 //   exposure                        1; with punctual lights 1 / E where the median E over the triangles of the light
 //                                   that arrives, sum_j f_att,j I_j, lies outside [0.1, 2]
 //   (no ambient light)              I_a = 0.1
-//   textures, vertex colours, skins, morph targets, animations   not read, with a warning
+//   morph targets                   displaced by the weights of the mesh, or of the node where it has some
+//   skins                           sum_k w_k J_k B_k p / sum_k w_k: joints J_k where the file's nodes place them,
+//   inverse
+//                                   bind matrices B_k; the transform of the mesh's own node does not count
+//   textures, vertex colours, animations   not read, with a warning
 //   EXT_mesh_gpu_instancing         an object for each instance and primitive
 //   points, lines                   left out, with a warning
 //   extras.umbra                    extras.cpp
 //
 // This work is based on:
-// Khronos Group. glTF 2.0 Specification. 2021; KHR_lights_punctual. 2018
+// Khronos Group. glTF 2.0 Specification. 2021; KHR_lights_punctual. 2018; EXT_lights_area. Draft of 2025
 // Bruce Walter, Stephen Marschner, Hongsong Li, Kenneth Torrance. Microfacet Models for Refraction through Rough
 // Surfaces. 2007
 // Frederick Fisher, Andrew Woo. R.E versus N.H Specular Highlights. Graphics Gems IV. 1994
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "umbra/core/base/error.h"
 #include "umbra/core/io/gltf/cameras.h"
 #include "umbra/core/io/gltf/container.h"
 #include "umbra/core/io/gltf/data.h"
@@ -59,15 +72,35 @@ std::vector<Material> read_materials(const JsonText& json, GltfNotes& notes) {
     return materials;
 }
 
-std::vector<std::optional<Light>> read_lights(const JsonText& json, GltfNotes& notes,
-                                              std::vector<std::string>& warnings) {
-    std::vector<std::optional<Light>> lights;
-    if (const JsonValue* punctual = extension(json, json.root(), "KHR_lights_punctual")) {
+/// A texture that cannot be read leaves surfaces whole, as all textures do.
+void read_masks(const JsonText& json, GltfData& data, std::vector<std::string>& warnings, GltfParts& parts) {
+    const JsonArray& list = list_of(json, json.root(), "materials");
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        AlphaMask& mask = parts.masks.emplace_back(read_alpha_mask(json, list[i]));
+        parts.cutouts.emplace_back();
+        if (!mask.texture) continue;
+        try {
+            parts.cutouts.back() = read_cutout(json, data, *mask.texture, mask.least);
+            if (std::ranges::all_of(parts.cutouts.back()->kept, [](auto texel) { return texel != 0; }))
+                mask.texture = nullptr;
+        } catch (const InputError& e) {
+            warnings.push_back(
+                fmt::format("The texture that cuts the outlines of materials[{}] is not read: {}.", i, e.what()));
+        }
+    }
+}
+
+void read_lights(const JsonText& json, GltfNotes& notes, std::vector<std::string>& warnings, GltfParts& parts) {
+    if (const JsonValue* punctual = extension(json, json.root(), kPunctualLights)) {
         const JsonArray& list = list_of(json, *punctual, "lights");
         for (std::size_t i = 0; i < list.size(); ++i)
-            lights.push_back(read_punctual_light(json, list[i], i, notes, warnings));
+            parts.lights.push_back(read_punctual_light(json, list[i], i, notes, warnings));
     }
-    return lights;
+    if (const JsonValue* flat = extension(json, json.root(), kAreaLights)) {
+        const JsonArray& list = list_of(json, *flat, "lights");
+        for (std::size_t i = 0; i < list.size(); ++i)
+            parts.area_lights.push_back(read_flat_light(json, list[i], i, warnings));
+    }
 }
 
 std::vector<Lens> read_lenses(const JsonText& json, std::vector<std::string>& warnings) {
@@ -90,7 +123,7 @@ void read_scene_terms(const JsonText& json, Scene& scene) {
 
 }  // namespace
 
-SceneFile read_gltf(const std::filesystem::path& file) {
+SceneFile read_gltf(const std::filesystem::path& file, const Reading& reading) {
     GltfFile source = open_gltf(file);
     const JsonText json(std::move(source.json));
     check_version(json);
@@ -99,18 +132,22 @@ SceneFile read_gltf(const std::filesystem::path& file) {
     auto& warnings = read.scene.warnings;
     warnings       = std::move(source.warnings);
     check_extensions(json, warnings);
-    const GltfData data(json, file, source.bin);
+    if (!list_of(json, json.root(), "animations").empty())
+        warnings.emplace_back("Animations are ignored: nodes stand where the file places them.");
+    GltfData data(json, file, source.bin);
 
     GltfNotes notes;
     GltfParts parts;
     read.scene.materials = read_materials(json, notes);
-    parts.lights         = read_lights(json, notes, warnings);
-    parts.lenses         = read_lenses(json, warnings);
-    parts.meshes         = read_meshes(json, data, read.scene.materials.size(), notes, warnings);
+    read_masks(json, data, warnings, parts);
+    read_lights(json, notes, warnings, parts);
+    parts.lenses = read_lenses(json, warnings);
+    parts.meshes = read_meshes(json, data, read.scene.materials.size(), notes, warnings);
 
     std::vector<Node> nodes = read_nodes(json);
     read_instances(json, data, nodes);
-    GltfSceneBuilder builder(json, parts, read, notes);
+    parts.skins = read_skins(json, data, nodes.size());
+    GltfSceneBuilder builder(json, data, parts, reading.origin, read, notes);
     builder.check_references(nodes);
     builder.place_trees(nodes, read_roots(json, nodes, warnings));
     if (nodes.empty()) builder.place_all_meshes();

@@ -91,4 +91,55 @@ std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& 
     return light;
 }
 
+std::optional<Light> read_flat_light(const JsonText& json, const JsonValue& v, std::size_t index,
+                                     std::vector<std::string>& warnings) {
+    const auto what = fmt::format("lights[{}]", index);
+    (void)json.object(v, what);
+    Light light;
+    light.name             = name_or(json, v, "");
+    const JsonValue* type  = find_member(v, "type");
+    const std::string kind = type ? json.string(*type, "type") : "rect";
+    if (kind != "rect" && kind != "disk") {
+        warnings.push_back(
+            fmt::format("{} \"{}\" of {} is of the unknown type \"{:.40}\" (known: rect, disk): it is left out.", what,
+                        light.name, kAreaLights, kind));
+        return std::nullopt;
+    }
+    const double size = number_or(json, &v, "size", kPositive, 1);
+    double area       = 0;
+    if (kind == "rect") {
+        light.kind            = LightKind::rectangle;
+        const JsonValue* rect = find_member(v, "rect");
+        if (rect) (void)json.object(*rect, "rect");
+        const double width = size * number_or(json, rect, "aspect", kPositive, 1);
+        light.edge_u       = vec3(width, 0, 0);
+        light.edge_v       = vec3(0, -size, 0);
+        area               = width * size;
+    } else {
+        light.kind   = LightKind::disk;
+        light.radius = static_cast<float>(size / 2);
+        area         = kPi * size * size / 4;
+    }
+    const dvec3 colour = vector_or(json, &v, "color", kNotNegative, dvec3(1));
+    light.diffuse      = vec3(colour * (number_or(json, &v, "intensity", kNotNegative, 1000) * area));
+    light.specular     = light.diffuse;
+    light.attenuation  = {0, 0, 1, false};
+    return light;
+}
+
+void scale_area_light(const dmat4& scene_from_node, dvec3 along, Light& light) {
+    double scale = 0;
+    for (int k = 0; k < 3; ++k) scale = std::max(scale, glm::length(dvec3(scene_from_node[k])));
+    if (light.kind == LightKind::rectangle) {
+        const dvec3 d(light.direction);
+        const dvec3 across = glm::normalize(glm::cross(d, along));
+        light.edge_v       = vec3(across * (scale * glm::length(dvec3(light.edge_v))));
+        light.edge_u       = vec3(glm::cross(across, d) * (scale * glm::length(dvec3(light.edge_u))));
+    } else {
+        light.radius = static_cast<float>(scale * static_cast<double>(light.radius));
+    }
+    light.diffuse *= static_cast<float>(scale * scale);
+    light.specular *= static_cast<float>(scale * scale);
+}
+
 }  // namespace umbra

@@ -46,6 +46,19 @@ void check_textures(const JsonText& json, const JsonValue& object, std::initiali
 
 }  // namespace
 
+AlphaMask read_alpha_mask(const JsonText& json, const JsonValue& material) {
+    const JsonValue* mode = find_member(material, "alphaMode");
+    const double cutoff   = number_or(json, &material, "alphaCutoff", kNotNegative, 0.5);
+    if (!mode || json.choice(*mode, "alphaMode", {"OPAQUE", "MASK", "BLEND"}) != 1) return {};
+    const JsonValue* gloss  = extension(json, material, "KHR_materials_pbrSpecularGlossiness");
+    const JsonValue* values = gloss ? gloss : find_member(material, "pbrMetallicRoughness");
+    const JsonValue* factor = values ? find_member(*values, gloss ? "diffuseFactor" : "baseColorFactor") : nullptr;
+    const double alpha      = factor ? numbers(json, *factor, "the factor", 4, kShare)[3] : 1;
+    if (alpha < cutoff) return {true, nullptr, 0};
+    if (!values || cutoff == 0) return {};
+    return {false, find_member(*values, gloss ? "diffuseTexture" : "baseColorTexture"), cutoff / alpha};
+}
+
 Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_t index, GltfNotes& notes) {
     const auto what = fmt::format("materials[{}]", index);
     (void)json.object(v, what);
@@ -90,12 +103,8 @@ Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_
     const double ior       = number_or(json, given, "ior", kNotNegative, 1.5);
     if ((m.transmit > 0 || given) && ior > 0) m.index_of_refraction = static_cast<float>(ior);
 
-    const double cutoff = number_or(json, &v, "alphaCutoff", kNotNegative, 0.5);
-    if (const JsonValue* mode = find_member(v, "alphaMode")) {
-        const auto kind = json.choice(*mode, "alphaMode", {"OPAQUE", "MASK", "BLEND"});
-        if (kind == 1) m.opacity = base[3] >= cutoff ? 1 : 0;
-        if (kind == 2) m.opacity = static_cast<float>(base[3]);
-    }
+    if (const JsonValue* mode = find_member(v, "alphaMode"))
+        if (json.choice(*mode, "alphaMode", {"OPAQUE", "MASK", "BLEND"}) == 2) m.opacity = static_cast<float>(base[3]);
     if (const JsonValue* sides = find_member(v, "doubleSided")) m.two_sided = json.boolean(*sides, "doubleSided");
 
     check_textures(json, v, {"normalTexture", "occlusionTexture", "emissiveTexture"}, notes);

@@ -1,6 +1,8 @@
 #include "umbra/core/io/gltf/meshes.h"
 
+#include <charconv>
 #include <cmath>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -21,6 +23,70 @@ std::vector<uvec3> as_triangles(const std::vector<std::uint32_t>& v, int mode) {
     return out;
 }
 
+/// The n of TEXCOORD_n.
+std::optional<std::uint64_t> texture_coordinate_set(std::string_view key) {
+    constexpr std::string_view kBegins = "TEXCOORD_";
+    std::uint64_t n                    = 0;
+    if (!key.starts_with(kBegins)) return std::nullopt;
+    const std::string_view digits = key.substr(kBegins.size());
+    const auto [end, error]       = std::from_chars(digits.data(), digits.data() + digits.size(), n);
+    return error == std::errc() && end == digits.data() + digits.size() ? std::optional(n) : std::nullopt;
+}
+
+/// Accessors of the attributes JOINTS_n and WEIGHTS_n.
+struct InfluenceSet {
+    const GltfAccessor* joints  = nullptr;
+    const GltfAccessor* weights = nullptr;
+};
+
+/// Adds the attribute to that of `sets` with its number, where it is one of a skin's.
+void read_influence(const JsonText& json, const JsonMember& attribute, const GltfAccessor& accessor,
+                    std::map<std::string, InfluenceSet>& sets) {
+    const bool joints = attribute.key.starts_with("JOINTS_");
+    if (!joints && !attribute.key.starts_with("WEIGHTS_")) return;
+    const int type = accessor.component_type;
+    const bool fit = type == 5121 || type == 5123 || type == (joints ? 5125 : 5126);
+    if (accessor.components != 4 || !fit)
+        json.fail(attribute.value, fmt::format("{} is not an accessor of type VEC4 of {}", attribute.key,
+                                               joints ? "unsigned integers" : "floats or unsigned integers"));
+    InfluenceSet& set                   = sets[attribute.key.substr(attribute.key.find('_'))];
+    (joints ? set.joints : set.weights) = &accessor;
+}
+
+std::vector<MorphTarget> read_targets(const JsonText& json, const GltfData& data, const JsonValue& v,
+                                      const std::string& what, std::uint64_t vertices) {
+    std::vector<MorphTarget> targets;
+    const JsonArray& list = list_of(json, v, "targets");
+    const auto& accessors = data.accessors();
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        MorphTarget target;
+        for (const JsonMember& a : json.object(list[i], "a morph target")) {
+            const GltfAccessor& accessor = accessors[index_into(json, a.value, a.key, accessors.size())];
+            if (accessor.count != vertices)
+                json.fail(a.value, fmt::format("{} of {}.targets[{}] has {} elements, expected {}, as many as the "
+                                               "primitive has positions",
+                                               a.key, what, i, accessor.count, vertices));
+            if (a.key != "POSITION" && a.key != "NORMAL") continue;
+            if (accessor.components != 3 || accessor.component_type == 5125)
+                json.fail(a.value, fmt::format("{} of {}.targets[{}] is not an accessor of type VEC3 of floats", a.key,
+                                               what, i));
+            if (!accessor.not_finite.empty()) json.fail(*accessor.json, accessor.not_finite);
+            (a.key == "POSITION" ? target.positions : target.normals) = &accessor;
+        }
+        targets.push_back(target);
+    }
+    return targets;
+}
+
+std::vector<Influence> read_influences(const GltfData& data, const InfluenceSet& set,
+                                       const std::vector<std::uint32_t>& vertices) {
+    const std::vector<vec4> joints = data.quadruples(*set.joints), weights = data.quadruples(*set.weights);
+    std::vector<Influence> influences;
+    influences.reserve(vertices.size());
+    for (const std::uint32_t v : vertices) influences.push_back({glm::uvec4(joints[v]), weights[v]});
+    return influences;
+}
+
 std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& data, const JsonValue& v,
                                         const std::string& what, std::size_t materials, GltfNotes& notes,
                                         std::vector<std::string>& warnings) {
@@ -37,6 +103,7 @@ std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& da
     const GltfAccessor* position = nullptr;
     const GltfAccessor* normal   = nullptr;
     const GltfAccessor* first    = nullptr;
+    std::map<std::string, InfluenceSet> influences;
     for (const JsonMember& a : json.object(*attributes, "attributes")) {
         const GltfAccessor& accessor = accessors[index_into(json, a.value, a.key, accessors.size())];
         if (first && accessor.count != first->count)
@@ -50,8 +117,15 @@ std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& da
             (a.key == "POSITION" ? position : normal) = &accessor;
         }
         if (a.key == "COLOR_0") notes.vertex_colours = true;
+        read_influence(json, a, accessor, influences);
+        if (const auto set = texture_coordinate_set(a.key); set && accessor.components == 2)
+            primitive.texture_coordinates[*set] = &accessor;
     }
-    if (find_member(v, "targets")) notes.morph_targets = true;
+    for (const auto& [number, set] : influences)
+        if (!set.joints || !set.weights)
+            json.fail(*attributes,
+                      fmt::format("{} has {} without {}", what, set.joints ? "JOINTS" + number : "WEIGHTS" + number,
+                                  set.joints ? "WEIGHTS" + number : "JOINTS" + number));
     const GltfAccessor* index = nullptr;
     if (const JsonValue* i = find_member(v, "indices")) {
         index = &accessors[index_into(json, *i, "indices", accessors.size())];
@@ -86,6 +160,7 @@ std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& da
             "{} has {} corners, which {}.", what, corners.size(),
             corners.size() < 3 ? "make no triangle" : "do not divide into triangles: the rest is left out"));
     primitive.mesh.triangles = as_triangles(corners, mode);
+    primitive.targets        = read_targets(json, data, v, what, position->count);
 
     // Only what triangles use is kept: many primitives may share one long list of positions.
     const std::vector<vec3> positions = data.vectors(*position);
@@ -97,10 +172,13 @@ std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& da
             if (l == 0xffffffffu) {
                 l = std::uint32_t(primitive.mesh.positions.size());
                 primitive.mesh.positions.push_back(positions[t[k]]);
+                primitive.vertices.push_back(t[k]);
                 if (normal) primitive.mesh.normals.push_back(notes.normals.usable(normals[t[k]]));
             }
             t[k] = l;
         }
+    for (const auto& [number, set] : influences)
+        primitive.influences.push_back(read_influences(data, set, primitive.vertices));
     return primitive;
 }
 
@@ -126,9 +204,25 @@ std::vector<std::vector<Primitive>> read_meshes(const JsonText& json, const Gltf
                 json.fail(primitives[p], fmt::format("more than {} triangles with this one", kMaxTriangles));
             mesh.push_back(std::move(*primitive));
         }
+        const std::vector<double> weights = read_morph_weights(json, list[i], mesh);
+        for (Primitive& p : mesh) p.weights = weights;
         meshes.push_back(std::move(mesh));
     }
     return meshes;
+}
+
+std::vector<double> read_morph_weights(const JsonText& json, const JsonValue& v,
+                                       const std::vector<Primitive>& primitives) {
+    const JsonValue* list = find_member(v, "weights");
+    if (!list) return {};
+    std::vector<double> weights;
+    for (const JsonValue& w : json.array(*list, "weights", "a list of numbers"))
+        weights.push_back(json.number(w, "a weight", kAnyNumber));
+    for (const Primitive& p : primitives)
+        if (!weights.empty() && !p.targets.empty() && p.targets.size() != weights.size())
+            json.fail(*list, fmt::format("{} weights, expected {}, as many as {} has morph targets", weights.size(),
+                                         p.targets.size(), p.name));
+    return weights;
 }
 
 Mesh placed(const Mesh& mesh, const dmat4& world_from_mesh) {

@@ -19,6 +19,14 @@ dmat4 transform_of(dvec3 translation, glm::dquat rotation, dvec3 scale) {
     return m;
 }
 
+/// Of unit length; `rounding` is how far from that the file may be.
+glm::dquat unit_rotation(const JsonText& json, const JsonValue& at, const std::string& what, glm::dquat q,
+                         double rounding) {
+    if (const double length = glm::length(q); !(std::abs(length - 1) <= rounding))
+        json.fail(at, fmt::format("{} has length {:g}, expected a unit quaternion", what, length));
+    return glm::normalize(q);
+}
+
 dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::string& what) {
     const JsonValue* matrix = find_member(v, "matrix");
     if (!matrix) {
@@ -27,10 +35,7 @@ dmat4 local_transform(const JsonText& json, const JsonValue& v, const std::strin
         glm::dquat q(1, 0, 0, 0);
         if (const JsonValue* r = find_member(v, "rotation")) {
             const auto x = numbers(json, *r, "rotation", 4, kAnyNumber);
-            q            = glm::dquat(x[3], x[0], x[1], x[2]);
-            if (const double length = glm::length(q); std::abs(length - 1) > 0.01)
-                json.fail(*r, fmt::format("rotation has length {:g}, expected a unit quaternion", length));
-            q = glm::normalize(q);
+            q            = unit_rotation(json, *r, "rotation", {x[3], x[0], x[1], x[2]}, 0.01);
         }
         return transform_of(t, q, s);
     }
@@ -78,13 +83,10 @@ std::vector<dmat4> instances_of(const JsonText& json, const GltfData& data, cons
     std::vector<dmat4> instances;
     for (std::size_t i = 0; i < *count; ++i) {
         glm::dquat q(1, 0, 0, 0);
-        if (rotation) {
-            q = glm::dquat(double(r[i].w), double(r[i].x), double(r[i].y), double(r[i].z));
-            if (const double length = glm::length(q); std::abs(length - 1) > 0.02)  // of 8 bits, too
-                json.fail(attributes, fmt::format("ROTATION of instance {} has length {:g}, expected a unit quaternion",
-                                                  i, length));
-            q = glm::normalize(q);
-        }
+        if (rotation)
+            q = unit_rotation(json, attributes, fmt::format("ROTATION of instance {}", i),
+                              {double(r[i].w), double(r[i].x), double(r[i].y), double(r[i].z)},
+                              0.02);  // of 8 bits, too
         instances.push_back(transform_of(translation ? dvec3(t[i]) : dvec3(0), q, scale ? dvec3(s[i]) : dvec3(1)));
     }
     return instances;
@@ -133,12 +135,41 @@ std::vector<Node> read_nodes(const JsonText& json) {
     return nodes;
 }
 
-std::vector<std::size_t> read_roots(const JsonText& json, const std::vector<Node>& nodes,
-                                    std::vector<std::string>& warnings) {
-    const JsonArray& scenes = list_of(json, json.root(), "scenes");
+namespace {
+
+std::vector<bool> find_children(const std::vector<Node>& nodes) {
     std::vector<bool> is_child(nodes.size(), false);
     for (const Node& n : nodes)
         for (const std::size_t c : n.children) is_child[c] = true;
+    return is_child;
+}
+
+}  // namespace
+
+std::vector<dmat4> place_nodes(const std::vector<Node>& nodes, const dmat4& scene_from_world) {
+    std::vector<dmat4> placed(nodes.size());
+    std::vector<std::size_t> open;  // own stack: a hierarchy may be as deep as the file is long
+    const std::vector<bool> is_child = find_children(nodes);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (is_child[i]) continue;
+        placed[i] = scene_from_world * nodes[i].local;
+        open.push_back(i);
+    }
+    while (!open.empty()) {
+        const std::size_t parent = open.back();
+        open.pop_back();
+        for (const std::size_t c : nodes[parent].children) {
+            placed[c] = placed[parent] * nodes[c].local;
+            open.push_back(c);
+        }
+    }
+    return placed;
+}
+
+std::vector<std::size_t> read_roots(const JsonText& json, const std::vector<Node>& nodes,
+                                    std::vector<std::string>& warnings) {
+    const JsonArray& scenes          = list_of(json, json.root(), "scenes");
+    const std::vector<bool> is_child = find_children(nodes);
     std::vector<std::size_t> roots;
     if (scenes.empty()) {
         for (std::size_t i = 0; i < nodes.size(); ++i)

@@ -19,6 +19,9 @@ struct Node {
 /// All nodes of the file, those of no scene included. Refuses cycles and nodes with several parents.
 [[nodiscard]] std::vector<Node> read_nodes(const JsonText& json);
 
+/// From each node's space to the scene's, of all nodes. `scene_from_world` places the roots.
+[[nodiscard]] std::vector<dmat4> place_nodes(const std::vector<Node>& nodes, const dmat4& scene_from_world);
+
 /// The instances of EXT_mesh_gpu_instancing.
 void read_instances(const JsonText& json, const GltfData& data, std::vector<Node>& nodes);
 

@@ -9,8 +9,19 @@ void GltfNotes::warn(std::vector<std::string>& warnings) const {
     if (vertex_colours) warnings.emplace_back("Colours of vertices are ignored.");
     if (emissive_above_one)
         warnings.emplace_back("An emissiveFactor is above 1, which the format forbids: its value is used as given.");
-    if (skins) warnings.emplace_back("Skins are not applied: meshes stay where their nodes place them.");
-    if (morph_targets) warnings.emplace_back("Morph targets are ignored.");
+    if (cut_away > 0)
+        warnings.push_back(fmt::format(
+            "{} primitives are left out: the alpha of their material is below its alphaCutoff (alphaMode MASK).",
+            cut_away));
+    if (without_joints > 0)
+        warnings.push_back(
+            fmt::format("{} primitives of nodes with a skin have no JOINTS_0: they stay where their nodes place them.",
+                        without_joints));
+    if (skin_weights > 0)
+        warnings.push_back(fmt::format(
+            "The weights of {} vertices' joints are negative or all 0: a negative one counts as 0, and where all are 0 "
+            "the first joint moves the vertex.",
+            skin_weights));
     if (no_position) warnings.emplace_back("A primitive without positions is left out.");
     if (points_and_lines > 0)
         warnings.push_back(fmt::format("{} primitives of points or lines are left out.", points_and_lines));

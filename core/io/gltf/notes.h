@@ -11,9 +11,12 @@
 namespace umbra {
 
 struct GltfNotes {
-    bool textures = false, vertex_colours = false, skins = false, morph_targets = false, no_position = false;
+    bool textures = false, vertex_colours = false, no_position = false;
     bool emissive_above_one      = false;
     std::size_t points_and_lines = 0;            ///< primitives
+    std::size_t cut_away         = 0;            ///< primitives of which alphaMode MASK leaves nothing
+    std::size_t without_joints   = 0;            ///< primitives
+    std::size_t skin_weights     = 0;            ///< vertices whose weights are no shares
     std::size_t hard_spots = 0, wide_spots = 0;  ///< lights whose angles are out of the extension's limits
     FileNormals normals;                         ///< of the vertices that triangles use
 

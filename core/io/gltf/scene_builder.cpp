@@ -7,6 +7,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/gltf/extras.h"
+#include "umbra/core/io/gltf/lights.h"
 #include "umbra/core/io/gltf/materials.h"
 #include "umbra/core/io/gltf/members.h"
 #include "umbra/core/io/limits.h"
@@ -14,46 +15,51 @@
 
 namespace umbra {
 
+GltfSceneBuilder::GltfSceneBuilder(const JsonText& json, const GltfData& data, const GltfParts& parts,
+                                   const dvec3& origin, SceneFile& read, GltfNotes& notes)
+    : json_(json), data_(data), parts_(parts), read_(read), scene_(read.scene), notes_(notes) {
+    scene_from_world_[3] -= dvec4(origin, 0);
+}
+
 void GltfSceneBuilder::check_references(const std::vector<Node>& nodes) const {
     std::uint64_t triangles = 0;
     for (const Node& n : nodes) {
         if (const JsonValue* v = find_member(*n.json, "mesh")) {
-            for (const Primitive& p : parts_.meshes[index_into(json_, *v, "mesh", parts_.meshes.size())])
-                triangles += p.mesh.triangles.size() * n.instances.size();
+            const auto& primitives = parts_.meshes[index_into(json_, *v, "mesh", parts_.meshes.size())];
+            for (const Primitive& p : primitives) triangles += p.mesh.triangles.size() * n.instances.size();
+            (void)read_morph_weights(json_, *n.json, primitives);
             if (triangles > kMaxTriangles)
                 json_.fail(*v, fmt::format("more than {} triangles with this node", kMaxTriangles));
         }
         if (const JsonValue* v = find_member(*n.json, "camera"))
             (void)index_into(json_, *v, "camera", parts_.lenses.size());
-        if (const JsonValue* v = light_of(n)) (void)index_into(json_, *v, "light", parts_.lights.size());
+        if (const JsonValue* v = find_member(*n.json, "skin")) (void)index_into(json_, *v, "skin", parts_.skins.size());
+        (void)light_of(n, kPunctualLights, parts_.lights);
+        (void)light_of(n, kAreaLights, parts_.area_lights);
     }
 }
 
 void GltfSceneBuilder::place_trees(const std::vector<Node>& nodes, const std::vector<std::size_t>& roots) {
-    struct Visit {
-        std::size_t node;
-        dmat4 world_from_parent;
-    };
-    std::vector<Visit> open;  // own stack: a hierarchy may be as deep as the file is long
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) open.push_back({*root, dmat4(1)});
+    const std::vector<dmat4> scene_from_node = place_nodes(nodes, scene_from_world_);
+    joints_.clear();
+    for (const Skin& skin : parts_.skins) joints_.push_back(place_joints(skin, scene_from_node));
+    std::vector<std::size_t> open(roots.rbegin(), roots.rend());
     while (!open.empty()) {
-        const Visit visit = open.back();
+        const std::size_t i = open.back();
         open.pop_back();
-        const Node& node            = nodes[visit.node];
-        const dmat4 world_from_node = visit.world_from_parent * node.local;
-        place_node(node, world_from_node);
-        for (auto c = node.children.rbegin(); c != node.children.rend(); ++c) open.push_back({*c, world_from_node});
+        place_node(nodes[i], scene_from_node[i]);
+        open.insert(open.end(), nodes[i].children.rbegin(), nodes[i].children.rend());
     }
 }
 
 void GltfSceneBuilder::place_all_meshes() {
     if (parts_.meshes.empty()) return;
     scene_.warnings.emplace_back("The file has no nodes: all its meshes are shown, without a transform.");
-    for (const auto& mesh : parts_.meshes) add_mesh(json_.root(), "", mesh, dmat4(1));
+    for (const auto& mesh : parts_.meshes) add_mesh(json_.root(), "", mesh, {scene_from_world_, nullptr, {}});
 }
 
 void GltfSceneBuilder::finish() {
-    if (!parts_.lights.empty() && !placed_light_)
+    if (!(parts_.lights.empty() && parts_.area_lights.empty()) && !placed_light_)
         scene_.warnings.emplace_back("No node of the scene places one of the file's lights: they are left out.");
     if (!parts_.lenses.empty() && !lens_)
         scene_.warnings.emplace_back("No node of the scene places one of the file's cameras: they are left out.");
@@ -63,19 +69,31 @@ void GltfSceneBuilder::finish() {
 void GltfSceneBuilder::place_node(const Node& node, const dmat4& m) {
     const JsonValue& v     = *node.json;
     const std::string name = name_or(json_, v, "");
-    if (const JsonValue* mesh = find_member(v, "mesh"))
-        for (const dmat4& instance : node.instances)
-            add_mesh(v, name, parts_.meshes[index_into(json_, *mesh, "mesh", parts_.meshes.size())], m * instance);
-    if (find_member(v, "skin")) notes_.skins = true;
+    const JsonValue* mesh  = find_member(v, "mesh");
+    NodeExtras extras;
+    if (const JsonValue* umbra = find_umbra(v)) extras = read_node_extras(json_, *umbra, m, mesh != nullptr);
+    if (mesh) {
+        const std::size_t first = scene_.objects.size();
+        const auto& primitives  = parts_.meshes[index_into(json_, *mesh, "mesh", parts_.meshes.size())];
+        const JsonValue* skin   = find_member(v, "skin");
+        Pose pose;
+        pose.weights = read_morph_weights(json_, v, primitives);
+        if (skin) pose.joints = &joints_[index_into(json_, *skin, "skin", joints_.size())];
+        for (const dmat4& instance : node.instances) {
+            pose.scene_from_mesh = m * instance;
+            add_mesh(v, name, primitives, pose);
+            if (skin) break;  // its joints place it, wherever the instances are
+        }
+        for (std::size_t o = first; o < scene_.objects.size(); ++o) scene_.objects[o].switches = extras.switches;
+    }
     if (const JsonValue* camera = find_member(v, "camera"))
         place_camera(index_into(json_, *camera, "camera", parts_.lenses.size()), m);
-    if (const JsonValue* light = light_of(node))
-        place_light(node, index_into(json_, *light, "light", parts_.lights.size()), name, m);
-    if (const JsonValue* extras = find_umbra(v))
-        if (auto light = read_area_light(json_, *extras, m)) {
-            if (light->name.empty()) light->name = name;
-            add_light(v, std::move(*light));
-        }
+    if (const auto* light = light_of(node, kPunctualLights, parts_.lights)) place_light(node, *light, name, m);
+    if (const auto* light = light_of(node, kAreaLights, parts_.area_lights)) place_light(node, *light, name, m);
+    if (extras.light) {
+        if (extras.light->name.empty()) extras.light->name = name;
+        add_light(v, std::move(*extras.light));
+    }
 }
 
 void GltfSceneBuilder::place_camera(std::size_t camera, const dmat4& m) {
@@ -88,21 +106,27 @@ void GltfSceneBuilder::place_camera(std::size_t camera, const dmat4& m) {
     }
 }
 
-void GltfSceneBuilder::place_light(const Node& node, std::size_t light, const std::string& node_name, const dmat4& m) {
+void GltfSceneBuilder::place_light(const Node& node, std::optional<Light> light, const std::string& node_name,
+                                   const dmat4& m) {
     placed_light_ = true;
-    if (!parts_.lights[light]) return;
-    Light placed = *parts_.lights[light];
-    if (placed.name.empty()) placed.name = node_name;
-    placed.position = vec3(dvec3(m[3]));
-    if (placed.kind != LightKind::point) placed.direction = vec3(direction(m, 2, -1, "light"));
-    add_light(*node.json, std::move(placed));
+    if (!light) return;
+    if (light->name.empty()) light->name = node_name;
+    light->position = vec3(dvec3(m[3]));
+    if (light->kind != LightKind::point) light->direction = vec3(direction(m, 2, -1, "light"));
+    if (is_area(light->kind)) scale_area_light(m, direction(m, 0, 1, "light"), *light);
+    add_light(*node.json, std::move(*light));
 }
 
 void GltfSceneBuilder::add_mesh(const JsonValue& at, const std::string& name, const std::vector<Primitive>& primitives,
-                                const dmat4& m) {
+                                const Pose& pose) {
     for (const Primitive& p : primitives) {
         if (p.mesh.triangles.empty()) continue;
-        const Mesh mesh = placed(p.mesh, m);
+        if (p.material && parts_.masks[*p.material].nothing) {
+            ++notes_.cut_away;
+            continue;
+        }
+        const Mesh mesh = masked(p, posed(json_, at, data_, p, pose, notes_));
+        if (mesh.triangles.empty()) continue;
         for (const vec3 q : mesh.positions)
             if (!(kAnyNumber.holds(q.x) && kAnyNumber.holds(q.y) && kAnyNumber.holds(q.z)))
                 json_.fail(at, fmt::format("this node places a vertex at {}, expected numbers from "
@@ -110,6 +134,25 @@ void GltfSceneBuilder::add_mesh(const JsonValue& at, const std::string& name, co
                                            vector_text(q), kAnyNumber.min, kAnyNumber.max));
         add_object(scene_, name.empty() ? p.name : name, mesh.positions, mesh.normals, mesh.triangles, material_of(p));
     }
+}
+
+Mesh GltfSceneBuilder::masked(const Primitive& primitive, Mesh mesh) {
+    if (!primitive.material || !parts_.masks[*primitive.material].texture) return mesh;
+    Material& material = scene_.materials[*primitive.material];
+    if (const auto& cutout = parts_.cutouts[*primitive.material]; cutout && !material.cutout) {
+        std::vector<dvec2> at(mesh.positions.size());
+        const auto given = primitive.texture_coordinates.find(cutout->set);
+        if (given != primitive.texture_coordinates.end()) {
+            const std::vector<vec3> all = data_.vectors(*given->second);
+            for (std::size_t i = 0; i < at.size(); ++i) at[i] = dvec2(dvec3(all[primitive.vertices[i]]));
+        }
+        if (auto left = cut_out(mesh, at, *cutout, kMaxCutTriangles - cut_triangles_)) {
+            cut_triangles_ += left->triangles.size();
+            return std::move(*left);
+        }
+    }
+    material.cutout = true;
+    return mesh;
 }
 
 void GltfSceneBuilder::add_light(const JsonValue& node, Light light) {
@@ -134,12 +177,13 @@ void GltfSceneBuilder::aim_camera() {
     set_picture_size(scene_, lens_->aspect);
 }
 
-const JsonValue* GltfSceneBuilder::light_of(const Node& node) const {
-    const JsonValue* e = extension(json_, *node.json, "KHR_lights_punctual");
+const std::optional<Light>* GltfSceneBuilder::light_of(const Node& node, std::string_view extension_name,
+                                                       const std::vector<std::optional<Light>>& lights) const {
+    const JsonValue* e = extension(json_, *node.json, extension_name);
     if (!e) return nullptr;
     const JsonValue* v = find_member(*e, "light");
-    if (!v) json_.fail(*e, "KHR_lights_punctual of a node has no light");
-    return v;
+    if (!v) json_.fail(*e, fmt::format("{} of a node has no light", extension_name));
+    return &lights[index_into(json_, *v, "light", lights.size())];
 }
 
 dvec3 GltfSceneBuilder::direction(const dmat4& m, int axis, double sign, std::string_view whose) const {

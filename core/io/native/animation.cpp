@@ -52,10 +52,11 @@ public:
         return between(*before, *after, double(frame - from) / double(to - from));
     }
 
-    [[nodiscard]] std::optional<dvec3> point(int frame, std::string_view member,
+    /// Relative to `origin`.
+    [[nodiscard]] std::optional<dvec3> point(int frame, std::string_view member, const dvec3& origin,
                                              std::optional<dvec3> missing = std::nullopt) const {
         return at<dvec3>(
-            frame, member, missing, [&](const JsonValue& v) { return json_.vector(v, member, kAnyNumber); },
+            frame, member, missing, [&](const JsonValue& v) { return json_.vector(v, member, kAnyNumber) - origin; },
             [](dvec3 a, dvec3 b, double t) { return a + t * (b - a); });
     }
 
@@ -97,19 +98,21 @@ private:
     std::vector<Key> keys_;
 };
 
-void move_camera(const JsonText& json, const JsonValue& v, int frame, Scene& scene) {
+void move_camera(const JsonText& json, const JsonValue& v, const Reading& reading, Scene& scene) {
+    const int frame = reading.frame;
     const Track track(json, JsonFields(json, v, "the camera's track", {"keys"}), scene.frames,
                       {"frame", "eye", "target"});
     Camera& camera = scene.camera;
-    camera.eye     = vec3(track.point(frame, "eye").value_or(dvec3(camera.eye)));
-    camera.target  = vec3(track.point(frame, "target").value_or(dvec3(camera.target)));
+    camera.eye     = vec3(track.point(frame, "eye", reading.origin).value_or(dvec3(camera.eye)));
+    camera.target  = vec3(track.point(frame, "target", reading.origin).value_or(dvec3(camera.target)));
     if (camera.eye == camera.target) json.fail(v, fmt::format("in frame {} the eye is at its target", frame));
     if (is_parallel(dvec3(camera.up), dvec3(camera.target) - dvec3(camera.eye)))
         json.fail(v, fmt::format("in frame {} the view is along the camera's up", frame));
 }
 
 /// Whether the light is on.
-bool move_light(const JsonText& json, const JsonMember& member, int frame, Scene& scene) {
+bool move_light(const JsonText& json, const JsonMember& member, const Reading& reading, Scene& scene) {
+    const int frame  = reading.frame;
     const auto light = std::ranges::find_if(scene.lights, [&](const Light& l) { return l.name == member.key; });
     if (light == scene.lights.end())
         json.source().fail(member.offset, fmt::format("no light that is on is named \"{}\"", member.key));
@@ -122,16 +125,16 @@ bool move_light(const JsonText& json, const JsonMember& member, int frame, Scene
     if (light->kind != LightKind::directional) keys.emplace_back("position");
     const Track track(json, JsonFields(json, member.value, "a light's track", {"keys"}), scene.frames, keys);
     if (light->kind != LightKind::directional)
-        light->position = vec3(track.point(frame, "position").value_or(dvec3(light->position)));
+        light->position = vec3(track.point(frame, "position", reading.origin).value_or(dvec3(light->position)));
     if (turns)
         if (const auto direction = track.direction(frame, "direction")) light->direction = vec3(*direction);
     return track.state(frame, "on", true);
 }
 
-void move_lights(const JsonText& json, const JsonValue& v, int frame, Scene& scene) {
+void move_lights(const JsonText& json, const JsonValue& v, const Reading& reading, Scene& scene) {
     std::vector<std::string> off;
     for (const JsonMember& light : json.object(v, "lights"))
-        if (!move_light(json, light, frame, scene)) off.push_back(light.key);
+        if (!move_light(json, light, reading, scene)) off.push_back(light.key);
     std::erase_if(scene.lights, [&](const Light& light) { return std::ranges::find(off, light.name) != off.end(); });
 }
 
@@ -157,7 +160,7 @@ void move_object(const JsonText& json, const JsonMember& member, int frame, Scen
     moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
     const JsonValue* axis = fields.find("axis");
     const dvec3 about = axis != nullptr ? glm::normalize(dvec3(read_direction(json, *axis, "axis"))) : dvec3(0, 1, 0);
-    const dvec3 move  = *track.point(frame, "move", dvec3(0));
+    const dvec3 move  = *track.point(frame, "move", dvec3(0), dvec3(0));
     const double turn = track.number(frame, "turn", 0);
     if (move == dvec3(0) && turn == 0) return;
     const dmat4 rotation = glm::rotate(dmat4(1), glm::radians(turn), about);
@@ -172,14 +175,15 @@ void move_object(const JsonText& json, const JsonMember& member, int frame, Scen
 
 }  // namespace
 
-void apply_animation(const JsonText& json, const JsonValue& v, int frame, Scene& scene) {
+void apply_animation(const JsonText& json, const JsonValue& v, const Reading& reading, Scene& scene) {
+    const int frame = reading.frame;
     const JsonFields f(json, v, "the animation", {"frames", "camera", "lights", "objects"});
     scene.frames = json.integer(f.require("frames"), "frames", 1, kMostFrames);
     if (frame >= scene.frames)
         json.fail(v, fmt::format("frame {} is asked for, expected 0 to {}", frame, scene.frames - 1));
     scene.frame = frame;
-    if (const JsonValue* camera = f.find("camera")) move_camera(json, *camera, frame, scene);
-    if (const JsonValue* lights = f.find("lights")) move_lights(json, *lights, frame, scene);
+    if (const JsonValue* camera = f.find("camera")) move_camera(json, *camera, reading, scene);
+    if (const JsonValue* lights = f.find("lights")) move_lights(json, *lights, reading, scene);
     if (const JsonValue* objects = f.find("objects"))
         for (const JsonMember& object : json.object(*objects, "objects")) move_object(json, object, frame, scene);
 }

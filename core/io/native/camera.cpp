@@ -7,11 +7,11 @@
 
 namespace umbra {
 
-Camera read_native_camera(const JsonText& json, const JsonValue& v) {
+Camera read_native_camera(const JsonText& json, const JsonValue& v, const dvec3& origin) {
     const JsonFields f(json, v, "the camera", {"eye", "target", "up", "fov", "height"});
     Camera camera;
-    camera.eye    = vec3(json.vector(f.require("eye"), "eye", kAnyNumber));
-    camera.target = vec3(json.vector(f.require("target"), "target", kAnyNumber));
+    camera.eye    = vec3(json.vector(f.require("eye"), "eye", kAnyNumber) - origin);
+    camera.target = vec3(json.vector(f.require("target"), "target", kAnyNumber) - origin);
     if (camera.eye == camera.target)
         json.fail(*f.find("target"), "target is the same point as eye, expected another point");
     const JsonValue* up = f.find("up");

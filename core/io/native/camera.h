@@ -6,6 +6,7 @@
 
 namespace umbra {
 
-[[nodiscard]] Camera read_native_camera(const JsonText& json, const JsonValue& v);
+/// Relative to `origin`, which is in the file's numbers.
+[[nodiscard]] Camera read_native_camera(const JsonText& json, const JsonValue& v, const dvec3& origin);
 
 }  // namespace umbra

@@ -10,10 +10,11 @@ vec3 read_direction(const JsonText& json, const JsonValue& v, std::string_view w
     return d;
 }
 
-vec3 direction_or_target(const JsonText& json, const JsonFields& f, vec3 position, std::optional<vec3> fallback) {
+vec3 direction_or_target(const JsonText& json, const JsonFields& f, vec3 position, const dvec3& origin,
+                         std::optional<vec3> fallback) {
     f.exclude("direction", "target");
     if (const JsonValue* t = f.find("target")) {
-        const dvec3 d = json.vector(*t, "target", kAnyNumber) - dvec3(position);
+        const dvec3 d = json.vector(*t, "target", kAnyNumber) - origin - dvec3(position);
         if (vec3(d) == vec3(0)) json.fail(*t, "target is the same point as position, expected another point");
         return vec3(d);
     }

@@ -11,8 +11,9 @@ namespace umbra {
 /// [x, y, z], not all 0; any length.
 [[nodiscard]] vec3 read_direction(const JsonText& json, const JsonValue& v, std::string_view what);
 
-/// The key "direction", or the vector from `position` to "target"; `fallback` where neither is given, if there is one.
-[[nodiscard]] vec3 direction_or_target(const JsonText& json, const JsonFields& f, vec3 position,
+/// The key "direction", or the vector from `position`, which is relative to `origin`, to "target"; `fallback` where
+/// neither is given, if there is one.
+[[nodiscard]] vec3 direction_or_target(const JsonText& json, const JsonFields& f, vec3 position, const dvec3& origin,
                                        std::optional<vec3> fallback);
 
 /// "up" of a camera or rectangle: whether it is too nearly parallel to `axis` to orient anything.

@@ -11,6 +11,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/ies.h"
 #include "umbra/core/io/native/directions.h"
+#include "umbra/core/io/native/sun.h"
 #include "umbra/core/io/scene_terms.h"
 
 namespace umbra {
@@ -30,7 +31,7 @@ Keys keys_of(LightKind kind) {
     const auto add = [&](const Keys& more) { keys.insert(keys.end(), more.begin(), more.end()); };
     if (kind != LightKind::directional) add({"position", "attenuation", "clamp", "range"});
     switch (kind) {
-        case LightKind::directional: add({"direction"}); break;
+        case LightKind::directional: add({"direction", "sun"}); break;
         case LightKind::point: add({"ies", "distribution", "direction", "target", "along"}); break;
         case LightKind::spot: add({"direction", "target", "falloff", "exponent", "cutoff", "inner"}); break;
         case LightKind::rectangle: add({"size", "direction", "target", "up", "edge_u", "edge_v"}); break;
@@ -49,11 +50,19 @@ void read_intensities(const JsonText& json, const JsonFields& f, Light& light) {
     light.ambient  = colour_or(json, f, "ambient", vec3(0));
 }
 
-void read_position(const JsonText& json, const JsonFields& f, Light& light) {
-    light.position = vec3(json.vector(f.require("position"), "position", kAnyNumber));
+void read_position(const JsonText& json, const JsonFields& f, const dvec3& origin, Light& light) {
+    light.position = vec3(json.vector(f.require("position"), "position", kAnyNumber) - origin);
     light.range    = static_cast<float>(f.number("range", kPositive, 0));
     if (const JsonValue* a = f.find("attenuation")) light.attenuation = read_attenuation(json, *a);
     light.attenuation.clamp = f.boolean("clamp", light.attenuation.clamp);
+}
+
+/// A direction, or where and when the sun shines.
+void read_directional(const JsonText& json, const JsonFields& f, Light& light) {
+    f.exclude("direction", "sun");
+    const JsonValue* sun = f.find("sun");
+    if (sun != nullptr && f.find("fixed_to") != nullptr) f.exclude("fixed_to", "sun");
+    light.direction = sun != nullptr ? read_sun(json, *sun) : read_direction(json, f.require("direction"), "direction");
 }
 
 std::vector<float> read_numbers(const JsonText& json, const JsonValue& v, std::string_view what) {
@@ -97,8 +106,8 @@ Photometry read_ies_of(const JsonText& json, const JsonValue& v, const std::file
 }
 
 /// The direction of a goniometric light, and what turns its table about it.
-void read_goniometric(const JsonText& json, const JsonFields& f, const std::filesystem::path& folder, Light& light,
-                      std::vector<std::string>& warnings) {
+void read_goniometric(const JsonText& json, const JsonFields& f, const std::filesystem::path& folder,
+                      const dvec3& origin, Light& light, std::vector<std::string>& warnings) {
     f.exclude("ies", "distribution");
     const JsonValue *ies = f.find("ies"), *distribution = f.find("distribution");
     if (ies == nullptr && distribution == nullptr) {
@@ -110,7 +119,7 @@ void read_goniometric(const JsonText& json, const JsonFields& f, const std::file
     light.photometry = std::make_shared<const Photometry>(ies != nullptr ? read_ies_of(json, *ies, folder, warnings)
                                                                          : read_distribution(json, *distribution));
     if (f.find("attenuation") == nullptr) light.attenuation = {0, 0, 1, f.boolean("clamp", false)};
-    light.direction = direction_or_target(json, f, light.position, vec3(0, -1, 0));
+    light.direction = direction_or_target(json, f, light.position, origin, vec3(0, -1, 0));
     const dvec3 axis(light.direction);
     light.along = is_parallel(dvec3(1, 0, 0), axis) ? vec3(0, 0, 1) : vec3(1, 0, 0);
     if (const JsonValue* along = f.find("along")) {
@@ -119,8 +128,8 @@ void read_goniometric(const JsonText& json, const JsonFields& f, const std::file
     }
 }
 
-void read_spot(const JsonText& json, const JsonFields& f, Light& light) {
-    light.direction = direction_or_target(json, f, light.position, std::nullopt);
+void read_spot(const JsonText& json, const JsonFields& f, const dvec3& origin, Light& light) {
+    light.direction = direction_or_target(json, f, light.position, origin, std::nullopt);
     if (const JsonValue* falloff = f.find("falloff"))
         light.spot.falloff = json.choice<SpotFalloff>(*falloff, "falloff");
     light.spot.exponent = static_cast<float>(f.number("exponent", kNotNegative, double(light.spot.exponent)));
@@ -134,7 +143,7 @@ void read_spot(const JsonText& json, const JsonFields& f, Light& light) {
 }
 
 /// Two edges, or a size and where it faces.
-void read_rectangle(const JsonText& json, const JsonFields& f, Light& light) {
+void read_rectangle(const JsonText& json, const JsonFields& f, const dvec3& origin, Light& light) {
     for (const std::string_view other : {"size", "direction", "target", "up"}) f.exclude("edge_u", other);
     if (f.find("edge_u") || f.find("edge_v")) {
         light.edge_u  = read_direction(json, f.require("edge_u"), "edge_u");
@@ -148,7 +157,7 @@ void read_rectangle(const JsonText& json, const JsonFields& f, Light& light) {
     const JsonValue& v                  = f.require("size");
     const auto& size                    = json.array(v, "size", expected);
     if (size.size() != 2) json.wrong_type(v, "size", expected);
-    const dvec3 axis = glm::normalize(dvec3(direction_or_target(json, f, light.position, vec3(0, -1, 0))));
+    const dvec3 axis = glm::normalize(dvec3(direction_or_target(json, f, light.position, origin, vec3(0, -1, 0))));
     dvec3 up{0, 1, 0};
     if (const JsonValue* given = f.find("up")) {
         up = glm::normalize(dvec3(read_direction(json, *given, "up")));
@@ -181,8 +190,8 @@ std::vector<std::string> read_exceptions(const JsonText& json, const JsonFields&
     return names;
 }
 
-Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder, bool& on,
-                 std::vector<std::string>& warnings) {
+Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder,
+                 const dvec3& scene_origin, bool& on, std::vector<std::string>& warnings) {
     Light light;
     light.kind = read_kind(json, v);
     const JsonFields f(json, v, fmt::format("a {} light", to_string(light.kind)), keys_of(light.kind));
@@ -190,20 +199,22 @@ Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem
     on           = f.boolean("on", true);
     light.except = read_exceptions(json, f);
     read_intensities(json, f, light);
+    const JsonValue* fixed = f.find("fixed_to");
+    const bool to_camera   = fixed != nullptr && json.choice<FixedTo>(*fixed, "fixed_to") == FixedTo::camera;
+    const dvec3 origin     = to_camera ? dvec3(0) : scene_origin;
     if (light.kind == LightKind::directional)
-        light.direction = read_direction(json, f.require("direction"), "direction");
+        read_directional(json, f, light);
     else
-        read_position(json, f, light);
-    if (light.kind == LightKind::point) read_goniometric(json, f, folder, light, warnings);
-    if (light.kind == LightKind::spot) read_spot(json, f, light);
-    if (light.kind == LightKind::rectangle) read_rectangle(json, f, light);
-    if (light.kind == LightKind::disk) light.direction = direction_or_target(json, f, light.position, vec3(0, -1, 0));
+        read_position(json, f, origin, light);
+    if (light.kind == LightKind::point) read_goniometric(json, f, folder, origin, light, warnings);
+    if (light.kind == LightKind::spot) read_spot(json, f, origin, light);
+    if (light.kind == LightKind::rectangle) read_rectangle(json, f, origin, light);
+    if (light.kind == LightKind::disk)
+        light.direction = direction_or_target(json, f, light.position, origin, vec3(0, -1, 0));
     if (light.kind == LightKind::disk)
         light.radius = static_cast<float>(json.number(f.require("radius"), "radius", kPositive));
     if (light.kind == LightKind::sphere) read_sphere(json, f, light, warnings);
-    const JsonValue* fixed = f.find("fixed_to");
-    if (fixed != nullptr && json.choice<FixedTo>(*fixed, "fixed_to") == FixedTo::camera)
-        light.camera_pose = pose_of(light);
+    if (to_camera) light.camera_pose = pose_of(light);
     return light;
 }
 
@@ -222,12 +233,12 @@ std::set<std::string_view> names_and_beginnings(const std::vector<Object>& objec
 }  // namespace
 
 void read_native_lights(const JsonText& json, const JsonValue& v, const std::filesystem::path& folder,
-                        std::vector<Light>& lights, std::vector<std::string>& warnings) {
+                        const dvec3& origin, std::vector<Light>& lights, std::vector<std::string>& warnings) {
     std::vector<std::string> all;
     for (const JsonValue& entry : json.array(v, "lights", "a list of lights")) {
         if (lights.size() >= kMaxLights) json.fail(entry, fmt::format("more than {} lights", kMaxLights));
         bool on     = true;
-        Light light = read_light(json, entry, folder, on, all);
+        Light light = read_light(json, entry, folder, origin, on, all);
         if (on) lights.push_back(std::move(light));
     }
     for (const std::string& warning : all)

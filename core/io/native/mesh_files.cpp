@@ -4,6 +4,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
+#include "umbra/core/io/scene_io.h"
 
 namespace umbra {
 namespace {
@@ -33,8 +34,8 @@ Mesh mesh_of(const Scene& scene, const Object& object, std::vector<std::uint32_t
 
 }  // namespace
 
-std::vector<NativePart> MeshFiles::read(const JsonValue& v, const std::string& name, bool own_material) {
-    const Scene& mesh_scene   = file(v).scene;
+std::vector<NativePart> MeshFiles::read(const JsonFields& f, const std::string& name, bool own_material) {
+    const Scene& mesh_scene   = file(f).scene;
     const auto first_material = static_cast<std::uint32_t>(scene_.materials.size());
     if (!own_material)
         scene_.materials.insert(scene_.materials.end(), mesh_scene.materials.begin(), mesh_scene.materials.end());
@@ -42,16 +43,24 @@ std::vector<NativePart> MeshFiles::read(const JsonValue& v, const std::string& n
     std::vector<std::uint32_t> index(mesh_scene.positions.size(), kNoTriangle);
     for (const Object& o : mesh_scene.objects)
         parts.push_back({mesh_scene.objects.size() == 1 ? name : fmt::format("{}/{}", name, o.name),
-                         mesh_of(mesh_scene, o, index), first_material + o.material});
+                         mesh_of(mesh_scene, o, index), first_material + o.material, mesh_scene.origin, o.switches});
     return parts;
 }
 
-const SceneFile& MeshFiles::file(const JsonValue& v) {
+const SceneFile& MeshFiles::file(const JsonFields& f) {
+    const JsonValue& v         = f.require("file");
     const std::string& written = json_.string(v, "file");
-    if (const auto found = files_.find(written); found != files_.end()) return found->second;
+    Reading reading;
+    if (const JsonValue* up = f.find("up")) {
+        reading.up = json_.choice<UpAxis>(*up, "up");
+        if (reading.up != UpAxis::y && !is_mesh_file(written))
+            json_.fail(*up, fmt::format("up is for files that do not say it themselves ({})", mesh_endings()));
+    }
+    const std::pair key(written, reading.up);
+    if (const auto found = files_.find(key); found != files_.end()) return found->second;
     SceneFile read;
     try {
-        read = read_by_ending(folder_ / written, {".obj", ".ply", ".off", ".stl", ".gltf", ".glb"});
+        read = read_by_ending(folder_ / written, {".obj", ".ply", ".off", ".stl", ".gltf", ".glb"}, reading);
     } catch (const InputError& e) {
         try {
             json_.fail(v, fmt::format("the mesh cannot be read: {}", e.what()));
@@ -62,7 +71,7 @@ const SceneFile& MeshFiles::file(const JsonValue& v) {
     }
     if (read.scene.triangles.empty()) json_.fail(v, fmt::format("the mesh \"{}\" has no triangles", written));
     for (const std::string& w : read.scene.warnings) scene_.warnings.push_back(fmt::format("{}: {}", written, w));
-    return files_.emplace(written, std::move(read)).first->second;
+    return files_.emplace(key, std::move(read)).first->second;
 }
 
 }  // namespace umbra

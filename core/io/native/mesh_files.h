@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "umbra/core/io/json_text.h"
@@ -18,17 +19,19 @@ public:
     MeshFiles(const JsonText& json, std::filesystem::path folder, Scene& scene)
         : json_(json), folder_(std::move(folder)), scene_(scene) {}
 
-    /// The file's objects, named `name` or "name/OBJECT" where it has several. Its warnings are added to the scene,
-    /// and, unless the object has a material of its own, so are its materials.
-    [[nodiscard]] std::vector<NativePart> read(const JsonValue& v, const std::string& name, bool own_material);
+    /// The objects of the member "file", with the axis that the member "up" names upright, named `name` or
+    /// "name/OBJECT" where it has several. Its warnings are added to the scene, and, unless the object has a material
+    /// of its own, so are its materials.
+    [[nodiscard]] std::vector<NativePart> read(const JsonFields& f, const std::string& name, bool own_material);
 
 private:
-    const SceneFile& file(const JsonValue& v);
+    const SceneFile& file(const JsonFields& f);
 
     const JsonText& json_;
     std::filesystem::path folder_;
     Scene& scene_;
-    std::map<std::string, SceneFile> files_;  ///< by path as written: a file that is placed twice is read once
+    /// By path as written and axis: a file that is placed twice is read once.
+    std::map<std::pair<std::string, UpAxis>, SceneFile> files_;
 };
 
 }  // namespace umbra

@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <glm/gtc/matrix_transform.hpp>
 
 #include "umbra/core/io/native/shapes.h"
 #include "umbra/core/io/native/transforms.h"
+#include "umbra/core/io/scene_terms.h"
 #include "umbra/core/io/vector_text.h"
 
 namespace umbra {
@@ -22,11 +24,12 @@ JsonFields fields_of(const JsonText& json, const JsonValue& v) {
     const std::string& type = json.string(given->value, "object type");
 
     std::vector<std::string_view> keys{"type", "name", "material", "transform", "shading", "crease", "weights"};
+    for (const ObjectSwitch& each : kObjectSwitches) keys.push_back(each.key);
     const auto shape = std::find_if(shapes().begin(), shapes().end(), [&](const Shape& s) { return s.type == type; });
     if (shape != shapes().end()) {
         keys.insert(keys.end(), shape->keys.begin(), shape->keys.end());
     } else if (type == kMeshFile) {
-        keys.emplace_back("file");
+        keys.insert(keys.end(), {"file", "up"});
     } else {
         std::vector<std::string_view> types;
         for (const Shape& s : shapes()) types.push_back(s.type);
@@ -43,12 +46,14 @@ std::vector<NativePart> NativeObjects::read_parts(const JsonFields& f, const std
     std::vector<NativePart> parts;
     if (type == kMeshFile) {
         const bool own_material = f.find("material") != nullptr;
-        parts                   = files_.read(f.require("file"), name, own_material);
+        parts                   = files_.read(f, name, own_material);
         if (!own_material) return parts;
     } else {
         const auto shape =
             std::find_if(shapes().begin(), shapes().end(), [&](const Shape& s) { return s.type == type; });
-        parts.push_back({name, shape->read(json_, f)});
+        NativePart part{name, {}, 0, origin_};
+        part.mesh = shape->read(json_, f, part.origin);
+        parts.push_back(std::move(part));
     }
     const std::uint32_t material = materials_.of_object(f, name);
     for (NativePart& part : parts) part.material = material;
@@ -73,8 +78,12 @@ void NativeObjects::apply_shading(const JsonFields& f, std::vector<NativePart>& 
 
 void NativeObjects::apply_transform(const JsonFields& f, const dmat4& m, std::vector<NativePart>& parts) const {
     const JsonValue* v = f.find("transform");
-    if (v)
-        for (NativePart& part : parts) part.mesh = transformed(std::move(part.mesh), mat4(m));
+    for (NativePart& part : parts) {
+        if (!v && part.origin == origin_) continue;
+        dmat4 placed = part.origin == dvec3(0) ? m : glm::translate(m, part.origin);
+        placed[3] -= dvec4(origin_, 0);
+        part.mesh = transformed(std::move(part.mesh), mat4(placed));
+    }
     for (const NativePart& part : parts)
         for (const vec3 p : part.mesh.positions)
             if (!(kAnyNumber.holds(p.x) && kAnyNumber.holds(p.y) && kAnyNumber.holds(p.z)))
@@ -91,10 +100,13 @@ void NativeObjects::read(const JsonValue& v) {
     const dmat4 m                 = transform ? read_transform(json_, *transform, parts) : dmat4(1);
     apply_shading(f, parts);
     apply_transform(f, m, parts);
-    for (const NativePart& part : parts) {
+    for (NativePart& part : parts) {
+        apply_object_switches(f, part.switches);
         if (scene_.triangles.size() + part.mesh.triangles.size() > kMaxTriangles)
             json_.fail(v, fmt::format("more than {} triangles in one scene", kMaxTriangles));
-        add_object(scene_, part.name, part.mesh.positions, part.mesh.normals, part.mesh.triangles, part.material);
+        const auto added =
+            add_object(scene_, part.name, part.mesh.positions, part.mesh.normals, part.mesh.triangles, part.material);
+        scene_.objects[added].switches = part.switches;
     }
 }
 

@@ -9,8 +9,9 @@ namespace umbra {
 class NativeObjects {
 public:
     /// All arguments must outlive this object; objects are added to the scene.
-    NativeObjects(const JsonText& json, MeshFiles& files, NativeMaterials& materials, Scene& scene)
-        : json_(json), files_(files), materials_(materials), scene_(scene) {}
+    /// They become relative to `origin`, which is in the file's numbers.
+    NativeObjects(const JsonText& json, MeshFiles& files, NativeMaterials& materials, const dvec3& origin, Scene& scene)
+        : json_(json), files_(files), materials_(materials), origin_(origin), scene_(scene) {}
 
     void read(const JsonValue& v);
 
@@ -23,6 +24,7 @@ private:
     const JsonText& json_;
     MeshFiles& files_;
     NativeMaterials& materials_;
+    dvec3 origin_;
     Scene& scene_;
 };
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "umbra/core/scene/primitives.h"
+#include "umbra/core/scene/scene.h"
 
 namespace umbra {
 
@@ -13,6 +14,8 @@ struct NativePart {
     std::string name;
     Mesh mesh;
     std::uint32_t material = 0;  ///< index into Scene::materials
+    dvec3 origin{0};             ///< what positions of the mesh are relative to
+    ObjectSwitches switches{};
 };
 
 }  // namespace umbra

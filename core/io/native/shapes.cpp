@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "umbra/core/io/reading.h"
+
 namespace umbra {
 namespace {
 
@@ -74,10 +76,28 @@ uvec3 read_triangle(const JsonText& json, const JsonValue& v, std::size_t positi
     return t;
 }
 
-Mesh read_triangles(const JsonText& json, const JsonFields& f) {
+/// A body that is made around (0, 0, 0).
+template <Mesh (*make)(const JsonText&, const JsonFields&)>
+Mesh at_origin(const JsonText& json, const JsonFields& f, dvec3& origin) {
+    origin = dvec3(0);
+    return make(json, f);
+}
+
+/// Of a mesh by itself: what a transform moves need not be where the scene is.
+dvec3 origin_of(const std::vector<dvec3>& positions) {
+    if (positions.empty()) return dvec3(0);
+    dvec3 low = positions.front(), high = low;
+    for (const dvec3& p : positions) low = glm::min(low, p), high = glm::max(high, p);
+    return local_origin(low, high);
+}
+
+Mesh read_triangles(const JsonText& json, const JsonFields& f, dvec3& origin) {
     Mesh mesh;
+    std::vector<dvec3> positions;
     for (const JsonValue& v : json.array(f.require("positions"), "positions", "a list of [x, y, z]"))
-        mesh.positions.emplace_back(json.vector(v, "a position", kAnyNumber));
+        positions.push_back(json.vector(v, "a position", kAnyNumber));
+    if (f.find("transform") != nullptr) origin = origin_of(positions);
+    for (const dvec3& p : positions) mesh.positions.emplace_back(p - origin);
     if (const JsonValue* normals = f.find("normals")) {
         for (const JsonValue& v : json.array(*normals, "normals", "a list of [x, y, z]"))
             mesh.normals.emplace_back(json.vector(v, "a normal", kAnyNumber));  // zero: the face's own
@@ -95,13 +115,13 @@ Mesh read_triangles(const JsonText& json, const JsonFields& f) {
 }  // namespace
 
 const std::vector<Shape>& shapes() {
-    static const std::vector<Shape> all{{"plane", {"size", "divisions"}, read_plane},
-                                        {"box", {"size"}, read_box},
-                                        {"sphere", {"radius", "longitudes", "latitudes"}, read_sphere},
-                                        {"cylinder", {"radius", "height", "segments"}, read_cylinder},
-                                        {"cone", {"radius", "height", "segments"}, read_cone},
-                                        {"torus", {"major", "minor", "around", "tube"}, read_torus},
-                                        {"disk", {"radius", "segments"}, read_disk},
+    static const std::vector<Shape> all{{"plane", {"size", "divisions"}, at_origin<read_plane>},
+                                        {"box", {"size"}, at_origin<read_box>},
+                                        {"sphere", {"radius", "longitudes", "latitudes"}, at_origin<read_sphere>},
+                                        {"cylinder", {"radius", "height", "segments"}, at_origin<read_cylinder>},
+                                        {"cone", {"radius", "height", "segments"}, at_origin<read_cone>},
+                                        {"torus", {"major", "minor", "around", "tube"}, at_origin<read_torus>},
+                                        {"disk", {"radius", "segments"}, at_origin<read_disk>},
                                         {"triangles", {"positions", "triangles", "normals"}, read_triangles}};
     return all;
 }

@@ -10,9 +10,10 @@
 namespace umbra {
 
 struct Shape {
-    std::string_view type;                                  ///< "box"
-    std::vector<std::string_view> keys;                     ///< its own, beside those of every object
-    Mesh (*read)(const JsonText& json, const JsonFields&);  ///< in its own space
+    std::string_view type;               ///< "box"
+    std::vector<std::string_view> keys;  ///< its own, beside those of every object
+    /// In its own space, relative to NativePart::origin: that of the scene on entry, of the mesh on return.
+    Mesh (*read)(const JsonText& json, const JsonFields&, dvec3& origin);
 };
 
 /// In the order in which messages list them.

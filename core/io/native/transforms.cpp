@@ -31,7 +31,7 @@ dmat4 read_fit(const JsonText& json, const JsonValue& v, const dmat4& before, co
     dvec3 low(kInfinity), high(-kInfinity);
     for (const NativePart& part : parts)
         for (const vec3 p : part.mesh.positions) {
-            const dvec3 q(before * dvec4(dvec3(p), 1));
+            const dvec3 q(before * dvec4(dvec3(p) + part.origin, 1));
             low = glm::min(low, q), high = glm::max(high, q);
         }
     const dvec3 extent = high - low;

@@ -137,6 +137,17 @@ TEST(VisibilityError, AwayNoneAndUndefinedPointsAreCountedApart) {
     EXPECT_EQ(e.false_shadow.edge, 2u * 27);
 }
 
+TEST(VisibilityError, PointsThatReceiveNoShadowsAreCountedApart) {
+    Half half;
+    half.s.s.assign(half.s.s.size(), 0.0f);
+    for (int x = 0; x < kWidth; ++x) half.points.facing[0][Half::at(x, 1)] = Facing::unshadowed;
+    const VisibilityError e = half.error();
+    EXPECT_EQ(e.unshadowed, 40u);
+    EXPECT_EQ(e.away, 0u);
+    EXPECT_EQ(e.points, 1200u - 40);
+    EXPECT_EQ(e.false_shadow.interior + e.false_shadow.edge, 29u * 20);
+}
+
 TEST(VisibilityError, WhereTheLightTurnsAwayThereIsNoBoundary) {
     Half half;
     for (int y = 0; y < kHeight; ++y)

@@ -163,6 +163,16 @@ TEST_F(ImageIo, PartsThatDoNotFitAreRefusedByName) {
     EXPECT_EQ(
         saying("a.tif", {part("", {"R", "G", "B"}, 0), part("", {"R", "G", "B"}, 0, 12, 8, OIIO::TypeDesc::UINT8)}),
         "part 2 is not as the first: one holds linear light, the other sRGB (parts of one kind are read)");
+    auto small            = part("small", {"Z"}, 0, 6, 4);
+    small.spec.full_width = 12, small.spec.full_height = 8;  // all parts have one display window
+    EXPECT_EQ(saying("a.exr", {part("rgb", {"R", "G", "B"}, 0), small}),
+              "part small is not as the first: sizes differ: 12x8 against 6x4 (parts of one size and place are read)");
+    std::vector<other_writers::Part> levels{part("", {"R", "G", "B"}, 0, 16, 16), part("", {"R", "G", "B"}, 0, 8, 8)};
+    for (other_writers::Part& level : levels) {
+        level.spec.tile_width = level.spec.tile_height = 16;
+        level.spec.attribute("textureformat", "Plain Texture");
+    }
+    EXPECT_EQ(saying("b.exr", levels, true), "has smaller copies of its pixels, mip levels (pictures are read)");
 }
 
 TEST_F(ImageIo, WhatAFileSaysOfItsColoursAndPlaceIsKept) {

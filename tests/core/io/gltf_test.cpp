@@ -1,5 +1,8 @@
 #include <cstring>
+#include <fstream>
 
+#include "umbra/core/image/image_io.h"
+#include "umbra/core/io/gltf/cutout.h"
 #include "umbra/tests/support/scene_files.h"
 
 namespace umbra {
@@ -119,7 +122,8 @@ std::string instanced(const std::string& attributes, const std::string& more = "
         {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3"},
         {"bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 3, "type": "VEC4"},
         {"bufferView": 0, "byteOffset": 120, "componentType": 5126, "count": 3, "type": "VEC3"},
-        {"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        {"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"},
+        {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC4"}],
         "bufferViews": [{"buffer": 0, "byteLength": 156}], )" +
            buffers(bytes) + "}";
 }
@@ -149,6 +153,7 @@ TEST(Gltf, FaultyInstancesAreRefused) {
     for (const auto& [attributes, expected] :
          {std::pair{R"("TRANSLATION": 2)", "TRANSLATION has 4 components an instance, expected 3"},
           {R"("ROTATION": 1)", "ROTATION has 3 components an instance, expected 4"},
+          {R"("ROTATION": 5)", "ROTATION of instance 2 has length 0, expected a unit quaternion"},
           {R"("TRANSLATION": 1, "SCALE": 4)", "attributes of 3 and of 2 instances"},
           {R"("TRANSLATION": 9)", "TRANSLATION 9 does not exist"}}) {
         const std::string message = refusal(folder.write("a.gltf", instanced(attributes)));
@@ -193,16 +198,112 @@ TEST(Gltf, StripsAndFansAreTheSameSquare) {
 }
 
 TEST(Gltf, PointsLinesAndTheIncompleteAreLeftOutWithAWarning) {
-    const Scene scene = load(document(R"("nodes": [{"mesh": 0, "skin": 0}], "meshes": [{"primitives": [
+    const Scene scene = load(document(
+        R"("nodes": [{"mesh": 0}], "animations": [{"channels": [], "samplers": []}], "meshes": [{"primitives": [
         {"attributes": {"POSITION": 0}, "mode": 0}, {"attributes": {"POSITION": 0}, "mode": 3},
-        {"attributes": {"NORMAL": 1}}, {"attributes": {"POSITION": 0, "COLOR_0": 1}, "targets": [{"POSITION": 0}]}]}])"));
+        {"attributes": {"NORMAL": 1}}, {"attributes": {"POSITION": 0, "COLOR_0": 1}}]}])"));
     EXPECT_EQ(scene.triangles.size(), 1u);
     EXPECT_TRUE(warns(scene, "2 primitives of points or lines"));
     EXPECT_TRUE(warns(scene, "without positions"));
     EXPECT_TRUE(warns(scene, "has 4 corners, which do not divide into triangles"));
     EXPECT_TRUE(warns(scene, "Colours of vertices"));
-    EXPECT_TRUE(warns(scene, "Morph targets"));
-    EXPECT_TRUE(warns(scene, "Skins"));
+    EXPECT_TRUE(warns(scene, "Animations are ignored"));
+    EXPECT_FALSE(warns(load(kGood), "Animations"));
+}
+
+/// One triangle with normals along z and two morph targets: all of it 2 along z, with normals that lean by (0, 1, 0);
+/// corner 2 by (0, 3, 0), sparse.
+std::string morphing(const std::string& nodes, const std::string& mesh,
+                     const std::string& targets = R"({"POSITION": 2, "NORMAL": 3}, {"POSITION": 4})") {
+    const std::string bytes =
+        bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) + bytes_of<float>({0, 0, 1, 0, 0, 1, 0, 0, 1}) +
+        bytes_of<float>({0, 0, 2, 0, 0, 2, 0, 0, 2}) + bytes_of<float>({0, 1, 0, 0, 1, 0, 0, 1, 0}) +
+        bytes_of<std::uint16_t>({2, 0}) + bytes_of<float>({0, 3, 0});
+    return R"({"asset": {"version": "2.0"}, "nodes": [)" + nodes + R"(], "meshes": [{)" + mesh +
+           R"("primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "targets": [)" + targets + R"(]}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 0, "byteOffset": 72, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 0, "byteOffset": 108, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"componentType": 5126, "count": 3, "type": "VEC3", "sparse": {"count": 1,
+                        "indices": {"bufferView": 0, "byteOffset": 144, "componentType": 5123},
+                        "values": {"bufferView": 0, "byteOffset": 148}}},
+                      {"bufferView": 0, "componentType": 5126, "count": 2, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 160}], )" +
+           buffers(bytes) + "}";
+}
+
+TEST(Gltf, MorphTargetsAreAppliedByTheirWeights) {
+    const Scene scene = load(morphing(
+        R"({"mesh": 0}, {"mesh": 0, "weights": [0, 0]}, {"mesh": 0, "weights": [1, 0], "translation": [0, 0, 10]})",
+        R"("weights": [0.5, 2], )"));
+    ASSERT_EQ(scene.triangles.size(), 3u);
+    EXPECT_EQ(scene.vertex(0, 0), vec3(0, 0, 1)) << "half of 2 along z";
+    EXPECT_EQ(scene.vertex(0, 2), vec3(0, 7, 1)) << "1 + 2 * 3, of the sparse target";
+    expect_near(scene.normals[scene.triangles[0].x], vec3(glm::normalize(dvec3(0, 0.5, 1))));
+    EXPECT_EQ(scene.vertex(1, 2), vec3(0, 1, 0)) << "the node's weights replace the mesh's";
+    EXPECT_EQ(scene.vertex(2, 2), vec3(0, 1, 12));
+    expect_near(scene.normals[scene.triangles[2].x], vec3(glm::normalize(dvec3(0, 1, 1))));
+    EXPECT_FALSE(warns(scene, "orph"));
+    EXPECT_EQ(load(morphing(R"({"mesh": 0})", "")).vertex(0, 2), vec3(0, 1, 0)) << "without weights all are 0";
+}
+
+/// One triangle, its normals along x, that follows two joints: of corner 0 joint 0 alone, of corner 1 joint 1, of
+/// corner 2 both with the weight `shared` each. The inverse bind matrix of joint 0 moves by -5 along z, that of joint 1
+/// is 1.
+std::string skinned(const std::string& nodes, const std::string& skin, float shared = 2,
+                    const std::string& attributes = R"("POSITION": 0, "NORMAL": 1, "JOINTS_0": 2, "WEIGHTS_0": 3)") {
+    const std::string bytes = bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}) +
+                              bytes_of<float>({1, 0, 0, 1, 0, 0, 1, 0, 0}) +
+                              bytes_of<std::uint8_t>({0, 0, 9, 0, 1, 0, 0, 0, 0, 1, 0, 0}) +
+                              bytes_of<float>({1, 0, 0, 0, 1, 0, 0, 0, shared, shared, 0, 0}) +
+                              bytes_of<float>({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, -5, 1,
+                                               1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0,  1});
+    return R"({"asset": {"version": "2.0"}, "nodes": [)" + nodes + R"(], "skins": [)" + skin +
+           R"(], "meshes": [{"primitives": [{"attributes": {)" + attributes + R"(}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 0, "byteOffset": 36, "componentType": 5126, "count": 3, "type": "VEC3"},
+                      {"bufferView": 0, "byteOffset": 72, "componentType": 5121, "count": 3, "type": "VEC4"},
+                      {"bufferView": 0, "byteOffset": 84, "componentType": 5126, "count": 3, "type": "VEC4"},
+                      {"bufferView": 0, "byteOffset": 132, "componentType": 5126, "count": 2, "type": "MAT4"},
+                      {"bufferView": 0, "byteOffset": 132, "componentType": 5126, "count": 1, "type": "MAT4"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 260}], )" +
+           buffers(bytes) + "}";
+}
+
+const std::string kSkin = R"({"joints": [1, 2], "inverseBindMatrices": 4})";
+/// Joint 1 is turned by 90 degrees about z: (x, y, z) becomes (1 - y, x, z + 5).
+const std::string kJoints =
+    R"({"mesh": 0, "skin": 0, "translation": [100, 0, 0]}, {"translation": [0, 0, 5], "children": [2]},
+       {"translation": [1, 0, 0], "rotation": [0, 0, 0.7071067811865476, 0.7071067811865476]})";
+
+TEST(Gltf, SkinsFollowTheJointsOfTheFile) {
+    const Scene scene = load(skinned(kJoints, kSkin));
+    ASSERT_EQ(scene.triangles.size(), 1u);
+    expect_near(scene.vertex(0, 0), {0, 0, 0});
+    expect_near(scene.vertex(0, 1), {1, 1, 5});
+    expect_near(scene.vertex(0, 2), {0, 0.5f, 2.5f});
+    expect_near(scene.normals[scene.triangles[0].x], {1, 0, 0});
+    expect_near(scene.normals[scene.triangles[0].y], {0, 1, 0});
+    EXPECT_FALSE(warns(scene, "kin"));
+    const Scene bound = load(skinned(kJoints, R"({"joints": [1, 2]})"));
+    expect_near(bound.vertex(0, 0), {0, 0, 5});
+    const Scene none = load(skinned(kJoints, kSkin, 0));
+    expect_near(none.vertex(0, 2), {0, 1, 0});
+    EXPECT_TRUE(warns(none, "The weights of 1 vertices' joints"));
+}
+
+TEST(Gltf, AMirroredSkeletonTurnsTheWinding) {
+    const Scene scene = load(
+        skinned(R"({"mesh": 0, "skin": 0}, {"scale": [-1, 1, 1]}, {"scale": [-1, 1, 1]})", R"({"joints": [1, 2]})"));
+    EXPECT_EQ(area_normal(scene, 0), dvec3(0, 0, 1));
+    expect_near(scene.normals[0], {-1, 0, 0});
+}
+
+TEST(Gltf, ASkinWithoutJointsInItsMeshLeavesItWhereItIs) {
+    const Scene scene = load(skinned(kJoints, kSkin, 1, R"("POSITION": 0)"));
+    expect_near(vec3(dvec3(scene.vertex(0, 1)) + scene.origin), {101, 0, 0});
+    EXPECT_TRUE(warns(scene, "1 primitives of nodes with a skin have no JOINTS_0"));
 }
 
 TEST(Gltf, InterleavedQuantisedSparseAndMissingData) {
@@ -355,11 +456,11 @@ TEST(Gltf, PunctualLights) {
     EXPECT_FLOAT_EQ(falloff(spot, vec3(0)), 0.25f) << "a node's scale does not reach its light";
 }
 
-/// A spot of that file, of intensity 1.
+/// A spot of that file, of intensity 1. An empty `warning`: none about spots is given.
 Light only_spot(const std::string& angles, std::string_view warning) {
     const Scene scene =
         load(with_nodes(R"({"mesh": 0},)" + shining(0), punctual(R"({"type": "spot", "spot": {)" + angles + "}}")));
-    EXPECT_TRUE(warning.empty() || warns(scene, warning)) << angles;
+    EXPECT_EQ(warns(scene, warning.empty() ? "spot lights have" : warning), !warning.empty()) << angles;
     return scene.lights.at(0);
 }
 
@@ -393,6 +494,50 @@ TEST(Gltf, SpotsHaveTheExtensionsFormula) {
             EXPECT_NEAR(at * static_cast<double>(spot.diffuse.r), t * t, 2e-3) << inner << " " << outer << " " << a;
         }
     }
+}
+
+std::string flat_lights(const std::string& list) {
+    return R"("extensionsRequired": ["EXT_lights_area"], "extensionsUsed": ["EXT_lights_area"],
+              "extensions": {"EXT_lights_area": {"lights": [)" +
+           list + "]}}";
+}
+std::string flat(int light, const std::string& more = "") {
+    return fmt::format(R"({{"extensions": {{"EXT_lights_area": {{"light": {}}}}}{}}})", light, more);
+}
+
+TEST(Gltf, AreaLights) {
+    const Scene scene = load(with_nodes(
+        R"({"mesh": 0},)" + flat(0, R"(, "name": "panel", "translation": [0, 3, 0], "scale": [1, -2, 0.5],
+                        "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476])") +
+            "," + flat(1) + "," + flat(2),
+        flat_lights(R"({"type": "rect", "size": 0.5, "intensity": 40, "color": [1, 0.5, 0.25], "rect": {"aspect": 3}},
+                       {"type": "disk", "size": 4, "name": "dish"}, {"rect": {}})")));
+    ASSERT_EQ(scene.lights.size(), 3u);
+    const Light& panel = scene.lights[0];
+    EXPECT_EQ(panel.kind, LightKind::rectangle);
+    EXPECT_EQ(panel.name, "panel");
+    expect_near(panel.position, {0, 3, 0});
+    expect_near(panel.direction, {0, -1, 0});
+    expect_near(panel.edge_u, {3, 0, 0});  // 2, the largest scale, * 0.5 * 3
+    expect_near(vec3(glm::abs(dvec3(panel.edge_v))), {0, 0, 1});
+    expect_near(vec3(glm::cross(dvec3(panel.edge_u), dvec3(panel.edge_v))), {0, -3, 0});
+    expect_near(panel.diffuse, {120, 60, 30}, 1e-3f);  // 40 nits * 3 m2
+    EXPECT_EQ(panel.specular, panel.diffuse);
+    EXPECT_FLOAT_EQ(falloff(panel, vec3(0, 1, 0)), 0.25f);
+    const Light& dish = scene.lights[1];
+    EXPECT_EQ(dish.kind, LightKind::disk);
+    EXPECT_EQ(dish.name, "dish");
+    EXPECT_FLOAT_EQ(dish.radius, 2) << "size is the diameter";
+    expect_near(dish.direction, {0, 0, -1});
+    EXPECT_NEAR(dish.diffuse.r, 1000 * kPi * 4, 0.01) << "1000 nits by default";
+    const Light& square = scene.lights[2];
+    EXPECT_EQ(square.kind, LightKind::rectangle) << "by default";
+    expect_near(square.edge_u, {1, 0, 0});
+    expect_near(square.edge_v, {0, -1, 0});
+    EXPECT_FALSE(warns(scene, "Extensions"));
+
+    const Scene unknown = load(with_nodes(R"({"mesh": 0},)" + flat(0), flat_lights(R"({"type": "tube"})")));
+    EXPECT_TRUE(warns(unknown, "lights[0] \"\" of EXT_lights_area is of the unknown type \"tube\""));
 }
 
 TEST(Gltf, UnknownKindsOfLightsAreLeftOut) {
@@ -510,7 +655,210 @@ TEST(GltfMaterial, TexturesAreNotReadNorEvenOpened) {
               1);
 }
 
+Scene masked(const std::string& members, const std::string& more = "") {
+    return load(document(R"("nodes": [{"mesh": 0}], "images": [{"uri": "leaf.png"}], "textures": [{"source": 0}],
+        "materials": [{"name": "leaf", "alphaMode": "MASK", )" +
+                         members + R"(}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 2,
+        "material": 0}]}])" +
+                         more));
+}
+
+TEST(GltfMaterial, MasksWithoutATextureLeaveAllOrNothing) {
+    const Scene whole = masked(R"("pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.5]})");
+    EXPECT_EQ(whole.triangles.size(), 2u) << "alphaCutoff is 0.5";
+    EXPECT_EQ(whole.materials[0].opacity, 1);
+    EXPECT_FALSE(whole.materials[0].cutout);
+    for (
+        const char* members :
+        {R"("pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.4]})",
+         R"("alphaCutoff": 0.9, "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.8], "baseColorTexture": {"index": 0}})",
+         R"("extensions": {"KHR_materials_pbrSpecularGlossiness": {"diffuseFactor": [1, 1, 1, 0.4]}})"}) {
+        const Scene none = masked(members);
+        EXPECT_TRUE(none.triangles.empty()) << members;
+        EXPECT_TRUE(warns(none, "1 primitives are left out: the alpha of their material")) << members;
+    }
+}
+
+TEST(GltfMaterial, MasksByATextureAreCutouts) {
+    const Scene leaf = masked(R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})");
+    EXPECT_EQ(leaf.triangles.size(), 2u);
+    EXPECT_TRUE(leaf.materials[0].cutout);
+    EXPECT_TRUE(warns(leaf, "The cutout of material \"leaf\" is not computed: surfaces are whole"));
+    EXPECT_FALSE(
+        masked(R"("alphaCutoff": 0, "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})").materials[0].cutout)
+        << "every alpha is enough";
+    EXPECT_FALSE(masked(R"("normalTexture": {"index": 0})").materials[0].cutout) << "its alpha cuts nothing";
+}
+
+class GltfMask : public ::testing::Test {
+protected:
+    GltfMask() {
+        set_image_reader([](const std::filesystem::path& file) { return read_image(file).image; });
+        Image image(2, 2, {"R", "G", "B", "A"});
+        image.at(0, 3) = 1;     // above on the left
+        image.at(1, 3) = 0.3f;  // above on the right
+        write_image(folder_.path() / "leaf.png", image);
+    }
+    ~GltfMask() override { set_image_reader(nullptr); }
+
+    /// The unit square in z = 0, the texture upright on it, under this material.
+    Scene leaf(const std::string& material, const std::string& more = "", const std::string& uri = "leaf.png") const {
+        const std::string bytes = kSquare + bytes_of<float>({0, 1, 1, 1, 0, 0, 1, 0});
+        const std::string uv =
+            R"(, {"bufferView": 0, "byteOffset": 116, "componentType": 5126, "count": 4, "type": "VEC2"}],
+            "bufferViews": [{"buffer": 0, "byteLength": 148}])";
+        Scene scene = load_scene(folder_.write(
+            "leaf.gltf", R"({"asset": {"version": "2.0"}, "nodes": [{"mesh": 0}], "images": [{"uri": ")" + uri +
+                             R"("}], )" + more + R"("materials": [{"alphaMode": "MASK", )" + material +
+                             R"(}], "meshes": [{"primitives": [{"material": 0, "indices": 2,
+            "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 4}}]}], )" +
+                             kAccessors.substr(0, kAccessors.find(']')) + uv + ", " + buffers(bytes) + "}"));
+        expect_sound(scene);
+        return scene;
+    }
+    static double area(const Scene& scene) {
+        double sum = 0;
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
+            sum += glm::length(area_normal(scene, t)) / 2;
+            EXPECT_GT(area_normal(scene, t).z, 0) << "wound as before";
+        }
+        return sum;
+    }
+
+    TemporaryFolder folder_;
+    const std::string plain_   = R"("textures": [{"source": 0}], )";
+    const std::string texture_ = R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0}})";
+};
+
+TEST_F(GltfMask, IsCutIntoTriangles) {
+    const Scene scene = leaf(texture_, plain_);
+    EXPECT_EQ(scene.triangles.size(), 2u) << "a quarter, on both sides of the diagonal";
+    EXPECT_DOUBLE_EQ(area(scene), 0.25);
+    EXPECT_EQ(bounds(scene).min, vec3(0, 0.5f, 0));
+    EXPECT_EQ(bounds(scene).max, vec3(0.5f, 1, 0));
+    EXPECT_EQ(scene.normals[0], vec3(0, 0, 1));
+    EXPECT_FALSE(scene.materials[0].cutout);
+    EXPECT_FALSE(warns(scene, "cutout"));
+
+    std::ifstream in(folder_.path() / "leaf.png", std::ios::binary);
+    const std::string file{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_DOUBLE_EQ(area(leaf(texture_, plain_, "data:image/png;base64," + base64(file))), 0.25);
+}
+
+TEST_F(GltfMask, AlphaIsThatOfFactorAndTexture) {
+    const auto material = [](const char* cutoff) {
+        return fmt::format(
+            R"("alphaCutoff": {}, "pbrMetallicRoughness": {{"baseColorFactor": [1, 1, 1, 0.5], "baseColorTexture": {{"index": 0}}}})",
+            cutoff);
+    };
+    const Scene both = leaf(material("0.1"), plain_);
+    EXPECT_DOUBLE_EQ(area(both), 0.5) << "0.5 * 0.3 is above 0.1";
+    EXPECT_EQ(both.triangles.size(), 3u) << "neighbours make one rectangle: a triangle and a quadrangle of it";
+    EXPECT_DOUBLE_EQ(area(leaf(material("0.2"), plain_)), 0.25);
+    EXPECT_DOUBLE_EQ(area(leaf(material("0.5"), plain_)), 0.25) << "at the cutoff it is there";
+}
+
+TEST_F(GltfMask, TexturesGoOnAsTheirSamplersSay) {
+    const std::string twice =
+        R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"scale": [2, 2]}}}})";
+    const auto wrapped = [&](const char* wrap) {
+        return leaf(
+            twice,
+            fmt::format(R"("textures": [{{"source": 0, "sampler": 0}}], "samplers": [{{"wrapS": {}}}], )", wrap));
+    };
+    // Along x of 4 texels each: kept are 0 and 2, 0 and 3, 0 alone. Along y: two of four.
+    const Scene repeated = wrapped("10497"), mirrored = wrapped("33648"), clamped = wrapped("33071");
+    EXPECT_DOUBLE_EQ(area(repeated), 0.25);
+    EXPECT_EQ(bounds(repeated).max, vec3(0.75f, 1, 0));
+    EXPECT_DOUBLE_EQ(area(mirrored), 0.25);
+    EXPECT_EQ(bounds(mirrored).max, vec3(1, 1, 0));
+    EXPECT_DOUBLE_EQ(area(clamped), 0.125);
+    EXPECT_EQ(bounds(clamped).max, vec3(0.25f, 1, 0));
+}
+
+TEST_F(GltfMask, WhatCannotBeReadStaysWhole) {
+    for (const char* uri : {"none.png", "leaf.gltf"}) {
+        const Scene scene = leaf(texture_, plain_, uri);
+        EXPECT_DOUBLE_EQ(area(scene), 1) << uri;
+        EXPECT_TRUE(scene.materials[0].cutout) << uri;
+        EXPECT_TRUE(warns(scene, "The texture that cuts the outlines of materials[0] is not read")) << uri;
+        EXPECT_TRUE(warns(scene, "The cutout of material \"material_0\" is not computed")) << uri;
+    }
+}
+
+TEST_F(GltfMask, StaysWholeBeyondALimitOfTriangles) {
+    Mesh mesh;
+    mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    mesh.triangles = {{0, 1, 2}};
+    Cutout cutout;
+    cutout.width = cutout.height = 2;
+    cutout.kept                  = {1, 0, 0, 1};
+    const std::vector<dvec2> at{{0, 0}, {2, 0}, {0, 2}};
+    // The triangle below the diagonal of 4 x 4 texels. Kept are those of an even sum of coordinates: four whole ones of
+    // two triangles each, at (0, 0), (1, 1), (2, 0), (0, 2); the next ones, of the sum 4, only touch the diagonal.
+    const auto all = cut_out(mesh, at, cutout, 8);
+    ASSERT_TRUE(all.has_value());
+    EXPECT_EQ(all->triangles.size(), 8u);
+    EXPECT_FALSE(cut_out(mesh, at, cutout, all->triangles.size() - 1).has_value());
+}
+
 // ---- extensions ----
+
+/// The square with 16-bit positions as they are, scaled by its node, and normals of normalised bytes.
+TEST(Gltf, QuantisedAttributes) {
+    const std::string bytes = bytes_of<std::uint16_t>({0, 0, 0, 0, 4000, 0, 0, 0, 0, 60000, 0, 0}) +
+                              bytes_of<std::int8_t>({0, 0, 127, 0, 0, -127, 0, 0, -128, 0, 0, 0});
+    const Scene scene = load(R"({"asset": {"version": "2.0"}, "extensionsUsed": ["KHR_mesh_quantization"],
+        "extensionsRequired": ["KHR_mesh_quantization"], "nodes": [{"mesh": 0, "scale": [0.001, 0.001, 0.001]}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5123, "count": 3, "type": "VEC3"},
+                      {"bufferView": 1, "componentType": 5120, "normalized": true, "count": 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 24, "byteStride": 8},
+                        {"buffer": 0, "byteOffset": 24, "byteLength": 12, "byteStride": 4}], )" +
+                             buffers(bytes) + "}");
+    expect_near(scene.vertex(0, 1), {4, 0, 0});
+    expect_near(scene.vertex(0, 2), {0, 60, 0});
+    EXPECT_EQ(scene.normals[scene.triangles[0].x], vec3(0, 0, 1));
+    EXPECT_EQ(scene.normals[scene.triangles[0].y], vec3(0, -1, 0));
+    EXPECT_EQ(scene.normals[scene.triangles[0].z], vec3(-1, 0, 0));
+}
+
+TEST(Gltf, CompressedDataWithAFallbackLoad) {
+    const Scene draco = load(document(
+        R"("extensionsUsed": ["KHR_draco_mesh_compression"], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [
+        {"attributes": {"POSITION": 0}, "indices": 2, "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0,
+         "attributes": {"POSITION": 0}}}}]}])"));
+    EXPECT_EQ(draco.triangles.size(), 2u);
+    EXPECT_EQ(draco.vertex(0, 1), vec3(1, 0, 0));
+    EXPECT_TRUE(warns(draco, "KHR_draco_mesh_compression"));
+    const auto with_both = [](const std::string& fallback) {
+        return R"({"asset": {"version": "2.0"}, "extensionsUsed": ["EXT_meshopt_compression"], "nodes": [{"mesh": 0}], )" +
+               kMesh + ", " + kAccessors.substr(0, kAccessors.find("\"bufferViews\"")) +
+               R"("bufferViews": [{"buffer": 1, "byteLength": 116, "extensions": {"EXT_meshopt_compression": {"buffer": 0,
+               "byteLength": 4, "byteStride": 4, "mode": "ATTRIBUTES", "count": 29}}}], "buffers": [
+               {"byteLength": 4, "uri": "data:application/octet-stream;base64,AAAAAA=="}, {"byteLength": 116, )" +
+               fallback + R"("extensions": {"EXT_meshopt_compression": {"fallback": true}}}]})";
+    };
+    const Scene meshopt =
+        load(with_both("\"uri\": \"data:application/octet-stream;base64," + base64(kSquare) + "\", "));
+    EXPECT_EQ(meshopt.triangles.size(), 2u);
+    const TemporaryFolder folder;
+    const std::string message = refusal(folder.write("a.gltf", with_both("")));
+    EXPECT_NE(message.find("buffers[1] has no uri: its data are compressed by EXT_meshopt_compression"),
+              std::string::npos)
+        << message;
+}
+
+TEST(Gltf, TexturesInOtherFormatsAreNoReasonToRefuse) {
+    const Scene scene = load(document(R"("extensionsUsed": ["EXT_texture_webp", "KHR_texture_basisu"],
+        "extensionsRequired": ["EXT_texture_webp", "KHR_texture_basisu"], "nodes": [{"mesh": 0}],
+        "images": [{"uri": "a.webp", "mimeType": "image/webp"}],
+        "textures": [{"extensions": {"EXT_texture_webp": {"source": 0}}}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 2, "material": 0}]}])"));
+    EXPECT_EQ(scene.triangles.size(), 2u);
+    EXPECT_TRUE(warns(scene, "Textures are ignored"));
+}
 
 TEST(Gltf, ExtensionsThatAreNotRead) {
     EXPECT_TRUE(warns(
@@ -591,6 +939,16 @@ TEST(GltfExtras, AMirroredPanelFacesTheSameWay) {
     }
 }
 
+TEST(GltfExtras, ANodeSaysWhatItsMeshTakesPartIn) {
+    const Scene scene = load(with_nodes(
+        R"({"mesh": 0, "extras": {"umbra": {"casts_shadows": false, "seen_by_camera": false}}, "children": [1]},
+           {"mesh": 0}, {"mesh": 0, "extras": {"umbra": {"receives_shadows": false}}})"));
+    ASSERT_EQ(scene.objects.size(), 3u);
+    EXPECT_EQ(scene.objects[0].switches, (ObjectSwitches{false, true, false}));
+    EXPECT_EQ(scene.objects[1].switches, ObjectSwitches()) << "of the node alone, not of its children";
+    EXPECT_EQ(scene.objects[2].switches, (ObjectSwitches{true, false, true}));
+}
+
 // ---- bad input ----
 
 struct Bad {
@@ -639,6 +997,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"nested", R"({"asset": {"version": "2.0"}, "extras": )" + std::string(1000000, '['), "nested deeper"},
         {"requires_draco", document(R"("extensionsRequired": ["KHR_draco_mesh_compression"])"),
          "requires the extension KHR_draco_mesh_compression"},
+        {"requires_meshopt", document(R"("extensionsRequired": ["EXT_meshopt_compression"])"),
+         "requires the extension EXT_meshopt_compression"},
         {"requires_unknown", document(R"("extensionsRequired": ["ACME_fur"])"),
          ":2:24: the file requires the extension ACME_fur"},
         {"draco_inside",
@@ -709,6 +1069,24 @@ INSTANTIATE_TEST_SUITE_P(
         {"absolute", with(kGood, "data:application/octet-stream;base64,", "/dev/"),
          "is not read, expected a file beside this one"},
         {"no_uri", R"({"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4}]})", "buffers[0] has no uri"},
+        {"morph_count", morphing(R"({"mesh": 0})", "", R"({"POSITION": 5})"),
+         "POSITION of meshes[0].primitives[0].targets[0] has 2 elements, expected 3"},
+        {"morph_weights", morphing(R"({"mesh": 0})", R"("weights": [1], )"),
+         "1 weights, expected 2, as many as mesh_0 has morph targets"},
+        {"morph_weights_of_a_node", morphing(R"({"mesh": 0, "weights": [1, 2, 3]})", ""), "3 weights, expected 2"},
+        {"skin", skinned(R"({"mesh": 0, "skin": 1})", R"({"joints": [0]})"), "skin 1 does not exist"},
+        {"skin_empty", skinned(kJoints, R"({"joints": []})"), "skins[0] has no joints"},
+        {"skin_joint", skinned(kJoints, R"({"joints": [3]})"), "joint 3 does not exist"},
+        {"skin_matrices", skinned(kJoints, R"({"joints": [1, 2], "inverseBindMatrices": 5})"),
+         "skins[0] has 2 joints, but 1 inverseBindMatrices"},
+        {"skin_matrix", skinned(kJoints, R"({"joints": [1, 2], "inverseBindMatrices": 3})"),
+         "inverseBindMatrices is not an accessor of type MAT4"},
+        {"skin_short", skinned(kJoints, R"({"joints": [1]})"),
+         "vertex 1 of mesh_0 follows joint 1, but the skin of this node has 1 joints"},
+        {"skin_no_weights", skinned(kJoints, kSkin, 1, R"("POSITION": 0, "JOINTS_0": 2)"),
+         "has JOINTS_0 without WEIGHTS_0"},
+        {"skin_joints_float", skinned(kJoints, kSkin, 1, R"("POSITION": 0, "JOINTS_0": 3, "WEIGHTS_0": 3)"),
+         "JOINTS_0 is not an accessor of type VEC4 of unsigned integers"},
     }),
     [](const auto& test) { return test.param.name; });
 
@@ -752,6 +1130,9 @@ INSTANTIATE_TEST_SUITE_P(
         {"light_colours", light(R"({"type": "point", "color": [1, 1, 1, 1]})"), "color is a list of 4 values"},
         {"light_negative", light(R"({"type": "point", "intensity": -1})"), "intensity is -1"},
         {"light_bright", light(R"({"type": "point", "intensity": 1e300})"), "intensity is 1e+300"},
+        {"area_light", with_nodes(flat(1), flat_lights(R"({"type": "disk"})")), "light 1 does not exist"},
+        {"area_light_of_no_size", with_nodes(R"({"mesh": 0})", flat_lights(R"({"type": "disk", "size": 0})")),
+         "size is 0"},
         {"light_range", light(R"({"type": "point", "range": 0})"), "range is 0"},
         {"camera_far", camera(R"({"type": "perspective", "perspective": {"yfov": 1, "znear": 10, "zfar": 1}})"),
          "zfar 1 is not beyond znear 10"},
@@ -777,6 +1158,9 @@ INSTANTIATE_TEST_SUITE_P(
         {"extras_unknown", extras(R"({"lamp": {}})"), "\"lamp\""},
         {"extras_text", extras(R"("light")"), "extras.umbra of a node is the string"},
         {"extras_light_type", extras(R"({"light": {"type": "area"}})"), "\"area\""},
+        {"extras_switch", extras(R"({"casts_shadows": "no"})"), "casts_shadows is the string \"no\""},
+        {"extras_switch_of_nothing", node(R"("extras": {"umbra": {"seen_by_camera": false}})"),
+         "seen_by_camera is for nodes with a mesh only"},
         {"extras_no_size", extras(R"({"light": {"type": "rectangle"}})"), "\"size\""},
         {"extras_radius", extras(R"({"light": {"type": "disk", "radius": -1}})"), "radius is -1"},
         {"extras_both", extras(R"({"light": {"type": "disk", "radius": 1, "size": [1, 1]}})"),
@@ -857,7 +1241,8 @@ TEST(Gltf, Mutants) {
             R"(, {"extras": {"umbra": {"light": {"type": "disk", "radius": 1}}}})",
         punctual(R"({"type": "spot", "intensity": 5, "spot": {"outerConeAngle": 1}})") +
             R"(, "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}], "materials": [{"pbrMetallicRoughness": {"metallicFactor": 0}}], "scene": 0, "scenes": [{"nodes": [0, 2, 3]}])");
-    expect_survives_mutants("gltf", {everything, kGood});
+    expect_survives_mutants(
+        "gltf", {everything, kGood, morphing(R"({"mesh": 0})", R"("weights": [1, 1], )"), skinned(kJoints, kSkin)});
 }
 TEST(Glb, Mutants) {
     const std::string json = kGlb.substr(20, kGlb.size() - 20 - 8 - kSquare.size());

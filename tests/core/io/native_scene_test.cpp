@@ -239,6 +239,28 @@ TEST(NativeScene, TrianglesKeepTheirNormals) {
     EXPECT_EQ(s.materials[s.objects[0].material].k_d, vec3(0.25f));
 }
 
+TEST(NativeScene, ObjectsSayWhatTheyTakePartIn) {
+    const auto of = [](std::string_view keys) {
+        return load_object(fmt::format(R"({{"type": "box"{}}})", keys)).objects.at(0).switches;
+    };
+    EXPECT_EQ(of(""), ObjectSwitches());
+    EXPECT_EQ(of(R"(, "casts_shadows": true, "receives_shadows": true, "seen_by_camera": true)"), ObjectSwitches());
+    EXPECT_EQ(of(R"(, "casts_shadows": false)"), (ObjectSwitches{false, true, true}));
+    EXPECT_EQ(of(R"(, "receives_shadows": false)"), (ObjectSwitches{true, false, true}));
+    EXPECT_EQ(of(R"(, "seen_by_camera": false)"), (ObjectSwitches{true, true, false}));
+}
+
+/// All parts of a mesh file follow the object; what the object does not say is the file's.
+TEST(NativeScene, PartsOfAMeshTakePartInWhatTheObjectSays) {
+    const TemporaryFolder folder;
+    folder.write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nf 1 2 3\no b\nf 1 3 4\n");
+    const Scene scene = load(folder, fmt::format(R"({{{}, {}, "objects": [
+        {{"type": "mesh", "file": "two.obj", "casts_shadows": false}}, {{"type": "mesh", "file": "two.obj"}}]}})",
+                                                 kCamera, kLights));
+    ASSERT_EQ(scene.objects.size(), 4u);
+    for (std::size_t o = 0; o < 4; ++o) EXPECT_EQ(scene.objects[o].switches.casts_shadows, o >= 2) << o;
+}
+
 TEST(NativeScene, MeshFilesArePlacedByPathRelativeToTheScene) {
     const TemporaryFolder folder;
     folder.write("sub/two.obj",
@@ -413,6 +435,10 @@ const Fault kFaults[] = {
     {R"({"objects": [@{}]})", "an object has no \"type\""},
     {R"({"objects": [{"type": @"bux"}]})", "did you mean \"box\"?"},
     {R"({"objects": [{"type": "box", @"radius": 1}]})", "unknown key of a box \"radius\""},
+    {R"({"objects": [{"type": "box", "casts_shadows": @0}]})", "casts_shadows is the number 0, expected true or false"},
+    {R"({"objects": [{"type": "box", "receives_shadows": @"no"}]})", "receives_shadows is the string \"no\""},
+    {R"({"objects": [{"type": "sphere", "seen_by_camera": @null}]})", "seen_by_camera is null"},
+    {R"({"objects": [{"type": "box", @"casts_shadow": false}]})", "did you mean \"casts_shadows\"?"},
     {R"({"objects": [{"type": "box", "size": [1, @0, 1]}]})", "size is 0"},
     {R"({"objects": [{"type": "plane", "size": @[1, 2, 3]}]})", "one number or two"},
     {R"({"objects": [{"type": "plane", "divisions": @1000000000}]})",

@@ -63,6 +63,7 @@ void expect_same_material(const Material& a, const Material& b) {
     EXPECT_EQ(bits(a.shininess), bits(b.shininess));
     EXPECT_EQ(a.lobe, b.lobe);
     EXPECT_EQ(a.two_sided, b.two_sided);
+    EXPECT_EQ(a.cutout, b.cutout);
     EXPECT_EQ(bits(a.opacity), bits(b.opacity));
     EXPECT_EQ(bits(a.reflect), bits(b.reflect));
     EXPECT_EQ(bits(a.transmit), bits(b.transmit));
@@ -84,6 +85,7 @@ void expect_same(const Scene& a, const Scene& b) {
         EXPECT_EQ(a.objects[o].name, b.objects[o].name);
         EXPECT_EQ(a.objects[o].first_triangle, b.objects[o].first_triangle);
         EXPECT_EQ(a.objects[o].triangle_count, b.objects[o].triangle_count);
+        EXPECT_EQ(a.objects[o].switches, b.objects[o].switches);
         expect_same_material(a.materials[a.objects[o].material], b.materials[b.objects[o].material]);
     }
     ASSERT_EQ(a.lights.size(), b.lights.size());
@@ -156,6 +158,7 @@ TEST(SceneWriter, EveryFloatKeepsItsBits) {
         material.shininess           = 1e6f / 3;
         material.lobe                = m == 1 ? Lobe::blinn_phong : Lobe::phong;
         material.two_sided           = m != 1;
+        material.cutout              = m == 1;
         material.opacity             = floats.share();
         material.reflect             = floats.share();
         material.transmit            = floats.share();
@@ -171,6 +174,7 @@ TEST(SceneWriter, EveryFloatKeepsItsBits) {
             if (i >= 2) triangles.push_back({i, i / 2, i - 2});
         }
         add_object(scene, "object", positions, normals, triangles, o);
+        scene.objects[o].switches.*kObjectSwitches.at(o).is_on = false;
     }
     int n = 0;
     for (const LightKind kind : {LightKind::directional, LightKind::point, LightKind::spot, LightKind::rectangle,

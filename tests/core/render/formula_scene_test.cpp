@@ -77,6 +77,50 @@ Ray eye_ray(const Scene& scene, std::size_t i) {
     return {view.ray_origin(x, y), glm::normalize(view.ray_direction(x, y)), kNoTriangle, dvec3(0)};
 }
 
+/// A ball over a floor under a lamp, seen from the side: the floor shows its shadow and the eye sees no ball. One that
+/// receives no shadows is lit wherever it faces the lamp, a board over it notwithstanding.
+TEST(FormulaScene, BodiesTakePartInWhatTheirObjectsSay) {
+    Scene scene = seen_from({0, 3, 7}, {0, 0.5f, 0}, 120, 80);
+    add_mesh(scene, make_plane(12, 12), {0, 0, 0}, Material());
+    add_mesh(scene, make_sphere(0.5f, 64, 32), {0, 1, 0}, Material());
+    add_mesh(scene, make_plane(3, 3), {0, 2, 0}, Material());
+    add_light(scene, {0, 5, 0});
+    ASSERT_EQ(find_bodies(scene).list.size(), 1u);
+    ASSERT_EQ(scene.objects.size(), 3u);
+    const auto counted = [&](auto&& of) {
+        const Traced done   = traced(scene);
+        const RayLevel& eye = done.tree.levels[0];
+        std::size_t count   = 0;
+        for (std::size_t i = 0; i < eye.points.size(); ++i) count += of(eye, done.visibility[0][0], i) ? 1 : 0;
+        return count;
+    };
+    const auto on_ball = [](const RayLevel& eye, const VisibilityPlane&, std::size_t i) {
+        return eye.on_body[i].body != kNoBody;
+    };
+    const auto lit_ball = [&](const RayLevel& eye, const VisibilityPlane& plane, std::size_t i) {
+        return on_ball(eye, plane, i) && plane.s[i] == 1;
+    };
+    const auto facing_ball = [&](const RayLevel& eye, const VisibilityPlane& plane, std::size_t i) {
+        return on_ball(eye, plane, i) && eye.points.faces(0, i);
+    };
+    const auto dark_floor = [&](const RayLevel& eye, const VisibilityPlane& plane, std::size_t i) {
+        const vec3 p = eye.points.position(i);
+        return eye.points.triangle[i] != kNoTriangle && std::abs(p.y) < 1e-6f && std::hypot(p.x, p.z) < 0.6f &&
+               plane.s[i] == 0;
+    };
+    EXPECT_GT(counted(on_ball), 20u);
+    EXPECT_EQ(counted(lit_ball), 0u) << "all in the shadow of the board";
+    scene.objects[1].switches.receives_shadows = false;
+    EXPECT_GT(counted(lit_ball), 10u);
+    EXPECT_EQ(counted(lit_ball), counted(facing_ball));
+    scene.objects[2].switches.casts_shadows  = false;
+    scene.objects[1].switches.seen_by_camera = false;
+    EXPECT_EQ(counted(on_ball), 0u);
+    EXPECT_GT(counted(dark_floor), 10u);
+    scene.objects[1].switches.casts_shadows = false;
+    EXPECT_EQ(counted(dark_floor), 0u);
+}
+
 /// A cone and a torus that mirror and a pane that transmits, on a floor: no sphere, no box.
 TEST(FormulaScene, WithoutBodiesIsTheTreeOfTriangles) {
     Scene scene = seen_from({1, 3, 7}, {0, 0.5f, 0});

@@ -6,17 +6,11 @@
 #include <random>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/tests/support/mesh_scene.h"
 #include "umbra/tests/support/same_points.h"
 
 namespace umbra {
 namespace {
-
-Scene scene_of(const std::vector<vec3>& positions, const std::vector<uvec3>& triangles) {
-    Scene scene;
-    scene.materials.emplace_back();
-    add_object(scene, "mesh", positions, {}, triangles, 0);
-    return scene;
-}
 
 /// `count` triangles of random size and position in the unit cube.
 Scene random_triangles(int count, unsigned seed) {

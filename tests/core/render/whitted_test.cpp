@@ -97,6 +97,25 @@ TEST(Whitted, PanesAreBlendedFromTheNearest) {
     expect(two, 0.25 * dvec3(red) + 0.75 * 0.25 * dvec3(blue));
 }
 
+/// The eye sees through it what a mirror shows of it.
+TEST(Whitted, WhatTheEyeDoesNotSeeIsSeenInMirrors) {
+    Scene scene = one_ray({0, 0, 5}, {0, 0, 0});
+    add_quad(scene, {-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}, add_mirror(scene, 0.5f));
+    add_quad(scene, {-9, -9, 2}, {9, -9, 2}, {9, 9, 2}, {-9, 9, 2}, add_glow(scene, {1, 0.5f, 0}));
+    EXPECT_EQ(pixel(picture_of(scene, tree_of(scene)), 0), vec3(1, 0.5f, 0));
+    scene.objects[1].switches.seen_by_camera = false;
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        scene.camera.projection = projection, scene.camera.height = 1;
+        const RayTree tree = tree_of(scene);
+        ASSERT_EQ(tree.levels.size(), 2u);
+        EXPECT_EQ(scene.triangle_object[tree.levels[0].points.triangle[0]], 0u);
+        EXPECT_EQ(scene.triangle_object[tree.levels[1].points.triangle[0]], 1u);
+        EXPECT_EQ(pixel(picture_of(scene, tree), 0), vec3(0.5f, 0.25f, 0));
+        const RayScene rays(scene);
+        EXPECT_EQ(trace_eye_rays(rays, scene, frame(scene.camera, 1, 1)).triangle, tree.levels[0].points.triangle);
+    }
+}
+
 /// Of 16 neighbouring pixels, 16 times opacity see the pane alone. Two panes of one opacity look like one.
 TEST(Whitted, ScreenDoorShowsAPaneOrWhatIsBehindIt) {
     Scene scene;

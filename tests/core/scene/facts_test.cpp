@@ -249,6 +249,9 @@ TEST(Lists, EachPropertyOfMaterialsAndLightsIsATrait) {
     scene                        = plain;
     scene.materials[0].two_sided = false;
     expect(scene, "one-sided lighting");
+    scene                     = plain;
+    scene.materials[0].cutout = true;
+    expect(scene, "outlines cut by a texture");
     scene         = plain;
     scene.fog.law = FogLaw::exponential;
     expect(scene, "fog");

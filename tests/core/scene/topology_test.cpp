@@ -6,15 +6,10 @@
 #include <cmath>
 #include <random>
 
+#include "umbra/tests/support/mesh_scene.h"
+
 namespace umbra {
 namespace {
-
-Scene scene_of(const std::vector<vec3>& positions, const std::vector<uvec3>& triangles) {
-    Scene scene;
-    scene.materials.emplace_back();
-    add_object(scene, "object", positions, {}, triangles, 0);
-    return scene;
-}
 
 Topology topology_of(const Scene& scene) {
     return find_topology(scene, 0, static_cast<std::uint32_t>(scene.triangles.size()));

@@ -5,15 +5,10 @@
 #include <cmath>
 #include <random>
 
+#include "umbra/tests/support/mesh_scene.h"
+
 namespace umbra {
 namespace {
-
-Scene scene_of(const std::vector<vec3>& positions, const std::vector<uvec3>& triangles) {
-    Scene scene;
-    scene.materials.emplace_back();
-    add_object(scene, "object", positions, {}, triangles, 0);
-    return scene;
-}
 
 // Of any soup under a sun in the zenith: the number of triangles over or under a point is what the edges change on the
 // way there from infinity.

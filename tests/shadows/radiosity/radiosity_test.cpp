@@ -176,6 +176,32 @@ TEST(Exchange, LightsLeaveOutTheirExceptions) {
     EXPECT_EQ(exchange.direct(exchange.side_at(points, 1)).x, 0);
 }
 
+/// A sheet under a lid: dark, unless it receives no shadows, or the lid casts none.
+TEST(Exchange, LightsWhatReceivesNoShadows) {
+    Scene scene;
+    scene.materials.resize(1);
+    add_object(scene, "sheet", {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}}, {}, {{0, 1, 2}}, 0);
+    add_object(scene, "lid", {{-9, 1, -9}, {-9, 1, 9}, {9, 1, 9}, {9, 1, -9}}, {}, {{0, 1, 2}, {0, 2, 3}}, 0);
+    Light sun;
+    sun.kind      = LightKind::directional;
+    sun.direction = {0, -1, 0};
+    scene.lights.push_back(sun);
+    PointBatch points;
+    points.eye = {0, 0.5f, 0};
+    points.resize(1);
+    set_point(points, 0, scene, 0, 0.3f, 0.3f);
+    const auto direct = [&] {
+        const Exchange exchange(scene, {0.2, 1});
+        return exchange.direct(exchange.side_at(points, 0)).x;
+    };
+    EXPECT_EQ(direct(), 0);
+    scene.objects[0].switches.receives_shadows = false;
+    EXPECT_GT(direct(), 0.5);
+    scene.objects[0].switches.receives_shadows = true;
+    scene.objects[1].switches.casts_shadows    = false;
+    EXPECT_GT(direct(), 0.5);
+}
+
 /// Two plates that face each other exchange light; with a sheet between them they do not.
 TEST(Exchange, DoesNotPassThroughSurfaces) {
     for (const bool sheet : {false, true}) {

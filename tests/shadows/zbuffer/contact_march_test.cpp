@@ -73,26 +73,30 @@ TEST(ContactMarch, GoesNoFurtherThanItsLengthAndTheLight) {
     // In front of the box, as the camera sees it, and behind its front: straight above, both pass it.
     const dvec3 before(0, 0, 0.6), behind(0, 0, 0.4);
     for (const Light& light : {point_light({0, 3, 0.6f}), directional_light({0, -1, 0})}) {
-        EXPECT_FALSE(march(picture, before, light, {200, 2, 2}));
+        EXPECT_FALSE(march(scene, picture, before, light, {200, 2, 2}));
     }
     for (const Light& light : {point_light({0, 3, 0.4f}), directional_light({0, -1, 0})}) {
-        const auto hit = march(picture, behind, light, {40, 2, 2});
+        const auto hit = march(scene, picture, behind, light, {40, 2, 2});
         ASSERT_TRUE(hit);
         EXPECT_GE(picture.triangle[*hit], scene.objects[1].first_triangle);
         // Below the box, at 1 above the floor, it has not come to the box.
-        EXPECT_FALSE(march(picture, behind, light, {40, 0.98, 2}));
-        EXPECT_TRUE(march(picture, behind, light, {200, 1.15, 2}));
+        EXPECT_FALSE(march(scene, picture, behind, light, {40, 0.98, 2}));
+        EXPECT_TRUE(march(scene, picture, behind, light, {200, 1.15, 2}));
     }
     // Normals of one-sided materials need not face the eye.
     PointBatch away = picture;
     for (std::size_t i = 0; i < away.size(); ++i) away.nx[i] *= -1, away.ny[i] *= -1, away.nz[i] *= -1;
-    EXPECT_EQ(march(away, behind, directional_light({0, -1, 0}), {40, 2, 2}),
-              march(picture, behind, directional_light({0, -1, 0}), {40, 2, 2}));
+    EXPECT_EQ(march(scene, away, behind, directional_light({0, -1, 0}), {40, 2, 2}),
+              march(scene, picture, behind, directional_light({0, -1, 0}), {40, 2, 2}));
+    // What lets light through is seen and passed.
+    Scene open                             = scene;
+    open.objects[1].switches.casts_shadows = false;
+    EXPECT_FALSE(march(open, picture, behind, directional_light({0, -1, 0}), {40, 2, 2}));
     // Nothing beyond the light blocks.
-    EXPECT_FALSE(march(picture, behind, point_light({0, 0.9f, 0.4f}), {40, 2, 2}));
+    EXPECT_FALSE(march(scene, picture, behind, point_light({0, 0.9f, 0.4f}), {40, 2, 2}));
     // Further behind what is seen than that is thick: behind it, not in it.
-    EXPECT_FALSE(march(picture, {0, 0, -0.4}, directional_light({0, -1, 0}), {200, 2, 0.8}));
-    EXPECT_TRUE(march(picture, {0, 0, -0.4}, directional_light({0, -1, 0}), {200, 2, 1}));
+    EXPECT_FALSE(march(scene, picture, {0, 0, -0.4}, directional_light({0, -1, 0}), {200, 2, 0.8}));
+    EXPECT_TRUE(march(scene, picture, {0, 0, -0.4}, directional_light({0, -1, 0}), {200, 2, 1}));
 }
 
 TEST(ContactMarch, APlaneDoesNotShadeItselfHoweverFlatItIsSeen) {
