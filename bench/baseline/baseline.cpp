@@ -16,7 +16,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kCalibration = "calibration", kControl = "calibration/again";
-constexpr std::size_t kFewestRepetitions = 3;
 
 Json read(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -50,22 +49,23 @@ std::string plain(std::string name) {
     return name;
 }
 
+/// Relative to the calibrations: the bounds of two intervals that together hold at least kCoverage.
 Ratio ratio_of(const std::vector<double>& now, const BenchmarkRun& new_run, const std::vector<double>& then,
                const BenchmarkRun& old_run) {
-    const auto of = [](std::span<const double> m) { return (m[0] / m[1]) / (m[2] / m[3]); };
-    const std::vector<double> medians{median(now), median(new_run.calibration), median(then),
-                                      median(old_run.calibration)};
-    return {of(medians), bootstrap_interval({now, new_run.calibration, then, old_run.calibration}, of),
-            static_cast<int>(std::min(now.size(), then.size()))};
+    constexpr double level = (1 + kCoverage) / 2;
+    const Ratio times      = ratio_of_samples(now, then, level);
+    const Ratio machine    = ratio_of_samples(new_run.calibration, old_run.calibration, level);
+    Ratio ratio{.median = times.median / machine.median, .pairs = times.pairs};
+    if (!times.has_interval() || !machine.has_interval()) return ratio;
+    ratio.interval = {times.interval.low / machine.interval.high, times.interval.high / machine.interval.low};
+    ratio.coverage = times.coverage + machine.coverage - 1;
+    return ratio;
 }
 
 /// The bound of the calibration against itself. Its two benchmarks run at different times, so that they are not pairs.
 double control_bar(const BenchmarkRun& run) {
     if (run.calibration_again.empty()) return noise_bar({});
-    const auto of = [](std::span<const double> m) { return m[0] / m[1]; };
-    const std::vector<double> medians{median(run.calibration_again), median(run.calibration)};
-    return noise_bar({of(medians), bootstrap_interval({run.calibration_again, run.calibration}, of),
-                      static_cast<int>(run.calibration.size())});
+    return noise_bar(ratio_of_samples(run.calibration_again, run.calibration));
 }
 
 std::string_view word(Change change) {
@@ -125,8 +125,7 @@ BaselineReport compare_with_baseline(const BenchmarkRun& now, const BenchmarkRun
             continue;
         }
         BenchmarkChange change{name, Change::none, ratio_of(times, now, then->second, accepted)};
-        if (static_cast<std::size_t>(change.ratio.pairs) >= kFewestRepetitions &&
-            differs(change.ratio, report.noise_bar))
+        if (differs(change.ratio, report.noise_bar))
             change.change = change.ratio.median > 1 ? Change::slower : Change::faster;
         report.changes.push_back(std::move(change));
     }
@@ -150,8 +149,10 @@ Json baseline_json(const BaselineReport& report) {
     for (const BenchmarkChange& c : report.changes) {
         Json entry = {{"name", c.name}, {"change", word(c.change)}};
         if (c.ratio.pairs > 0) {
-            entry["ratio"]       = c.ratio.median;
-            entry["interval"]    = {c.ratio.interval.low, c.ratio.interval.high};
+            entry["ratio"]    = c.ratio.median;
+            entry["interval"] = {nullptr, nullptr};
+            if (c.ratio.has_interval()) entry["interval"] = {c.ratio.interval.low, c.ratio.interval.high};
+            entry["coverage"]    = c.ratio.coverage;
             entry["repetitions"] = c.ratio.pairs;
         }
         changes.push_back(std::move(entry));
@@ -171,14 +172,18 @@ std::string baseline_markdown(const BaselineReport& report) {
                                             : std::string("No control, so that nothing can be said to differ; ");
     text += fmt::format(
         "the calibration loop took {:.2f} times what it took in the accepted run, and all ratios are "
-        "divided by that.\n\n| benchmark | change | ratio | 95 % |\n|---|---|--:|--:|\n",
+        "divided by that.\n\n| benchmark | change | ratio | interval, which holds the true ratio in "
+        "|\n|---|---|--:|--:|\n",
         report.calibration);
     for (const BenchmarkChange& c : report.changes) {
         if (c.ratio.pairs == 0)
             text += fmt::format("| {} | {} | | |\n", c.name, word(c.change));
         else
-            text += fmt::format("| {} | {} | {:.3f} | {:.3f}–{:.3f} |\n", c.name, word(c.change), c.ratio.median,
-                                c.ratio.interval.low, c.ratio.interval.high);
+            text +=
+                fmt::format("| {} | {} | {:.3f} | {} |\n", c.name, word(c.change), c.ratio.median,
+                            c.ratio.has_interval() ? fmt::format("{:.3f}–{:.3f}, {:.1f} %", c.ratio.interval.low,
+                                                                 c.ratio.interval.high, 100 * c.ratio.coverage)
+                                                   : fmt::format("none: {} repetitions are too few", c.ratio.pairs));
     }
     return text;
 }

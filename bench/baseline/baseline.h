@@ -42,8 +42,9 @@ struct BaselineReport {
     double calibration = 1;                ///< this machine now / then: what all ratios are divided by
 };
 
-/// A benchmark is slower or faster where the bootstrap interval of its ratio excludes 1 and its ratio is outside the
-/// noise bar. Of benchmarks with fewer than three repetitions in either run nothing is said.
+/// A benchmark is slower or faster where the interval of its ratio excludes 1 and its ratio is outside the noise bar.
+/// Four repetitions against four, or fewer, have no interval, of a benchmark and of the calibration: nothing is said
+/// then.
 [[nodiscard]] BaselineReport compare_with_baseline(const BenchmarkRun& now, const BenchmarkRun& accepted);
 
 /// The largest ratio of those that are slower; nothing where none is.

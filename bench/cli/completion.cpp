@@ -45,6 +45,7 @@ _umbra_values() {
         GOLDEN) _umbra_list SCENES; _umbra_list METHODS ;;
         NAME) _umbra_list METHODS; _umbra_list LADDERS; _umbra_list SCENES ;;
         SHELL) printf '%s\n' bash zsh ;;
+        AXIS) printf '%s\n' y z -y ;;
         FILE | DIR | A) echo //files ;;
     esac
 }

@@ -22,7 +22,9 @@ namespace umbra {
 [[nodiscard]] Image class_picture(const PointBatch& points, const ClassPlane& classes,
                                   const VisibilityPlane& reference);
 
-/// A FLIP map, 0 black to 1 light yellow (a monotone ramp in lightness after matplotlib's "magma" end points).
-[[nodiscard]] Image flip_picture(int width, int height, std::span<const float> map);
+/// A FLIP map, 0 black to 1 light yellow (a monotone ramp in lightness after matplotlib's "magma" end points). Points
+/// at which some light has no answer are hatched: the reference's pixel stood in for theirs.
+[[nodiscard]] Image flip_picture(const PointBatch& points, std::span<const VisibilityPlane> planes,
+                                 std::span<const float> map);
 
 }  // namespace umbra

@@ -132,12 +132,12 @@ json family_view(const Json& family) {
     if (const Json& check = family["external"]; !check.is_null()) {
         json ours = json::array(), theirs = json::array();
         for (const Json& r : check["ours"])
-            ours.push_back(
-                {{"pixels", count(value(r["pixels"]))},
-                 {"ratio", score(value(r["ratio"]))},
-                 {"interval", r["interval"][0].is_null() ? "one round"
-                                                         : fmt::format("{} to {}", score(value(r["interval"][0])),
-                                                                       score(value(r["interval"][1])))}});
+            ours.push_back({{"pixels", count(value(r["pixels"]))},
+                            {"ratio", score(value(r["ratio"]))},
+                            {"interval", r["interval"][0].is_null()
+                                             ? "fewer than six rounds"
+                                             : fmt::format("{} to {}, {}", score(value(r["interval"][0])),
+                                                           score(value(r["interval"][1])), coverage_text(r))}});
         for (const Json& r : check["theirs"])
             theirs.push_back({{"pixels", count(value(r["pixels"]))}, {"ratio", score(value(r["ratio"]))}});
         external = {{"source", check["source"]},

@@ -107,7 +107,8 @@ Json external_json(const GrowthRun& run) {
             j["ours"].push_back(
                 {{"pixels", p.x},
                  {"ratio", number(ratio.median)},
-                 {"interval", ratio.has_interval() ? interval_json(ratio.interval) : Json{nullptr, nullptr}}});
+                 {"interval", ratio.has_interval() ? interval_json(ratio.interval) : Json{nullptr, nullptr}},
+                 {"coverage", ratio.coverage}});
         }
     for (const MeasuredCrossing& c : measured_crossings(*silhouettes, *triangles, Quantity::light_frame))
         j["our_crossings"].push_back(interval_json(c.between));

@@ -14,7 +14,7 @@
 namespace umbra {
 
 struct GrowthOptions {
-    TurnOptions turns{.rounds = 5, .budget_ms = 8000};  ///< at each size
+    TurnOptions turns{.rounds = 6, .budget_ms = 8000};  ///< at each size
     double longest_ms = 10000;  ///< a method whose phases take longer together is left out of larger sizes
     std::function<void(const std::string&)> progress{};  ///< may be empty
 };

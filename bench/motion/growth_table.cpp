@@ -67,9 +67,9 @@ std::string external_of(const Json& family) {
     std::string lines = "  shadow volumes of silhouettes over those of single triangles, aim and visibility:\n   ";
     for (const Json& r : check["ours"])
         lines += fmt::format(" {:.2g}: {} ({});", r["pixels"].get<double>(), fixed(r["ratio"]),
-                             r["interval"][0].is_null()
-                                 ? "one round"
-                                 : fmt::format("{} to {}", fixed(r["interval"][0]), fixed(r["interval"][1])));
+                             r["interval"][0].is_null() ? "fewer than six rounds"
+                                                        : fmt::format("{} to {}, {}", fixed(r["interval"][0]),
+                                                                      fixed(r["interval"][1]), coverage_text(r)));
     lines += fmt::format("\n    {}:", text(check["source"]));
     for (const Json& r : check["theirs"])
         lines += fmt::format(" {:.2g}: {};", r["pixels"].get<double>(), fixed(r["ratio"]));

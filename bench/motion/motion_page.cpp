@@ -96,13 +96,11 @@ json winner_view(const Json& winner) {
             {"next", next}};
 }
 
-/// "1.07 to 1.20"; of fewer than five frames, which is no 95 %, with their number; of one there is none.
+/// "1.07 to 1.20, 97.9 %"; of fewer than six frames there is none.
 std::string interval_in_words(const Json& ratio) {
-    const int pairs = ratio["pairs"].get<int>();
-    if (pairs < 2) return "one frame";
     const Json& interval = ratio["interval"];
-    return fmt::format("{} to {}{}", score(value(interval[0])), score(value(interval[1])),
-                       pairs < 5 ? fmt::format(", {} frames", pairs) : "");
+    if (interval[0].is_null()) return "fewer than six frames";
+    return fmt::format("{} to {}, {}", score(value(interval[0])), score(value(interval[1])), coverage_text(ratio));
 }
 
 json movement_cells(const Json& method, const std::string& movement) {

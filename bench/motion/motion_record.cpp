@@ -9,7 +9,8 @@ Json interval_json(const Interval& interval) { return {number(interval.low), num
 Json ratio_json(const Ratio& ratio) {
     return {{"median", number(ratio.median)},
             {"interval", ratio.has_interval() ? interval_json(ratio.interval) : Json{nullptr, nullptr}},
-            {"pairs", ratio.pairs}};
+            {"pairs", ratio.pairs},
+            {"coverage", ratio.coverage}};
 }
 
 Json frame_json(const MotionFrame& frame) {

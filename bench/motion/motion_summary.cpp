@@ -30,6 +30,20 @@ std::vector<std::size_t> those(const SceneMotion& motion, const auto& condition)
     return chosen;
 }
 
+/// The weighted sums of the frames of one index: all methods took turns in each of them.
+std::vector<double> mixed_frames(const MethodMotion& method, const Mix& mix) {
+    std::vector<double> sums;
+    for (const Movement movement : kMovements) {
+        const double share = mix.share[index(movement)];
+        if (share == 0) continue;
+        const std::vector<double> times = frame_times(method, movement);
+        if (sums.empty()) sums.resize(times.size());
+        sums.resize(std::min(sums.size(), times.size()));
+        for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += share * times[i];
+    }
+    return sums;
+}
+
 }  // namespace
 
 std::vector<double> frame_times(const MethodMotion& method, Movement movement) {
@@ -98,25 +112,18 @@ std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::s
     struct Entry {
         std::size_t method;
         double ms;
-        std::vector<std::vector<double>> times;  // of each movement of the mix
+        std::vector<double> times;  // of each frame of the mix
     };
-    std::vector<double> shares;
-    for (const double share : mix.share)
-        if (share > 0) shares.push_back(share);
     std::vector<Entry> entries;
-    for (const std::size_t m : competitors) {
-        Entry entry{m, mix_ms(motion.methods[m], mix), {}};
-        for (const Movement movement : kMovements)
-            if (mix.share[index(movement)] > 0) entry.times.push_back(frame_times(motion.methods[m], movement));
-        entries.push_back(std::move(entry));
-    }
+    for (const std::size_t m : competitors)
+        entries.push_back({m, mix_ms(motion.methods[m], mix), mixed_frames(motion.methods[m], mix)});
     if (entries.empty()) return std::nullopt;
     std::ranges::stable_sort(entries, {}, &Entry::ms);
     Winner won{entries[0].method, entries[0].ms, {}, {}, {}};
     for (std::size_t k = 1; k < entries.size(); ++k) {
-        const Ratio ratio = ratio_of_medians(entries[k].times, entries[0].times, shares);
+        const Ratio ratio = paired_ratio(entries[k].times, entries[0].times);
         if (k == 1) won.runner_up = entries[k].method, won.behind = ratio;
-        if (!differs(ratio, motion.noise_bar)) won.ties.push_back(entries[k].method);
+        if (ratio.median < 1 || !differs(ratio, motion.noise_bar)) won.ties.push_back(entries[k].method);
     }
     return won;
 }

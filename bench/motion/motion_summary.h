@@ -48,9 +48,9 @@ struct Mix {
 struct Winner {
     std::size_t method = 0;
     double ms          = 0;
-    std::vector<std::size_t> ties;         ///< others whose ratio to it says no difference
+    std::vector<std::size_t> ties;         ///< others whose ratio to it does not say that they take longer
     std::optional<std::size_t> runner_up;  ///< the next fastest, if any
-    Ratio behind;                          ///< its mix_ms over the winner's
+    Ratio behind;                          ///< its time over the winner's, of the mix, frame by frame
 };
 /// Nothing where nobody competes.
 [[nodiscard]] std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors,

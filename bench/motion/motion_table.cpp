@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "umbra/bench/motion/motion.h"
+#include "umbra/bench/motion/record_view.h"
 #include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
@@ -30,12 +31,11 @@ std::string winner_text(const Json& winner) {
     return text;
 }
 
-/// Of fewer than five frames an interval is that of the frames, of one there is none.
-std::string method_rows(const Json& scene, int frames_of_each) {
-    const char* const interval_head = frames_of_each >= 5 ? "95 %" : "of the frames";
+/// Of fewer than six frames there is no interval.
+std::string method_rows(const Json& scene) {
     std::string text =
-        fmt::format("  {:34} {:8} {:>10} {:>10} {:>8}  {:>17} {:>10} {:>10} {:>10} {:>10}\n", "method", "moves",
-                    "median ms", "model", "ratio", interval_head, "mean rmse", "worst", "interior", "undefined");
+        fmt::format("  {:34} {:8} {:>10} {:>10} {:>8}  {:>17} {:>7} {:>10} {:>10} {:>10} {:>10}\n", "method", "moves",
+                    "median ms", "model", "ratio", "interval", "holds", "mean rmse", "worst", "interior", "undefined");
     for (const Json& method : scene["methods"]) {
         const std::string name = method["text"];
         if (method.contains("failed"))
@@ -46,12 +46,12 @@ std::string method_rows(const Json& scene, int frames_of_each) {
         for (const auto& [movement, m] : method["movements"].items()) {
             const auto frames    = static_cast<double>(m["frames"].size());
             const Json& interval = m["frame_over_model"]["interval"];
-            text +=
-                fmt::format("  {:34} {:8} {:>10} {:>10.2f} {:>8}  {:>8} {:>8} {:>10} {:>10} {:>10} {:>10}\n", name,
-                            movement, number_text(m["median_ms"]), m["model_ms"].get<double>() / frames,
-                            number_text(m["frame_over_model"]["median"]), number_text(interval[0]),
-                            number_text(interval[1]), number_text(m["mean_rmse"], 4), number_text(m["worst_rmse"], 4),
-                            m["interior"].is_null() ? "-" : m["interior"].dump(), m["undefined"].dump());
+            text += fmt::format("  {:34} {:8} {:>10} {:>10.2f} {:>8}  {:>8} {:>8} {:>7} {:>10} {:>10} {:>10} {:>10}\n",
+                                name, movement, number_text(m["median_ms"]), m["model_ms"].get<double>() / frames,
+                                number_text(m["frame_over_model"]["median"]), number_text(interval[0]),
+                                number_text(interval[1]), coverage_text(m["frame_over_model"]),
+                                number_text(m["mean_rmse"], 4), number_text(m["worst_rmse"], 4),
+                                m["interior"].is_null() ? "-" : m["interior"].dump(), m["undefined"].dump());
         }
     }
     return text;
@@ -70,7 +70,7 @@ std::string motion_table(const Json& record) {
             text += fmt::format("  {:8} {}\n", movement["movement"].get<std::string>(),
                                 movement.contains("cannot") ? "cannot: " + movement["cannot"].get<std::string>()
                                                             : movement["what"].get<std::string>());
-        text += method_rows(scene, record["frames"].get<int>());
+        text += method_rows(scene);
         text += fmt::format(
             "  fastest by median of those that answer every point; the same with an RMSE of at most {:g} in every "
             "frame; {}\n",

@@ -6,6 +6,11 @@
 
 namespace umbra {
 
+std::string coverage_text(const Json& ratio) {
+    const double coverage = ratio.value("coverage", 0.0);
+    return coverage > 0 ? fmt::format("{:.1f} %", 100 * coverage) : "-";
+}
+
 nlohmann::json record_view(const Json& record, const char* place) {
     nlohmann::json failures = nlohmann::json::array();
     for (const Json& failure : record["failed"])

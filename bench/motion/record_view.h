@@ -14,6 +14,9 @@ namespace umbra {
     return number.is_null() ? std::nullopt : std::optional(number.get<double>());
 }
 
+/// "97.9 %": the probability with which a ratio's interval holds it; "-" where it has none.
+[[nodiscard]] std::string coverage_text(const Json& ratio);
+
 /// The terms of a page's template that say which program measured on what machine, and what failed; `place` is the
 /// member of a failure that says where: "scene" or "family".
 [[nodiscard]] nlohmann::json record_view(const Json& record, const char* place);

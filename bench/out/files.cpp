@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <regex>
 
 #include "umbra/core/base/error.h"
@@ -46,6 +47,11 @@ std::string folder_name(const std::string& name) {
     for (const std::size_t end : {std::size_t{0}, folder.size() - 1})
         if (folder[end] == '.' || folder[end] == ' ') folder[end] = '_';
     return folder;
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void write_text(const fs::path& file, std::string_view text) {

@@ -2,9 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 namespace umbra {
+
+/// What a file holds; nothing where it cannot be read.
+[[nodiscard]] std::string bytes_of(const std::filesystem::path& file);
 
 /// Writes a file of text as it is. Throws InputError naming it.
 void write_text(const std::filesystem::path& file, std::string_view text);

@@ -51,7 +51,7 @@ inline constexpr std::array kErrorPalette = {
     ErrorColour{ErrorClass::terminator_wrong, "terminator_wrong", "wrong at the terminator", "#009e73", "", "", false,
                 "Wrong where the smooth normal faces away from the light: the sum multiplies S by 0 there."},
     ErrorColour{ErrorClass::on_boundary, "on_boundary", "on the boundary: never wrong", "#cc79a7", "", "", false,
-                "The segment to the light only touches an edge or a corner: no answer is wrong."},
+                "The segment to the light passes a silhouette or a border: no answer is wrong."},
 };
 
 }  // namespace umbra

@@ -138,6 +138,16 @@ std::vector<Field> settings_of(const std::vector<ScenePage>& scenes) {
     for (const ScenePage& scene : scenes)
         for (const Field& method : scene.root["methods"].items())
             if (!find_setting(settings, method)) settings.push_back(method);
+    const auto answers_on = [&](const Field& setting) {
+        return std::count_if(scenes.begin(), scenes.end(), [&](const ScenePage& scene) {
+            const std::optional<Field> method = find_setting(scene.root["methods"].items(), setting);
+            return method && serves(*method);
+        });
+    };
+    std::vector<std::pair<std::ptrdiff_t, Field>> ranked;
+    for (const Field& setting : settings) ranked.emplace_back(answers_on(setting), setting);
+    std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::transform(ranked.begin(), ranked.end(), settings.begin(), [](const auto& r) { return r.second; });
     return settings;
 }
 
@@ -221,8 +231,8 @@ json run_view(const Field& root) {
     const Field machine = root["machine"];
     std::vector<std::string> parts;
     if (const auto cpu = machine["cpu"].text(); !cpu.empty()) parts.push_back(cpu);
-    if (const auto n = machine["cores"].number()) parts.push_back(fmt::format("{:.0f} cores", *n));
-    if (const auto n = machine["threads"].number()) parts.push_back(fmt::format("{:.0f} threads used", *n));
+    if (const auto n = machine["cores"].number()) parts.push_back(counted(*n, "core"));
+    if (const auto n = machine["threads"].number()) parts.push_back(counted(*n, "thread") + " used");
     if (const auto n = machine["memory_bytes"].number(); n && *n > 0)
         parts.push_back(fmt::format("{:.0f} GiB", *n / (1024.0 * 1024 * 1024)));
     if (const auto s = machine["system"].text(); !s.empty()) parts.push_back(s);

@@ -72,7 +72,8 @@ private:
 /// What a method is called on a page. Where one method runs with several settings, these tell the runs apart.
 [[nodiscard]] std::string method_label(const Field& method, const std::vector<Field>& methods);
 
-/// The settings of all scenes in the order in which they first appear: an entry of `methods` of each.
+/// The settings of all scenes, an entry of `methods` of each: those that answer on more scenes first, and of equals the
+/// one that appears first.
 [[nodiscard]] std::vector<Field> settings_of(const std::vector<ScenePage>& scenes);
 
 /// Sums over the lights of one method on one scene. Interior and edge are never summed.

@@ -39,9 +39,12 @@ std::string count(std::optional<double> value) {
     return digits;
 }
 
-std::string percent(std::optional<double> share) {
-    if (!share) return kNone;
-    return fmt::format("{:g}", std::floor(*share * 1000 + 1e-9) / 10);
+std::string percent(std::optional<double> fraction) {
+    if (!fraction) return kNone;
+    const double tenths = std::round(*fraction * 1000);
+    if (*fraction > 0 && tenths == 0) return "< 0.1";
+    if (*fraction < 1 && tenths == 1000) return "> 99.9";
+    return fmt::format("{:g}", tenths / 10);
 }
 
 std::string mebibytes(std::optional<double> bytes) {
@@ -68,6 +71,11 @@ std::string place_in_words(const std::string& place) {
 
 std::string counted(double n, const std::string& noun) {
     return fmt::format("{} {}{}", count(n), noun, n == 1 ? "" : "s");
+}
+
+std::string with_decimal_comma(std::string figure) {
+    std::replace(figure.begin(), figure.end(), '.', ',');
+    return figure;
 }
 
 std::string without_folders(const std::string& command) {

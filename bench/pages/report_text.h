@@ -21,8 +21,9 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// Whole numbers in groups of three with a narrow no-break space between.
 [[nodiscard]] std::string count(std::optional<double> value);
 
-/// A share in per cent, rounded down so that 100 means all of it.
-[[nodiscard]] std::string percent(std::optional<double> share);
+/// A fraction in per cent, to the nearest tenth. 100 is all of it and 0 nothing: what is nearly so is "> 99.9" or
+/// "< 0.1".
+[[nodiscard]] std::string percent(std::optional<double> fraction);
 
 [[nodiscard]] std::string mebibytes(std::optional<double> bytes);
 
@@ -36,6 +37,9 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 
 /// "1 point", "2 points": `count` and the noun, which takes an s.
 [[nodiscard]] std::string counted(double n, const std::string& noun);
+
+/// A figure as German and Greek write it: with a decimal comma.
+[[nodiscard]] std::string with_decimal_comma(std::string figure);
 
 /// A command line without the folders of the machine that it ran on: "/home/x/scenes/a.json" as "a.json".
 [[nodiscard]] std::string without_folders(const std::string& command);

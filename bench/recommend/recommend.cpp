@@ -32,6 +32,11 @@ std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
     return costs;
 }
 
+/// Nothing where the setting failed or does not serve there, or leaves too much undefined.
+std::optional<double> error_in_view(const Metric& metric, const Json& cell) {
+    return why_unfit({&cell, 1}).empty() ? possible_error(metric, cell) : std::nullopt;
+}
+
 /// Looks at settings of one scene, each once.
 class Search {
 public:
@@ -44,7 +49,7 @@ public:
                 result_.candidates[k].choice.settings == choice.settings)
                 return k;
         if (options_.progress) options_.progress(choice.text());
-        Candidate c{choice, {}, {}, {}, {}, {}};
+        Candidate c{choice, {}, {}, {}, {}, {}, {}};
         for (int view = 0; view < options_.views; ++view) {
             c.views.push_back(lab_.cell(choice, view));
             c.unfit = why_unfit(c.views);
@@ -76,6 +81,26 @@ public:
         result_.looked_at = result_.candidates.size();
     }
 
+    /// The next setting of its family, where bisection has left that out. Whether there is one.
+    bool look_behind(std::size_t candidate) {
+        const MethodChoice& dropped = result_.candidates[candidate].choice;
+        for (const Family& family : families(options_.choices)) {
+            const auto is = [](const MethodChoice& a, const MethodChoice& b) {
+                return a.info == b.info && a.settings == b.settings;
+            };
+            const auto here = std::ranges::find_if(family.settings, [&](const auto& c) { return is(c, dropped); });
+            if (here == family.settings.end() || here + 1 == family.settings.end()) continue;
+            const MethodChoice& next = *(here + 1);
+            if (std::ranges::any_of(result_.passed_over, [&](const PassedOver& p) { return is(p.choice, next); }))
+                return false;
+            static_cast<void>(look(next));
+            const bool is_new = result_.candidates.size() > result_.looked_at;
+            result_.looked_at = result_.candidates.size();
+            return is_new;
+        }
+        return false;
+    }
+
     /// Whether a setting cannot be the answer nor a step of the staircase, whatever its errors: the reference, or one
     /// without errors, is within the limits and cheaper by far. Memory is no error: others may need less than these.
     bool pass_over(const MethodChoice& choice) {
@@ -93,29 +118,49 @@ public:
     }
 
     /// Each candidate gets its price as its cost, and those that may be the answer or a step, and the reference, the
-    /// median of rounds in turns: the fewer take turns, the more rounds fit into the budget.
+    /// median of rounds in turns: the fewer take turns, the more rounds fit into the budget. Turns may find another
+    /// answer than prices do; what its price does not outdo takes turns with it, too.
     void time_candidates() {
         std::vector<std::size_t> fit, who;
         for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
             Candidate& c = result_.candidates[k];
             if (!c.unfit.empty()) continue;
-            c.cost = price(c.choice);
+            c.costs.clear();
+            c.cost = c.price = price(c.choice);
             if (c.cost) fit.push_back(k);
         }
+        for (const std::size_t k : fit)
+            if (result_.candidates[k].choice.info->reference || std::ranges::none_of(fit, [&](std::size_t o) {
+                    return outdoes(result_.candidates[o], result_.candidates[k]);
+                }))
+                who.push_back(k);
+        while (!who.empty()) {
+            time_in_turns_with_one_another(who);
+            const auto cheapest     = std::ranges::min_element(who, {}, [&](std::size_t k) {
+                const Candidate& c = result_.candidates[k];
+                return c.within(options_.limits) ? c.cost.value_or(kUnknown) : kUnknown;
+            });
+            const Candidate& answer = result_.candidates[*cheapest];
+            const std::size_t timed = who.size();
+            for (const std::size_t k : fit) {
+                const Candidate& c = result_.candidates[k];
+                const bool rivals  = answer.within(options_.limits) && c.within(options_.limits);
+                if (rivals && *c.price <= kTooExpensive * *answer.price && std::ranges::find(who, k) == who.end())
+                    who.push_back(k);
+            }
+            if (who.size() == timed) return;
+        }
+    }
+
+    void time_in_turns_with_one_another(const std::vector<std::size_t>& who) {
         std::vector<MethodChoice> choices;
         TurnOptions turns = options_.turns;
-        for (const std::size_t k : fit) {
-            const Candidate& c = result_.candidates[k];
-            if (!c.choice.info->reference &&
-                std::ranges::any_of(fit, [&](std::size_t other) { return outdoes(result_.candidates[other], c); }))
-                continue;
-            who.push_back(k);
-            choices.push_back(c.choice);
-            turns.first.push_back(lab_.price(c.choice));
+        for (const std::size_t k : who) {
+            choices.push_back(result_.candidates[k].choice);
+            turns.first.push_back(lab_.price(result_.candidates[k].choice));
         }
         const TimedTogether together = lab_.times(choices, turns, options_.most_noise);
-        if (who.empty()) return;
-        result_.noise_bar = together.noise_bar();
+        result_.noise_bar            = together.noise_bar();
         for (std::size_t t = 0; t < who.size(); ++t) {
             const Json& times = together.settings[t];
             Candidate& c      = result_.candidates[who[t]];
@@ -126,14 +171,30 @@ public:
         }
     }
 
+    /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
+    [[nodiscard]] std::optional<Dropped> try_on_further_views(std::size_t k) {
+        result_.held_out.clear();
+        for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
+            const Json cell = lab_.cell(result_.candidates[k].choice, view);
+            lab_.release(view);
+            for (const Limit& limit : options_.limits) {
+                const std::optional<double> error = error_in_view(*limit.metric, cell);
+                if (error && *error <= limit.most) continue;
+                result_.held_out.clear();
+                return Dropped{k, view, limit.metric, error};
+            }
+            result_.held_out.push_back(cell);
+        }
+        return std::nullopt;
+    }
+
     /// The cost of `k` over that of `base`.
     [[nodiscard]] Rival rival(std::size_t k, std::size_t base) const {
         const Candidate &x = result_.candidates[k], &y = result_.candidates[base];
-        if (!x.costs.empty() && !y.costs.empty())
-            if (const Ratio ratio = paired_ratio(x.costs, y.costs); ratio.has_interval())
-                return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
-        const double ratio = *x.cost / *y.cost;
-        return {k, {ratio, {0, kUnknown}, 1}, std::max(ratio, 1 / ratio) > kTooExpensive};
+        Ratio ratio = paired_ratio(x.costs, y.costs);
+        if (ratio.has_interval()) return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
+        if (ratio.pairs == 0) ratio.median = *x.price / *y.price;
+        return {k, ratio, std::max(ratio.median, 1 / ratio.median) > kTooExpensive};
     }
 
 private:
@@ -244,16 +305,23 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
     search.look_at_families();
     search.time_candidates();
 
-    const auto cheaper = [&](std::size_t a, std::size_t b) { return *r.candidates[a].cost < *r.candidates[b].cost; };
     std::vector<std::size_t> timed, within;
-    for (std::size_t k = 0; k < r.candidates.size(); ++k) {
-        if (!r.candidates[k].cost) continue;
-        timed.push_back(k);
-        if (r.candidates[k].within(options.limits)) within.push_back(k);
-    }
-    std::ranges::stable_sort(timed, cheaper);
-    std::ranges::stable_sort(within, cheaper);
-    r.staircase = staircase_of(r.candidates, r.noise_bar);
+    const auto rank = [&] {
+        timed.clear(), within.clear();
+        for (std::size_t k = 0; k < r.candidates.size(); ++k) {
+            if (!r.candidates[k].cost) continue;
+            timed.push_back(k);
+            if (r.candidates[k].within(options.limits) &&
+                std::ranges::find(r.dropped, k, &Dropped::candidate) == r.dropped.end())
+                within.push_back(k);
+        }
+        std::ranges::stable_sort(timed, {}, [&](std::size_t k) { return *r.candidates[k].cost; });
+        // One run, alone, is no cost that a median of turns could be ranked by.
+        std::ranges::stable_sort(
+            within, {}, [&](std::size_t k) { return std::pair(r.candidates[k].costs.empty(), *r.candidates[k].cost); });
+        r.staircase = staircase_of(r.candidates, r.noise_bar);
+    };
+    rank();
     if (within.empty()) {
         for (const std::size_t k : timed)
             if (!r.nearest ||
@@ -261,29 +329,38 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
                 r.nearest = k;
         return r;
     }
-    const std::size_t first = within.front();
-    for (std::size_t n = 1; n < within.size(); ++n) {
-        const Rival rival = search.rival(within[n], first);
-        if (!rival.differs)
-            r.tied.push_back(rival);
-        else if (!r.runner_up)
-            r.runner_up = rival;
+    const auto compare_others = [&] {
+        r.tied.clear(), r.untold.clear(), r.runner_up.reset();
+        for (std::size_t n = 1; n < within.size(); ++n) {
+            const Rival rival = search.rival(within[n], within.front());
+            if (rival.tied())
+                r.tied.push_back(rival);
+            else if (!rival.differs)
+                r.untold.push_back(rival);
+            else if (!r.runner_up)
+                r.runner_up = rival;
+        }
+    };
+    while (!r.chosen && !within.empty()) {
+        compare_others();
+        if (!r.tied.empty() && std::isfinite(r.noise_bar) && r.noise_bar > options.most_noise) {
+            r.undecided.push_back(within.front());
+            for (const Rival& rival : r.tied) r.undecided.push_back(rival.candidate);
+            r.tied.clear(), r.untold.clear(), r.runner_up.reset();
+            return r;
+        }
+        if (auto dropped = search.try_on_further_views(within.front())) {
+            r.dropped.push_back(*dropped);
+            if (search.look_behind(dropped->candidate)) search.time_candidates();
+            rank();
+        } else {
+            r.chosen = within.front();
+        }
     }
-    if (!r.tied.empty() && std::isfinite(r.noise_bar) && r.noise_bar > options.most_noise) {
-        r.undecided.push_back(first);
-        for (const Rival& rival : r.tied) r.undecided.push_back(rival.candidate);
-        r.tied.clear();
-        r.runner_up.reset();
-        return r;
-    }
-    r.chosen   = first;
-    r.cheapest = search.rival(timed.front(), first);
+    if (!r.chosen) return r;
+    r.cheapest = search.rival(timed.front(), *r.chosen);
     for (const std::size_t k : timed)
-        if (r.candidates[k].choice.info->reference && !r.exact) r.exact = search.rival(k, first);
-    for (int view = options.views; view < options.views + options.held_out; ++view) {
-        r.held_out.push_back(lab.cell(r.candidates[*r.chosen].choice, view));
-        lab.release(view);
-    }
+        if (r.candidates[k].choice.info->reference && !r.exact) r.exact = search.rival(k, *r.chosen);
     return r;
 }
 

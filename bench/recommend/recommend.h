@@ -26,7 +26,7 @@ struct RecommendOptions {
     Workload workload;
     std::vector<MethodChoice> choices;  ///< candidates; those that leave points undefined are not taken
     int views    = 5;                   ///< that the choice is made on, from view 0
-    int held_out = 3;                   ///< further views that the chosen setting is tried on afterwards
+    int held_out = 10;                  ///< further views that a setting is tried on before it is the answer
     TurnOptions turns{.rounds = 9, .budget_ms = 20000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
     std::string kept_in{};           ///< the folder of cells and times, to be named; empty: it is not
@@ -52,18 +52,29 @@ struct Candidate {
     std::vector<std::optional<double>> bounds;  ///< [limit]
     std::string unfit;                          ///< why it is no candidate at all; empty where it is one
     std::vector<double> costs;                  ///< ms a frame, one a round; empty where it took part in none
+    std::optional<double> price;                ///< ms a frame by one run, alone
     std::optional<double> cost;                 ///< by the medians of the phases; of one run where there are no rounds
     [[nodiscard]] bool within(std::span<const Limit> limits) const;
     /// The largest bound over its limit; infinite where a bound is not known.
     [[nodiscard]] double worst_ratio(std::span<const Limit> limits) const;
 };
 
-/// How much dearer: settings are tied where the paired ratio of their costs does not differ from 1 by more than noise;
-/// by one run each, up to five times.
+/// How much dearer: settings are tied where they took turns in the same six rounds or more and the paired ratio of
+/// their costs does not differ from 1 by more than noise. Where there is no such ratio, one of over five times differs,
+/// and a smaller one says nothing.
 struct Rival {
     std::size_t candidate;
-    Ratio ratio;           ///< its cost over that of the recommendation; fewer than two pairs: by one run each
-    bool differs = false;  ///< from 1, as far as noise lets one tell
+    Ratio ratio;           ///< its cost over that of the recommendation; no pairs: of one run each
+    bool differs = false;  ///< from 1, as far as can be told
+    [[nodiscard]] bool tied() const { return !differs && ratio.has_interval(); }
+};
+
+/// A setting within the limits in the views that were chosen on, and not in all others that it was tried on.
+struct Dropped {
+    std::size_t candidate;
+    int view;  ///< the first one beyond
+    const Metric* metric;
+    std::optional<double> error;  ///< what that view leaves possible; nothing: it was not judged there
 };
 
 /// A setting that was not looked at: by one run each, it costs over five times as much as a candidate within the limits
@@ -96,16 +107,18 @@ struct Step {
 struct Recommendation {
     std::vector<Candidate> candidates;
     std::optional<std::size_t> chosen;    ///< none: no setting is within the limits, or `undecided` has some
+    std::vector<Dropped> dropped;         ///< tried before the chosen one on further views, by ascending cost
     std::vector<std::size_t> undecided;   ///< within the limits and, at a noise bar above the most, none cheaper than
                                           ///< another; by ascending cost
     std::optional<std::size_t> nearest;   ///< where none is: the one that misses by the smallest factor
-    std::vector<Rival> tied;              ///< as cheap as the chosen one, as far as can be told
+    std::vector<Rival> tied;              ///< as cheap as the chosen one, by rounds in turns
+    std::vector<Rival> untold;            ///< within the limits, and too few rounds in turns to tell
     std::optional<Rival> runner_up;       ///< the cheapest of the others within the limits
     std::optional<Rival> cheapest;        ///< of all that were timed, whatever their errors
     std::optional<Rival> exact;           ///< the reference method, where it was timed
     std::vector<Step> staircase;          ///< by descending error
     std::vector<PassedOver> passed_over;  ///< in the order in which they were met
-    std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on
+    std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
     double noise_bar = 0;                     ///< as of Turns
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/sweep/bounds.h"
 
 namespace umbra {
 namespace {
@@ -21,11 +22,11 @@ std::optional<double> largest(const Metric& metric, const std::vector<Json>& vie
     return most;
 }
 
-/// In how many of the cells a metric is at most `bound`.
+/// In how many of the cells a metric is at most `bound`. One that is only known to be at least something is not.
 std::size_t held(const Metric& metric, const std::vector<Json>& cells, double bound) {
     return static_cast<std::size_t>(std::ranges::count_if(cells, [&](const Json& cell) {
         const auto value = metric_value(metric, cell);
-        return value && *value <= bound;
+        return value && *value <= bound && !is_at_least(metric, cell);
     }));
 }
 
@@ -70,11 +71,9 @@ Json rival_json(const Rival& rival, const Recommendation& r, const RecommendOpti
     Json entry          = candidate_json(r.candidates[rival.candidate], options);
     const Ratio& ratio  = rival.ratio;
     const auto bound    = [&](double value) { return ratio.has_interval() ? number(value) : Json(); };
-    entry["cost_ratio"] = {{"median", number(ratio.median)},
-                           {"low", bound(ratio.interval.low)},
-                           {"high", bound(ratio.interval.high)},
-                           {"rounds", ratio.pairs},
-                           {"differs", rival.differs}};
+    entry["cost_ratio"] = {{"median", number(ratio.median)},     {"low", bound(ratio.interval.low)},
+                           {"high", bound(ratio.interval.high)}, {"rounds", ratio.pairs},
+                           {"coverage", ratio.coverage},         {"differs", rival.differs}};
     return entry;
 }
 
@@ -83,28 +82,40 @@ std::string with_unit(double value, std::string_view unit) {
                                                      : fmt::format("{:.3g} {}", value, unit);
 }
 
+/// ", largest 0.02"; nothing where the metric of some view is unknown.
+std::string largest_in_words(const Metric& metric, const std::vector<Json>& views, std::string_view before) {
+    const auto most = largest(metric, views);
+    if (!most) return {};
+    const bool or_more = std::ranges::any_of(views, [&](const Json& cell) { return is_at_least(metric, cell); });
+    return fmt::format("{} {}{}", before, or_more ? "at least " : "", with_unit(*most, metric.unit));
+}
+
+std::string open_in_words(const Candidate& c) {
+    const double open = most_undefined(c);
+    return open > 0 ? fmt::format("    errors are of the points that it answers: all but {:.2g} %\n", 100 * open) : "";
+}
+
 std::string errors_in_words(const Candidate& c, const RecommendOptions& options) {
     std::string text;
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Limit& limit = options.limits[k];
-        const auto most    = largest(*limit.metric, c.views);
-        text += fmt::format(
-            "    {}: at most {}{}; limit {}\n", limit.metric->name,
-            c.bounds[k] ? with_unit(*c.bounds[k], limit.metric->unit) : "(no bound is known)",
-            most ? fmt::format(" (largest of {} views: {})", c.views.size(), with_unit(*most, limit.metric->unit)) : "",
-            with_unit(limit.most, limit.metric->unit));
+        const auto most    = largest_in_words(
+               *limit.metric, c.views, fmt::format(" from {} views that were chosen on, their largest", c.views.size()));
+        text += fmt::format("    {}: {}{}; limit {}\n", limit.metric->name,
+                            c.bounds[k] ? "bound " + with_unit(*c.bounds[k], limit.metric->unit) : "no bound is known",
+                            most, with_unit(limit.most, limit.metric->unit));
     }
-    if (const double open = most_undefined(c); open > 0)
-        text += fmt::format("    errors are of the points that it answers: all but {:.2g} %\n", 100 * open);
-    return text;
+    return text + open_in_words(c);
 }
 
 std::string rival_in_words(const Rival& rival, const Recommendation& r) {
     const Candidate& c    = r.candidates[rival.candidate];
     const Ratio& ratio    = rival.ratio;
-    const std::string how = !ratio.has_interval() ? " by one run"
-                                                  : fmt::format(", {:.2f} to {:.2f} in {} rounds", ratio.interval.low,
-                                                                ratio.interval.high, ratio.pairs);
+    const std::string how = ratio.has_interval()
+                                ? fmt::format(", {:.2f} to {:.2f} with {:.1f} %, in {} rounds", ratio.interval.low,
+                                              ratio.interval.high, 100 * ratio.coverage, ratio.pairs)
+                            : ratio.pairs > 1 ? fmt::format(" in {} rounds", ratio.pairs)
+                                              : " by one run";
     return fmt::format("{} ({:.3f} ms, {:.2f} times{})", c.choice.text(), *c.cost, ratio.median, how);
 }
 
@@ -121,6 +132,41 @@ std::string bounds_in_words(const Candidate& c, const RecommendOptions& options)
     return text;
 }
 
+/// What the answer says of views that it was not chosen on: from those alone.
+std::string held_out_in_words(const Recommendation& r, const RecommendOptions& options) {
+    const std::size_t views = r.held_out.size();
+    if (views == 0)
+        return errors_in_words(r.candidates[*r.chosen], options) +
+               "  It was tried on no view that it was not chosen on: how many are beyond a limit is not known.\n";
+    std::string text;
+    for (const Limit& limit : options.limits) {
+        double most = 0;
+        for (const Json& cell : r.held_out) most = std::max(most, possible_error(*limit.metric, cell).value_or(0));
+        text += fmt::format("    {}: at most {} in {} views that it was not chosen on; limit {}\n", limit.metric->name,
+                            with_unit(most, limit.metric->unit), views, with_unit(limit.most, limit.metric->unit));
+    }
+    text += open_in_words(r.candidates[*r.chosen]);
+    const std::size_t tried = r.dropped.size() + 1;
+    return text + fmt::format(
+                      "  None of these {} views is beyond a limit: with {:.0f} % confidence at most {:.1f} % of "
+                      "such views are{}.\n",
+                      views, 100 * kConfidence, std::ceil(1000 * share_beyond(static_cast<int>(views), tried)) / 10,
+                      tried > 1 ? fmt::format(", as it is number {} of the settings tried on them", tried) : "");
+}
+
+std::string dropped_in_words(const Recommendation& r) {
+    std::string text;
+    for (const Dropped& d : r.dropped) {
+        const Candidate& c = r.candidates[d.candidate];
+        text += fmt::format(
+            "  Dropped: {} ({:.3f} ms), within the limits in the views that were chosen on: {} {} in "
+            "view {}\n",
+            c.choice.text(), *c.cost, d.metric->name,
+            d.error ? "up to " + with_unit(*d.error, d.metric->unit) : "unknown", d.view);
+    }
+    return text;
+}
+
 std::string methods_in_words(const Recommendation& r, const RecommendOptions& options) {
     std::vector<std::pair<std::string, std::string>> lines;
     std::size_t widest = 0;
@@ -128,10 +174,12 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
         std::string name(m.info->name), what = "no setting was needed";
         if (m.candidate) {
             const Candidate& c = r.candidates[*m.candidate];
+            const bool dropped = std::ranges::find(r.dropped, *m.candidate, &Dropped::candidate) != r.dropped.end();
             name               = c.choice.text();
             what               = !c.unfit.empty() ? "left out: " + c.unfit
                                  : !c.cost        ? "could not be timed"
-                                           : fmt::format("{:>9.3f} ms  {}", *c.cost, bounds_in_words(c, options));
+                                           : fmt::format("{:>9.3f} ms  {}{}", *c.cost, bounds_in_words(c, options),
+                                           dropped ? ", dropped" : "");
         } else if (m.outdone_by) {
             const PassedOver& p = r.passed_over[*m.outdone_by];
             name                = p.choice.text();
@@ -141,13 +189,16 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
         widest = std::max(widest, name.size());
         lines.emplace_back(std::move(name), std::move(what));
     }
-    std::string text = "  Every method, by its cheapest setting within the limits, or else its nearest:\n";
+    std::string text = fmt::format(
+        "  Every method, by its cheapest setting within the limits, or else its nearest, with bounds from {} views:\n",
+        options.views);
     for (const auto& [name, what] : lines) text += fmt::format("    {:<{}}  {}\n", name, widest, what);
     return text;
 }
 
 std::string noise_in_words(const Recommendation& r, const RecommendOptions& options) {
-    if (!std::isfinite(r.noise_bar)) return "  Costs are of one run each: less than five times is no difference.\n";
+    if (!std::isfinite(r.noise_bar))
+        return "  Costs are of fewer than six rounds: less than five times is no difference.\n";
     return fmt::format("  Costs that differ by less than {:.0f} % are not told apart on this machine now{}.\n",
                        std::ceil(100 * r.noise_bar),
                        r.noise_bar > options.most_noise ? ", which other programs keep busy" : "");
@@ -155,8 +206,9 @@ std::string noise_in_words(const Recommendation& r, const RecommendOptions& opti
 
 std::string staircase_in_words(const Recommendation& r, const RecommendOptions& options) {
     if (r.staircase.empty()) return {};
-    std::string text = fmt::format("  If {} may be at most E, the cheapest of the settings tried:\n",
-                                   options.limits.front().metric->name);
+    std::string text =
+        fmt::format("  If {} may be at most E, the cheapest of the settings by their bounds from {} views:\n",
+                    options.limits.front().metric->name, options.views);
     for (std::size_t k = 0; k < r.staircase.size(); ++k) {
         const Step& step        = r.staircase[k];
         const std::string range = k == 0 ? fmt::format("E from {:.3g}", step.error)
@@ -170,9 +222,17 @@ std::string staircase_in_words(const Recommendation& r, const RecommendOptions& 
 }  // namespace
 
 Json recommendation_json(const Recommendation& r, const RecommendOptions& options) {
-    Json record = {{"recommendation", nullptr},  {"tied", Json::array()},      {"runner_up", nullptr},
-                   {"cheapest", nullptr},        {"exact", nullptr},           {"nearest", nullptr},
-                   {"undecided", Json::array()}, {"staircase", Json::array()}, {"methods", Json::array()}};
+    Json record = {{"recommendation", nullptr},
+                   {"tied", Json::array()},
+                   {"runner_up", nullptr},
+                   {"cheapest", nullptr},
+                   {"exact", nullptr},
+                   {"nearest", nullptr},
+                   {"undecided", Json::array()},
+                   {"staircase", Json::array()},
+                   {"methods", Json::array()},
+                   {"dropped", Json::array()},
+                   {"not_compared", Json::array()}};
     if (r.chosen) {
         Json chosen   = candidate_json(r.candidates[*r.chosen], options);
         Json held_out = {{"views", r.held_out.size()}, {"holds", Json::object()}, {"largest", Json::object()}};
@@ -181,12 +241,23 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
             held_out["holds"][std::string(metric.name)] = held(metric, r.held_out, *r.candidates[*r.chosen].bounds[k]);
             held_out["largest"][std::string(metric.name)] = optional_number(largest(metric, r.held_out));
         }
+        const std::size_t tried  = r.dropped.size() + 1;
+        held_out["beyond"]       = 0;
+        held_out["share_beyond"] = share_beyond(static_cast<int>(r.held_out.size()), tried);
+        held_out["confidence"]   = kConfidence;
+        held_out["tried"]        = tried;
         chosen["held_out"]       = std::move(held_out);
         record["recommendation"] = std::move(chosen);
     }
     for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], options));
     for (const TriedMethod& m : tried_methods(r, options)) record["methods"].push_back(method_json(m, r, options));
     for (const Rival& rival : r.tied) record["tied"].push_back(rival_json(rival, r, options));
+    for (const Rival& rival : r.untold) record["not_compared"].push_back(rival_json(rival, r, options));
+    for (const Dropped& d : r.dropped) {
+        record["dropped"].push_back(candidate_json(r.candidates[d.candidate], options));
+        record["dropped"].back()["beyond"] = {
+            {"view", d.view}, {"metric", d.metric->name}, {"error", optional_number(d.error)}};
+    }
     if (r.runner_up) record["runner_up"] = rival_json(*r.runner_up, r, options);
     if (r.cheapest) record["cheapest"] = rival_json(*r.cheapest, r, options);
     if (r.exact) record["exact"] = rival_json(*r.exact, r, options);
@@ -225,15 +296,16 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     std::string text;
     if (!r.undecided.empty()) {
         text = fmt::format(
-            "Nothing is chosen: times vary by {:.0f} %, and these are within the limits and as cheap as one "
+            "Nothing is chosen: times vary by {:.0f} %, and these are within the limits in {} views and as cheap as "
+            "one "
             "another, as far as can be told:\n",
-            std::ceil(100 * r.noise_bar));
+            std::ceil(100 * r.noise_bar), options.views);
         for (const std::size_t k : r.undecided)
             text +=
                 fmt::format("  {}: {:.3f} ms a frame with {}\n{}", r.candidates[k].choice.text(), *r.candidates[k].cost,
                             to_text(options.workload), errors_in_words(r.candidates[k], options));
     } else if (!r.chosen) {
-        text = "No setting stays within the limits.\n";
+        text = "No setting stays within the limits.\n" + dropped_in_words(r);
         if (r.nearest) {
             const Candidate& nearest = r.candidates[*r.nearest];
             const double factor      = nearest.worst_ratio(options.limits);
@@ -245,16 +317,14 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     } else {
         const Candidate& c = r.candidates[*r.chosen];
         text = fmt::format("{}: {:.3f} ms a frame with {}\n{}", c.choice.text(), *c.cost, to_text(options.workload),
-                           errors_in_words(c, options));
-        for (std::size_t k = 0; k < options.limits.size() && !r.held_out.empty(); ++k) {
-            const Metric& metric = *options.limits[k].metric;
-            const auto most      = largest(metric, r.held_out);
-            text += fmt::format("  In {} views that it was not chosen on: {} of {} within that bound{}\n",
-                                r.held_out.size(), held(metric, r.held_out, *c.bounds[k]), metric.name,
-                                most ? fmt::format(", largest {}", with_unit(*most, metric.unit)) : "");
-        }
+                           held_out_in_words(r, options));
+        text += dropped_in_words(r);
         for (const Rival& rival : r.tied)
             text += fmt::format("  As cheap, within the noise: {}\n", rival_in_words(rival, r));
+        for (const Rival& rival : r.untold)
+            text += fmt::format("  {}: {}\n",
+                                rival.ratio.pairs > 1 ? "Timed in fewer than six turns with it" : "Not timed in turns",
+                                rival_in_words(rival, r));
         if (r.runner_up) text += fmt::format("  Next: {}\n", rival_in_words(*r.runner_up, r));
         if (r.cheapest && r.cheapest->candidate != *r.chosen && r.cheapest->differs)
             text += fmt::format("  Cheapest of all, whatever its errors: {}\n", rival_in_words(*r.cheapest, r));

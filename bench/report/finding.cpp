@@ -43,7 +43,8 @@ std::string classes_in_words(const Field& method) {
         }
         if (rest > 0) parts.push_back(fmt::format("{}{} {}", count(rest), any ? " other" : "", in_words(group)));
     }
-    for (const auto& [object, name] : {std::pair{"penumbra_error", "penumbra"}, std::pair{"noise_error", "noise"}}) {
+    for (const auto& [object, name] :
+         {std::pair{"penumbra_error", "in penumbrae"}, std::pair{"noise_error", "by noise"}}) {
         double n = 0;
         for (const std::string& group : error_groups()) n += sum_of(method, object, group);
         if (n > 0) parts.push_back(fmt::format("{} {}", count(n), name));
@@ -73,12 +74,12 @@ std::string finding(const Field& root) {
         (c.wrong > 0 ? wrong : right).push_back(std::move(c));
     }
     if (wrong.empty() && right.empty()) return any ? "No point is judged: no lit surface is in view." : "";
-    const std::string against =
-        fmt::format("against the {} reference", root["reference"]["exact"].flag() ? "exact" : "inexact");
+    const std::string reference =
+        fmt::format("the {} reference", root["reference"]["exact"].flag() ? "exact" : "inexact");
     if (wrong.empty()) {
         const bool partial = std::any_of(right.begin(), right.end(), [](const Compared& c) { return c.partial; });
-        return fmt::format("{}: no wrong interior point {}{}.",
-                           right.size() == 1 ? right[0].label : fmt::format("All {} methods", right.size()), against,
+        return fmt::format("{}: no wrong interior point against {}{}.",
+                           right.size() == 1 ? right[0].label : fmt::format("All {} methods", right.size()), reference,
                            !partial            ? ""
                            : right.size() == 1 ? ", where it answers"
                                                : ", where they answer");
@@ -86,8 +87,9 @@ std::string finding(const Field& root) {
 
     std::stable_sort(wrong.begin(), wrong.end(),
                      [](const Compared& a, const Compared& b) { return a.wrong > b.wrong; });
-    std::string text = fmt::format("{}: {} {} ({})", wrong[0].label, counted(wrong[0].wrong, "wrong interior point"),
-                                   against, classes_in_words(wrong[0].method));
+    std::string text            = fmt::format("{}: {} of {} compared with {} ({})", wrong[0].label,
+                                              counted(wrong[0].wrong, "wrong interior point"),
+                                              count(totals(wrong[0].method).points), reference, classes_in_words(wrong[0].method));
     constexpr std::size_t named = 4;  // more names than that are a table
     for (std::size_t i = 1; i < wrong.size(); ++i) {
         if (wrong.size() > named && i + 1 >= named) {

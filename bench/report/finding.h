@@ -8,8 +8,8 @@
 namespace umbra {
 
 /// Which methods have wrong interior points, the most first, and which have none: "Shadow z-buffer: 9 wrong interior
-/// points against the exact reference (6 acne, 3 other false shadow); all 3 other methods: none." Empty where no method
-/// was compared.
+/// points of 684 compared with the exact reference (6 acne, 3 other false shadow); all 3 other methods: none." Empty
+/// where no method was compared.
 [[nodiscard]] std::string finding(const Field& root);
 
 }  // namespace umbra

@@ -11,6 +11,7 @@
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
 #include "umbra/bench/report/lecture_shows.h"
+#include "umbra/core/base/trimmed.h"
 
 namespace umbra {
 namespace {
@@ -23,10 +24,8 @@ std::string plain(std::string cell) {
     static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
     cell = std::regex_replace(cell, link, "$1");
     std::erase(cell, '`');
-    const auto first = cell.find_first_not_of(' ');
-    if (first == std::string::npos) return {};
-    cell = cell.substr(first, cell.find_last_not_of(' ') - first + 1);
-    return cell == kNone ? "" : cell;
+    const std::string_view words = trimmed(cell);
+    return std::string(words == kNone ? "" : words);
 }
 
 std::vector<LectureRow> rows_of(std::string_view page) {

@@ -235,13 +235,18 @@ Field entry(const Field& array, std::string_view name) {
     return found == items.end() ? Field{} : *found;
 }
 
-std::string value_in_words(const Field& value, FigureKind kind) {
+std::string figure_of(const Field& value, FigureKind kind) {
     switch (kind) {
         case FigureKind::count: return count(value.number());
         case FigureKind::percent: return percent(value.number());
         case FigureKind::score: break;
     }
     return score(value.number());
+}
+
+std::string value_in_words(const Field& value, FigureKind kind, Language language) {
+    const std::string figure = figure_of(value, kind);
+    return language == Language::english ? figure : with_decimal_comma(figure);
 }
 
 }  // namespace
@@ -268,7 +273,7 @@ std::string figure_in_words(const LectureFigure& figure, const Field& root, Lang
         if (!there.present()) continue;
         words += words.empty() ? ": " : ", ";
         if (const std::string_view name = value.name.in(language); !name.empty()) words += std::string(name) + " ";
-        words += value_in_words(there, figure.kind);
+        words += value_in_words(there, figure.kind, language);
     }
     return words.empty() ? "" : std::string(figure.what.in(language)) + words + ".";
 }

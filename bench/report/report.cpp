@@ -7,8 +7,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
@@ -39,11 +37,6 @@ using nlohmann::json;
 
 const std::vector<std::string> kSceneScripts = {"slider.js", "pictures.js"};
 const std::vector<std::string> kIndexScripts = {"slider.js", "finder.js", "pictures.js"};  // with all of a scene's
-
-std::string bytes_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::vector<fs::path> results_files(const fs::path& dir) {
     std::vector<fs::path> files;

@@ -170,14 +170,17 @@ json scene_view(const SceneFiles& scene, const std::vector<Field>& settings) {
             unserved.push_back({{"label", label}, {"why", method["serves"]["why"].text()}});
             continue;
         }
-        const Totals t    = totals(method);
-        const bool itself = is_reference(root, method);
+        const Totals t           = totals(method);
+        const bool itself        = is_reference(root, method);
+        const std::string covers = percent_words(method);
         if (t.mae && t.camera_ms && t.object_ms) {
             const auto style = std::find_if(settings.begin(), settings.end(),
                                             [&](const Field& s) { return same_setting(s, method); }) -
                                settings.begin();
-            chart.push_back(
-                {itself ? label + " (the reference)" : label, *t.camera_ms, *t.object_ms, *t.mae, std::size_t(style)});
+            chart.push_back({itself           ? label + " (the reference)"
+                             : covers.empty() ? label
+                                              : fmt::format("{} ({})", label, covers),
+                             *t.camera_ms, *t.object_ms, *t.mae, std::size_t(style)});
         }
         if (const json exr = scene.exr(method["files"]); exr.is_string())
             files.push_back({{"label", label}, {"href", exr}});
@@ -185,15 +188,16 @@ json scene_view(const SceneFiles& scene, const std::vector<Field>& settings) {
         if (json f = scene.figure(method["files"]["png"], label, "picture",
                                   fmt::format("{}: shadows by {}", scene.scene().title, label));
             f.is_object()) {
-            const std::string coverage = percent_words(method);
-            f["note"]                  = fmt::format("{}, {} ms{}{}",
-                                    t.points > 0 ? counted(t.interior, "wrong interior point") : "no point is judged",
-                                                     milliseconds(t.object_ms), coverage.empty() ? "" : "; ", coverage);
+            f["note"] = fmt::format(
+                "{}, {} ms{}", t.points > 0 ? counted(t.interior, "wrong interior point") : "no point is judged",
+                milliseconds(t.object_ms), covers.empty() ? "" : fmt::format("; {}, the rest is drawn lit", covers));
             pictures.push_back(std::move(f));
         }
         const Field scores = method["image"];
         image.push_back(
             {{"label", label},
+             {"coverage", percent(method["coverage"].number())},
+             {"covers", covers},
              {"rmse", score(scores["rmse"].number())},
              {"psnr", scores["psnr"].present()       ? fmt::format("{:.1f}", *scores["psnr"].number())
                       : scores["rmse"].number() == 0 ? "∞"

@@ -112,6 +112,7 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
                     {"points", count(e["points"].number())},
                     {"undefined", count(e["undefined"].number())},
                     {"on_boundary", count(e["on_boundary"].number())},
+                    {"not_judged", count(e["not_judged"].number())},
                     {"away", count(e["away"].number())},
                     {"lit", count(e["lit"].number())},
                     {"umbra", count(e["umbra"].number())},
@@ -133,7 +134,7 @@ std::string edge_figure(const std::optional<EdgeFigure>& figure) {
 }
 
 json cause_view(const Field& root, const std::vector<Field>& methods) {
-    return {{"groups", rows_by_light(root, methods, [](const Field&, const Field& e) {
+    return {{"groups", rows_by_light(root, methods, [](const Field& method, const Field& e) {
                  const Field edges = e["edge_displacement_px"], width = e["penumbra_width_px"], noise = e["noise"],
                              interior = e["interior"], terminator = e["terminator"];
                  const EdgeRecord off{edges["mean"].number(),
@@ -142,7 +143,8 @@ json cause_view(const Field& root, const std::vector<Field>& methods) {
                                       edges["pieces"].number().value_or(0),
                                       edges["unmatched"].number().value_or(0),
                                       edges["reach"].number().value_or(0)};
-                 return json{{"wrong_lit", count(interior["lit"].number())},
+                 return json{{"coverage", percent(method["coverage"].number())},
+                             {"wrong_lit", count(interior["lit"].number())},
                              {"wrong_penumbra", count(interior["penumbra"].number())},
                              {"wrong_umbra", count(interior["umbra"].number())},
                              {"terminator_facet", count(terminator["facet_away"].number())},
@@ -167,6 +169,7 @@ json time_view(const Field& root, const std::vector<Field>& methods) {
         const Totals t    = totals(method);
         const Field times = method["times"];
         rows.push_back({{"label", method_label(method, methods)},
+                        {"coverage", percent(method["coverage"].number())},
                         {"build", timing(times["build_ms"])},
                         {"aim", timing(times["aim_ms"])},
                         {"look", timing(times["look_ms"])},

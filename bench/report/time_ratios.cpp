@@ -58,8 +58,10 @@ std::string against(const Row& row, const Row& fastest, std::size_t movement, do
     if (!row.times.paired || !fastest.times.paired)
         return fmt::format("×{}, one run", score(median(mine) / median(its)));
     const Ratio ratio = paired_ratio(mine, its);
+    if (!ratio.has_interval()) return fmt::format("×{}, {} rounds", score(ratio.median), ratio.pairs);
     if (!differs(ratio, bar)) return "no difference";
-    return fmt::format("×{} ({}–{})", score(ratio.median), score(ratio.interval.low), score(ratio.interval.high));
+    return fmt::format("×{} ({}–{}, {:.1f} %)", score(ratio.median), score(ratio.interval.low),
+                       score(ratio.interval.high), 100 * ratio.coverage);
 }
 
 std::string bar_in_words(double bar) { return std::isfinite(bar) ? fmt::format("{:.1f} %", 100 * bar) : kNone; }

@@ -8,8 +8,9 @@
 
 namespace umbra {
 
-/// A row for each method with its ratio to the fastest for each kind of movement: "fastest", "no difference", or the
-/// ratio with its interval; and the noise bars behind it. false where the record has no times in turns.
+/// A row for each method with its ratio to the fastest for each kind of movement: "fastest", "no difference", the ratio
+/// with its interval and what that covers, or the ratio alone, of fewer than six rounds; and the noise bars behind it.
+/// false where the record has no times in turns.
 [[nodiscard]] nlohmann::json time_ratio_view(const Field& root, const std::vector<Field>& methods);
 
 }  // namespace umbra

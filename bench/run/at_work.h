@@ -52,8 +52,9 @@ public:
     [[nodiscard]] const Looked& looked() const { return *looked_; }
     [[nodiscard]] bool looks_at(const PointBatch& points) const { return looked_ && &looked_->points == &points; }
 
-    /// S_j at the points that it looks at. `out` as Method::visibility wants it.
-    void visibility(LightId light, Visibility out) { method_->visibility(aimed(light), looked(), out); }
+    /// S_j at the points that it looks at, and what is decided without the method. `out` as Method::visibility wants
+    /// it.
+    void visibility(LightId light, const Visibility& out);
     /// S_j, and the blockers, at any other points, which it looks at for this call alone.
     [[nodiscard]] VisibilityPlane ask(const PointBatch& points, LightId light);
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers);

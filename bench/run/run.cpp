@@ -23,8 +23,9 @@ void check_contract(std::string_view name, const VisibilityPlane& plane, const P
         const bool asked = points.asks(light, i);
         const bool in_range =
             plane.s[i] >= 0 && plane.s[i] <= 1 && plane.half_width[i] >= 0 && plane.half_width[i] <= 1;
-        const bool is_mean   = plane.colour.empty() || !plane.defined(i) || plane.s[i] == mean_of(plane.colour[i]);
-        const bool untouched = plane.s[i] == 0 && plane.half_width[i] == 0 && plane.answer[i] == Answer::given;
+        const bool is_mean = plane.colour.empty() || !plane.defined(i) || plane.s[i] == mean_of(plane.colour[i]);
+        const bool untouched =
+            plane.s[i] == points.decided(light, i) && plane.half_width[i] == 0 && plane.answer[i] == Answer::given;
         if (!in_range || !is_mean || plane.answer[i] > Answer::on_boundary || (!asked && !untouched))
             throw std::logic_error(fmt::format(
                 "{} breaks its contract at point {}: visibility {}, half width {}, answer {}, {}", name, i, plane.s[i],

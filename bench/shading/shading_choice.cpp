@@ -39,13 +39,17 @@ double worst_ratio(const Json& model, std::span<const ShadingLimit> limits) {
 Json ratio_json(const Json& model, const Ratio& ratio) {
     return {{"model", name(model)},
             {"ratio", number(ratio.median)},
-            {"low", number(ratio.interval.low)},
-            {"high", number(ratio.interval.high)}};
+            {"low", ratio.has_interval() ? number(ratio.interval.low) : Json()},
+            {"high", number(ratio.interval.high)},
+            {"rounds", ratio.pairs},
+            {"coverage", ratio.coverage}};
 }
 
 std::string in_words(const Json& ratio) {
-    return fmt::format("{:.2f} ({:.2f} to {:.2f})", ratio["ratio"].get<double>(), ratio["low"].get<double>(),
-                       ratio["high"].get<double>());
+    if (ratio["low"].is_null())
+        return fmt::format("{:.2f} ({} rounds)", ratio["ratio"].get<double>(), ratio["rounds"].get<int>());
+    return fmt::format("{:.2f} ({:.2f} to {:.2f}, {:.1f} %)", ratio["ratio"].get<double>(), ratio["low"].get<double>(),
+                       ratio["high"].get<double>(), 100 * ratio["coverage"].get<double>());
 }
 
 }  // namespace

@@ -29,9 +29,10 @@ struct ShadingLimit {
 
 /// {limits: [{metric, most}], model, ms, of_phong, tied: [MODEL], runner_up, nearest}: the model with the least median
 /// time whose worst errors of all views are within the limits, and that median; `of_phong` and `runner_up`, the
-/// cheapest other one within the limits that is not tied: {model, ratio, low, high}, a paired ratio of times with its
-/// interval; `tied`: within the limits, and as cheap as far as noise lets one see (record["noise_bar"]). Where none is
-/// within, `model` is null and `nearest` is {model, factor}: the one whose largest error over its limit is least.
+/// cheapest other one within the limits that is not tied: {model, ratio, low, high, rounds, coverage}, a paired ratio
+/// of times with its interval (null: none); `tied`: within the limits, and as cheap as far as noise lets one see
+/// (record["noise_bar"]). Where none is within, `model` is null and `nearest` is {model, factor}: the one whose largest
+/// error over its limit is least.
 [[nodiscard]] Json choose_shading(const Json& record, std::span<const ShadingLimit> limits);
 
 /// Sentences on record["front"] and, where it is there, record["choice"].

@@ -15,7 +15,7 @@ namespace umbra {
 
 struct ShadingOptions {
     std::optional<MethodChoice> method;  ///< of the shadows; none: S_j = 1 where a light is in front
-    int runs  = 3;                       ///< rounds, in each of which every model runs once
+    int runs  = 6;                       ///< rounds, in each of which every model runs once
     int views = 1;                       ///< that errors are taken from: the scene's own, and others (view_of)
     std::vector<ShadingLimit> limits{};  ///< none: nothing is chosen
     std::string command;

@@ -1,21 +1,15 @@
 #include "umbra/bench/statistics/statistics.h"
 
 #include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <stdexcept>
 #include <vector>
-
-#include "umbra/core/base/random_bits.h"
 
 namespace umbra {
 namespace {
 
-constexpr int kResamples                = 2000;
-constexpr std::uint64_t kSeed           = 20260131;
-constexpr std::size_t kFewestToResample = 5;
-constexpr double kUnbounded             = std::numeric_limits<double>::infinity();
+constexpr std::size_t kLargestSample = 200;
 
 /// Reorders its argument.
 double median_of(std::vector<double>& values) {
@@ -33,27 +27,22 @@ std::vector<double> ratios(std::span<const double> a, std::span<const double> b)
     return of;
 }
 
-/// The percentiles 2.5 and 97.5 of `of(medians)` over resamples of all samples: of each on its own, or of the same
-/// indices in all of them.
-Interval resampled(const std::vector<std::vector<double>>& samples, bool together,
-                   const std::function<double(std::span<const double> medians)>& of) {
-    std::vector<double> results(kResamples), medians(samples.size()), drawn;
-    std::uint64_t counter = kSeed;
-    for (double& result : results) {
-        const std::uint64_t first = counter;
-        for (std::size_t k = 0; k < samples.size(); ++k) {
-            if (samples[k].empty()) throw std::logic_error("bootstrap of no values");
-            if (together) counter = first;
-            drawn.resize(samples[k].size());
-            // The high bits scaled to an index: a distribution of the standard library would differ between libraries.
-            for (double& d : drawn) d = samples[k][((mixed_bits(counter++) >> 32) * samples[k].size()) >> 32];
-            medians[k] = median_of(drawn);
-        }
-        result = of(medians);
+/// From the k-th least to the k-th largest, k from 1.
+Interval between(std::vector<double>& values, std::size_t k) {
+    std::sort(values.begin(), values.end());
+    return {values[k - 1], values[values.size() - k]};
+}
+
+/// How many of the C(a + b, a) orders of two samples have u inversions, u from 0 to a b: the coefficients of Gauss's
+/// binomial, the product of (1 - q^(b + i)) / (1 - q^i).
+std::vector<double> orders_by_inversions(std::size_t a, std::size_t b) {
+    std::vector<double> count(a * b + 1);
+    count[0] = 1;
+    for (std::size_t i = 1; i <= a; ++i) {
+        for (std::size_t u = count.size(); u-- > b + i;) count[u] -= count[u - b - i];
+        for (std::size_t u = i; u < count.size(); ++u) count[u] += count[u - i];
     }
-    std::sort(results.begin(), results.end());
-    constexpr std::size_t tail = kResamples / 40;  // 2.5 %
-    return {results[tail], results[kResamples - 1 - tail]};
+    return count;
 }
 
 }  // namespace
@@ -64,61 +53,53 @@ double median(std::span<const double> values) {
     return median_of(copy);
 }
 
-Interval bootstrap_interval(const std::vector<std::vector<double>>& samples,
-                            const std::function<double(std::span<const double> medians)>& of) {
-    return resampled(samples, false, of);
-}
-
-Ratio ratio_of_medians(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
-                       std::span<const double> weights) {
-    std::vector<std::vector<double>> samples = a;
-    samples.insert(samples.end(), b.begin(), b.end());
-    const auto quotient = [&](std::span<const double> of) {
-        double above = 0, below = 0;
-        for (std::size_t k = 0; k < weights.size(); ++k)
-            above += weights[k] * of[k], below += weights[k] * of[weights.size() + k];
-        return above / below;
-    };
-    std::vector<double> medians;
-    for (const std::vector<double>& sample : samples) {
-        if (sample.size() != samples.front().size()) throw std::logic_error("samples that are no pairs");
-        medians.push_back(median(sample));
+MedianRank median_rank(std::size_t n) {
+    MedianRank rank;
+    if (n == 0) return rank;
+    const boost::math::binomial_distribution<double> below(static_cast<double>(n), 0.5);
+    for (std::size_t k = 1; 2 * k <= n; ++k) {
+        const double coverage = 1 - 2 * cdf(below, static_cast<double>(k - 1));
+        if (coverage < kCoverage) break;
+        rank = {k, coverage};
     }
-    const std::size_t pairs = samples.front().size();
-    Ratio ratio{quotient(medians), {0, kUnbounded}, static_cast<int>(pairs)};
-    if (!std::isfinite(ratio.median) || !(ratio.median > 0)) return {};
-    if (!ratio.has_interval()) return ratio;
-    Interval found{ratio.median, ratio.median};
-    const auto holds = [&](double value) { found = {std::min(found.low, value), std::max(found.high, value)}; };
-    if (pairs >= kFewestToResample) {
-        const Interval drawn = resampled(samples, true, quotient);
-        holds(drawn.low), holds(drawn.high);
-    }
-    for (std::size_t i = 0; i < pairs && pairs < kFewestToResample; ++i) {
-        for (std::size_t k = 0; k < samples.size(); ++k) medians[k] = samples[k][i];
-        holds(quotient(medians));
-    }
-    ratio.interval = found;
-    return ratio;
+    return rank;
 }
 
 Ratio paired_ratio(std::span<const double> a, std::span<const double> b) {
-    const std::vector<double> of = ratios(a, b);
+    std::vector<double> of = ratios(a, b);
     if (of.empty()) return {};
-    Ratio ratio{median(of), {}, static_cast<int>(of.size())};
-    if (!ratio.has_interval()) {
-        ratio.interval = {0, kUnbounded};
-        return ratio;
+    Ratio ratio{.median = median_of(of), .pairs = static_cast<int>(of.size())};
+    if (const MedianRank rank = median_rank(of.size()); rank.k > 0) {
+        ratio.interval = between(of, rank.k);
+        ratio.coverage = rank.coverage;
     }
-    const auto [least, largest] = std::minmax_element(of.begin(), of.end());
-    ratio.interval              = {*least, *largest};
-    if (of.size() >= kFewestToResample)
-        ratio.interval = bootstrap_interval({of}, [](std::span<const double> medians) { return medians[0]; });
+    return ratio;
+}
+
+Ratio ratio_of_samples(std::span<const double> a, std::span<const double> b, double level) {
+    if (a.empty() || b.empty()) throw std::logic_error("ratio of no values");
+    a = a.first(std::min(a.size(), kLargestSample));
+    b = b.first(std::min(b.size(), kLargestSample));
+    std::vector<double> all;
+    for (const double x : a)
+        for (const double y : b) all.push_back(x / y);
+    Ratio ratio{.median = median_of(all), .pairs = static_cast<int>(std::min(a.size(), b.size()))};
+    const std::vector<double> count = orders_by_inversions(a.size(), b.size());
+    double orders = 1, tail = 0;
+    std::size_t rank = 0;
+    for (std::size_t i = 1; i <= a.size(); ++i) orders *= static_cast<double>(b.size() + i) / static_cast<double>(i);
+    for (std::size_t k = 1; 2 * k <= all.size(); ++k) {
+        tail += count[k - 1] / orders;
+        if (1 - 2 * tail < level) break;
+        ratio.coverage = 1 - 2 * tail;
+        rank           = k;
+    }
+    if (rank > 0) ratio.interval = between(all, rank);
     return ratio;
 }
 
 double noise_bar(const Ratio& same_with_itself) {
-    if (!same_with_itself.has_interval()) return kUnbounded;
+    if (!same_with_itself.has_interval()) return std::numeric_limits<double>::infinity();
     return std::max({0.0, same_with_itself.interval.high - 1, 1 / same_with_itself.interval.low - 1});
 }
 

@@ -28,6 +28,11 @@ bool is_error_of_s(const Metric& metric) {
            (metric.kind == Kind::largest && metric.unit.empty());
 }
 
+/// By proof: the setting serves so, and the metric is one that the proof is about.
+bool is_exact(const Metric& metric, const Json& cell, double value) {
+    return cell.at("serves").at("how") == "exactly" && (value == 0 || is_error_of_s(metric));
+}
+
 /// What the points of a view leave possible. A share is an estimate from as many points. Of errors of S_j only one that
 /// was measured as 0 is: the points that none was found among may be wrong by all of S_j.
 double possible(const Metric& metric, const Json& cell, double measured) {
@@ -62,6 +67,18 @@ double upper_share(std::uint64_t wrong, std::uint64_t of) {
         static_cast<double>(of), static_cast<double>(wrong), 1 - kConfidence);
 }
 
+std::optional<double> possible_error(const Metric& metric, const Json& cell) {
+    const auto value = metric_value(metric, cell);
+    if (const bool known = value && !is_at_least(metric, cell); !known) return std::nullopt;
+    const double width = is_error_of_s(metric) ? half_width(cell) : 0;
+    return (is_exact(metric, cell, *value) ? *value : possible(metric, cell, *value)) + width;
+}
+
+double share_beyond(int views, std::size_t tried) {
+    if (views <= 0) return 1;
+    return 1 - std::pow((1 - kConfidence) / static_cast<double>(tried), 1.0 / views);
+}
+
 std::string why_unfit(std::span<const Json> views) {
     double undefined = 0;
     for (const Json& cell : views) {
@@ -80,7 +97,7 @@ std::optional<double> upper_bound(const Metric& metric, std::span<const Json> vi
         const auto value = metric_value(metric, cell);
         if (!value || is_at_least(metric, cell)) return std::nullopt;
         values.push_back(*value);
-        exactly = exactly && cell.at("serves").at("how") == "exactly" && (*value == 0 || is_error_of_s(metric));
+        exactly = exactly && is_exact(metric, cell, *value);
     }
     if (values.empty() || (!exactly && values.size() < 2)) return std::nullopt;
     for (std::size_t v = 0; v < views.size(); ++v) {

@@ -23,6 +23,16 @@ inline constexpr double kMostLeftOut = 0.01;
 /// of 0 wrong points about 3 / of.
 [[nodiscard]] double upper_share(std::uint64_t wrong, std::uint64_t of);
 
+/// What a view leaves possible: the measured error, or what its count or its number of points leaves possible, as in
+/// upper_bound, and the half width of the reference. Nothing where it was not judged, and where its value is the least
+/// that it may be.
+[[nodiscard]] std::optional<double> possible_error(const Metric& metric, const Json& cell);
+
+/// The largest share of further views that may be beyond a limit where none of `views` is, which were drawn alike and
+/// had no part in the choice: 1 - (1 - kConfidence)^(1 / views), about 3 / views. The k-th setting that is tried on
+/// them, after k - 1 that were beyond, has 1 - kConfidence divided by k.
+[[nodiscard]] double share_beyond(int views, std::size_t tried = 1);
+
 /// From cells of one setting in several views, each of which has its own random numbers and, where the reference is
 /// sampled, its own sample of points:
 ///

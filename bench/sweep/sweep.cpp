@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "umbra/bench/out/files.h"
@@ -77,8 +76,7 @@ SweepPlan plan_in(const fs::path& folder) {
 void write_plan(const SweepPlan& plan, const fs::path& out) {
     const Json record      = {{"schema", kResultsSchema}, {"version", version()}, {"plan", plan_json(plan)}};
     const std::string text = json_text(record);
-    std::ifstream in(out / "plan.json", std::ios::binary);
-    if (std::string(std::istreambuf_iterator<char>(in), {}) != text) write_text(out / "plan.json", text);
+    if (bytes_of(out / "plan.json") != text) write_text(out / "plan.json", text);
 }
 
 std::vector<std::string> folder_names(const std::vector<fs::path>& scenes) {

@@ -58,9 +58,9 @@ struct TurnTimes {
 };
 
 struct Turns {
-    std::vector<TurnTimes> settings;       ///< as given
-    std::vector<double> calibration{};     ///< ms of the calibration loop, one a round
-    double noise_bar = 0;                  ///< of the control's total time; infinite where there is no control
+    std::vector<TurnTimes> settings;    ///< as given
+    std::vector<double> calibration{};  ///< ms of the calibration loop, one a round
+    double noise_bar = 0;  ///< of the control's total time; infinite where it took part in fewer than six rounds
     std::optional<std::size_t> control{};  ///< the setting that ran twice a round: the cheapest
     std::optional<TurnTimes> twin{};       ///< its second run of each round
     bool pinned = false;                   ///< each thread stayed on one processor (PinnedThreads)

@@ -31,8 +31,25 @@ bool is_least(const SweptScene& scene, const FixedError& problem, std::size_t me
     return problem.costs[method] <= problem.least * (1 + scene.noise_bar.value_or(0));
 }
 
-json cell_view(const SweptScene& scene, const FixedError& problem, std::size_t method) {
-    if (!problem.cheapest[method]) return {{"none", true}};
+/// The coverage of the settings of a method that are within an error, but leave points without an answer and are
+/// therefore not ranked: the largest. Nothing where there is none.
+std::optional<double> left_out(const SweptScene& scene, const std::string& metric, double error,
+                               const std::string& method) {
+    std::optional<double> most;
+    for (std::size_t m = 0; m < scene.metrics.size(); ++m)
+        for (const SweptSetting& s : scene.settings) {
+            const bool within =
+                scene.metrics[m].name == metric && s.method == method && s.errors[m] && s.errors[m]->worst <= error;
+            if (within && !s.excluded.empty() && s.coverage && *s.coverage < 1)
+                most = std::max(most.value_or(0), *s.coverage);
+        }
+    return most;
+}
+
+json cell_view(const SweptScene& scene, const FixedError& problem, std::size_t method,
+               std::optional<double> not_ranked) {
+    if (!problem.cheapest[method])
+        return {{"none", true}, {"covers", not_ranked ? fmt::format("covers {} %", percent(not_ranked)) : ""}};
     const SweptSetting& s = scene.settings[*problem.cheapest[method]];
     return {{"ratio", score(problem.costs[method] / problem.least)},
             {"best", is_least(scene, problem, method)},
@@ -49,8 +66,9 @@ json mean_view(const std::vector<FixedError>& problems, double error, std::size_
         ++solved;
         if (problem.cheapest[method]) ratios.push_back(problem.costs[method] / problem.least);
     }
-    if (ratios.empty()) return {{"none", true}};
-    return {{"ratio", score(geometric_mean(ratios))}, {"of", fmt::format("{} of {}", ratios.size(), solved)}};
+    if (ratios.empty()) return {{"none", true}, {"covers", ""}};
+    return {{"ratio", score(geometric_mean(ratios))},
+            {"of", fmt::format("{} of {}", ratios.size(), counted(double(solved), "scene"))}};
 }
 
 json profile_view(const std::vector<SweptScene>& scenes, const std::vector<FixedError>& problems,
@@ -96,7 +114,9 @@ json fixed_errors_view(const std::vector<SweptScene>& scenes, const std::vector<
         for (const FixedError& problem : problems) {
             if (problem.scene != k) continue;
             json cells = json::array();
-            for (std::size_t m = 0; m < methods.size(); ++m) cells.push_back(cell_view(scenes[k], problem, m));
+            for (std::size_t m = 0; m < methods.size(); ++m)
+                cells.push_back(
+                    cell_view(scenes[k], problem, m, left_out(scenes[k], metric.name, problem.error, methods[m].name)));
             rows.push_back({{"error", error_in_words(problem.error)}, {"cells", std::move(cells)}});
         }
         if (!rows.empty()) groups.push_back({{"scene", scenes[k].title}, {"rows", std::move(rows)}});

@@ -151,6 +151,14 @@ std::vector<SweptMethod> swept_methods(const std::vector<SweptScene>& scenes) {
         for (const SweptSetting& s : scene.settings)
             if (std::none_of(methods.begin(), methods.end(), [&](const SweptMethod& m) { return m.name == s.method; }))
                 methods.push_back({s.method, s.title});
+    const auto scenes_of = [&](const SweptMethod& m) {
+        return std::count_if(scenes.begin(), scenes.end(), [&](const SweptScene& scene) {
+            return std::any_of(scene.settings.begin(), scene.settings.end(),
+                               [&](const SweptSetting& s) { return s.method == m.name && s.cost; });
+        });
+    };
+    std::stable_sort(methods.begin(), methods.end(),
+                     [&](const SweptMethod& a, const SweptMethod& b) { return scenes_of(a) > scenes_of(b); });
     return methods;
 }
 

@@ -59,7 +59,8 @@ struct SweptScene {
 /// edge_displacement_px.p95, flip; all, where none of these is there. Throws InputError naming file and position.
 [[nodiscard]] SweptScene read_swept_scene(const std::filesystem::path& file);
 
-/// Methods of all scenes, by name, in the order in which they first appear: an index is a method's mark on all charts.
+/// Methods of all scenes, by name: those that were timed on more scenes first, and of equals the one that appears
+/// first. An index is a method's mark on all charts.
 struct SweptMethod {
     std::string name, title;
 };

@@ -16,7 +16,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 /// Steps of the staircase that one method takes in a row, without the last one where its error is 0.
 struct Flight {
     std::string title;
-    double from, to;  ///< the largest and the smallest of their errors
+    double to;  ///< the smallest of their errors
 };
 
 }  // namespace
@@ -52,7 +52,7 @@ std::string staircase_in_words(const SweptScene& scene, std::size_t metric) {
                 if (!flights.back().title.ends_with(title)) flights.back().title += " or " + title;
                 continue;
             }
-            if (flights.empty() || flights.back().title != title) flights.push_back({title, error(i), 0});
+            if (flights.empty() || flights.back().title != title) flights.push_back({title, 0});
             flights.back().to = error(i);
             before            = i;
         } else if (!exact) {
@@ -64,15 +64,9 @@ std::string staircase_in_words(const SweptScene& scene, std::size_t metric) {
         return fmt::format("{} ({}) is the cheapest and its error is exactly 0.", s.title, s.label);
     }
     std::string words;
-    for (std::size_t f = 0; f < flights.size(); ++f) {
-        const std::string to = score(flights[f].to);
-        if (f > 0)
-            words += fmt::format(", below that down to {} {}", to, flights[f].title);
-        else if (score(flights[f].from) != to)
-            words = fmt::format("From {} down to {} take {}", score(flights[f].from), to, flights[f].title);
-        else
-            words = fmt::format("Down to {} take {}", to, flights[f].title);
-    }
+    for (const Flight& flight : flights)
+        words += fmt::format("{} {}: {}", words.empty() ? "Cheapest down to an error of" : "; below that down to",
+                             score(flight.to), flight.title);
     if (!exact) return words + "; no setting has a smaller error.";
     return words + fmt::format("; exactly 0: {}, at {} times the cost of the step before.",
                                scene.settings[*exact].title, score(cost(*exact) / cost(*before)));

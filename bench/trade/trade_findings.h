@@ -15,8 +15,9 @@ namespace umbra {
 /// Indices of settings that no other setting beats in both cost and error (of the worst view), by ascending cost.
 [[nodiscard]] std::vector<std::size_t> front_of(const SweptScene& scene, std::size_t metric);
 
-/// The staircase of a metric in one sentence: "Down to 0.021 take Shadow z-buffer, below that Ray-traced shadows down
-/// to 0.0031; exactly 0: Exact visibility, at 3.10 times the cost of the setting before." Says why where there is none.
+/// The staircase of a metric in one sentence: "Cheapest down to an error of 0.021: Shadow z-buffer; below that down to
+/// 0.0031: Ray-traced shadows; exactly 0: Exact visibility, at 3.10 times the cost of the step before." Says why where
+/// there is none.
 [[nodiscard]] std::string staircase_in_words(const SweptScene& scene, std::size_t metric);
 
 /// The cheapest setting of `method` whose error is at most `error` in every view; nothing where none is.

@@ -55,6 +55,9 @@ TEST(Baseline, SlowerAndFasterAreFoundBehindTheMachine) {
     const Json record = baseline_json(report);
     EXPECT_EQ(record["benchmarks"][0]["change"], "slower");
     EXPECT_NEAR(record["benchmarks"][0]["ratio"].get<double>(), 1.3, 1e-12);
+    // Of five against five, twice 1 - 2 (1 + 1) / 252: the second least of times over the second largest of
+    // calibrations.
+    EXPECT_NEAR(record["benchmarks"][0]["coverage"].get<double>(), 1 - 8.0 / 252, 1e-12);
     const std::string text = baseline_markdown(report);
     EXPECT_NE(text.find("5 benchmarks: 1 slower, 1 faster, 1 without a difference, 1 new, 1 gone."), std::string::npos)
         << text;
@@ -68,6 +71,9 @@ TEST(Baseline, NothingIsSaidWithoutAControlOrWithFewRepetitions) {
     then = run(1, {{"a", 5}});
     then.times["a"].resize(2);
     EXPECT_EQ(change_of(compare_with_baseline(now, then), "a"), Change::none);
+    const BaselineReport few = compare_with_baseline(now, then);
+    EXPECT_TRUE(baseline_json(few)["benchmarks"][0]["interval"][0].is_null());
+    EXPECT_NE(baseline_markdown(few).find("| none: 2 repetitions are too few |"), std::string::npos);
 }
 
 /// A change within what the calibration differs from itself by is none.

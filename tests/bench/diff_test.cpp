@@ -240,7 +240,7 @@ TEST_F(Diff, WhatFilesSayOfTheirColoursIsCompared) {
               std::vector<std::string>{"colours differ: nothing said against chromaticities 0.7347 0.2653 0 1 0.0001 "
                                        "-0.077 0.3217 0.3377"});
     EXPECT_EQ(diff(folder / "frame.exr", folder / "plain.exr", {}).reasons,
-              std::vector<std::string>{"display windows differ: 40x8 from (0, 0) against nothing said"});
+              std::vector<std::string>{"display windows differ: 40x8 from (0, 0) against 12x8 from (0, 0)"});
 }
 
 TEST_F(Diff, WhatIsNotFiniteIsReportedAndNeverClose) {

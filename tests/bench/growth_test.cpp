@@ -93,7 +93,7 @@ protected:
             if (phase == Phase::aim) now_ += 3;
         };
         options_.longest_ms      = 1e12;
-        options_.turns.rounds    = 3;
+        options_.turns.rounds    = 6;
         options_.turns.budget_ms = 1e12;
         options_.turns.clock     = [this] {
             // Read twice around visibility: the second time, the method has been asked.
@@ -186,8 +186,8 @@ TEST_F(PlantedGrowth, TheTableHasEachPhaseInItsColumn) {
               std::string::npos)
         << table;
     const GrowthPoint& point = run.series[0].points[0];
-    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::light_frame), std::vector<double>(3, 3 + 16384));
-    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::object_frame), std::vector<double>(3, 2 + 3 + 16384));
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::light_frame), std::vector<double>(6, 3 + 16384));
+    EXPECT_EQ(GrowthSeries::rounds(point, Quantity::object_frame), std::vector<double>(6, 2 + 3 + 16384));
 }
 
 TEST_F(PlantedGrowth, TooShortOrTooLongIsLeftOut) {

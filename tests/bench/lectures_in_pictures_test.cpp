@@ -147,7 +147,7 @@ TEST_F(Report, TopicsThatAreNoShadowsAreShownByTheirStudies) {
     EXPECT_TRUE(contains(read(out / "index.html"), "shading-self_shadow/index.html"));
     write_report({out}, out, {.language = Language::german});
     const std::string german = topic_of(read(out / "lectures.html"), "C1");
-    EXPECT_TRUE(contains(german, "Abstand von der Phong-Schattierung (RMSE): konstant 0.0625, flach 0.125")) << german;
+    EXPECT_TRUE(contains(german, "Abstand von der Phong-Schattierung (RMSE): konstant 0,0625, flach 0,125")) << german;
 }
 
 TEST_F(Report, StudiesFromElsewhereAreCopiedWithTheirPictures) {

@@ -424,6 +424,10 @@ TEST(MotionSummary, WinnersFollowWhatMoves) {
 /// One slow frame of sixteen: the mean of the first is 45 / 16, its median 1, and the model says 1.
 TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
     SceneMotion motion = made_up({{10, 0, 0.5, 0.5}, {0, 4, 0, 2}});
+    MethodInfo other   = planted_method();
+    other.name         = "other";
+
+    motion.methods[1].still.choice = MethodChoice(other);
     for (MethodMotion& method : motion.methods)
         for (auto& frames : method.frames) frames.resize(16, frames.front());
     motion.methods[0].frames[0].back().times.visibility = {29.5};
@@ -439,6 +443,9 @@ TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
     const std::optional<Winner> mixed = winner(motion, complete(motion), {"", {0.5, 0.5, 0}});
     EXPECT_EQ(mixed->ms, 0.75);
     EXPECT_NEAR(mixed->behind.median, 4 / 0.75, 1e-12);
+    // One in ten: 0.9 * 1 + 0.1 * 0.5 against 0.9 * 2 + 0.1 * 6, frame by frame.
+    EXPECT_NEAR(winner(motion, complete(motion), {"", {0.9, 0.1, 0}})->behind.median, 2.4 / 0.95, 1e-12);
+    EXPECT_NEAR(won->behind.coverage, 1 - 2 * (1 + 16 + 120 + 560) / 65536.0, 1e-12) << "the fourth least of 16";
 
     motion.reference   = Reference{motion.methods[0].still.choice, true, ""};
     const Json json    = scene_motion_json(motion, 0.02);
@@ -458,6 +465,19 @@ TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
     const std::string table = motion_table(record);
     EXPECT_NE(table.find("camera         1.00       1.00     1.00"), std::string::npos) << table;
     EXPECT_NE(table.find("times that differ by less than 5 % are equal"), std::string::npos) << table;
+    const auto row = [](const char* mix, const char* first) {
+        return fmt::format("  {:28} {:60} | {}\n", mix, first, first);
+    };
+    // Objects: 10 + 0.5 + 0.5 against 4 + 2.
+    EXPECT_NE(table.find(row("camera", "planted 1.00 ms (next: other, x 2.00)")), std::string::npos) << table;
+    EXPECT_NE(table.find(row("camera and light in turns", "planted 0.75 ms (next: other, x 5.33)")), std::string::npos);
+    EXPECT_NE(table.find(row("object", "other 6.00 ms (next: planted, x 1.83)")), std::string::npos) << table;
+
+    motion.noise_bar        = 1.5;
+    Json noisy              = record;
+    noisy["motion"][0]      = scene_motion_json(motion, 0.02);
+    const std::string equal = motion_table(noisy);
+    EXPECT_NE(equal.find(row("camera", "planted 1.00 ms = other")), std::string::npos) << equal;
 }
 
 TEST(MotionSummary, TheModelIsOfTheMediansAtRest) {

@@ -30,10 +30,7 @@ protected:
         for (const auto& entry : fs::directory_iterator(at(folder))) all.insert(entry.path().filename().string());
         return all;
     }
-    [[nodiscard]] std::string text(const std::string& name) const {
-        std::ifstream in(at(name));
-        return {std::istreambuf_iterator<char>(in), {}};
-    }
+    [[nodiscard]] std::string text(const std::string& name) const { return bytes_of(at(name)); }
     /// Writes a new result and commits.
     void replace(const fs::path& to) const {
         StagedFolder staged(to);
@@ -43,6 +40,12 @@ protected:
 
     TemporaryFolder folder_;
 };
+
+TEST_F(Output, BytesAreReadAsTheyAre) {
+    write_text(at("a"), std::string_view("\r\n\0 \xff\n", 6));
+    EXPECT_EQ(text("a"), std::string("\r\n\0 \xff\n", 6));
+    EXPECT_EQ(text("none"), "");
+}
 
 TEST_F(Output, AFolderIsReplacedWhole) {
     old_result();

@@ -54,7 +54,7 @@ json distinct(const std::string& name) {
         for (json& e : method["errors"]) {
             const auto next = [&] { return ++n; };
             e["points"] = next(), e["lit"] = next(), e["umbra"] = next(), e["penumbra"] = next();
-            e["undefined"] = next(), e["on_boundary"] = next(), e["away"] = next();
+            e["undefined"] = next(), e["on_boundary"] = next(), e["away"] = next(), e["not_judged"] = next();
             e["false_shadow"] = {{"interior", next()}, {"edge", next()}, {"acne", next()}};
             e["false_light"]  = {{"interior", next()}, {"edge", next()}, {"detachment", next()}, {"leak", next()}};
             e["interior"]     = {{"lit", next()}, {"umbra", next()}, {"penumbra", next()}};
@@ -113,20 +113,20 @@ TEST_F(PageFigures, TablesOfErrors) {
         {&errors, "RMSE", "/rmse", 3},
         {&errors, "Max", "/max", 3},
         {&errors, "Points", "/points", 0},
-        {&causes, "Wrong in the interior / Lit", "/interior/lit", 0},
-        {&causes, "Wrong in the interior / Umbra", "/interior/umbra", 0},
-        {&causes, "Wrong in the interior / Penumbra", "/interior/penumbra", 0},
-        {&causes, "At the terminator / Triangle away", "/terminator/facet_away", 0},
-        {&causes, "At the terminator / Normal away", "/terminator/normal_away", 0},
-        {&causes, "At the terminator / Wrong", "/terminator/wrong", 0},
+        {&causes, "Wrong in the interior, points / Lit", "/interior/lit", 0},
+        {&causes, "Wrong in the interior, points / Umbra", "/interior/umbra", 0},
+        {&causes, "Wrong in the interior, points / Penumbra", "/interior/penumbra", 0},
+        {&causes, "At the terminator, points / Triangle away", "/terminator/facet_away", 0},
+        {&causes, "At the terminator, points / Normal away", "/terminator/normal_away", 0},
+        {&causes, "At the terminator, points / Wrong", "/terminator/wrong", 0},
         {&causes, "Edge displacement, pixels / Mean", "/edge_displacement_px/mean", 2},
         {&causes, "Edge displacement, pixels / 95 %", "/edge_displacement_px/p95", 2},
         {&causes, "Edge displacement, pixels / Max", "/edge_displacement_px/max", 2},
         {&causes, "Penumbra width, pixels / Method", "/penumbra_width_px/method", 1},
         {&causes, "Penumbra width, pixels / Reference", "/penumbra_width_px/reference", 1},
-        {&causes, "Sampling / Noise", "/noise/noise_rmse", 4},
-        {&causes, "Sampling / Bias", "/noise/bias_rmse", 4},
-        {&causes, "Reference, ±", "/bracket/max_half_width", 5},
+        {&causes, "Sampling, RMSE of S / Noise", "/noise/noise_rmse", 4},
+        {&causes, "Sampling, RMSE of S / Bias", "/noise/bias_rmse", 4},
+        {&causes, "Reference, ± S", "/bracket/max_half_width", 5},
         {&regions, "Points", "/points", 0},
         {&regions, "Lit", "/lit", 0},
         {&regions, "Umbra", "/umbra", 0},
@@ -134,6 +134,7 @@ TEST_F(PageFigures, TablesOfErrors) {
         {&regions, "Undefined", "/undefined", 0},
         {&regions, "On the boundary", "/on_boundary", 0},
         {&regions, "Facing away", "/away", 0},
+        {&regions, "Not in the sample", "/not_judged", 0},
     };
     const std::array lights = {"lamp", "blue sky #2"};
     const std::array labels = {"", "The shadow_zbuffer", "The ray_traced"};
@@ -148,7 +149,8 @@ TEST_F(PageFigures, TablesOfErrors) {
                     << row << ": " << place.column;
             }
             EXPECT_EQ(errors.at(row, "Bias"), "−" + fixed(-figure(m, j, "/bias"), 3));
-            EXPECT_EQ(errors.at(row, "Coverage, %"), "87.5");
+            for (const HtmlTable* table : {&errors, &causes})
+                EXPECT_EQ(table->at(row, "Coverage of all lights, %"), "87.5");
         }
     // Wrong interior points are marked; the edge band is not.
     EXPECT_TRUE(contains(page, fmt::format("<td class=\"wrong\">{}</td>", figure(1, 0, "/false_shadow/interior"))));
@@ -206,12 +208,12 @@ TEST_F(PageFigures, RatiosOfTimes) {
     const std::string with = page_of();
     const HtmlTable ratios(with, "ratios-caption");
     const std::string first = "The shadow_zbuffer", second = "The ray_traced";
-    EXPECT_EQ(ratios.at(first, "Object"), "×2.00 (2.00–2.00)");
+    EXPECT_EQ(ratios.at(first, "Object"), "×2.00 (2.00–2.00, 98.4 %)");
     EXPECT_EQ(ratios.at(second, "Object"), "fastest");
     EXPECT_EQ(ratios.at(first, "Light"), "fastest");
     EXPECT_EQ(ratios.at(second, "Light"), "no difference");
     EXPECT_EQ(ratios.at(first, "Camera"), "fastest");
-    EXPECT_EQ(ratios.at(second, "Camera"), "×3.00 (3.00–3.00)");
+    EXPECT_EQ(ratios.at(second, "Camera"), "×3.00 (3.00–3.00, 98.4 %)");
     EXPECT_TRUE(contains(with,
                          "object 2.0 %; light 2.0 %; camera 2.0 %; a fixed amount of work took 21.0 ms, between "
                          "20.0 and 22.0, in 3 rounds"));
@@ -221,6 +223,11 @@ TEST_F(PageFigures, RatiosOfTimes) {
     EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "×3.00, one run");
     results["methods"][2]["times"]["order"] = {0};
     EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "×3.00, one run") << "one round is one run";
+    results["methods"][2]["times"] = in_turns(7.24, 11.26, 15);
+    for (const char* phase : {"build_ms", "aim_ms", "visibility_ms"})
+        results["methods"][2]["times"][phase]["samples"].erase(5),
+            results["methods"][2]["times"][phase]["samples"].erase(5);
+    EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "×3.00, 5 rounds") << "no interval";
     results["methods"][2]["times"] = in_turns(7.24, 11.26, 15);
     results["turns"]["control"]    = nullptr;
     EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "no difference");
@@ -238,6 +245,7 @@ TEST_F(PageFigures, TablesOfTimes) {
     EXPECT_EQ(times.at(row, "What moved, ms / Light"), "26.0");
     EXPECT_EQ(times.at(row, "What moved, ms / Camera"), "14.3");
     EXPECT_EQ(times.at(row, "Memory, MiB"), "7.00");
+    EXPECT_EQ(times.at(row, "Coverage, %"), "87.5");
     EXPECT_EQ(by_light.at(row, "Light"), "lamp");
     EXPECT_EQ(by_light.at(row, "Aim"), "7.10");
     EXPECT_EQ(by_light.at(row, "Visibility"), "1.30");
@@ -260,8 +268,31 @@ TEST_F(PageFigures, TablesOfPicturesMethodsAndObjects) {
     EXPECT_EQ(objects.at("ring", "Triangles"), "21");
     EXPECT_EQ(objects.at("ring", "Vertices"), "22");
     EXPECT_EQ(objects.at("ring", "Parts"), "23");
-    EXPECT_EQ(objects.at("ring", "Area"), "2.40");
-    EXPECT_EQ(objects.at("ring", "Volume"), "0.250");
+    EXPECT_EQ(objects.at("ring", "Area, units²"), "2.40");
+    EXPECT_EQ(objects.at("ring", "Volume, units³"), "0.250");
+}
+
+/// A picture draws all points, its figures speak of those that are answered: both say how many these are.
+TEST_F(PageFigures, QualityOfAPictureStandsBesideItsCoverage) {
+    results["methods"][2]["coverage"] = 1;
+    put(out / "court", results);
+    write_report({out}, out);
+    page = read(out / "court/index.html");
+    const HtmlTable image(page, "image-caption");
+    EXPECT_EQ(image.at("The shadow_zbuffer", "Coverage, %"), "87.5");
+    EXPECT_EQ(image.at("The ray_traced", "Coverage, %"), "100");
+    EXPECT_TRUE(contains(page, "<span>FLIP map, mean 0.0456; covers 87.5 %, the rest is hatched</span>"));
+    EXPECT_TRUE(contains(page, "<span>FLIP map, mean 0.0456</span>")) << "of the method that answers all points";
+    EXPECT_TRUE(contains(page, "the pixel of the reference stands in for its own"));
+    EXPECT_TRUE(contains(page, "<span>The shadow_zbuffer (covers 87.5 %)</span>")) << "the key of the chart";
+    EXPECT_TRUE(contains(page, "<span>The ray_traced</span>"));
+}
+
+TEST_F(PageFigures, OneCoreIsNotOneCores) {
+    results["machine"]["cores"] = results["machine"]["threads"] = 1;
+    put(out / "court", results);
+    write_report({out}, out);
+    EXPECT_TRUE(contains(read(out / "court/index.html"), "1 core, 1 thread used, 50 GiB"));
 }
 
 TEST_F(PageFigures, WordsAroundThePictures) {
@@ -273,7 +304,7 @@ TEST_F(PageFigures, WordsAroundThePictures) {
     const int wrong = int(figure(1, 0, "/false_shadow/interior") + figure(1, 0, "/false_light/interior") +
                           figure(1, 1, "/false_shadow/interior") + figure(1, 1, "/false_light/interior"));
     EXPECT_TRUE(contains(page, fmt::format("<b>The shadow_zbuffer</b> <span>{} wrong interior points, 76.3 ms; covers "
-                                           "87.5 %</span>",
+                                           "87.5 %, the rest is drawn lit</span>",
                                            wrong)));
     EXPECT_TRUE(contains(page, "<b>Reference</b> <span>The ray_traced: not exact") ||
                 contains(page, "<b>Reference</b> <span>Ray-traced: not exact</span>"));

@@ -113,6 +113,30 @@ TEST(MarkStyle, DiffersInColourOrShape) {
     }
 }
 
+/// 100 is all and 0 nothing; what lies between is rounded to the nearest, so that parts add up.
+TEST(Percent, IsTheNearestTenth) {
+    EXPECT_EQ(percent(1), "100");
+    EXPECT_EQ(percent(0), "0");
+    EXPECT_EQ(percent(0.96749), "96.7");
+    EXPECT_EQ(percent(0.96751), "96.8");
+    EXPECT_EQ(percent(0.5), "50");
+    EXPECT_EQ(percent(6.92), "692");
+    EXPECT_EQ(percent(0.99996), "> 99.9");
+    EXPECT_EQ(percent(0.9994), "99.9");
+    EXPECT_EQ(percent(0.00004), "< 0.1");
+    EXPECT_EQ(percent({}), kNone);
+    double sum = 0;
+    for (const double part : {0.1999, 0.2999, 0.0998, 0.4004}) sum += std::stod(percent(part));
+    EXPECT_NEAR(sum, 100, 0.05) << "20 + 30 + 10 + 40";
+}
+
+TEST(DecimalComma, IsInFiguresOfEveryForm) {
+    EXPECT_EQ(with_decimal_comma(score(0.25)), "0,250");
+    EXPECT_EQ(with_decimal_comma(score(1.2e-5)), "1,2·10⁻⁵");
+    EXPECT_EQ(with_decimal_comma(percent(0.125)), "12,5");
+    EXPECT_EQ(with_decimal_comma(count(1234)), "1\u202f234");
+}
+
 Image right_everywhere() {
     Image image(640, 360, {"R", "G", "B"});
     std::fill(image.data.begin(), image.data.end(), 0xf2 / 255.0f);

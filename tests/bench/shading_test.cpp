@@ -241,9 +241,9 @@ TEST(ShadingChoice, IsTheCheapestWithinLimits) {
 
     record["choice"] = choice;
     EXPECT_EQ(shading_findings(record).back(),
-              "With rmse at most 0.1 in each of 3 views, the cheapest is flat: 2.50 ms, 0.25 (0.25 to 0.25) of phong's "
-              "time. As cheap, as far as the noise of times lets one see: gouraud. Next: phong, 4.00 (4.00 to 4.00) "
-              "times as long.");
+              "With rmse at most 0.1 in each of 3 views, the cheapest is flat: 2.50 ms, 0.25 (0.25 to 0.25, 96.9 %) of "
+              "phong's time. As cheap, as far as the noise of times lets one see: gouraud. Next: phong, 4.00 (4.00 to "
+              "4.00, 96.9 %) times as long.");
 
     record["models"].erase(3);
     const Json none = under({"rmse=0.005"});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -69,81 +70,163 @@ TEST(PairedRatio, TakesTheFirstPairsAndLeavesOutWhatIsNoTime) {
     const Ratio ratio = paired_ratio(Values{4, 0, kNotANumber, kInfinite, 9}, Values{2, 1, 1, 1, 3});
     EXPECT_EQ(ratio.pairs, 2);
     EXPECT_EQ(ratio.median, 2.5);
-    EXPECT_EQ(ratio.interval.low, 2);
-    EXPECT_EQ(ratio.interval.high, 3);
     EXPECT_EQ(paired_ratio(Values{}, Values{1}).pairs, 0);
 }
 
-TEST(PairedRatio, OnePairHasNoInterval) {
-    const Ratio one = paired_ratio(Values{7}, Values{3});
-    EXPECT_EQ(one.pairs, 1);
-    EXPECT_FALSE(one.has_interval());
-    EXPECT_NEAR(one.median, 7.0 / 3, 1e-15);
-    EXPECT_EQ(one.interval.low, 0);
-    EXPECT_EQ(one.interval.high, kInfinite);
-    EXPECT_FALSE(differs(one, 0.05));
-    EXPECT_EQ(noise_bar(one), kInfinite);
-    EXPECT_TRUE(paired_ratio(Values{7, 8}, Values{3, 4}).has_interval());
-}
-
-/// Medians 2 of 1, 2, 30 and 4 of 4, 4, 5: pairs of 0.25 to 6. With a second movement of 6 and 12 in a third of the
-/// frames, (2 / 3) 2 + (1 / 3) 6 over (2 / 3) 4 + (1 / 3) 12.
-TEST(RatioOfMedians, IsThatOfTheWeightedSums) {
-    const double whole[] = {1}, thirds[] = {2.0 / 3, 1.0 / 3};
-    const Ratio one = ratio_of_medians({{1, 2, 30}}, {{4, 4, 5}}, whole);
-    EXPECT_EQ(one.median, 0.5);
-    EXPECT_EQ(one.interval.low, 0.25);
-    EXPECT_EQ(one.interval.high, 6);
-    EXPECT_EQ(one.pairs, 3);
-    const Ratio two = ratio_of_medians({{1, 2, 30}, {6, 6, 6}}, {{4, 4, 5}, {12, 12, 12}}, thirds);
-    EXPECT_NEAR(two.median, 10.0 / 20, 1e-15);
-    EXPECT_FALSE(ratio_of_medians({{7}}, {{3}}, whole).has_interval());
-    EXPECT_EQ(ratio_of_medians({{0, 0}}, {{3, 4}}, whole).pairs, 0);
-}
-
-/// What varies alike in both leaves no doubt about their ratio, and one slow frame does not move it out of its
-/// interval.
-TEST(RatioOfMedians, DrawsPairsAndHoldsItself) {
-    const double whole[] = {1};
-    const Values b{3, 1, 4, 1.5, 9, 2.5, 6}, twice{6, 2, 8, 3, 18, 5, 12};
-    const Ratio ratio = ratio_of_medians({twice}, {b}, whole);
-    EXPECT_EQ(ratio.median, 2);
-    EXPECT_EQ(ratio.interval.low, 2);
-    EXPECT_EQ(ratio.interval.high, 2);
-    const Ratio slow = ratio_of_medians({{1, 1, 1, 1, 1, 100}}, {{1, 1, 1, 1, 1, 1}}, whole);
-    EXPECT_EQ(slow.median, 1);
-    EXPECT_LE(slow.interval.low, 1);
-    EXPECT_GE(slow.interval.high, 1);
-}
-
-/// Of seven distinct values the median of a resample is the least with a probability of 0.97 % and one of the least two
-/// with 11 %: the percentile 2.5 is the second value, and by symmetry the percentile 97.5 the sixth.
-TEST(PairedRatio, BootstrapOfSevenPairsIsKnown) {
-    const Ratio ratio = paired_ratio(Values{5, 1, 7, 3, 2, 6, 4}, Values{1, 1, 1, 1, 1, 1, 1});
-    EXPECT_EQ(ratio.median, 4);
-    EXPECT_EQ(ratio.interval.low, 2);
-    EXPECT_EQ(ratio.interval.high, 6);
-    const Ratio same = paired_ratio(Values{5, 1, 7, 3, 2, 6, 4}, Values{1, 1, 1, 1, 1, 1, 1});
-    EXPECT_EQ(same.interval.low, ratio.interval.low);
-}
-
-/// Of 1000 experiments of 25 pairs whose true median ratio is 1, the interval misses 1 in about 5 %. The bootstrap of a
-/// median is known to cover a little less than its level at such sizes: 3 to 9 %, which is 3.5 standard deviations
-/// (0.7 %) around 5 % and room of 1.5 % for that.
-TEST(PairedRatio, IntervalCoversTheTruth) {
-    Normal normal(7);
-    int misses = 0;
-    for (int experiment = 0; experiment < 1000; ++experiment) {
-        Values a, b;
-        for (int i = 0; i < 25; ++i) {
-            a.push_back(std::exp(0.1 * normal()));
-            b.push_back(std::exp(0.1 * normal()));
-        }
-        const Ratio ratio = paired_ratio(a, b);
-        misses += ratio.interval.low > 1 || ratio.interval.high < 1;
+/// The least and the largest of five miss the median in 2 / 2^5 = 6 % of all cases, of six in 3 %.
+TEST(PairedRatio, FewerThanSixPairsHaveNoInterval) {
+    const Values ones(6, 1.0);
+    for (std::size_t n = 1; n <= 5; ++n) {
+        const Ratio few = paired_ratio(Values(n, 7), ones);
+        EXPECT_EQ(few.pairs, int(n));
+        EXPECT_EQ(few.median, 7);
+        EXPECT_FALSE(few.has_interval()) << n;
+        EXPECT_EQ(few.interval.low, 0);
+        EXPECT_EQ(few.interval.high, kInfinite);
+        EXPECT_EQ(few.coverage, 0);
+        EXPECT_FALSE(differs(few, 0.05));
+        EXPECT_EQ(noise_bar(few), kInfinite);
     }
-    EXPECT_GE(misses, 25);
-    EXPECT_LE(misses, 90);
+    const Ratio six = paired_ratio(Values{3, 1, 6, 2, 5, 4}, ones);
+    EXPECT_TRUE(six.has_interval());
+    EXPECT_EQ(six.interval.low, 1);
+    EXPECT_EQ(six.interval.high, 6);
+    EXPECT_EQ(six.coverage, 31.0 / 32);
+}
+
+/// Sums of binomial coefficients by hand: of 8 the second least would cover 1 - 2 (1 + 8) / 256 = 93 %.
+TEST(MedianRank, IsTheNarrowestThatCovers) {
+    const auto is = [](std::size_t n, std::size_t k, double coverage) {
+        EXPECT_EQ(median_rank(n).k, k) << n;
+        EXPECT_NEAR(median_rank(n).coverage, coverage, 1e-12) << n;
+    };
+    is(0, 0, 0), is(1, 0, 0), is(5, 0, 0);
+    is(6, 1, 1 - 2.0 / 64), is(7, 1, 1 - 2.0 / 128), is(8, 1, 1 - 2.0 / 256);
+    is(9, 2, 1 - 2 * (1 + 9) / 512.0), is(10, 2, 1 - 2 * (1 + 10) / 1024.0);
+    is(12, 3, 1 - 2 * (1 + 12 + 66) / 4096.0);
+    is(16, 4, 1 - 2 * (1 + 16 + 120 + 560) / 65536.0);
+    EXPECT_EQ(median_rank(30).k, 10u);
+    EXPECT_NEAR(median_rank(30).coverage, 0.9572, 5e-5) << "from a table of the sign test";
+    EXPECT_GE(median_rank(5000).coverage, 0.95);
+    EXPECT_LT(median_rank(5000).coverage, 0.952);
+}
+
+/// Noise on a time: its median is `median`.
+struct Noise {
+    const char* name;
+    std::function<double(Normal&)> draw;
+    double median;
+};
+
+/// A view or a round in five is ten times as large: P(10 e^(0.05 z) < m) is 0, so that the median is where the normal
+/// distribution reaches 0.5 / 0.8 = 0.625, at z = 0.318639.
+std::vector<Noise> noises() {
+    return {{"symmetric", [](Normal& normal) { return 10 + normal(); }, 10},
+            {"skewed", [](Normal& normal) { return std::exp(normal()); }, 1},
+            {"two modes",
+             [](Normal& normal) {
+                 const double low = std::exp(0.05 * normal());
+                 return normal() < -0.841621 ? 10 * low : low;
+             },
+             std::exp(0.05 * 0.318639)}};
+}
+
+double standard_error(double share, double of) { return std::sqrt(share * (1 - share) / of); }
+
+/// What is said, and what holds: of 3 to 30 rounds the interval holds the true ratio as often as it states, within two
+/// standard errors of all rounds together and four of each number of them.
+TEST(PairedRatio, IntervalsHoldAsOftenAsTheyState) {
+    constexpr int experiments = 4000;
+    Normal normal(17);
+    for (const Noise& noise : noises()) {
+        double said = 0, holds = 0, variance = 0;
+        for (std::size_t n = 3; n <= 30; ++n) {
+            const Values truth(n, noise.median);
+            Values times(n);
+            int held = 0;
+            Ratio ratio;
+            for (int experiment = 0; experiment < experiments; ++experiment) {
+                for (double& ms : times) ms = noise.draw(normal);
+                ratio = paired_ratio(times, truth);
+                held += ratio.has_interval() && ratio.interval.low <= 1 && 1 <= ratio.interval.high;
+            }
+            EXPECT_EQ(ratio.has_interval(), n >= 6) << n;
+            EXPECT_NEAR(held / double(experiments), ratio.coverage, 4 * standard_error(ratio.coverage, experiments))
+                << noise.name << ", " << n;
+            if (n >= 6) {
+                EXPECT_GE(ratio.coverage, 0.95);
+            }
+            said += ratio.coverage;
+            holds += held / double(experiments);
+            variance += std::pow(standard_error(ratio.coverage, experiments), 2);
+        }
+        EXPECT_NEAR(holds, said, 2 * std::sqrt(variance)) << noise.name;
+    }
+}
+
+/// Two equal programs on a machine that drifts, and a control that is ten times as quiet: of 3 to 30 rounds they are
+/// called different at most as often as the intervals miss.
+TEST(PairedRatio, EqualProgramsAreSeldomCalledDifferent) {
+    constexpr int experiments = 2000;
+    Normal normal(8);
+    for (const double width : {0.1, 1.0})
+        for (const std::size_t n : {3u, 4u, 5u, 6u, 7u, 10u, 20u, 30u}) {
+            int alarms = 0;
+            Values a(n), b(n), control(n), again(n);
+            for (int experiment = 0; experiment < experiments; ++experiment) {
+                for (std::size_t i = 0; i < n; ++i) {
+                    const double speed = 1 + 0.2 * double(i);
+                    const auto time    = [&](double noise) { return speed * std::exp(noise * normal()); };
+                    a[i] = time(width), b[i] = time(width);
+                    control[i] = time(width / 10), again[i] = time(width / 10);
+                }
+                alarms += differs(paired_ratio(a, b), noise_bar(paired_ratio(again, control)));
+            }
+            const double most = 1 - std::max(median_rank(n).coverage, n < 6 ? 1.0 : 0.0);
+            EXPECT_LE(alarms / double(experiments), most + 2 * standard_error(most, experiments)) << n;
+        }
+}
+
+/// Of four and four values 1 of 70 orders has no inversion, of five and five 1, 1 and 2 of 252 have 0, 1 and 2.
+TEST(RatioOfSamples, CoverageByHand) {
+    const Values four{1, 2, 3, 4}, five{1, 2, 3, 4, 5};
+    EXPECT_FALSE(ratio_of_samples(Values{1, 2, 3}, Values{1, 2, 3}).has_interval()) << "1 - 2 / 20 is 90 %";
+    const Ratio least = ratio_of_samples(four, four);
+    EXPECT_NEAR(least.coverage, 1 - 2.0 / 70, 1e-12);
+    EXPECT_EQ(least.interval.low, 0.25);
+    EXPECT_EQ(least.interval.high, 4);
+    EXPECT_EQ(least.median, 1);
+    EXPECT_EQ(least.pairs, 4);
+    const Ratio third = ratio_of_samples(five, five);
+    EXPECT_NEAR(third.coverage, 1 - 2 * 4.0 / 252, 1e-12);
+    EXPECT_EQ(third.interval.low, 1.0 / 3) << "behind 1 / 5 and 1 / 4";
+    EXPECT_EQ(third.interval.high, 3);
+    EXPECT_NEAR(ratio_of_samples(five, five, 0.975).coverage, 1 - 2 * 2.0 / 252, 1e-12);
+    EXPECT_THROW((void)ratio_of_samples(Values{}, four), std::logic_error);
+    EXPECT_GE(ratio_of_samples(Values(1000, 2.0), Values(1000, 1.0)).coverage, 0.95);
+}
+
+TEST(RatioOfSamples, IntervalsHoldAsOftenAsTheyState) {
+    constexpr int experiments = 2000;
+    Normal normal(9);
+    for (const Noise& noise : noises()) {
+        double said = 0, holds = 0, variance = 0;
+        for (const std::size_t n : {4u, 5u, 6u, 8u, 12u}) {
+            Values a(n), b(n + 1);
+            Ratio ratio;
+            int held = 0;
+            for (int experiment = 0; experiment < experiments; ++experiment) {
+                for (double& ms : a) ms = 3 * noise.draw(normal);
+                for (double& ms : b) ms = noise.draw(normal);
+                ratio = ratio_of_samples(a, b);
+                held += ratio.interval.low <= 3 && 3 <= ratio.interval.high;
+            }
+            EXPECT_GE(ratio.coverage, 0.95);
+            said += ratio.coverage, holds += held / double(experiments);
+            variance += std::pow(standard_error(ratio.coverage, experiments), 2);
+        }
+        EXPECT_NEAR(holds, said, 2 * std::sqrt(variance)) << noise.name;
+    }
 }
 
 TEST(NoiseBar, IsTheFartherBoundOnTheLargerSide) {

@@ -37,7 +37,7 @@ struct ReportLine {
 };
 
 /// Of the times on the pages: a third of what `umbra compare` takes.
-constexpr Repeats kReportRepeats{.max_runs = 5, .budget_ms = 100};
+constexpr Repeats kReportRepeats{.max_runs = 6, .budget_ms = 100};
 
 /// A part of `umbra sweep` on three of the canonical scenes that takes seconds: presets, and a coarse line a method.
 SweepOptions canonical_sweep(const fs::path& out) {
@@ -52,7 +52,7 @@ SweepOptions canonical_sweep(const fs::path& out) {
     for (const MethodInfo* info : methods())
         if (info->by_default)
             for (const MethodChoice& choice : line_sweep(*info)) sweep.plan.settings.push_back(choice.text());
-    sweep.turns = {.rounds = 5, .budget_ms = 4000};
+    sweep.turns = {.rounds = 6, .budget_ms = 4000};
     return sweep;
 }
 
