@@ -4,9 +4,9 @@
 #include <array>
 #include <atomic>
 #include <bit>
-#include <compare>
 #include <mutex>
 #include <optional>
+#include <utility>
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
@@ -58,13 +58,6 @@ struct BinnedShadows::Group {
 struct BinnedShadows::Search {
     PointBins::Start start{};
     std::vector<PointBins::Found> found{};
-};
-
-/// A point's segment touches a triangle.
-struct BinnedShadows::Touch {
-    std::uint32_t point;
-    TriangleId triangle;
-    auto operator<=>(const Touch&) const = default;
 };
 
 /// The points that ask, in the light's image.
@@ -192,7 +185,7 @@ void BinnedShadows::each_next_to_light(Picture& picture, const PointBatch& point
             for (TriangleId t = 0; t < casts_.size(); ++t) {
                 if (casts_[t] == 0 || t == points.triangle[i]) continue;
                 const auto m = segment.meeting(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2));
-                if (m == Segment::Meeting::touches) touches.push_back({i, t});
+                if (m == Segment::Meeting::touches) touches.emplace_back(i, t);
                 if (m != Segment::Meeting::crosses) continue;
                 crossed(i, t);
                 break;
@@ -207,23 +200,23 @@ void BinnedShadows::each_next_to_light(Picture& picture, const PointBatch& point
 template <class Asks, class Met>
 void BinnedShadows::each_touched(Picture& picture, const PointBatch& points, const Asks& asks, const Met& met) const {
     std::vector<Touch>& touches = picture.touches;
-    std::erase_if(touches, [&](const Touch& touch) { return !asks(touch.point); });
-    std::ranges::sort(touches);
-    touches.erase(std::ranges::unique(touches).begin(), touches.end());
+    std::erase_if(touches, [&](const Touch& touch) { return !asks(touch.first); });
+    std::sort(touches.begin(), touches.end());
+    touches.erase(std::unique(touches.begin(), touches.end()), touches.end());
     std::vector<std::size_t> first;  // of each point
     for (std::size_t k = 0; k < touches.size(); ++k)
-        if (k == 0 || touches[k].point != touches[k - 1].point) first.push_back(k);
+        if (k == 0 || touches[k].first != touches[k - 1].first) first.push_back(k);
     parallel_ranges(first.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
-            const std::uint32_t i = touches[first[f]].point;
+            const std::uint32_t i = touches[first[f]].first;
             const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
             const Segment segment(point, *picture.light);
             Contacts contacts(segment);
-            for (std::size_t k = first[f]; k < touches.size() && touches[k].point == i; ++k) {
-                const TriangleId t = touches[k].triangle;
+            for (std::size_t k = first[f]; k < touches.size() && touches[k].first == i; ++k) {
+                const TriangleId t = touches[k].second;
                 contacts.add(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2), vec3(0));
             }
-            met(i, touches[first[f]].triangle, contacts.together());
+            met(i, touches[first[f]].second, contacts.together());
         }
     });
 }
@@ -352,7 +345,7 @@ void BinnedShadows::test(const Group& group, Picture& picture, const PointBatch&
                 met.crossed |= lanes[k].inside;
                 all |= met.crossed;
                 for (unsigned hit = met.touched; hit != 0; hit &= hit - 1)
-                    touches.push_back({block.index[static_cast<std::size_t>(std::countr_zero(hit))], t});
+                    touches.emplace_back(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
                 for (unsigned hit = met.crossed; hit != 0; hit &= hit - 1)
                     crossed(block.index[static_cast<std::size_t>(std::countr_zero(hit))], t);
             }

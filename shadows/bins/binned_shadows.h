@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "umbra/core/render/points.h"
@@ -42,7 +43,7 @@ public:
     }
 
 private:
-    struct Touch;
+    using Touch = std::pair<std::uint32_t, TriangleId>;  ///< a point's number, and what its segment touches
     struct Picture;
     struct Group;
     struct Search;

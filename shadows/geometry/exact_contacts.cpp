@@ -117,7 +117,7 @@ Contacts::Together Contacts::around(std::span<const Cover> covers, const std::op
     for (const Cover& cover : covers) rays.insert(rays.end(), {cover.wedge.from, cover.wedge.to});
     if (domain) rays.insert(rays.end(), {domain->from, domain->to});
     std::ranges::sort(rays, comes_before);
-    rays.erase(std::ranges::unique(rays, same_direction).begin(), rays.end());
+    rays.erase(std::unique(rays.begin(), rays.end(), same_direction), rays.end());
 
     std::vector<int> blocked(rays.size() + 1, 0);  // changes from ray to ray
     std::vector<dvec3> passed(rays.size(), dvec3(1));
