@@ -19,7 +19,7 @@
 namespace umbra {
 namespace {
 
-constexpr double kMostTexels = 1 << 26;  ///< looked at for one triangle
+constexpr double kMostTexels = 1 << 30;  ///< looked at for one mesh: some seconds
 constexpr double kSliver     = 1e-6;     ///< of a texel or, if smaller, of the triangle: what is rounding alone
 constexpr double kNoArea     = 1e-14;    ///< texels
 
@@ -248,12 +248,14 @@ Cutout read_cutout(const JsonText& json, GltfData& data, const JsonValue& textur
 std::optional<Mesh> cut_out(const Mesh& mesh, const std::vector<dvec2>& at, const Cutout& cutout, std::size_t most) {
     const dvec2 size(cutout.width, cutout.height);
     Mesh out;
+    double looked_at = 0;
     for (const uvec3& t : mesh.triangles) {
         std::array<dvec2, 3> texels{};
         for (int k = 0; k < 3; ++k) texels[std::size_t(k)] = (cutout.offset + cutout.scale * at[t[k]]) * size;
         const dvec2 low  = glm::floor(glm::min(glm::min(texels[0], texels[1]), texels[2]));
         const dvec2 high = glm::floor(glm::max(glm::max(texels[0], texels[1]), texels[2])) + 1.0;
-        if (!((high.x - low.x) * (high.y - low.y) <= kMostTexels && glm::length(low) < 1e9)) return std::nullopt;
+        looked_at += (high.x - low.x) * (high.y - low.y);
+        if (!(looked_at <= kMostTexels && glm::length(low) < 1e9)) return std::nullopt;
         const TriangleCut triangle(mesh, t, texels);
         if (std::abs(triangle.area()) <= kNoArea) {
             const dvec2 middle = (texels[0] + texels[1] + texels[2]) / 3.0;

@@ -32,8 +32,8 @@ struct Cutout {
 [[nodiscard]] Cutout read_cutout(const JsonText& json, GltfData& data, const JsonValue& texture, double least);
 
 /// What is left of a mesh whose positions have these texture coordinates. Neighbouring texels make one rectangle, and
-/// each rectangle one polygon of each triangle. Nothing where that takes more than `most` triangles, or a triangle that
-/// is much larger than a texel beyond reason.
+/// each rectangle one polygon of each triangle. Nothing where that takes more than `most` triangles, or looks at more
+/// texels than a few seconds allow.
 [[nodiscard]] std::optional<Mesh> cut_out(const Mesh& mesh, const std::vector<dvec2>& at, const Cutout& cutout,
                                           std::size_t most);
 
