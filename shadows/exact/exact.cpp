@@ -153,7 +153,7 @@ public:
 
     /// What is crossed is decided exactly, and which of that is nearest in double. Where nothing is, the nearest of the
     /// triangles that take light together though each is only touched.
-    [[nodiscard]] TriangleId nearest_crossed(const Segment& segment, TriangleId own) const {
+    [[nodiscard]] TriangleId nearest_blocker(const Segment& segment, TriangleId own) const {
         struct Nearest {
             double distance     = std::numeric_limits<double>::infinity();
             TriangleId triangle = kNoTriangle;
@@ -263,8 +263,8 @@ public:
             see_hard(aimed, looked.points, out);
     }
 
-    /// The nearest of the triangles that the segment to the light crosses. For an area light, the segment to one of its
-    /// points, the first of a fixed list that is occluded.
+    /// The nearest of the triangles that the segment to the light crosses, or at a seam touches. For an area light, the
+    /// segment to one of its points, the first of a fixed list that is occluded.
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
         const PointBatch& points = looked.points;
         const auto& geometry     = as<Geometry>(aimed.built);
@@ -276,7 +276,7 @@ public:
                 if (!points.asks(aimed.light, i)) continue;
                 const ExactPoint point = exact_point(aimed.scene(), points, i);
                 for (int k = 0; k < (has_area ? kPoints : 1) && blockers[i] == kNoTriangle; ++k)
-                    blockers[i] = geometry.nearest_crossed(Segment(point, has_area ? point_of(light, point, k) : light),
+                    blockers[i] = geometry.nearest_blocker(Segment(point, has_area ? point_of(light, point, k) : light),
                                                            points.triangle[i]);
             }
         });

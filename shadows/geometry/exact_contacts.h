@@ -25,8 +25,6 @@ public:
     /// A triangle that the segment touches (Segment::meeting), and what it lets through, per channel.
     void add(vec3 x, vec3 y, vec3 z, vec3 passes);
 
-    [[nodiscard]] bool empty() const { return between_.empty() && at_start_.empty() && !edge_on_; }
-
     struct Together {
         vec3 passed;  ///< what arrives, per channel; where the lights nearby disagree, the most of it
         bool agreed;  ///< on it all lights that are close enough agree, and the segment begins on no triangle

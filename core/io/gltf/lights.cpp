@@ -48,15 +48,20 @@ void widen_ramp(Light& light) {
     light.specular *= static_cast<float>(share * share);
 }
 
+/// Sets the name; returns the key "type", or null.
+const JsonValue* start_light(const JsonText& json, const JsonValue& v, std::string_view what, Light& light) {
+    (void)json.object(v, what);
+    light.name = name_or(json, v, "");
+    return find_member(v, "type");
+}
+
 }  // namespace
 
 std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& v, std::size_t index, GltfNotes& notes,
                                          std::vector<std::string>& warnings) {
     const auto what = fmt::format("lights[{}]", index);
-    (void)json.object(v, what);
     Light light;
-    light.name            = name_or(json, v, "");
-    const JsonValue* type = find_member(v, "type");
+    const JsonValue* type = start_light(json, v, what, light);
     if (!type) json.fail(v, what + " has no type, expected directional, point or spot");
     const std::string& kind = json.string(*type, "type");
     static constexpr std::array kKinds{LightKind::directional, LightKind::point, LightKind::spot};
@@ -94,10 +99,8 @@ std::optional<Light> read_punctual_light(const JsonText& json, const JsonValue& 
 std::optional<Light> read_flat_light(const JsonText& json, const JsonValue& v, std::size_t index,
                                      std::vector<std::string>& warnings) {
     const auto what = fmt::format("lights[{}]", index);
-    (void)json.object(v, what);
     Light light;
-    light.name             = name_or(json, v, "");
-    const JsonValue* type  = find_member(v, "type");
+    const JsonValue* type  = start_light(json, v, what, light);
     const std::string kind = type ? json.string(*type, "type") : "rect";
     if (kind != "rect" && kind != "disk") {
         warnings.push_back(
