@@ -16,8 +16,8 @@ namespace umbra {
 enum class Answer : std::uint8_t {
     undefined,   ///< the method cannot tell; s means nothing
     given,       ///< s is the method's answer
-    on_boundary  ///< lights as close to this one as one likes disagree, or the point lies on a second triangle: no method
-                 ///< is wrong there. Only exact methods say so
+    on_boundary  ///< lights as close to this one as one likes disagree, or the point lies on a second triangle: no
+                 ///< method is wrong there. Only exact methods say so
 };
 
 /// One light's answers as a method writes them, one entry a point of the batch. The memory is the caller's.
