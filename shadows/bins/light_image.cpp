@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "umbra/core/base/lanes.h"
+#include "umbra/shadows/geometry/clipped_polygon.h"
 
 namespace umbra::bins {
 namespace {
@@ -55,33 +56,6 @@ bool is_near(const std::array<dvec3, 3>& c, double limit) {
     return !(positive && negative);
 }
 
-/// A convex polygon in a face's (x, y, w), cut down to four half spaces.
-class ClippedPolygon {
-public:
-    explicit ClippedPolygon(const std::array<dvec3, 3>& corners) : count_(3) {
-        std::copy(corners.begin(), corners.end(), corners_.begin());
-    }
-    /// Keeps what has dot(g, corner) >= 0.
-    void keep(dvec3 g) {
-        std::array<dvec3, kMost> kept;
-        std::size_t n = 0;
-        for (std::size_t k = 0; k < count_; ++k) {
-            const dvec3 a = corners_[k], b = corners_[(k + 1) % count_];
-            const double at_a = glm::dot(g, a), at_b = glm::dot(g, b);
-            if (at_a >= 0) kept[n++] = a;
-            if ((at_a < 0) != (at_b < 0)) kept[n++] = a + at_a / (at_a - at_b) * (b - a);
-        }
-        corners_ = kept, count_ = n;
-    }
-    [[nodiscard]] std::size_t size() const { return count_; }
-    [[nodiscard]] dvec3 operator[](std::size_t k) const { return corners_[k]; }
-
-private:
-    static constexpr std::size_t kMost = 8;  // each of four cuts adds one corner
-    std::array<dvec3, kMost> corners_{};
-    std::size_t count_;
-};
-
 }  // namespace
 
 LightImage::LightImage(const Light& light, dvec3 centre, double reach)
@@ -104,7 +78,7 @@ std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& c
     std::array<dvec3, 3> q;
     for (std::size_t k = 0; k < 3; ++k) q[k] = in_face(face, corners[k]);
     if (q[0].z <= 0 && q[1].z <= 0 && q[2].z <= 0) return std::nullopt;  // signs of differences of floats are exact
-    ClippedPolygon outline(q);
+    ClippedPolygon<dvec3, 8> outline{.corners = {q[0], q[1], q[2]}, .count = 3};
     const bool is_within =
         std::ranges::all_of(q, [](dvec3 c) { return c.z > 0 && std::abs(c.x) <= c.z && std::abs(c.y) <= c.z; });
     if (!is_within && is_near(q, kNearTriangle * std::max({size(q[0]), size(q[1]), size(q[2])})))
@@ -112,12 +86,12 @@ std::optional<Extent> LightImage::extent(int face, const std::array<dvec3, 3>& c
     if (!is_within)  // wider than the face by the margin, for points on its border
         for (const dvec3 g :
              {dvec3(1, 0, 1 + kMargin), dvec3(-1, 0, 1 + kMargin), dvec3(0, 1, 1 + kMargin), dvec3(0, -1, 1 + kMargin)})
-            if (outline.size() > 0) outline.keep(g);
-    if (outline.size() == 0) return std::nullopt;
+            outline.cut<CutFrom::first>([g](dvec3 p) { return glm::dot(g, p); });
+    if (outline.count == 0) return std::nullopt;
     dvec2 low(2), high(-2);
-    double depth = outline[0].z;
-    for (std::size_t k = 0; k < outline.size(); ++k) {
-        const dvec3 c  = outline[k];
+    double depth = outline.corners[0].z;
+    for (std::size_t k = 0; k < outline.count; ++k) {
+        const dvec3 c  = outline.corners[k];
         const dvec2 at = dvec2(c) / c.z;
         low            = glm::min(low, at);
         high           = glm::max(high, at);

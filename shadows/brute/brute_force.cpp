@@ -1,17 +1,21 @@
 // Brute force: every surface point against every triangle. No tree, no map, no cleverness: the cost is points times
-// triangles, which is what every other method saves. Short enough to be copied as the start of a new method.
+// triangles, which is what every other method saves. Short enough to be copied as the start of a new method. Points
+// where the sign of a number in double may be due to rounding are decided by the exact segment
+// (geometry/exact_sight.h), which a method that claims to_rounding can ask wherever it is in doubt.
 //
 // This work is based on:
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
 // Herbert Edelsbrunner, Ernst Muecke. Simulation of Simplicity. 1990
 #include <fmt/format.h>
 
+#include <cmath>
 #include <tuple>
 #include <utility>
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/light_points.h"
+#include "umbra/shadows/geometry/exact_sight.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -38,34 +42,63 @@ const std::vector<Parameter> kParameters{
                                         .max   = 50000000}),
 };
 
-/// On which side the ray p + t d passes the edge from a to b, -1 or 1. Both triangles of a shared edge compute the same
-/// number. Where that is 0, the side is that of a ray turned by a little, the same for all edges: a ray through an edge
-/// inside a surface meets one of its triangles, not none or two.
-int side_of_edge(dvec3 p, dvec3 d, dvec3 a, dvec3 b) {
+double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+/// A sign, -1 or 1; open where rounding may have made it.
+struct Sign {
+    int sign;
+    bool is_open;
+};
+
+/// Of a product of factors that are known up to some roundings of `size`; `magnitude`: of the product without one of
+/// the factors, which is `size` at most.
+Sign sign_of(double value, double magnitude, double size) {
+    return {value > 0 ? 1 : -1, !(std::abs(value) > 0x1p-46 * size * magnitude)};
+}
+
+/// On which side the ray p + t d passes the edge from a to b. Both triangles of a shared edge compute the same number.
+/// Where that is 0, the side is that of a ray turned by a little, the same for all edges: a ray through an edge inside a
+/// surface meets one of its triangles, not none or two.
+Sign side_of_edge(dvec3 p, dvec3 d, dvec3 a, dvec3 b, double size) {
     const bool swapped = std::tie(b.x, b.y, b.z) < std::tie(a.x, a.y, a.z);
     if (swapped) std::swap(a, b);
     const dvec3 across = glm::cross(a - p, b - a);
     double side        = glm::dot(across, d);
+    Sign found = sign_of(side, sum_of_magnitudes(b - a) * (sum_of_magnitudes(a - p) + sum_of_magnitudes(d)), size);
     for (int k = 0; k < 3 && side == 0; ++k) side = across[k];
-    return (side > 0) == swapped ? -1 : 1;
+    found.sign = (side > 0) == swapped ? -1 : 1;
+    return found;
 }
 
-/// Whether the open segment p + t d, 0 < t < end, passes through the triangle.
-bool crosses(dvec3 p, dvec3 d, double end, dvec3 a, dvec3 b, dvec3 c) {
-    const dvec3 n      = glm::cross(b - a, c - a);
-    const double slope = glm::dot(n, d);
-    if (slope == 0) return false;  // the segment runs along the triangle's plane
-    const double t = glm::dot(n, a - p) / slope;
-    if (!(t > 0 && t < end)) return false;
-    const int side = side_of_edge(p, d, a, b);
-    return side_of_edge(p, d, b, c) == side && side_of_edge(p, d, c, a) == side;
+struct Crossing {
+    bool crosses;
+    bool is_open;  ///< rounding may have made it one, or none
+};
+
+/// Of the segment p + t d, 0 < t < 1, or the ray to infinity, with the inside of the triangle. No number is larger than
+/// `size`.
+Crossing crossing(dvec3 p, dvec3 d, bool infinite, dvec3 a, dvec3 b, dvec3 c, double size) {
+    const dvec3 n     = glm::cross(b - a, c - a);
+    const double area = sum_of_magnitudes(b - a) * sum_of_magnitudes(c - a);
+    const double from = glm::dot(n, p - a), to = infinite ? glm::dot(n, d) : glm::dot(n, p - a + d);
+    const Sign begins = sign_of(from, area, size), ends = sign_of(to, area, infinite ? sum_of_magnitudes(d) : size);
+    if (!begins.is_open && !ends.is_open && begins.sign == ends.sign) return {false, false};
+    const Sign ab = side_of_edge(p, d, a, b, size), bc = side_of_edge(p, d, b, c, size),
+               ca       = side_of_edge(p, d, c, a, size);
+    const auto opposite = [](Sign x, Sign y) { return !x.is_open && !y.is_open && x.sign != y.sign; };
+    if (opposite(ab, bc) || opposite(bc, ca) || opposite(ca, ab)) return {false, false};
+    return {((from > 0 && to < 0) || (from < 0 && to > 0)) && ab.sign == bc.sign && bc.sign == ca.sign,
+            begins.is_open || ends.is_open || ab.is_open || bc.is_open || ca.is_open};
 }
 
 /// Triangles that take any of the light that meets them.
 struct Occluders final : Built {
-    using Built::Built;
-    [[nodiscard]] std::size_t memory_bytes() const override { return triangles.size() * sizeof(TriangleId); }
+    Occluders(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), sight(of) {}
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return triangles.size() * sizeof(TriangleId) + sight.memory_bytes();
+    }
     std::vector<TriangleId> triangles;
+    const ExactSight sight;  ///< for points that rounding leaves open
 };
 
 class BruteForce final : public MethodWith<Options> {
@@ -92,16 +125,21 @@ public:
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
         const PointBatch& points = looked.points;
-        const int samples        = samples_of(aimed.source());
+        const Light& light       = aimed.source();
+        const int samples        = samples_of(light);
+        const bool one_answer    = !is_area(light.kind) && aimed.scene().transparent != TransparentOccluders::multiply;
         parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
                 if (!points.asks(aimed.light, i)) continue;
                 vec3 sum(0);
+                bool is_open = false;
                 for (int k = 0; k < samples; ++k) {
                     const Segment s = segment(aimed, points, i, k);
-                    if (!s.behind) sum += passed(aimed, s);
+                    if (!s.behind) sum += passed(aimed, s, is_open);
                 }
                 sum /= static_cast<float>(samples);
+                if (is_open && one_answer)
+                    sum = vec3(as<Occluders>(aimed.built).sight.is_lit(points, i, light) ? 1.0f : 0.0f);
                 out.s[i] = mean_of(sum);
                 if (!out.colour.empty()) out.colour[i] = sum;
             }
@@ -129,19 +167,20 @@ public:
         }
         const Segment s     = segment(aimed, looked.points, i, 0);
         std::size_t crossed = 0;
-        for (const TriangleId t : as<Occluders>(aimed.built).triangles) crossed += is_crossed(aimed.scene(), t, s);
+        for (const TriangleId t : as<Occluders>(aimed.built).triangles) crossed += meeting(aimed.scene(), t, s).crosses;
         reason.evidence.push_back({"triangles crossed", static_cast<double>(crossed)});
         return reason;
     }
 
 private:
-    /// The points p + t d, 0 < t < end.
+    /// The points p + t d, 0 < t < 1, or t > 0.
     struct Segment {
         dvec3 p, d;
-        double end;
+        bool infinite;
         bool behind;     ///< runs behind the plane of the point's triangle: that part of the light is not seen
         TriangleId own;  ///< the point's triangle
         int side;        ///< of it, that sees: 1 where its winding faces, else -1
+        double size;     ///< of all numbers that p and d were computed from
     };
 
     [[nodiscard]] int samples_of(const Light& light) const { return is_area(light.kind) ? options.samples : 1; }
@@ -149,37 +188,51 @@ private:
     /// From point i to the light, or to its k-th sample.
     [[nodiscard]] static Segment segment(const Aimed& aimed, const PointBatch& points, std::size_t i, int k) {
         const Light& light = aimed.source();
+        const TriangleId t = points.triangle[i];
         const dvec3 p      = exact_position(aimed.scene(), points, i);
-        Segment s{p, -dvec3(light.direction), double(kInfinity), false, points.triangle[i], points.flipped[i] ? -1 : 1};
+        Segment s{p, -dvec3(light.direction), true, false, t, points.flipped[i] ? -1 : 1, size_of(aimed.scene(), t)};
         if (light.kind == LightKind::directional) return s;
+        s.infinite = false;
+        s.size += 2 * sum_of_magnitudes(dvec3(light.position));
         s.d      = (is_area(light.kind) ? light_point(light, p, k) : dvec3(light.position)) - p;
-        s.end    = 1;
         s.behind = points.facing[aimed.light][i] == Facing::partly && glm::dot(dvec3(points.normal(i)), s.d) <= 0;
         return s;
     }
 
-    /// By triangle t. What lies in the plane of the point's own triangle, a copy of it, say, hides nothing.
-    [[nodiscard]] static bool is_crossed(const Scene& scene, TriangleId t, const Segment& s) {
-        return t != s.own &&
-               crosses(s.p, s.d, s.end, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
-                       dvec3(scene.vertex(t, 2))) &&
-               rises_over(scene, t, s.own, s.side);
+    static double size_of(const Scene& scene, TriangleId t) {
+        return sum_of_magnitudes(dvec3(scene.vertex(t, 0))) + sum_of_magnitudes(dvec3(scene.vertex(t, 1))) +
+               sum_of_magnitudes(dvec3(scene.vertex(t, 2)));
+    }
+
+    /// With triangle t. What lies in the plane of the point's own triangle, a copy of it, say, hides nothing.
+    [[nodiscard]] static Crossing meeting(const Scene& scene, TriangleId t, const Segment& s) {
+        if (t == s.own) return {false, false};
+        const Crossing found = crossing(s.p, s.d, s.infinite, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
+                                        dvec3(scene.vertex(t, 2)), s.size + size_of(scene, t));
+        if ((found.crosses || found.is_open) && !rises_over(scene, t, s.own, s.side)) return {false, false};
+        return found;
     }
 
     /// The fraction of the light that arrives, per channel: 1 where no triangle lies between, 0 where one blocks.
-    [[nodiscard]] static vec3 passed(const Aimed& aimed, const Segment& s) {
+    /// `is_open`: whether another answer may be right, as far as rounding tells.
+    [[nodiscard]] static vec3 passed(const Aimed& aimed, const Segment& s, bool& is_open) {
         vec3 fraction(1);
         for (const TriangleId t : as<Occluders>(aimed.built).triangles) {
-            if (!is_crossed(aimed.scene(), t, s)) continue;
+            const Crossing found = meeting(aimed.scene(), t, s);
+            is_open |= found.is_open;
+            if (!found.crosses) continue;
             fraction *= aimed.scene().lets_through(t);
-            if (fraction == vec3(0)) break;
+            if (fraction == vec3(0) && !found.is_open) {
+                is_open = false;
+                break;
+            }
         }
         return fraction;
     }
 
     [[nodiscard]] static TriangleId first_blocker(const Aimed& aimed, const Segment& s) {
         for (const TriangleId t : as<Occluders>(aimed.built).triangles)
-            if (is_crossed(aimed.scene(), t, s)) return t;
+            if (meeting(aimed.scene(), t, s).crosses) return t;
         return kNoTriangle;
     }
 };
@@ -193,8 +246,8 @@ const MethodInfo brute_force{
     .paper = "Arthur Appel, Some Techniques for Shading Machine Renderings of Solids, 1968",
     .summary =
         "Tests the segment from each point to the light against every triangle, in double. The baseline that "
-        "every other method saves time against. Errs by rounding at edges and where faces coincide, and by "
-        "its samples in penumbrae. Limit: time grows with points times triangles.",
+        "every other method saves time against; what rounding leaves open is decided exactly. Errs by its samples in "
+        "penumbrae. Limit: time grows with points times triangles.",
     .parameters = kParameters,
     .by_default = false,
     .create     = create<BruteForce>};

@@ -89,6 +89,20 @@ Cascade stable_window(const CascadeOptions& options, const LightFrame& casters, 
 
 }  // namespace
 
+std::vector<double> split_depths(Splits splits, double lambda, double near, double far, int m) {
+    std::vector<double> depths{near};
+    for (int i = 1; i < m; ++i) {
+        const double part        = static_cast<double>(i) / m;
+        const double uniform     = near + (far - near) * part;
+        const double logarithmic = near * std::pow(far / near, part);
+        depths.push_back(splits == Splits::uniform       ? uniform
+                         : splits == Splits::logarithmic ? logarithmic
+                                                         : lambda * logarithmic + (1 - lambda) * uniform);
+    }
+    depths.push_back(far);
+    return depths;
+}
+
 bool Cascade::answers(dvec3 p) const {
     const dvec3 v = frame.light_space(p);
     return glm::all(glm::greaterThanEqual(v, low)) && glm::all(glm::lessThanEqual(v, high));

@@ -8,12 +8,23 @@
 // Andrew Lauritzen, Marco Salvi, Aaron Lefohn. Sample Distribution Shadow Maps. 2011
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "umbra/shadows/cascades/receivers.h"
-#include "umbra/shadows/cascades/splits.h"
 
 namespace umbra {
+
+/// The depths at which one cascade ends and the next begins, n to f, i of m.
+enum class Splits : std::uint8_t {
+    uniform,      ///< n + (f - n) i / m
+    logarithmic,  ///< n (f / n)^(i / m): from the first to the last depth of a part pixels grow by (f / n)^(1 / m)
+    practical     ///< lambda times the logarithmic one and 1 - lambda times the uniform one
+};
+
+/// The m + 1 depths from `near` to `far`, ascending, the two ends as they are: depths i and i + 1 bound part i.
+/// 0 < near <= far, m >= 1; `lambda` is in [0, 1] and of use to `practical` alone.
+[[nodiscard]] std::vector<double> split_depths(Splits splits, double lambda, double near, double far, int m);
 
 /// What a cascade's window is fitted to.
 enum class CascadeWindow : std::uint8_t {

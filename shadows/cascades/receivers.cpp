@@ -1,11 +1,43 @@
 #include "umbra/shadows/cascades/receivers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/shadows/geometry/clipped_polygon.h"
 
 namespace umbra {
+
+std::array<dvec4, 5> View::sides() const {
+    const CameraFrame& f = frame_;
+    const auto side      = [&](double half, dvec3 inwards) {
+        return is_perspective() ? dvec4(half * f.forward + inwards, 0) : dvec4(inwards, half);
+    };
+    return {side(f.half_width, f.right), side(f.half_width, -f.right), side(f.half_height, f.up),
+            side(f.half_height, -f.up), dvec4(f.forward, 0)};
+}
+
+std::array<dvec3, 8> View::corners(double from, double to) const {
+    std::array<dvec3, 8> all;
+    for (int i = 0; i < 8; ++i) {
+        const double depth = i & 4 ? to : from;
+        const dvec3 aside =
+            (i & 1 ? 1 : -1) * frame_.half_width * frame_.right + (i & 2 ? 1 : -1) * frame_.half_height * frame_.up;
+        all[i] = frame_.eye + depth * frame_.forward + (is_perspective() ? depth : 1) * aside;
+    }
+    return all;
+}
+
+View::Sphere View::sphere(double from, double to) const {
+    const double wide = std::hypot(frame_.half_width, frame_.half_height);
+    // As far from the nearer corners as from the farther ones; but where the view is wide, the farther ones alone bound
+    // it, about their own centre.
+    const double middle = is_perspective() ? std::min(to, 0.5 * (from + to) * (1 + wide * wide)) : 0.5 * (from + to);
+    const double radius = std::hypot(to - middle, is_perspective() ? to * wide : wide);
+    return {frame_.eye + middle * frame_.forward, radius};
+}
+
 namespace {
 
 constexpr std::size_t kBlock = 4096;  // entries that are reduced by one task
@@ -36,25 +68,13 @@ void add_point(LightExtents& to, const LightFrame& light, dvec3 p) {
 
 double distance(const dvec4& plane, dvec3 v) { return glm::dot(dvec3(plane), v) + plane.w; }
 
-/// A triangle, or what is left of one: convex, corners relative to the eye.
-struct ClippedTriangle {
-    std::array<dvec3, 16> corners;  // 3, and one more for each of at most 11 planes
-    int count = 0;
+/// A triangle, or what is left of one: corners relative to the eye, cut by at most 11 planes. Cuts do not depend on which
+/// corner comes first.
+using ClippedTriangle = ClippedPolygon<dvec3, 16>;
 
-    /// Keeps what lies on the plane's positive side. Cuts are computed from the inner corner to the outer one, so that
-    /// they do not depend on which corner comes first.
-    void cut(const dvec4& plane) {
-        ClippedTriangle kept;
-        for (int i = 0; i < count; ++i) {
-            const dvec3 a = corners[i], b = corners[(i + 1) % count];
-            const double u = distance(plane, a), v = distance(plane, b);
-            if (u >= 0) kept.corners[kept.count++] = a;
-            if (u >= 0 && v < 0) kept.corners[kept.count++] = a + u / (u - v) * (b - a);
-            if (u < 0 && v >= 0) kept.corners[kept.count++] = b + v / (v - u) * (a - b);
-        }
-        *this = kept;
-    }
-};
+void cut_by(ClippedTriangle& part, const dvec4& plane) {
+    part.cut<CutFrom::inner>([&](dvec3 v) { return distance(plane, v); });
+}
 
 class SceneInView final : public Receivers {
 public:
@@ -88,7 +108,7 @@ public:
                 const Seen seen = see(t);
                 if (seen.misses || seen.cut_by == 0) return;  // its corners are counted above
                 const ClippedTriangle part = cut(t, seen);
-                for (int i = 0; i < part.count; ++i) range.add(glm::dot(forward_, part.corners[i]));
+                for (std::size_t i = 0; i < part.count; ++i) range.add(glm::dot(forward_, part.corners[i]));
             },
             merge));
         return all;
@@ -117,9 +137,9 @@ public:
                                        if (seen.cut_by == 0 && seen.depths.min >= from && seen.depths.max <= to)
                                            continue;  // as above
                                        ClippedTriangle part = cut(t, seen);
-                                       part.cut({forward_, -from});
-                                       part.cut({-forward_, to});
-                                       for (int i = 0; i < part.count; ++i)
+                                       cut_by(part, {forward_, -from});
+                                       cut_by(part, {-forward_, to});
+                                       for (std::size_t i = 0; i < part.count; ++i)
                                            add_point(extents[s], light, view_.eye() + part.corners[i]);
                                    }
                                },
@@ -153,10 +173,9 @@ private:
 
     [[nodiscard]] ClippedTriangle cut(std::size_t t, const Seen& seen) const {
         ClippedTriangle part;
-        for (int k = 0; k < 3; ++k)
-            part.corners[part.count++] = dvec3(scene_->vertex(static_cast<TriangleId>(t), k)) - view_.eye();
+        for (int k = 0; k < 3; ++k) part.add(dvec3(scene_->vertex(static_cast<TriangleId>(t), k)) - view_.eye());
         for (std::size_t k = 0; k < planes_.size(); ++k)
-            if ((seen.cut_by >> k & 1) != 0) part.cut(planes_[k]);
+            if ((seen.cut_by >> k & 1) != 0) cut_by(part, planes_[k]);
         return part;
     }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "umbra/shadows/exact/horizon.h"
+
 namespace umbra::exact_visibility {
 namespace {
 
@@ -31,14 +33,14 @@ struct Rounded {
 };
 
 /// A half plane of the light's plane, g . (x, y, 1) > 0, in the coordinates in which the light is |x|, |y| <= 1.
-using HalfPlane = Rounded;
+using LightHalf = Rounded;
 /// A point of it, (x, y, 1) times a positive number.
 using Corner = Rounded;
 
-HalfPlane turned_over(const HalfPlane& g) { return HalfPlane(scaled(g.exact, Rational(-1))); }
+LightHalf turned_over(const LightHalf& g) { return LightHalf(scaled(g.exact, Rational(-1))); }
 
 /// 1 where the half plane holds the point, 0 on its border, else -1.
-int side_of(const HalfPlane& g, const Corner& c) {
+int side_of(const LightHalf& g, const Corner& c) {
     const dvec3 terms  = g.near * c.near;
     const double value = terms.x + terms.y + terms.z;
     // Each term is off by five roundings, and the sum by two more.
@@ -49,7 +51,7 @@ int side_of(const HalfPlane& g, const Corner& c) {
 }
 
 /// Where the borders of two half planes meet.
-Corner meeting(const HalfPlane& a, const HalfPlane& b) {
+Corner meeting(const LightHalf& a, const LightHalf& b) {
     Rational3 c = cross(a.exact, b.exact);
     if (CGAL::sign(c[2]) < 0) c = scaled(c, Rational(-1));
     return Corner(c);
@@ -57,7 +59,7 @@ Corner meeting(const HalfPlane& a, const HalfPlane& b) {
 
 /// An edge on the border of a half plane, and the corner that it ends at.
 struct CellEdge {
-    HalfPlane border;
+    LightHalf border;
     Corner end;
 };
 
@@ -69,7 +71,7 @@ struct Cell {
 };
 
 /// The part of a cell in a half plane; no edges where there is none with an area.
-Cell clipped(const Cell& cell, const HalfPlane& g) {
+Cell clipped(const Cell& cell, const LightHalf& g) {
     const std::size_t n = cell.edges.size();
     std::vector<int> side(n);
     bool any_inside = false, any_outside = false;
@@ -111,7 +113,7 @@ double area_of(const Cell& cell) {
 /// where det(a, b, (x, y, 1)) and the other two have the sign of det(a, b, c), and meets it there at W = det(a, b, c)
 /// over their sum, which is before the light where it is less than the light's height.
 struct Hidden {
-    std::array<HalfPlane, 4> inside, outside;
+    std::array<LightHalf, 4> inside, outside;
 };
 std::optional<Hidden> hidden_by(const Scene& scene, const RationalSpace& space, TriangleId t) {
     std::array<Rational3, 3> corner;
@@ -126,28 +128,12 @@ std::optional<Hidden> hidden_by(const Scene& scene, const RationalSpace& space, 
     for (std::size_t k = 0; k < 3; ++k) hidden[k] = scaled(cross(corner[k], corner[(k + 1) % 3]), Rational(sign));
     hidden[3]    = scaled(hidden[0] + hidden[1] + hidden[2], space.height());
     hidden[3][2] = hidden[3][2] - Rational(sign) * volume;
-    const HalfPlane a(hidden[0]), b(hidden[1]), c(hidden[2]), d(hidden[3]);
+    const LightHalf a(hidden[0]), b(hidden[1]), c(hidden[2]), d(hidden[3]);
     return Hidden{{a, b, c, d}, {turned_over(a), turned_over(b), turned_over(c), turned_over(d)}};
 }
 
-/// Of the light's points on the side of the plane of the viewpoint's own triangle that it sees.
-HalfPlane in_front(const Sight& sight) {
-    const Scene& scene        = sight.viewpoint.scene();
-    const TriangleId own      = sight.viewpoint.own();
-    const Rational3 a         = rational(scene.vertex(own, 0));
-    const Rational3 n         = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
-    const LightPlane& p       = sight.plane;
-    const Rational3 u         = p.exact_axes != nullptr ? p.exact_axes->u : rational(p.u),
-                    v         = p.exact_axes != nullptr ? p.exact_axes->v : rational(p.v);
-    const Rational3 c         = p.exact_axes != nullptr
-                                    ? p.exact_axes->centre
-                                    : rational(sight.viewpoint.point().corner()) + rational(p.centre_from_corner.value);
-    const Rational3 to_centre = c - sight.viewpoint.point().exact();
-    return HalfPlane(scaled({dot(n, u), dot(n, v), dot(n, to_centre)}, Rational(sight.turn)));
-}
-
 Cell whole_light() {
-    const HalfPlane left{1, 0, 1}, right{-1, 0, 1}, low{0, 1, 1}, high{0, -1, 1};
+    const LightHalf left{1, 0, 1}, right{-1, 0, 1}, low{0, 1, 1}, high{0, -1, 1};
     Cell cell;
     for (const auto& [border, next] : {std::pair{low, right}, {right, high}, {high, left}, {left, low}})
         cell.edges.push_back({border, meeting(border, next)});
@@ -156,7 +142,7 @@ Cell whole_light() {
 
 /// Replaces a cell by its parts: what the triangle hides, dimmed, and the rest.
 void divide(Cell cell, const Hidden& hidden, dvec3 passes, std::vector<Cell>& into) {
-    const auto is_outside = [&](const HalfPlane& g) {
+    const auto is_outside = [&](const LightHalf& g) {
         return std::ranges::all_of(cell.edges, [&](const CellEdge& edge) { return side_of(g, edge.end) <= 0; });
     };
     if (std::ranges::any_of(hidden.inside, is_outside)) {
@@ -186,7 +172,8 @@ std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpa
     const Scene& scene = sight.viewpoint.scene();
     std::vector<Cell> cells{whole_light()}, next;
     if (sight.partly) {
-        cells[0] = clipped(cells[0], in_front(sight));
+        const auto horizon = horizon_of<Rational>(sight);
+        cells[0]           = clipped(cells[0], LightHalf(Rational3{horizon.lx, horizon.ly, horizon.l}));
         if (cells[0].edges.empty()) return dvec3(0);
     }
     for (const TriangleId t : between) {

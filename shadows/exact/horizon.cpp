@@ -23,14 +23,11 @@ Horizon<Rational> horizon_of(const Sight& sight) {
     const Scene& scene   = sight.viewpoint.scene();
     const TriangleId own = sight.viewpoint.own();
     const Rational3 a    = rational(scene.vertex(own, 0));
-    const Rational3 centre =
-        sight.plane.exact_axes ? sight.plane.exact_axes->centre - a : rational(sight.plane.centre_from_corner.value);
-    const Rational3 m = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
+    const Rational3 m    = cross(rational(scene.vertex(own, 1)) - a, rational(scene.vertex(own, 2)) - a);
     const Rational turn(sight.turn);
-    const Rational3 u   = sight.plane.exact_axes ? sight.plane.exact_axes->u : rational(sight.plane.u);
-    const Rational3 v   = sight.plane.exact_axes ? sight.plane.exact_axes->v : rational(sight.plane.v);
-    const double length = glm::length(dvec3(CGAL::to_double(m[0]), CGAL::to_double(m[1]), CGAL::to_double(m[2])));
-    return {turn * dot(m, u), turn * dot(m, v), turn * dot(m, centre), 0, length};
+    const auto [u, v, centre] = in_rationals(sight.plane, sight.viewpoint.point());
+    const double length       = glm::length(dvec3(CGAL::to_double(m[0]), CGAL::to_double(m[1]), CGAL::to_double(m[2])));
+    return {turn * dot(m, u), turn * dot(m, v), turn * dot(m, centre - a), 0, length};
 }
 
 }  // namespace umbra::exact_visibility

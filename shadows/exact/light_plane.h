@@ -33,6 +33,12 @@ struct LightPlane {
     double depth_error = 0;  ///< how far the plane may lie from there along its normal, in units of length
 };
 
+/// The plane in rationals, as `p` sees it.
+[[nodiscard]] inline ExactAxes in_rationals(const LightPlane& plane, const ExactPoint& p) {
+    if (plane.exact_axes != nullptr) return *plane.exact_axes;
+    return {rational(plane.u), rational(plane.v), rational(p.corner()) + rational(plane.centre_from_corner.value)};
+}
+
 /// Of a rectangle or a disk with these half axes; `exact` must outlive the plane.
 [[nodiscard]] LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactAxes& exact,
                                           const ExactPoint& p);

@@ -19,7 +19,7 @@
 // The signs of triangles and the count are exact. In between is a chain of edges that closes whatever the rounding of
 // its corners, since each corner is projected by itself alone.
 //
-// The area is off by what displacement.h and depth_doubt.h bound, and by the roundings of the sweep. Where rationals
+// The area is off by what covering_edges.h and depth_doubt.h bound, and by the roundings of the sweep. Where rationals
 // would do much better, or a sign remains open, doubles cannot tell.
 //
 // This work is based on:

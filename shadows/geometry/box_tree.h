@@ -33,22 +33,8 @@ public:
     /// the boxes are widened by more than the rounding of the test.
     template <class Visit>
     void visit(const Piece& piece, const Visit& visit) const {
-        if (nodes_.empty()) return;
         const dvec3 inverse = 1.0 / piece.direction;  // infinite where a component is 0: the test below copes
-        std::uint32_t stack[64];
-        int depth      = 0;
-        stack[depth++] = 0;
-        while (depth > 0) {
-            const Node& node = nodes_[stack[--depth]];
-            if (!meets(node, piece, inverse)) continue;
-            if (node.count > 0) {
-                for (std::uint32_t k = 0; k < node.count; ++k)
-                    if (!visit(order_[node.first + k])) return;
-            } else {
-                stack[depth++] = node.first;
-                stack[depth++] = node.first + 1;
-            }
-        }
+        descend([&](std::uint32_t, const Node& node) { return meets(node, piece, inverse); }, visit);
     }
 
     /// A convex region: the points q with dot(normal, q - from) + offset >= 0 for each of its planes. Of what is
@@ -67,43 +53,23 @@ public:
     /// enter(node, box) first, and leaves out all that is in nodes for which it says no.
     template <class Enter, class Visit>
     void visit(const Region& region, const Enter& enter, const Visit& visit) const {
-        if (nodes_.empty()) return;
         const WidePlanes planes = widened(region);
-        std::uint32_t stack[64];
-        int depth      = 0;
-        stack[depth++] = 0;
-        while (depth > 0) {
-            const std::uint32_t index = stack[--depth];
-            const Node& node          = nodes_[index];
-            if (!meets(node, region.from, planes) || !enter(index, Box{node.min, node.max})) continue;
-            if (node.count > 0) {
-                for (std::uint32_t k = 0; k < node.count; ++k)
-                    if (!visit(order_[node.first + k])) return;
-            } else {
-                stack[depth++] = node.first;
-                stack[depth++] = node.first + 1;
-            }
-        }
+        descend(
+            [&](std::uint32_t index, const Node& node) {
+                return meets(node, region.from, planes) && enter(index, Box{node.min, node.max});
+            },
+            visit);
     }
 
     /// Calls visit(item) for every item in nodes that enter(box) says yes to, and whose parents it said yes to. The
     /// last call of `enter` before a visit was for the item's leaf.
     template <class Enter, class Visit>
     void visit_entered(const Enter& enter, const Visit& visit) const {
-        if (nodes_.empty()) return;
-        std::uint32_t stack[64];
-        int depth      = 0;
-        stack[depth++] = 0;
-        while (depth > 0) {
-            const Node& node = nodes_[stack[--depth]];
-            if (!enter(Box{node.min, node.max})) continue;
-            if (node.count > 0) {
-                for (std::uint32_t k = 0; k < node.count; ++k) visit(order_[node.first + k]);
-            } else {
-                stack[depth++] = node.first;
-                stack[depth++] = node.first + 1;
-            }
-        }
+        descend(
+            [&](std::uint32_t, const Node& node) {
+                return enter(Box{node.min, node.max});
+            },
+            [&](Item item) { return visit(item), true; });
     }
 
     /// What `enter` may want to know: of(item) of all items in a node, joined; one a node.
@@ -128,6 +94,28 @@ private:
         std::uint32_t first = 0;  ///< leaf: index into order_; inner: index of two neighbouring nodes
         std::uint32_t count = 0;  ///< 0: inner
     };
+
+    /// Calls visit(item) for the items of all leaves that enters(index, node) says yes to, and whose parents it said yes
+    /// to, until visit returns false.
+    template <class Enters, class Visit>
+    void descend(const Enters& enters, const Visit& visit) const {
+        if (nodes_.empty()) return;
+        std::uint32_t stack[64];
+        int depth      = 0;
+        stack[depth++] = 0;
+        while (depth > 0) {
+            const std::uint32_t index = stack[--depth];
+            const Node& node          = nodes_[index];
+            if (!enters(index, node)) continue;
+            if (node.count > 0) {
+                for (std::uint32_t k = 0; k < node.count; ++k)
+                    if (!visit(order_[node.first + k])) return;
+            } else {
+                stack[depth++] = node.first;
+                stack[depth++] = node.first + 1;
+            }
+        }
+    }
 
     static bool meets(const Node& node, const Piece& piece, const dvec3& inverse) {
         double enter = 0, leave = piece.length;

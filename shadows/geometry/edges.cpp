@@ -1,5 +1,8 @@
 #include "umbra/shadows/geometry/edges.h"
 
+#include <string>
+
+#include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
 
@@ -26,6 +29,9 @@ std::vector<std::int8_t> sides_of_light(const Scene& scene, const Light& light) 
 }
 
 EdgeList::EdgeList(const Topology& topology, std::uint32_t first_vertex, std::span<const std::uint8_t> left_out) {
+    constexpr std::size_t kMost = std::size_t{1} << 31;  // what PackedUse::triangle holds
+    if (const std::size_t end = topology.first_triangle + topology.triangles.size(); end > kMost)
+        throw MethodError("the scene has at least " + std::to_string(end) + " triangles, expected at most 2147483648");
     starts_.reserve(topology.edges.size() + 1);
     uses_.reserve(topology.uses.size());
     const auto used = [&] { return static_cast<std::uint32_t>(uses_.size()); };

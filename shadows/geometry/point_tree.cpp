@@ -6,6 +6,28 @@
 #include "umbra/core/base/parallel_sort.h"
 
 namespace umbra {
+namespace {
+
+float nearest_float(double x) {
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
+}
+
+float step_beside(float f) {
+    return std::abs(f) * std::numeric_limits<float>::epsilon() + std::numeric_limits<float>::denorm_min();
+}
+
+}  // namespace
+
+float float_below(double x) {
+    const float f = nearest_float(x);
+    return f - step_beside(f);
+}
+
+float float_above(double x) {
+    const float f = nearest_float(x);
+    return f + step_beside(f);
+}
 
 void sort_by_places(std::span<std::uint32_t> points, std::span<const dvec2> places) {
     dvec2 low(+kInfinity), high(-kInfinity);

@@ -17,6 +17,10 @@
 
 namespace umbra {
 
+/// A float below, or above, the float nearest to x: the next, or the one beside that.
+[[nodiscard]] float float_below(double x);
+[[nodiscard]] float float_above(double x);
+
 /// Boxes, each at its index in every array. Empty ones have low > high.
 template <class T, int kAxes, std::size_t kCount>
 struct alignas(32) BoxLanes {
@@ -127,11 +131,10 @@ private:
     }
 
     static T outwards(double x, T way) {
-        if constexpr (std::is_same_v<T, double>) return x;
-        constexpr double kLargest = std::numeric_limits<T>::max();
-        const T nearest           = static_cast<T>(std::clamp(x, -kLargest, kLargest));
-        return nearest +
-               way * (std::abs(nearest) * std::numeric_limits<T>::epsilon() + std::numeric_limits<T>::denorm_min());
+        if constexpr (std::is_same_v<T, double>)
+            return x;
+        else
+            return way < 0 ? float_below(x) : float_above(x);
     }
 
     template <class BoundsOf>

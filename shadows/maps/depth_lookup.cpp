@@ -27,64 +27,6 @@ bool is_blocked(const MapView& view, const Receiver& p, int i, int j, BiasMode m
     return map.nearness(i, j) > std::max(r + p.bias, 0.0);  // behind all that casts, r is negative
 }
 
-}  // namespace
-
-std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p, const Bias& bias,
-                                const Filter& filter) {
-    const LightFrame& f = view.frame;
-    dvec3 v             = f.light_space(p);
-    const dvec3 n{glm::dot(f.x, facet.normal), glm::dot(f.y, facet.normal), glm::dot(f.z, facet.normal)};
-    const auto ndc = [&](dvec3 q) { return (dvec2(q) / (f.perspective ? q.z : 1.0) - f.centre) / f.half; };
-    if (f.perspective && v.z <= 0) return {};
-    if (const dvec2 at = glm::abs(ndc(v)); at.x > f.reach || at.y > f.reach) return {};
-
-    const dvec2 sample = 2.0 * f.half / dvec2(view.map.width(), view.map.height());   // in window units
-    const double width = std::max(sample.x, sample.y) * (f.perspective ? v.z : 1.0);  // in world units
-    if (bias.normal_offset > 0) {
-        // A plane seen head-on needs no offset, a grazing one all of it.
-        const double cosine = f.perspective ? glm::dot(n, v) / glm::length(v) : n.z;
-        v += bias.normal_offset * width * std::sqrt(std::max(0.0, 1 - cosine * cosine)) * n;
-        if (f.perspective && v.z <= 0) return {};
-    }
-
-    Receiver receiver;
-    // Beyond the window and the widest kernel nothing is looked up, wherever it is; coordinates become ints later.
-    const dvec2 at = glm::clamp(ndc(v), -4.0, 4.0);
-    receiver.x     = (at.x + 1) * 0.5 * view.map.width();
-    receiver.y     = (at.y + 1) * 0.5 * view.map.height();
-    receiver.r     = f.nearness(v.z);
-
-    // dot(n, v) = d is, with s = x/z and t = y/z, 1/z = (n.x s + n.y t + n.z) / d, and nearness is affine in 1/z.
-    // Orthographic: z = (d - n.x x - n.y y) / n.z.
-    const double scale =
-        f.perspective ? f.near * f.far / ((f.far - f.near) * glm::dot(n, v)) : 1 / ((f.far - f.near) * n.z);
-    receiver.r_x = std::isfinite(scale) ? scale * n.x * sample.x : 0;
-    receiver.r_y = std::isfinite(scale) ? scale * n.y * sample.y : 0;
-
-    const double per_width = width * f.nearness_per_depth(v.z);
-    const double gradient  = std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
-    const double snapping  = (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / kSnapsPerSample;
-    const double samples   = 2 * filter.radius + 1;
-    receiver.bias          = bias.constant * per_width + bias.slope * gradient;
-    if (bias.mode == BiasMode::manual) return receiver;
-    const double largest = glm::length(p) + glm::length(f.origin) + std::abs(v.z);
-    receiver.bias += view.map.quantum(receiver.r) + kPositionRounding * largest * f.nearness_per_depth(v.z);
-    receiver.slack    = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
-    receiver.most     = samples * kMostAutomatic * per_width;
-    receiver.snapping = snapping;
-    if (bias.mode == BiasMode::receiver_plane) receiver.bias += snapping;
-    return receiver;
-}
-
-std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet& facet, dvec3 p, const Bias& bias,
-                                     const Filter& filter) {
-    for (std::size_t v = 0; v < views.size(); ++v)
-        if (const auto receiver = receive(views[v], facet, p, bias, filter)) return FoundReceiver{v, *receiver};
-    return {};
-}
-
-namespace {
-
 // Four at a time.
 constexpr int kFour = 4;
 using Doubles       = Lanes<double, kFour>;

@@ -27,8 +27,7 @@ enum class BiasMode : std::uint8_t {
 /// gradients are without bound, and a bias that follows them lifts points out of the shadow of what is just before them
 /// (graphics hardware has had a clamp of its slope bias for the same reason). What follows:
 ///   - a plane has no acne at any slope, except for light below 1/16000 of a radian, where snapped corners shift its
-///   depth
-///     by more than the limit;
+///     depth by more than the limit;
 ///   - a shadow never comes off by more than 16 widths of a sample (of a kernel, that many times as much) from the
 ///     point's plane. But that plane is asked beyond the triangle, and where light grazes a small steep facet it may
 ///     rise over what shades the facet: the wider the kernel, the sooner.
@@ -66,18 +65,6 @@ struct Receiver {
     double snapping = 0;         ///< automatic: nearness by which its plane may be off in the map
     dvec2 turn{1, 0};            ///< cosine and sine of the angle that discs are rotated by
 };
-
-/// The receiver in a view, or nothing where the view does not cover it.
-[[nodiscard]] std::optional<Receiver> receive(const MapView& view, const Facet& facet, dvec3 p, const Bias& bias,
-                                              const Filter& filter);
-
-/// The receiver in the first of several views that covers the point, and which it is.
-struct FoundReceiver {
-    std::size_t view = 0;
-    Receiver receiver;
-};
-[[nodiscard]] std::optional<FoundReceiver> receive(std::span<const MapView> views, const Facet& facet, dvec3 p,
-                                                   const Bias& bias, const Filter& filter);
 
 /// PCF: the share of the samples about the point that are not blocked, never a comparison with filtered depth. A sample
 /// that has a midpoint is compared with the point's plane (manual: with the point) without slack: the surface that

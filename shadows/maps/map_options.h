@@ -2,6 +2,12 @@
 // parameters names the functions: each parameter is declared once.
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "umbra/core/base/error.h"
 #include "umbra/shadows/maps/depth_lookup.h"
 #include "umbra/shadows/settings.h"
 
@@ -43,8 +49,18 @@ struct MapMargins {
 
 /// Of maps that are asked for samples up to `reach` from the point, by a kernel of (2 radius + 1)^2 samples; headroom
 /// is no less than `room`. Throws UsageError, which names `method`, where the border would take half of the map.
-[[nodiscard]] MapMargins margins(std::string_view method, const MapOptions& options, int radius, double reach,
-                                 double room = 64);
+[[nodiscard]] inline MapMargins margins(std::string_view method, const MapOptions& options, int radius, double reach,
+                                        double room = 64) {
+    // What the filter and the offset may ask for, and a rounding.
+    const MapMargins m{.border   = reach + options.normal_offset + 2,
+                       .headroom = std::max(room, kMostAutomatic * (4 * radius + 2)) + options.constant};
+    if (4 * m.border > options.resolution)
+        throw UsageError(fmt::format(
+            "{}: radius={} and normal_offset={} reach over a quarter of resolution={}, expected a resolution of at "
+            "least {}",
+            method, radius, options.normal_offset, options.resolution, std::ceil(4 * m.border)));
+    return m;
+}
 
 // The parameters of the structs above, for the method's own struct `Options`.
 

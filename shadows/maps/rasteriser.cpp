@@ -10,6 +10,7 @@
 
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/shadows/geometry/clipped_polygon.h"
 
 namespace umbra {
 namespace {
@@ -52,31 +53,11 @@ struct Chunk {
     std::vector<Band> bands;
 };
 
-using Polygon = std::vector<dvec4>;
-
 // ---- clipping ------------------------------------------------------------------------------------------------------
 
 /// Signed distances from the planes that bound what can be snapped.
 std::array<double, 5> distances(const dvec4& c) {
     return {c.w - kMinW, kGuard * c.w - c.x, kGuard * c.w + c.x, kGuard * c.w - c.y, kGuard * c.w + c.y};
-}
-
-/// Cut points are computed from the inner corner to the outer one, so that both triangles at an edge cut it alike.
-void clip(Polygon& polygon) {
-    Polygon kept;
-    for (int plane = 0; plane < 5; ++plane) {
-        kept.clear();
-        for (std::size_t i = 0; i < polygon.size(); ++i) {
-            const dvec4& a = polygon[i];
-            const dvec4& b = polygon[(i + 1) % polygon.size()];
-            const double u = distances(a)[plane];
-            const double v = distances(b)[plane];
-            if (u >= 0) kept.push_back(a);
-            if (u >= 0 && v < 0) kept.push_back(a + (u / (u - v)) * (b - a));
-            if (u < 0 && v >= 0) kept.push_back(b + (v / (v - u)) * (a - b));
-        }
-        polygon.swap(kept);
-    }
 }
 
 // ---- lanes ---------------------------------------------------------------------------------------------------------
@@ -360,7 +341,6 @@ private:
     const Drawing& drawing_;
     bool all_large_;
     Chunk& chunk_;
-    Polygon polygon_;
 };
 
 template <DepthFormat format>
@@ -418,13 +398,14 @@ UMBRA_FOR_EACH_PROCESSOR void Snapper<format>::snap_four(std::span<const uvec3> 
 
 template <DepthFormat format>
 void Snapper<format>::clip_and_snap(const std::array<std::array<Doubles, 3>, 4>& corners, int lane, const uvec3* from) {
-    polygon_.clear();
+    ClippedPolygon<dvec4, 8> polygon;
     for (int k = 0; k < 3; ++k)
-        polygon_.emplace_back(corners[0][k][lane], corners[1][k][lane], corners[2][k][lane], corners[3][k][lane]);
-    clip(polygon_);
+        polygon.add({corners[0][k][lane], corners[1][k][lane], corners[2][k][lane], corners[3][k][lane]});
+    for (std::size_t plane = 0; plane < 5; ++plane)
+        polygon.cut<CutFrom::inner>([plane](const dvec4& c) { return distances(c)[plane]; });
     std::array<Doubles, 3> x{}, y{}, r{};
-    for (std::size_t i = 2; i < polygon_.size(); ++i) {
-        const std::array<const dvec4*, 3> fan{&polygon_[0], &polygon_[i - 1], &polygon_[i]};
+    for (std::size_t i = 2; i < polygon.count; ++i) {
+        const std::array<const dvec4*, 3> fan{&polygon.corners[0], &polygon.corners[i - 1], &polygon.corners[i]};
         for (int k = 0; k < 3; ++k) {
             const dvec4& v         = *fan[k];
             const double inverse_w = 1 / v.w;

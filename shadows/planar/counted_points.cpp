@@ -7,7 +7,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <span>
 
@@ -71,7 +70,7 @@ struct DarkeningTree::Counter {
             // Each triangle counts as one over a point or not at all.
             if ((there >> k & 1) == 0) return;
             if (doubt[k] != 0 || counts[k] < 0)
-                add_doubtful(points.points_under(level, n * kBranches + k));
+                tree.add_doubtful(points.points_under(level, n * kBranches + k));
             else if (!edges[k].empty())
                 go_on(k, Uncounted{edges[k], dvec2(x[k], y[k]), counts[k], below});
             else if (counts[k] > 0)
@@ -98,14 +97,8 @@ struct DarkeningTree::Counter {
             if (counts[i] - doubt[i] > 0)
                 tree.dark_[begin + i] = 1;
             else if (doubt[i] != 0 || counts[i] < 0)
-                add_doubtful({begin + i, begin + i + 1});
+                tree.add_doubtful({begin + i, begin + i + 1});
         }
-    }
-
-    void add_doubtful(PlaneTree::Range which) {
-        const std::lock_guard lock(mutex);
-        for (std::size_t i = which.begin; i < which.end; ++i)
-            if (tree.dark_[i] == 0) doubtful.push_back(static_cast<std::uint32_t>(i));
     }
 
     static constexpr std::size_t kParallel = 4;  ///< uppermost levels whose branches are given to many threads
@@ -113,12 +106,10 @@ struct DarkeningTree::Counter {
     DarkeningTree& tree;
     const PlaneTree& points;
     const Outline& outline;
-    std::vector<std::uint32_t> doubtful{};
-    std::mutex mutex{};  ///< of `doubtful`
 };
 
-std::vector<std::uint32_t> DarkeningTree::darken(const Outline& outline) {
-    if (points_.levels.empty() || (outline.edges.empty() && outline.count == 0)) return {};
+void DarkeningTree::darken(const Outline& outline) {
+    if (points_.levels.empty() || (outline.edges.empty() && outline.count == 0)) return;
     Counter counter{*this, points_, outline};
     const auto [low, high] = points_.levels.back()[0].bounds();
     const Reach& reach     = outline.reach;
@@ -130,9 +121,8 @@ std::vector<std::uint32_t> DarkeningTree::darken(const Outline& outline) {
         PlaneTree::descend(counter, below.size() - 1, 0,
                            Counter::Uncounted{all, outline.reference, outline.count, below.data()});
     } else {
-        counter.add_doubtful({0, points_.size});
+        add_doubtful({0, points_.size});
     }
-    return std::move(counter.doubtful);
 }
 
 }  // namespace umbra::planar

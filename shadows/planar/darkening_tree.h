@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <mutex>
 #include <vector>
 
 #include "umbra/shadows/geometry/point_tree.h"
@@ -27,13 +28,16 @@ public:
 
     void brighten();
 
-    /// Darkens the points within the shadow; those on its boundary are within. May run from many threads.
-    void darken(const Shadow& shadow, const std::array<EdgeFunction, 3>& sides);
+    /// Darkens the points within the shadow. Those at its sides, as near as rounding, are left as they are: doubtful.
+    /// May run from many threads.
+    void darken(const Shadow& shadow, const std::array<ShadowSide, 3>& sides);
 
-    /// Darkens the points over which the outline counts shadows, on many threads (counted_points.cpp). Returns the
-    /// indices, in any order, of points where rounding may have made that count of some shadows or of none: those are
-    /// left as they are.
-    [[nodiscard]] std::vector<std::uint32_t> darken(const Outline& outline);
+    /// Darkens the points over which the outline counts shadows, on many threads (counted_points.cpp). Those where
+    /// rounding may have made that count of some shadows or of none are left as they are: doubtful.
+    void darken(const Outline& outline);
+
+    /// The doubtful points that are not dark since they were brightened, in the tree's order.
+    [[nodiscard]] std::vector<std::uint32_t> doubtful() const;
 
     /// Darkens point i of the tree's order.
     void darken(std::size_t i) { dark_[i] = 1; }
@@ -45,10 +49,13 @@ private:
     struct Counter;
 
     void fill(std::size_t level, std::size_t child);
+    void add_doubtful(PlaneTree::Range which);
 
     const PlaneTree& points_;
     std::vector<std::uint8_t> dark_;                        ///< of each point
     std::vector<std::vector<std::uint8_t>> dark_branches_;  ///< of each node: a bit for each branch
+    std::vector<std::uint32_t> doubtful_;
+    std::mutex mutex_;  ///< of `doubtful_`
 };
 
 }  // namespace umbra::planar

@@ -14,12 +14,8 @@
 namespace umbra::planar {
 namespace {
 
-constexpr double kUlp = 0x1p-53;
-
 /// How near to the height of a source an occluder may come, as a share of that height, and still be in an outline.
 constexpr double kHighest = 1 - 0x1p-10;
-
-double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// A vertex, its shadow, and how far rounding may have moved that.
 struct ShadowCorner {
@@ -34,17 +30,6 @@ struct ShadowCorner {
             1e-14 * (1 + length / height) * (std::abs(x.x) + std::abs(x.y) + std::abs(shadow.x) + std::abs(shadow.y));
     }
 };
-
-/// By how much the side of the edge from a to b may be off at points whose magnitudes are `far` at most. It is
-/// dot(n, p - a) with n = cross(f, t), f from the source to a, t from a to b. Coordinates are sums of three products,
-/// so that a, b and the source are off by up to 4 roundings of their magnitudes; that moves n by 4 roundings of
-/// (|a| + |s|) |t| + (|a| + |b|) |f|, and each step of the arithmetic by one of |f| |t|, 14 in all.
-double doubt_of_side(const LocalSource& source, dvec3 a, dvec3 b, double far) {
-    const double s = sum_of_magnitudes(source.at), ends = sum_of_magnitudes(a) + sum_of_magnitudes(b);
-    const double f = source.at_infinity ? s : sum_of_magnitudes(a - source.at), t = sum_of_magnitudes(b - a);
-    const double n = f * t + (ends + s) * t + ends * f;
-    return 16 * kUlp * n * (far + ends);
-}
 
 /// Whether the edge may pass through the bounds.
 bool may_meet(const OutlineEdge& e, const Reach& bounds) {
@@ -90,8 +75,7 @@ Outline find_outline(const Occluders& occluders, const OccluderMesh& mesh, const
     const dvec2 rounding = 0x1p-20 * (glm::abs(result.reach.low) + glm::abs(result.reach.high));
     result.reach         = {result.reach.low - rounding, result.reach.high + rounding};
     const Reach reach    = result.reach;
-    const dvec2 far2     = glm::max(glm::abs(reach.low), glm::abs(reach.high));
-    const double far     = 2 * (far2.x + far2.y);
+    const double far     = farthest(reach);
     if (!(far < 1e100)) {
         result.rest = project(occluders, occluders.triangles, receiver, from);
         return result;
@@ -109,11 +93,13 @@ Outline find_outline(const Occluders& occluders, const OccluderMesh& mesh, const
         for (std::size_t i = begin; i < end; ++i) {
             const TriangleId t = all[i];
             if (facing[t] == 0 || occluders.plane_of[t] == receiver.plane) continue;
-            const uvec3 c     = mesh.corners[t];
-            const double low  = std::min({at[c.x].z, at[c.y].z, at[c.z].z}),
-                         high = std::max({at[c.x].z, at[c.y].z, at[c.z].z});
-            if (high <= 0 || (!source.at_infinity && low >= source.at.z)) continue;
-            if (low >= 0 && (source.at_infinity || high <= kHighest * source.at.z))
+            const uvec3 c      = mesh.corners[t];
+            const double low   = std::min({at[c.x].z, at[c.y].z, at[c.z].z}),
+                         high  = std::max({at[c.x].z, at[c.y].z, at[c.z].z});
+            const double doubt = receiver.doubt_of_height(
+                std::max({sum_of_magnitudes(at[c.x]), sum_of_magnitudes(at[c.y]), sum_of_magnitudes(at[c.z])}));
+            if (high + doubt <= 0 || (!source.at_infinity && low - doubt >= source.at.z)) continue;
+            if (low - doubt >= 0 && (source.at_infinity || high <= kHighest * source.at.z))
                 turn[t] = facing[t];
             else
                 left_out[t] = 1;

@@ -13,8 +13,8 @@
 // the light's sources and projects from each of them, onto each receiver, the edges at which the number of shadows
 // changes (outline.h). look sorts the points by receiver, and those of a receiver by where they lie in its plane.
 // visibility darkens, for each source, the points over which there is a shadow (darkening_tree.h): S_j is the fraction
-// of the sources from which the point stayed bright. A point where rounding leaves open whether there is one is tested
-// against every triangle.
+// of the sources from which the point stayed bright. A point where rounding leaves open whether there is one is decided
+// by the exact segment to the source (geometry/exact_sight.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,6 +28,7 @@
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
+#include "umbra/shadows/geometry/exact_sight.h"
 #include "umbra/shadows/geometry/point_groups.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/planar/darkening_tree.h"
@@ -99,7 +100,8 @@ struct Planes final : Built {
     Planes(const Scene& of, const SceneFacts& its_facts, const Options& options)
         : Built(of, its_facts),
           occluders{&of, {}, std::vector(of.triangles.size(), Occluders::kNoPlane)},
-          group_of(of.triangles.size(), kNoGroup) {
+          group_of(of.triangles.size(), kNoGroup),
+          sight(of) {
         const double area = area_of(facts);
         for (const PlanarReceiver& plane : facts.planes) {
             if (!is_receiver(plane, area, options)) continue;
@@ -120,13 +122,14 @@ struct Planes final : Built {
     [[nodiscard]] std::size_t memory_bytes() const override {
         return receivers.size() * sizeof(Receiver) + occluders.plane_of.size() * sizeof(std::uint32_t) +
                occluders.triangles.size() * sizeof(TriangleId) + group_of.size() * sizeof(std::uint32_t) +
-               (mesh ? mesh->memory_bytes() : 0);
+               (mesh ? mesh->memory_bytes() : 0) + sight.memory_bytes();
     }
 
     Occluders occluders;
     std::vector<Receiver> receivers;      ///< both sides of plane k at 2 k and 2 k + 1
     std::vector<std::uint32_t> group_of;  ///< of each triangle: the receiver that its front belongs to, or kNoGroup
     std::optional<OccluderMesh> mesh;     ///< where edges are projected
+    const ExactSight sight;               ///< for points that rounding leaves open
 };
 
 /// The shadows of one light.
@@ -272,7 +275,8 @@ public:
                 if (s > 0) tree.brighten();
                 const Outline& outline = light.outlines[s][r];
                 darken(tree, planes.scene, receiver, source, outline.rest);
-                darken_one_by_one(tree, places, tree.darken(outline), planes, receiver, sources[s]);
+                tree.darken(outline);
+                darken_doubtful(tree, planes.sight, looked.points, members, light_at(aimed.source(), sources[s]));
                 parallel_ranges(sources_seen.size(), 65536, [&](std::size_t begin, std::size_t end) {
                     for (std::size_t i = begin; i < end; ++i) sources_seen[i] += !tree.is_dark(i);
                 });
@@ -364,27 +368,30 @@ private:
     /// Darkens the points that lie in any of the shadows.
     static void darken(DarkeningTree& tree, const Scene& scene, const Receiver& receiver, const LocalSource& source,
                        const std::vector<Shadows>& runs) {
+        const double far = farthest(reach_of(receiver, source));
         parallel_ranges(runs.size(), 1, [&](std::size_t first, std::size_t last) {
             for (std::size_t r = first; r < last; ++r)
                 for (const Shadow& shadow : runs[r].shadows)
-                    tree.darken(shadow, sides_of(scene, receiver, source, runs[r], shadow));
+                    tree.darken(shadow, sides_of(scene, receiver, source, runs[r], shadow, far));
         });
     }
 
-    /// Darkens those of some points of the tree that lie in any shadow.
-    static void darken_one_by_one(DarkeningTree& tree, const PlaneTree& places, std::vector<std::uint32_t> which,
-                                  const Planes& planes, const Receiver& receiver, const Source& from) {
-        if (which.empty()) return;
-        std::ranges::sort(which);  // the tree's order
-        const PlaneTree few_places(which.size(), [&](auto& at, std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                for (const std::size_t axis : {0, 1}) at[axis][i] = places.at[axis][which[i]];
+    /// The light, as the point that it is projected from.
+    static Light light_at(Light light, const Source& source) {
+        if (!is_area(light.kind)) return light;
+        light.kind     = LightKind::point;
+        light.position = source.at;
+        return light;
+    }
+
+    /// Darkens those of the points that rounding leaves open which do not see the light.
+    static void darken_doubtful(DarkeningTree& tree, const ExactSight& sight, const PointBatch& points, Members members,
+                                const Light& light) {
+        const std::vector<std::uint32_t> which = tree.doubtful();
+        parallel_ranges(which.size(), 16, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t k = begin; k < end; ++k)
+                if (!sight.is_lit(points, members[which[k]], light)) tree.darken(which[k]);
         });
-        DarkeningTree few(few_places);
-        const auto shadows = project(planes.occluders, planes.occluders.triangles, receiver, from);
-        darken(few, planes.scene, receiver, LocalSource(receiver, from), shadows);
-        for (std::size_t i = 0; i < which.size(); ++i)
-            if (few.is_dark(i)) tree.darken(which[i]);
     }
 };
 

@@ -9,30 +9,13 @@
 #include "umbra/core/base/predicates.h"
 #include "umbra/core/render/light_points.h"
 #include "umbra/core/render/sampling.h"
+#include "umbra/shadows/geometry/point_tree.h"
 
 namespace umbra::planar {
 namespace {
 
 constexpr std::size_t kRun = 4096;  ///< triangles
-
-constexpr float kLeast = std::numeric_limits<float>::denorm_min();
-
-// ---- floats rounded outwards ----------------------------------------------------------------------------------------
-
-float nearest_float(double x) {
-    constexpr double kLargest = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp(x, -kLargest, kLargest));
-}
-
-/// A float below, or above, the float nearest to x: the next, or the one beside that.
-float float_below(double x) {
-    const float f = nearest_float(x);
-    return f - (std::abs(f) * 0x1p-23f + kLeast);
-}
-float float_above(double x) {
-    const float f = nearest_float(x);
-    return f + (std::abs(f) * 0x1p-23f + kLeast);
-}
+constexpr double kUlp      = 0x1p-53;
 
 }  // namespace
 
@@ -156,11 +139,13 @@ Reach bounds_of_shadow(const LocalSource& source, const Triangle& triangle) {
 }
 
 /// Adds the shadow of a triangle over the plane, unless it misses `reach`. The part of the triangle above the source is
-/// not cut away: rays from the source to it do not come down to the plane.
-void add_shadow(Shadows& run, const Reach& reach, const LocalSource& source, const Triangle& triangle, Shadow shadow) {
+/// not cut away: rays from the source to it do not come down to the plane. A piece's corners may be off by `slack`, its
+/// shadow by `margin`.
+void add_shadow(Shadows& run, const Reach& reach, const LocalSource& source, const Triangle& triangle, Shadow shadow,
+                double slack, double margin) {
     Reach bounds = bounds_of_shadow(source, triangle);
-    bounds.low   = glm::max(bounds.low, reach.low);
-    bounds.high  = glm::min(bounds.high, reach.high);
+    bounds.low   = glm::max(bounds.low - margin, reach.low);
+    bounds.high  = glm::min(bounds.high + margin, reach.high);
     if (bounds.low.x > bounds.high.x || bounds.low.y > bounds.high.y) return;
     shadow.low  = {float_below(bounds.low.x), float_below(bounds.low.y)};
     shadow.high = {float_above(bounds.high.x), float_above(bounds.high.y)};
@@ -168,6 +153,7 @@ void add_shadow(Shadows& run, const Reach& reach, const LocalSource& source, con
         run.piece_of.push_back(shadow.triangle);
         shadow.triangle = static_cast<std::uint32_t>(run.pieces.size());
         run.pieces.push_back(triangle);
+        run.slack.push_back(slack);
     }
     run.shadows.push_back(shadow);
 }
@@ -178,7 +164,9 @@ void project_triangle(Shadows& run, const Scene& scene, TriangleId t, const Rece
                       const Source& from, const LocalSource& source) {
     const Triangle x = local_triangle(scene, t, receiver);
     const double low = std::min({x[0].z, x[1].z, x[2].z}), high = std::max({x[0].z, x[1].z, x[2].z});
-    if (high <= 0 || (!source.at_infinity && low >= source.at.z)) return;
+    const double size  = std::max({sum_of_magnitudes(x[0]), sum_of_magnitudes(x[1]), sum_of_magnitudes(x[2])});
+    const double doubt = receiver.doubt_of_height(size);
+    if (high + doubt <= 0 || (!source.at_infinity && low - doubt >= source.at.z)) return;
 
     const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
     const int facing = from.at_infinity ? side_of_direction(a, b, c, from.at) : side_of_plane(a, b, c, from.at);
@@ -187,14 +175,28 @@ void project_triangle(Shadows& run, const Scene& scene, TriangleId t, const Rece
     Shadow shadow;
     shadow.triangle    = t;
     shadow.from_behind = facing < 0;
-    if (low >= 0) {
-        add_shadow(run, reach, source, x, shadow);
+    if (low - doubt >= 0) {
+        add_shadow(run, reach, source, x, shadow, 0, 0);
         return;
     }
-    shadow.is_piece    = true;
+    shadow.is_piece = true;
+    // A height that is off moves the cut along the triangle, and its shadow along the ray.
+    const double length = sum_of_magnitudes(source.at), along = source.at_infinity ? 0 : 2 * size;
+    const double above = source.at.z - (source.at_infinity ? 0 : std::max(0.0, high));
+    const double slope = above > 0 ? 2 + (length + along) / above : kInfinity;
+    if (high <= 2 * doubt) {
+        // All of it is as near to the plane as heights are known.
+        add_shadow(run, reach, source, x, shadow, kInfinity, 4 * doubt * slope);
+        return;
+    }
+    const double slack = 16 * kUlp * size + 4 * doubt * (1 + 2 * size / (high - low));
+    if (low >= 0) {
+        add_shadow(run, reach, source, x, shadow, slack, slack * slope);
+        return;
+    }
     const auto polygon = clip_at_plane(x);
     for (std::size_t k = 2; k < polygon.size(); ++k)
-        add_shadow(run, reach, source, {polygon[0], polygon[k - 1], polygon[k]}, shadow);
+        add_shadow(run, reach, source, {polygon[0], polygon[k - 1], polygon[k]}, shadow, slack, slack * slope);
 }
 
 }  // namespace
@@ -213,6 +215,7 @@ std::vector<Shadows> project(const Occluders& occluders, std::span<const Triangl
                     project_triangle(runs[r], *occluders.scene, t, receiver, reach, from, source);
             runs[r].shadows.shrink_to_fit();
             runs[r].pieces.shrink_to_fit();
+            runs[r].slack.shrink_to_fit();
             runs[r].piece_of.shrink_to_fit();
         }
     });
@@ -220,7 +223,8 @@ std::vector<Shadows> project(const Occluders& occluders, std::span<const Triangl
 }
 
 std::size_t Shadows::memory_bytes() const {
-    return sizeof(Shadows) + shadows.size() * sizeof(Shadow) + pieces.size() * (sizeof(Triangle) + sizeof(TriangleId));
+    return sizeof(Shadows) + shadows.size() * sizeof(Shadow) +
+           pieces.size() * (sizeof(Triangle) + sizeof(TriangleId) + sizeof(double));
 }
 
 // ---- what a shadow holds --------------------------------------------------------------------------------------------
@@ -235,26 +239,50 @@ EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, doubl
     return {n.x, n.y, -glm::dot(n, from)};
 }
 
-std::array<EdgeFunction, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
-                                     const Shadows& run, const Shadow& shadow) {
+double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+double farthest(const Reach& reach) {
+    const dvec2 far = glm::max(glm::abs(reach.low), glm::abs(reach.high));
+    return 2 * (far.x + far.y);
+}
+
+/// It is dot(n, p - from) with n = cross(f, t), f from the source to `from`, t from there to `to`. Coordinates are sums
+/// of three products, so that both ends and the source are off by up to 4 roundings of their magnitudes; that moves n by
+/// 4 roundings of (|from| + |s|) |t| + (|from| + |to|) |f|, and each step of the arithmetic by one of |f| |t|, 14 in all.
+/// Ends that are off by more move n by slack (|t| + 2 |f|), and p - from by slack.
+double doubt_of_side(const LocalSource& source, dvec3 from, dvec3 to, double far, double slack) {
+    const double s    = sum_of_magnitudes(source.at);
+    const double ends = sum_of_magnitudes(from) + sum_of_magnitudes(to) + 2 * slack;
+    const double f    = (source.at_infinity ? s : sum_of_magnitudes(from - source.at)) + slack,
+                 t    = sum_of_magnitudes(to - from) + 2 * slack;
+    const double n    = f * t + (ends + s) * t + ends * f;
+    return (16 * kUlp * n + slack * (t + 2 * f)) * (far + ends) + slack * f * t;
+}
+
+std::array<ShadowSide, 3> sides_of(const Scene& scene, const Receiver& receiver, const LocalSource& source,
+                                   const Shadows& run, const Shadow& shadow, double far) {
     const Triangle x = shadow.is_piece ? run.pieces[shadow.triangle] : local_triangle(scene, shadow.triangle, receiver);
+    const double slack = shadow.is_piece ? run.slack[shadow.triangle] : 0;
     // Inside, det(a - source, b - a, p - a) has the sign of the triangle seen from behind.
     const double sign = shadow.from_behind ? 1 : -1;
-    return {side_of_edge(source, x[0], x[1], sign), side_of_edge(source, x[1], x[2], sign),
-            side_of_edge(source, x[2], x[0], sign)};
+    const auto side   = [&](dvec3 a, dvec3 b) {
+        return ShadowSide{side_of_edge(source, a, b, sign), doubt_of_side(source, a, b, far, slack)};
+    };
+    return {side(x[0], x[1]), side(x[1], x[2]), side(x[2], x[0])};
 }
 
 TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,
                       std::span<const Shadows> runs, dvec2 at) {
     const vec2 place(at);
+    const double far  = farthest(reach_of(receiver, source));
     const auto in_box = [&](const Shadow& s) {
         return place.x >= s.low.x && place.x <= s.high.x && place.y >= s.low.y && place.y <= s.high.y;
     };
     for (const Shadows& run : runs)
         for (const Shadow& shadow : run.shadows) {
             if (!in_box(shadow)) continue;
-            const std::array<EdgeFunction, 3> sides = sides_of(scene, receiver, source, run, shadow);
-            if (std::ranges::all_of(sides, [&](const EdgeFunction& e) { return e.at(at.x, at.y) >= 0; }))
+            const std::array<ShadowSide, 3> sides = sides_of(scene, receiver, source, run, shadow, far);
+            if (std::ranges::all_of(sides, [&](const ShadowSide& e) { return e.value.at(at.x, at.y) >= 0; }))
                 return run.caster(shadow);
         }
     return kNoTriangle;

@@ -29,6 +29,12 @@ struct Receiver {
     dvec2 low{+kInfinity}, high{-kInfinity};  ///< bounds of the plane's triangles, in its coordinates
     double tolerance = 0;                     ///< greatest distance of their corners from the plane
 
+    /// By how much heights over it may be off at points whose magnitude is `size`, in its coordinates. None along an
+    /// axis of the world, where they are differences of two floats: these have the right sign.
+    [[nodiscard]] double doubt_of_height(double size) const {
+        const bool is_exact = (normal.x == 0) + (normal.y == 0) + (normal.z == 0) == 2;
+        return tolerance + (is_exact ? 0 : 8 * 0x1p-53 * size);
+    }
     [[nodiscard]] dvec3 local(dvec3 world) const { return local_direction(world - origin); }
     [[nodiscard]] dvec3 local_direction(dvec3 d) const {
         return {glm::dot(e1, d), glm::dot(e2, d), glm::dot(normal, d)};
@@ -86,7 +92,7 @@ struct Occluders {
 using Triangle = std::array<dvec3, 3>;  ///< corners in a receiver's coordinates
 
 /// Bounds of a triangle's shadow, in a receiver's coordinates, in floats rounded outwards. A triangle that the plane
-/// cuts is several pieces.
+/// cuts is several pieces. One of which rounding hides whether the plane cuts it is a piece, too.
 struct Shadow {
     vec2 low{+kInfinity}, high{-kInfinity};
     std::uint32_t triangle = 0;  ///< index into the scene, or into Shadows::pieces
@@ -99,6 +105,7 @@ struct Shadows {
     std::vector<Shadow> shadows;
     std::vector<Triangle> pieces;
     std::vector<TriangleId> piece_of;  ///< for each piece: the triangle that it was cut from
+    std::vector<double> slack;  ///< for each piece: how far its corners may be off; infinite where it may be none
 
     [[nodiscard]] TriangleId caster(const Shadow& s) const { return s.is_piece ? piece_of[s.triangle] : s.triangle; }
     [[nodiscard]] std::size_t memory_bytes() const;
@@ -122,9 +129,25 @@ struct EdgeFunction {
 /// det(from - source, to - from, p - from) times `sign`. Both triangles of an edge get the same, of opposite signs.
 [[nodiscard]] EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign);
 
-/// The three sides of one of `run`'s shadows, positive inside. `source` is the one that it was projected from.
-[[nodiscard]] std::array<EdgeFunction, 3> sides_of(const Scene& scene, const Receiver& receiver,
-                                                   const LocalSource& source, const Shadows& run, const Shadow& shadow);
+[[nodiscard]] double sum_of_magnitudes(dvec3 v);
+
+/// A bound on the magnitudes of the points that may be asked: |x| + |y|, twice.
+[[nodiscard]] double farthest(const Reach& reach);
+
+/// By how much side_of_edge may be off at points whose magnitudes are `far` at most, if the ends may be off by `slack`.
+[[nodiscard]] double doubt_of_side(const LocalSource& source, dvec3 from, dvec3 to, double far, double slack = 0);
+
+/// A side of a shadow. A value of at most the magnitude `doubt` may have the wrong sign.
+struct ShadowSide {
+    EdgeFunction value{0, 0, 0};
+    double doubt = 0;
+};
+
+/// The three sides of one of `run`'s shadows, positive inside, at points whose magnitudes are `far` at most. `source` is
+/// the one that it was projected from.
+[[nodiscard]] std::array<ShadowSide, 3> sides_of(const Scene& scene, const Receiver& receiver,
+                                                 const LocalSource& source, const Shadows& run, const Shadow& shadow,
+                                                 double far);
 
 /// The first triangle whose shadow holds the point `at` of the plane, kNoTriangle where none does.
 [[nodiscard]] TriangleId first_over(const Scene& scene, const Receiver& receiver, const LocalSource& source,

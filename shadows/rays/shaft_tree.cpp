@@ -48,29 +48,16 @@ std::vector<EightBoxes> boxes_of(std::size_t count, const Of& of) {
     std::vector<EightBoxes> nodes((count + 7) / 8);
     parallel_ranges(nodes.size(), 256, [&](std::size_t begin, std::size_t end) {
         for (std::size_t n = begin; n < end; ++n)
-            for (std::size_t lane = 0; lane < 8; ++lane) {
-                const Box box = of(std::min(8 * n + lane, count - 1));
-                for (int axis = 0; axis < 3; ++axis)
-                    nodes[n].low[axis][lane] = box.min[axis], nodes[n].high[axis][lane] = box.max[axis];
-            }
+            for (std::size_t lane = 0; lane < 8; ++lane) nodes[n].set(lane, of(std::min(8 * n + lane, count - 1)));
     });
     return nodes;
 }
 
-Box around(const EightTriangles& t) {
+EightBoxes::Bounds around(const EightTriangles& t) {
     Box box;
     for (int lane = 0; lane < 8; ++lane)
         for (int k = 0; k < 3; ++k) box = extend(box, vec3(t.x[k][lane], t.y[k][lane], t.z[k][lane]));
-    return box;
-}
-
-Box around(const EightBoxes& b) {
-    Box box;
-    for (int lane = 0; lane < 8; ++lane) {
-        box = extend(box, vec3(b.low[0][lane], b.low[1][lane], b.low[2][lane]));
-        box = extend(box, vec3(b.high[0][lane], b.high[1][lane], b.high[2][lane]));
-    }
-    return box;
+    return {box.min, box.max};
 }
 
 }  // namespace
@@ -125,7 +112,7 @@ ShaftTree::ShaftTree(const Scene& scene, const RaySpace& space) {
     levels_.push_back(boxes_of(leaves_.size(), [&](std::size_t k) { return around(leaves_[k]); }));
     while (levels_.back().size() > 1) {
         const std::vector<EightBoxes>& below = levels_.back();
-        levels_.push_back(boxes_of(below.size(), [&](std::size_t k) { return around(below[k]); }));
+        levels_.push_back(boxes_of(below.size(), [&](std::size_t k) { return below[k].bounds(); }));
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/scene/scene.h"
+#include "umbra/shadows/geometry/point_tree.h"
 
 namespace umbra::rays {
 
@@ -18,9 +19,7 @@ struct EightTriangles {
 };
 
 /// Eight boxes along the axes of ray space, side by side; those that are too few repeat the last one.
-struct EightBoxes {
-    float low[3][8], high[3][8];
-};
+using EightBoxes = BoxLanes<float, 3, 8>;
 
 /// Planes around a convex region of ray space. What lies above one of them by more than rounding is outside; what is
 /// not said to be outside may be so all the same.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "umbra/shadows/geometry/clipped_polygon.h"
+
 namespace umbra::scanline {
 namespace {
 
@@ -12,28 +14,6 @@ dvec3 in_face(int face, dvec3 p) {
     const int axis     = face / 2;
     const double depth = face % 2 == 0 ? p[axis] : -p[axis];
     return {p[(axis + 1) % 3], p[(axis + 2) % 3], depth};
-}
-
-/// Up to N + 4 corners of a polygon, or of a segment, that is cut to a frustum.
-template <std::size_t N>
-struct Cut {
-    std::array<dvec3, N + 4> corner;
-    std::size_t count = 0;
-};
-
-/// The part where side(corner) >= 0. A segment stays one.
-template <std::size_t N, class Side>
-Cut<N> cut(const Cut<N>& in, const Side& side) {
-    Cut<N> out;
-    for (std::size_t k = 0; k < in.count; ++k) {
-        const dvec3 p = in.corner[k], q = in.corner[(k + 1) % in.count];
-        const double at_p = side(p), at_q = side(q);
-        if (at_p >= 0 && out.count < out.corner.size()) out.corner[out.count++] = p;
-        if (N == 2 && k == 1) break;  // the way back along a segment
-        if ((at_p < 0) != (at_q < 0) && out.count < out.corner.size())
-            out.corner[out.count++] = p + at_p / (at_p - at_q) * (q - p);
-    }
-    return out;
 }
 
 std::size_t cells_along(const Scene& scene, int faces) {
@@ -83,18 +63,19 @@ dvec3 LightCells::seen(dvec3 p) const {
 
 template <std::size_t N>
 std::optional<LightCells::Coverage> LightCells::outline(int face, const std::array<dvec3, N>& corners) const {
-    Cut<N> part;
-    for (const dvec3& corner : corners) part.corner[part.count++] = infinite_ ? corner : in_face(face, corner);
+    ClippedPolygon<dvec3, N + 4> part;
+    for (const dvec3& corner : corners) part.add(infinite_ ? corner : in_face(face, corner));
     if (!infinite_) {
-        part = cut(part, [](dvec3 p) { return p.z * (1 + kWide) - p.x; });
-        part = cut(part, [](dvec3 p) { return p.z * (1 + kWide) + p.x; });
-        part = cut(part, [](dvec3 p) { return p.z * (1 + kWide) - p.y; });
-        part = cut(part, [](dvec3 p) { return p.z * (1 + kWide) + p.y; });
+        const auto cut = [&](const auto& side) { part.template cut<CutFrom::first>(side, N == 2); };
+        cut([](dvec3 p) { return p.z * (1 + kWide) - p.x; });
+        cut([](dvec3 p) { return p.z * (1 + kWide) + p.x; });
+        cut([](dvec3 p) { return p.z * (1 + kWide) - p.y; });
+        cut([](dvec3 p) { return p.z * (1 + kWide) + p.y; });
     }
     if (part.count == 0) return std::nullopt;
     Coverage found;
     for (std::size_t k = 0; k < part.count; ++k) {
-        const dvec3 p = part.corner[k];
+        const dvec3 p = part.corners[k];
         // In the light itself all directions meet.
         const dvec2 q = p.z > 0 ? dvec2(p) / p.z : dvec2(0);
         if (!(p.z > 0)) found.low = dvec2(-1), found.high = dvec2(1);

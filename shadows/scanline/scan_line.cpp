@@ -5,7 +5,8 @@
 //
 //     aim         the subdivision: which triangles lie in each of its cells
 //     look        the spans, and how far their points lie beside the lines through their ends
-//     visibility  cuts each span by the shadows of the triangles in the cells that it passes through
+//     visibility  cuts each span by the shadows of the triangles in the cells that it passes through; points so near to
+//                 a shadow's side that rounding decides are decided by the exact segment to the light
 //
 // This work is based on:
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
@@ -19,6 +20,7 @@
 
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
+#include "umbra/shadows/geometry/exact_sight.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/scanline/light_cells.h"
 
@@ -124,7 +126,8 @@ struct Shadow {
     /// dot(normal, p - from).
     struct SidePlane {
         dvec3 normal{0}, from{0};
-        dvec3 edge{0};  ///< of a plane through the light: along the triangle's edge, in the sense of the normal
+        dvec3 edge{0};     ///< of a plane through the light: along the triangle's edge, in the sense of the normal
+        double doubt = 0;  ///< a value of at most this magnitude may have the wrong sign
         [[nodiscard]] double at(dvec3 p) const { return glm::dot(normal, p - from); }
 
         /// Where the value is 0, the sign is that of a light beside this one, the same for all edges: two triangles
@@ -141,13 +144,29 @@ struct Shadow {
     [[nodiscard]] bool holds(dvec3 p) const {
         return std::ranges::all_of(sides, [p](const SidePlane& side) { return side.is_positive(p); });
     }
+    [[nodiscard]] bool surely_holds(dvec3 p) const {
+        return std::ranges::all_of(sides, [p](const SidePlane& side) { return side.at(p) > side.doubt; });
+    }
+    [[nodiscard]] bool surely_misses(dvec3 p) const {
+        return std::ranges::any_of(sides, [p](const SidePlane& side) { return side.at(p) < -side.doubt; });
+    }
 };
 
 /// Which span, counted by one thread, asked each triangle last.
 struct Asked {
     std::vector<std::uint32_t> last_span;
     std::uint32_t span = 0;
+    std::vector<std::size_t> doubtful;  ///< points of the span by whose side of some shadow rounding decides
 };
+
+/// The scene, and what decides points that rounding leaves open.
+struct Sight final : Built {
+    Sight(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), exact(of) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return exact.memory_bytes(); }
+    const ExactSight exact;
+};
+
+double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// The shadows of all triangles for one light.
 class Shadows final : public Aimed {
@@ -160,13 +179,18 @@ public:
     void darken(const PointBatch& points, const Span& span, Asked& asked, std::span<float> s) const {
         const TriangleId own = points.triangle[span.first];
         ++asked.span;
+        asked.doubtful.clear();
         cells_.visit(span.a, span.b, [&](std::span<const TriangleId> triangles) {
             for (const TriangleId t : triangles) {
                 if (t == own || asked.last_span[t] == asked.span) continue;
                 asked.last_span[t] = asked.span;
-                darken_by(t, points, span, s);
+                darken_by(t, points, span, asked, s);
             }
         });
+        std::ranges::sort(asked.doubtful);
+        asked.doubtful.erase(std::unique(asked.doubtful.begin(), asked.doubtful.end()), asked.doubtful.end());
+        for (const std::size_t i : asked.doubtful)
+            if (s[i] != 0 && !as<Sight>(built).exact.is_lit(points, i, source())) s[i] = 0;
     }
 
     /// The first triangle that hides a position of triangle `own`.
@@ -175,7 +199,7 @@ public:
         cells_.visit(p, p, [&](std::span<const TriangleId> triangles) {
             for (const TriangleId t : triangles) {
                 if (t == own || found != kNoTriangle) continue;
-                if (const auto shadow = shadow_of(t); shadow && shadow->holds(p) && rises(t, own)) found = t;
+                if (const auto shadow = shadow_of(t, own); shadow && shadow->holds(p) && rises(t, own)) found = t;
             }
         });
         return found;
@@ -184,22 +208,29 @@ public:
 private:
     /// Points lie beside the span's line by as much as its `shift`. Between the pixels that a shadow holds in spite of
     /// that and those that it cannot hold, each point is asked.
-    void darken_by(TriangleId t, const PointBatch& points, const Span& span, std::span<float> s) const {
-        const std::optional<Shadow> shadow = shadow_of(t);
+    void darken_by(TriangleId t, const PointBatch& points, const Span& span, Asked& asked, std::span<float> s) const {
+        const std::optional<Shadow> shadow = shadow_of(t, points.triangle[span.first]);
         if (!shadow) return;
         Run sure{0, static_cast<double>(span.last - span.first)}, open = sure;
         for (const Shadow::SidePlane& side : shadow->sides) {
             // Divided by depth, its value is linear along the row.
             const double a = side.at(span.a) / span.depth_a, b = side.at(span.b) / span.depth_b;
-            const double slack = glm::length(side.normal) * span.shift / std::min(span.depth_a, span.depth_b);
-            open               = open_above(-slack, a, b, span, open);
+            const double slack =
+                (glm::length(side.normal) * span.shift + 4 * side.doubt) / std::min(span.depth_a, span.depth_b);
+            open = open_above(-slack, a, b, span, open);
             if (open.first > open.last) return;
             sure = above(slack, a, b, span, sure);
         }
         if (!rises(t, points.triangle[span.first])) return;
         for (double k = open.first; k <= open.last; ++k) {
             const std::size_t i = span.first + static_cast<std::size_t>(k);
-            if ((k >= sure.first && k <= sure.last) || shadow->holds(exact_position(scene(), points, i))) s[i] = 0;
+            if (s[i] == 0) continue;
+            const bool is_sure = k >= sure.first && k <= sure.last;
+            const dvec3 p      = is_sure ? dvec3(0) : exact_position(scene(), points, i);
+            if (is_sure || shadow->surely_holds(p))
+                s[i] = 0;
+            else if (!shadow->surely_misses(p))
+                asked.doubtful.push_back(i);
         }
     }
 
@@ -232,27 +263,41 @@ private:
         return rises_over(scene(), t, own, side);
     }
 
-    /// None for a triangle that the light sees edge-on.
-    [[nodiscard]] std::optional<Shadow> shadow_of(TriangleId t) const {
+    [[nodiscard]] double size_of(TriangleId t) const {
+        return sum_of_magnitudes(dvec3(scene().vertex(t, 0))) + sum_of_magnitudes(dvec3(scene().vertex(t, 1))) +
+               sum_of_magnitudes(dvec3(scene().vertex(t, 2)));
+    }
+
+    /// For positions of triangle `own`. None for a triangle that the light sees edge-on.
+    [[nodiscard]] std::optional<Shadow> shadow_of(TriangleId t, TriangleId own) const {
         const bool infinite = source().kind == LightKind::directional;
         const dvec3 corner[3]{dvec3(scene().vertex(t, 0)), dvec3(scene().vertex(t, 1)), dvec3(scene().vertex(t, 2))};
-        const dvec3 end     = infinite ? -dvec3(source().direction) : dvec3(source().position);
-        const dvec3 normal  = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-        const double facing = glm::dot(normal, infinite ? end : end - corner[0]);
+        const dvec3 end    = infinite ? -dvec3(source().direction) : dvec3(source().position);
+        const dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+        const int facing   = side_of_light(source(), scene().vertex(t, 0), scene().vertex(t, 1), scene().vertex(t, 2));
         if (facing == 0) return std::nullopt;
         const double turn = facing > 0 ? -1 : 1;
         Shadow shadow;
-        shadow.sides[0] = {turn * normal, corner[0], dvec3(0)};  // first, since it rules out most
+        // Coordinates are known up to some roundings of this, and so is each factor of the values.
+        const double size = size_of(t) + size_of(own) + (infinite ? 0 : sum_of_magnitudes(end));
+        const double area = sum_of_magnitudes(corner[1] - corner[0]) * sum_of_magnitudes(corner[2] - corner[0]);
+        // First, since it rules out most.
+        shadow.sides[0] = {turn * normal, corner[0], dvec3(0), kRounding * size * area};
         for (std::size_t k = 0; k < 3; ++k) {
             // From a corner, since a far light is known less well than the corners' distance; from the same one for the
             // triangle on the edge's other side, so that no point is between the two.
             dvec3 p = corner[k], q = corner[(k + 1) % 3];
             double sign = turn;
             if (std::tie(q.x, q.y, q.z) < std::tie(p.x, p.y, p.z)) std::swap(p, q), sign = -turn;
-            shadow.sides[k + 1] = {sign * glm::cross(q - p, infinite ? end : end - p), p, sign * (q - p)};
+            const dvec3 to_light = infinite ? end : end - p;
+            const double factor  = sum_of_magnitudes(to_light) + (infinite ? 0 : size);
+            shadow.sides[k + 1]  = {sign * glm::cross(q - p, to_light), p, sign * (q - p),
+                                    kRounding * size * sum_of_magnitudes(q - p) * factor};
         }
         return shadow;
     }
+
+    static constexpr double kRounding = 0x1p-46;
 
     const LightCells cells_;
 };
@@ -264,6 +309,10 @@ public:
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only) return {How::not_at_all, "Spans have edges, and no penumbra: no area lights."};
         return {How::to_rounding, "The ends of shadows on each span, in double."};
+    }
+
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return std::make_unique<Sight>(scene, facts);
     }
 
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
@@ -278,7 +327,7 @@ public:
         const auto& shadows = as<Shadows>(aimed);
         const auto& spans   = as<Spans>(looked);
         parallel_ranges(spans.rows(), 16, [&](std::size_t begin, std::size_t end) {
-            Asked asked{std::vector<std::uint32_t>(aimed.scene().triangles.size(), 0)};
+            Asked asked{std::vector<std::uint32_t>(aimed.scene().triangles.size(), 0), 0, {}};
             for (std::size_t y = begin; y < end; ++y)
                 spans.for_each(aimed.light, y, [&](const Span& span) {
                     std::fill_n(out.s.begin() + static_cast<std::ptrdiff_t>(span.first), span.last - span.first + 1,

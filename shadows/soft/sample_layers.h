@@ -1,7 +1,6 @@
 // How many triangles lie over each sample of a light, less a number that is the same for all of them.
 //
-//       +---------------+     A sample's layers are those at the far left of the lowest row, plus the steps of all
-//       edges
+//       +---------------+     A sample's layers are those at the left of the lowest row, plus the steps of all edges
 //      >|----.   * *    |     that a line from there to the sample crosses: first up along the left side, where edges
 //       | *   \     *   |     come in, then along its row. What the first number is does not matter: samples without
 //       |   *  \  *     |     layers are those with the least, if any.

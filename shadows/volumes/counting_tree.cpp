@@ -109,36 +109,7 @@ ViewFrame choose_view(const PointBatch& points) {
     return looking_at(centre, centre + 4 * radius * back + 0x1p-10 * radius * kGeneric);
 }
 
-/// Of a triangle's weights: a point with larger ones is not moved (named_point).
-constexpr double kMostShare = 0x1p-26;
-
 }  // namespace
-
-dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin) {
-    const TriangleId t     = points.triangle[i];
-    const dvec3 corners[3] = {dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)), dvec3(scene.vertex(t, 2))};
-    double weight[3]       = {0, points.u[i], points.v[i]};
-    weight[0]              = 1 - weight[1] - weight[2];
-    // Most points are far inside: a weight times a height is a distance.
-    constexpr double kClear = 0x1p-44;
-    if (std::min({weight[0], weight[1], weight[2]}) < kMostShare) {
-        const double area = glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0]));
-        double far        = 0;
-        for (const dvec3 c : corners) far = std::max(far, glm::length(c - origin));
-        for (int k = 0; k < 3; ++k) {
-            const int l = (k + 1) % 3, m = (k + 2) % 3;
-            const double opposite = glm::length(corners[l] - corners[m]);
-            const double share    = std::min(kMostShare, kClear * far * opposite / area);
-            if (weight[k] >= share) continue;
-            // Towards the corner, from the nearer of the others that has the weight to give.
-            const bool l_is_nearer = glm::length(corners[l] - corners[k]) < glm::length(corners[m] - corners[k]);
-            const int near = l_is_nearer ? l : m, other = l_is_nearer ? m : l;
-            weight[weight[near] > 0.25 ? near : other] -= share - weight[k];
-            weight[k] = share;
-        }
-    }
-    return (corners[0] - origin) + weight[1] * (corners[1] - corners[0]) + weight[2] * (corners[2] - corners[0]);
-}
 
 // ---- the tree -------------------------------------------------------------------------------------------------------
 
@@ -157,36 +128,31 @@ CountingTree::CountingTree(const Scene& scene, const PointBatch& points)
         const dvec3 a(scene.vertex(t, 0));
         return {a - view_.origin, dvec3(scene.vertex(t, 1)) - a, dvec3(scene.vertex(t, 2)) - a};
     });
-    tree_ = Tree(index_.size(), [&, places, right = view_.right, down = view_.down, forward = view_.forward](
+    tree_ = Tree(index_.size(), [places, right = view_.right, down = view_.down, forward = view_.forward](
                                     auto& at, std::size_t begin, std::size_t end) mutable {
         places.find(begin, end);
         double* __restrict const x = &at[0][begin];
         double* __restrict const y = &at[1][begin];
         double* __restrict const w = &at[2][begin];
-        unsigned at_border         = 0;  // a bit for each point that named_point moves
         for (std::size_t k = 0; k < Tree::kLeaf; ++k) {
-            const double px = places.x[k], py = places.y[k], pz = places.z[k], u = places.u[k], v = places.v[k];
+            const double px = places.x[k], py = places.y[k], pz = places.z[k];
             const double depth = forward.x * px + forward.y * py + forward.z * pz;
             x[k]               = (right.x * px + right.y * py + right.z * pz) / depth;
             y[k]               = (down.x * px + down.y * py + down.z * pz) / depth;
             w[k]               = 1 / depth;
-            at_border |= static_cast<unsigned>(std::min({1 - u - v, u, v}) < kMostShare) << k;
-        }
-        at_border &= (1u << (end - begin)) - 1;
-        for (; at_border != 0; at_border &= at_border - 1) {
-            const auto k  = static_cast<std::size_t>(std::countr_zero(at_border));
-            const dvec3 p = view_.turned(named_point(scene, points, index_[begin + k], view_.origin));
-            x[k] = p.x / p.z, y[k] = p.y / p.z, w[k] = 1 / p.z;
         }
     });
 }
 
 // ---- the counts -----------------------------------------------------------------------------------------------------
 
-PointCounts::PointCounts(const CountingTree& tree, const PointBatch& points, LightId light)
+PointCounts::PointCounts(const CountingTree& tree, const Scene& scene, const PointBatch& points, LightId light)
     : tree_(tree.tree_),
       index_(tree.index_),
+      scene_(scene),
+      points_(points),
       asks_(tree_.leaf_count()),
+      open_(tree_.leaf_count()),
       count_(tree_.leaf_count() * kLeaf),
       levels_(tree_.levels.size()) {
     const Facing* const facing = points.facing[light].data();
@@ -196,6 +162,7 @@ PointCounts::PointCounts(const CountingTree& tree, const PointBatch& points, Lig
             for (std::size_t k = leaf * kLeaf; k < std::min(tree_.size, (leaf + 1) * kLeaf); ++k)
                 asks |= static_cast<unsigned>(is_asked(facing[index_[k]])) << k % kLeaf;
             asks_[leaf] = static_cast<std::uint16_t>(asks);
+            open_[leaf] = 0;
             if (asks != 0) std::fill_n(&count_[leaf * kLeaf], kLeaf, 0);
         }
     });
@@ -239,29 +206,70 @@ struct PointCounts::OneRegion {
     }
 
     void leaf(std::size_t leaf, unsigned open) {
-        const double* x = &to.tree_.at[0][leaf * kLeaf];
-        const double* y = &to.tree_.at[1][leaf * kLeaf];
-        const double* w = &to.tree_.at[2][leaf * kLeaf];
+        const std::size_t first = leaf * kLeaf;
+        const double* x         = &to.tree_.at[0][first];
+        const double* y         = &to.tree_.at[1][first];
+        const double* w         = &to.tree_.at[2][first];
         alignas(64) std::array<double, kLeaf> least;
         least.fill(std::numeric_limits<double>::infinity());
         for (; open != 0; open &= open - 1) {
             const HalfSpace f = region.faces[static_cast<std::size_t>(std::countr_zero(open))];
 #pragma GCC unroll 1
             for (std::size_t k = 0; k < kLeaf; ++k) {
-                const double value = (f.nx * x[k] + f.ny * y[k]) + (f.nz + f.nw * w[k]) + f.tie;
+                const double value = (f.nx * x[k] + f.ny * y[k]) + (f.nz + f.nw * w[k]);
                 least[k]           = value < least[k] ? value : least[k];
             }
         }
-        unsigned within = 0;
+        unsigned within = 0, near = 0;
 #pragma GCC unroll 1
-        for (std::size_t k = 0; k < kLeaf; ++k) within |= static_cast<unsigned>(least[k] > 0) << k;
+        for (std::size_t k = 0; k < kLeaf; ++k) {
+            within |= static_cast<unsigned>(least[k] > 1) << k;
+            near |= static_cast<unsigned>(least[k] >= -1) << k;
+        }
+        for (near &= to.asks_[leaf] & ~within; near != 0; near &= near - 1) {
+            const auto k = static_cast<std::size_t>(std::countr_zero(near));
+            switch (near_point(first + k)) {
+                case Near::within: within |= 1u << k; break;
+                case Near::outside: break;
+                case Near::open:
+                    std::atomic_ref(to.open_[leaf]).fetch_or(std::uint16_t(1u << k), std::memory_order_relaxed);
+            }
+        }
         for (within &= to.asks_[leaf]; within != 0; within &= within - 1) {
-            std::int32_t& count = to.count_[leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(within))];
+            std::int32_t& count = to.count_[first + static_cast<std::size_t>(std::countr_zero(within))];
             std::atomic_ref(count).fetch_add(weight, std::memory_order_relaxed);
         }
     }
 
 private:
+    enum class Near : std::uint8_t { within, outside, open };
+
+    /// Of a point at one of the region's faces. Every point is at the near cap of its own triangle, and of copies of
+    /// that: they lie in one plane, on the light's side of which it is.
+    [[nodiscard]] Near near_point(std::size_t at) const {
+        const TriangleId own = to.points_.triangle[to.index_[at]];
+        if (region.cap == kNoTriangle || !(region.cap == own || is_copy(own))) return Near::open;
+        if (!region.on_light_s_side) return Near::outside;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t face = 1; face < static_cast<std::size_t>(region.count); ++face) {
+            const HalfSpace& f = region.faces[face];
+            least              = std::min(
+                             least, (f.nx * to.tree_.at[0][at] + f.ny * to.tree_.at[1][at]) + (f.nz + f.nw * to.tree_.at[2][at]));
+        }
+        return least > 1 ? Near::within : least < -1 ? Near::outside : Near::open;
+    }
+
+    /// Whether each of the cap's corners is one of the triangle's.
+    [[nodiscard]] bool is_copy(TriangleId t) const {
+        const Scene& scene = to.scene_;
+        for (int k = 0; k < 3; ++k) {
+            const vec3 corner = scene.vertex(region.cap, k);
+            if (corner != scene.vertex(t, 0) && corner != scene.vertex(t, 1) && corner != scene.vertex(t, 2))
+                return false;
+        }
+        return true;
+    }
+
     /// Whether all are so much larger than the region that its box alone rules out more than its faces do.
     [[nodiscard]] bool are_large(const Tree::Node& boxes, unsigned which) const {
         const dvec3 size    = 2.0 * (region.box_max - region.box_min);
@@ -275,8 +283,7 @@ private:
     }
 
     /// Which nodes lie within no part of the half-space, and, four bits above these, which wholly. Certain answers
-    /// only: what lies nearer to the plane than the rounding of f, at any point of the box, is neither, so that a point
-    /// gets the same answer whether a box or the point itself is asked.
+    /// only: what lies nearer to the plane than the rounding of f, at any point of the box, is neither.
     static unsigned cover(const HalfSpace& f, const Tree::Node& boxes) {
         const double nx = f.nx, ny = f.ny, nz = f.nz, nw = f.nw, size_z = std::abs(nz);
         // The corners of boxes at which f is least, and those at which it is most.
@@ -295,7 +302,7 @@ private:
             const double high     = x1 + y1 + nz + w1;
             const double rounding = 0x1p-49 * (std::abs(x0) + std::abs(x1) + std::abs(y0) + std::abs(y1) + size_z +
                                                std::abs(w0) + std::abs(w1));
-            bits |= (std::uint64_t{high < -rounding} | std::uint64_t{low > rounding} << kFanOut) << k;
+            bits |= (std::uint64_t{high < -1 - rounding} | std::uint64_t{low > 1 + rounding} << kFanOut) << k;
         }
         return static_cast<unsigned>(bits);
     }

@@ -21,16 +21,17 @@ struct ViewFrame {
     [[nodiscard]] dvec3 seen(dvec3 p) const { return turned(p - origin); }
 };
 
-/// f(x, y, w) = (nx x + ny y) + (nz + nw w) + tie, for a point at (X, Y, Z) seen from the view: x = X/Z, y = Y/Z, w =
-/// 1/Z. So (n, nw) is the plane n.(X, Y, Z) + nw = 0, and f has the sign of its side. The point is within where f > 0.
-/// `tie` decides for points that give exactly 0, in the same way for all that share the plane, either way round.
+/// f(x, y, w) = (nx x + ny y) + (nz + nw w), for a point at (X, Y, Z) seen from the view: x = X/Z, y = Y/Z, w = 1/Z. So
+/// (n, nw) is the plane n.(X, Y, Z) + nw = 0, and f has the sign of its side. Its unit is how far rounding may move it:
+/// the point is surely within where f > 1, and surely not where f < -1.
 struct HalfSpace {
-    double nx = 0, ny = 0, nz = 0, nw = 0, tie = 0;
+    double nx = 0, ny = 0, nz = 0, nw = 0;
 
-    /// The side of the plane where `sense` is +1, or the other where it is -1; together they hold every point once.
-    static HalfSpace side(dvec3 n, double nw, int sense) {
-        const double s = sense;
-        return {s * n.x, s * n.y, s * n.z, s * nw, s * std::numeric_limits<double>::min()};
+    /// The side of the plane where `sense` is +1, or the other where it is -1. `doubt`: how far rounding may move
+    /// n.(X, Y, Z)/Z + nw/Z, of the plane and of the point together. Where that underflows nothing is sure.
+    static HalfSpace side(dvec3 n, double nw, int sense, double doubt) {
+        const double s = doubt > 1e-290 ? sense / doubt : 0;
+        return {s * n.x, s * n.y, s * n.z, s * nw};
     }
 };
 
@@ -42,6 +43,10 @@ struct Region {
     int count = 0;
     dvec3 box_min{-std::numeric_limits<double>::infinity()};
     dvec3 box_max{+std::numeric_limits<double>::infinity()};
+    /// Of a near cap, whose plane is the first face: its triangle, and whether the region is the side of the plane that
+    /// the light is on. A point of that triangle is on that side.
+    TriangleId cap       = kNoTriangle;
+    bool on_light_s_side = false;
 
     void add(const HalfSpace& h) { faces[static_cast<std::size_t>(count++)] = h; }
 };
@@ -53,6 +58,8 @@ public:
     CountingTree(const Scene& scene, const PointBatch& points);
 
     [[nodiscard]] const ViewFrame& view() const { return view_; }
+    /// w of the nearest point.
+    [[nodiscard]] double largest_w() const { return index_.empty() ? 0 : tree_.levels.back()[0].bounds().high[2]; }
     [[nodiscard]] std::size_t memory_bytes() const {
         return index_.size() * sizeof(std::uint32_t) + tree_.memory_bytes();
     }
@@ -70,16 +77,17 @@ private:
 class PointCounts {
 public:
     /// `points` are those of the tree, which must outlive this object.
-    PointCounts(const CountingTree& tree, const PointBatch& points, LightId light);
+    PointCounts(const CountingTree& tree, const Scene& scene, const PointBatch& points, LightId light);
 
     /// Whether no point needs an answer.
     [[nodiscard]] bool empty() const { return levels_.empty() || levels_.back().asks[0] == 0; }
 
-    /// Adds `weight` to every point within the region. From any number of threads at once; sums of integers are the
-    /// same in any order.
+    /// Adds `weight` to every point within the region, and marks the points of which rounding leaves that open. From
+    /// any number of threads at once; sums of integers are the same in any order.
     void add(const Region& region, std::int32_t weight);
 
-    /// Calls visit(point of the batch, sum of the weights of the regions that it lies in), in parallel.
+    /// Calls visit(point of the batch, sum of the weights of the regions that it lies in, whether that is sure), in
+    /// parallel.
     template <class Visit>
     void for_each(const Visit& visit) const;
 
@@ -95,16 +103,13 @@ private:
 
     const Tree& tree_;
     const RawVector<std::uint32_t>& index_;
+    const Scene& scene_;
+    const PointBatch& points_;
     RawVector<std::uint16_t> asks_;  // of each leaf: a bit for each point
+    RawVector<std::uint16_t> open_;  // of each leaf: a bit for each point of which rounding leaves the sum open
     RawVector<std::int32_t> count_;  // of each point; set in leaves where some point asks
     std::vector<Level> levels_;
 };
-
-/// The point as it is named, less `origin`, in double: but where it is closer to its triangle's border than 2^-44 of
-/// the triangle's distance from `origin`, so much within (and no further than 2^-26 of the triangle). That is far above
-/// the rounding of doubles there and far below that of floats; it keeps a point from lying on the planes through the
-/// edges of its own triangle, where every triangle around would claim it.
-[[nodiscard]] dvec3 named_point(const Scene& scene, const PointBatch& points, std::size_t i, dvec3 origin);
 
 template <class Visit>
 void PointCounts::for_each(const Visit& visit) const {
@@ -118,7 +123,7 @@ void PointCounts::for_each(const Visit& visit) const {
                 const std::int32_t all = above + levels_[0].count[node][leaf % kFanOut];
                 for (unsigned asks = asks_[leaf]; asks != 0; asks &= asks - 1) {
                     const std::size_t k = leaf * kLeaf + static_cast<std::size_t>(std::countr_zero(asks));
-                    visit(index_[k], count_[k] + all);
+                    visit(index_[k], count_[k] + all, (open_[leaf] >> k % kLeaf & 1u) == 0);
                 }
             }
         }

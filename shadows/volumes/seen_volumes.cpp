@@ -10,6 +10,11 @@
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
+
+using exact_visibility::operator-;
+using exact_visibility::rational;
+using exact_visibility::Rational3;
+
 namespace {
 
 uvec3 oriented(uvec3 t, int orientation) { return orientation > 0 ? t : uvec3(t[0], t[2], t[1]); }
@@ -20,8 +25,9 @@ double least_depth(const dvec3& v) { return 0x1p-20 * (std::abs(v.x) + std::abs(
 struct SeenBox {
     dvec3 low, high;  // of (x, y, w)
 };
-/// Of a triangle, and a little larger. Nothing where it does not lie in front of the view.
-std::optional<SeenBox> box_of(const std::array<dvec3, 3>& corners) {
+/// Of a triangle, and larger by more than rounding may move it and points, which is `slack` for those.
+/// Nothing where it does not lie in front of the view.
+std::optional<SeenBox> box_of(const std::array<dvec3, 3>& corners, double slack) {
     dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (const dvec3& v : corners) {
         if (!(v.z > least_depth(v))) return std::nullopt;
@@ -29,7 +35,9 @@ std::optional<SeenBox> box_of(const std::array<dvec3, 3>& corners) {
         low  = glm::min(low, projected);
         high = glm::max(high, projected);
     }
-    const dvec3 rounding = 0x1p-40 * glm::max(glm::abs(low), glm::abs(high));
+    const dvec3 far      = glm::max(glm::abs(low), glm::abs(high));
+    const double share   = 0x1p-40 * (1 + far.x + far.y) + slack;
+    const dvec3 rounding = share * dvec3(1, 1, far.z);
     return SeenBox{low - rounding, high + rounding};
 }
 
@@ -45,22 +53,31 @@ SeenVertices::SeenVertices(const SilhouetteMeshes& meshes, const ViewFrame& view
 }
 
 SeenVolumes::SeenVolumes(const SilhouetteMeshes& meshes, const SeenVertices& vertices, const Light& light,
-                         const ViewFrame& view)
+                         const CountingTree& tree)
     : meshes_(meshes),
+      light_(light),
+      origin_(tree.view().origin),
       at_infinity_(light.kind == LightKind::directional),
-      travel_(at_infinity_ ? view.turned(dvec3(light.direction)) : -view.seen(dvec3(light.position))),
+      travel_(at_infinity_ ? tree.view().turned(dvec3(light.direction)) : -tree.view().seen(dvec3(light.position))),
       vertices_(vertices.at),
-      radius_(vertices.radius) {}
+      largest_w_(tree.largest_w()),
+      // Points and vertices carry a few roundings u = 2^-53 relative to their distances from O, and points to those of
+      // their triangles' corners, at most `radius`; a normal relative to the lengths of what it is a product of. All
+      // that together, over a point's least depth 1/w, is below 100 u.
+      slack_(0x1p-45 * vertices.radius * largest_w_) {}
 
 void SeenVolumes::add_near_cap(PointCounts& counts, TriangleId t, int orientation, bool depth_fail) const {
     const Cap cap = near_cap(t, orientation);
     Region region;
-    region.add(HalfSpace::side(cap.behind, cap.behind_offset, cap.origin_behind == depth_fail ? +1 : -1));
+    region.cap             = t;
+    region.on_light_s_side = cap.origin_behind != depth_fail;
+    region.add(HalfSpace::side(cap.behind, cap.behind_offset, region.on_light_s_side ? -1 : +1, cap.doubt));
     for (int k = 0; k < 3; ++k) {
         const Line e = edge(cap.corners[k], cap.corners[(k + 1) % 3]);
-        region.add(HalfSpace::side(e.normal, 0, cap.origin_behind ? e.sense : -e.sense));
+        region.add(e.side(cap.origin_behind ? e.sense : -e.sense));
     }
-    if (const auto box = box_of({vertices_[cap.corners[0]], vertices_[cap.corners[1]], vertices_[cap.corners[2]]})) {
+    if (const auto box =
+            box_of({vertices_[cap.corners[0]], vertices_[cap.corners[1]], vertices_[cap.corners[2]]}, slack_)) {
         region.box_min = box->low, region.box_max = box->high;
         if (depth_fail)
             region.box_max.z = std::numeric_limits<double>::infinity();
@@ -77,9 +94,9 @@ void SeenVolumes::add_far_cap(PointCounts& counts, TriangleId t, int orientation
     Region region;
     for (int k = 0; k < 3; ++k) {
         const Line e = far_edge(corners[k], corners[(k + 1) % 3]);
-        region.add(HalfSpace::side(e.normal, 0, -e.sense));
+        region.add(e.side(-e.sense));
     }
-    if (const auto box = box_of(ends)) {
+    if (const auto box = box_of(ends, slack_)) {
         region.box_min = {box->low.x, box->low.y, region.box_min.z};
         region.box_max = {box->high.x, box->high.y, region.box_max.z};
     }
@@ -90,11 +107,11 @@ void SeenVolumes::add_side(PointCounts& counts, const ChangeEdge& e, bool depth_
     const VolumePlane plane = side_plane(e.a, e.b);
     const int origin        = plane.origin_outside ? +1 : -1;
     Region region;
-    region.add(HalfSpace::side(plane.normal, plane.offset, depth_fail ? origin : -origin));
-    region.add(HalfSpace::side(edge(e.a, e.b).normal, 0, origin));
-    region.add(HalfSpace::side(glm::cross(vertices_[e.b], travel_), 0, origin));
-    region.add(HalfSpace::side(glm::cross(vertices_[e.a], travel_), 0, -origin));
-    if (depth_fail && !at_infinity_) region.add(HalfSpace::side(far_edge(e.a, e.b).normal, 0, -origin));
+    region.add(HalfSpace::side(plane.normal, plane.offset, depth_fail ? origin : -origin, plane.doubt));
+    region.add(edge(e.a, e.b).side(origin));
+    region.add(end_line(e.b).side(origin));
+    region.add(end_line(e.a).side(-origin));
+    if (depth_fail && !at_infinity_) region.add(far_edge(e.a, e.b).side(-origin));
     counts.add(region, depth_fail ? -origin * e.change : origin * e.change);
 }
 
@@ -117,19 +134,20 @@ std::int32_t SeenVolumes::count_at_origin(std::span<const std::int8_t> orientati
     return count;
 }
 
-// A point in the plane of the triangle, its own or one that coincides with it, is not behind it. Points and vertices
-// carry a few roundings u = 2^-53 relative to their distance from O, at most `radius`, the normal relative to the two
-// sides that span it; the sum of both, over both points and the evaluation, is below 32 u.
 SeenVolumes::Cap SeenVolumes::near_cap(TriangleId t, int orientation) const {
     Cap cap;
-    cap.corners       = oriented(meshes_.triangles()[t], orientation);
-    const dvec3 a     = vertices_[cap.corners[0]];
-    const dvec3 p     = vertices_[cap.corners[1]] - a;
-    const dvec3 q     = vertices_[cap.corners[2]] - a;
+    cap.corners   = oriented(meshes_.triangles()[t], orientation);
+    const dvec3 a = vertices_[cap.corners[0]], b = vertices_[cap.corners[1]], c = vertices_[cap.corners[2]];
+    const dvec3 p = b - a, q = c - a;
+    const double size = glm::length(a);
     cap.behind        = glm::cross(q, p);
-    const double tiny = 32 * 0x1p-53 * radius_ * std::sqrt(glm::dot(p, p) * glm::dot(q, q));
-    cap.behind_offset = -glm::dot(cap.behind, a) - tiny;
+    cap.behind_offset = -glm::dot(cap.behind, a);
+    cap.doubt         = slack_ * (glm::length(p) * (size + glm::length(c)) + glm::length(q) * (size + glm::length(b)));
     cap.origin_behind = cap.behind_offset > 0;
+    if (is_near_origin(cap.behind_offset, cap.doubt)) {
+        const auto at     = [&](int k) { return meshes_.vertices()[cap.corners[k]]; };
+        cap.origin_behind = side_of_origin(at(0), at(1), rational(at(2)) - rational(at(0))) < 0;
+    }
     return cap;
 }
 
@@ -137,16 +155,37 @@ SeenVolumes::VolumePlane SeenVolumes::side_plane(std::uint32_t a, std::uint32_t 
     VolumePlane plane;
     plane.normal         = glm::cross(far(a), vertices_[b] - vertices_[a]);
     plane.offset         = -glm::dot(plane.normal, vertices_[a]);
+    plane.doubt          = slack_ * far_size(a) * (glm::length(vertices_[a]) + glm::length(vertices_[b]));
     plane.origin_outside = plane.offset >= 0;
+    if (is_near_origin(plane.offset, plane.doubt)) {
+        const vec3 at_a = meshes_.vertices()[a], at_b = meshes_.vertices()[b];
+        const Rational3 far  = at_infinity_ ? rational(light_.direction) : rational(at_a) - rational(light_.position);
+        plane.origin_outside = side_of_origin(at_a, at_b, far) <= 0;
+    }
     return plane;
 }
 
 SeenVolumes::Line SeenVolumes::edge(std::uint32_t from, std::uint32_t to) const {
-    return {glm::cross(vertices_[std::min(from, to)], vertices_[std::max(from, to)]), from < to ? +1 : -1};
+    const dvec3 a = vertices_[std::min(from, to)], b = vertices_[std::max(from, to)];
+    return {glm::cross(a, b), slack_ * glm::length(a) * glm::length(b), from < to ? +1 : -1};
 }
 
 SeenVolumes::Line SeenVolumes::far_edge(std::uint32_t from, std::uint32_t to) const {
-    return {glm::cross(far(std::min(from, to)), far(std::max(from, to))), from < to ? +1 : -1};
+    return {glm::cross(far(std::min(from, to)), far(std::max(from, to))), slack_ * far_size(from) * far_size(to),
+            from < to ? +1 : -1};
+}
+
+SeenVolumes::Line SeenVolumes::end_line(std::uint32_t v) const {
+    return {glm::cross(vertices_[v], travel_), slack_ * glm::length(vertices_[v]) * glm::length(travel_), +1};
+}
+
+/// Whether the sign of a plane's offset, which is the side that O is on, is open.
+bool SeenVolumes::is_near_origin(double offset, double doubt) const {
+    return !(std::abs(offset) * largest_w_ > doubt) || doubt <= 1e-290;
+}
+
+int SeenVolumes::side_of_origin(vec3 a, vec3 b, const Rational3& c) const {
+    return exact_visibility::sign_of_determinant(rational(b) - rational(a), c, rational(origin_) - rational(a));
 }
 
 }  // namespace umbra

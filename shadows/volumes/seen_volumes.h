@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "umbra/shadows/geometry/exact_point.h"
 #include "umbra/shadows/volumes/counting_tree.h"
 #include "umbra/shadows/volumes/silhouettes.h"
 
@@ -24,9 +25,9 @@ struct SeenVertices {
 /// to counts may run in several threads at once.
 class SeenVolumes {
 public:
-    /// `vertices` are those of `meshes`, seen from `view`; both must outlive this object.
+    /// `vertices` are those of `meshes`, seen from the tree's view; all must outlive this object.
     SeenVolumes(const SilhouetteMeshes& meshes, const SeenVertices& vertices, const Light& light,
-                const ViewFrame& view);
+                const CountingTree& tree);
 
     /// The near cap of a triangle: region and weight of its crossings.
     void add_near_cap(PointCounts& counts, TriangleId t, int orientation, bool depth_fail) const;
@@ -46,15 +47,15 @@ private:
     struct Cap {
         uvec3 corners;
         dvec3 behind;
-        double behind_offset = 0;
-        bool origin_behind   = false;
+        double behind_offset = 0, doubt = 0;
+        bool origin_behind = false;
     };
     [[nodiscard]] Cap near_cap(TriangleId t, int orientation) const;
 
     /// A side's plane, its normal out of the volume of a triangle that runs the edge from a to b.
     struct VolumePlane {
         dvec3 normal;
-        double offset       = 0;
+        double offset = 0, doubt = 0;
         bool origin_outside = false;
     };
     [[nodiscard]] VolumePlane side_plane(std::uint32_t a, std::uint32_t b) const;
@@ -62,18 +63,33 @@ private:
     /// The plane through O and an edge, made the same for both directions of the edge; `sense` is -1 for the second.
     struct Line {
         dvec3 normal;
-        int sense = +1;
+        double doubt = 0;
+        int sense    = +1;
+
+        [[nodiscard]] HalfSpace side(int which) const { return HalfSpace::side(normal, 0, which, doubt); }
     };
     [[nodiscard]] Line edge(std::uint32_t from, std::uint32_t to) const;
     [[nodiscard]] Line far_edge(std::uint32_t from, std::uint32_t to) const;
 
+    [[nodiscard]] Line end_line(std::uint32_t v) const;
+
     [[nodiscard]] dvec3 far(std::uint32_t v) const { return at_infinity_ ? travel_ : vertices_[v] + travel_; }
+    /// Length of what `far` is a sum of.
+    [[nodiscard]] double far_size(std::uint32_t v) const {
+        return glm::length(travel_) + (at_infinity_ ? 0 : glm::length(vertices_[v]));
+    }
+    [[nodiscard]] bool is_near_origin(double offset, double doubt) const;
+    /// Sign of the determinant of b - a, a vector c and O - a. Exact.
+    [[nodiscard]] int side_of_origin(vec3 a, vec3 b, const exact_visibility::Rational3& c) const;
 
     const SilhouetteMeshes& meshes_;
+    const Light& light_;
+    const dvec3 origin_;
     bool at_infinity_;
     dvec3 travel_;
     const std::vector<dvec3>& vertices_;
-    double radius_;
+    double largest_w_;
+    double slack_;  ///< by how much rounding may move n.(X, Y, Z)/Z + nw/Z, for a normal of products of length 1
 };
 
 }  // namespace umbra

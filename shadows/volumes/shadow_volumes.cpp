@@ -9,12 +9,13 @@
 //     O --[F==== p ====B]------>     one face entered between,               count(p) = count(O) + 1  umbra
 //
 // There is no near and no far plane, no stencil and no pixel: faces are counted at the exact points (counting_tree.h).
-// In the projection from O every edge, and every line that an edge's end runs away along, is one half-space that all
-// faces beside it share bit for bit, so that no point is lost or counted twice between two faces.
+// A point that a face, an edge seen from O, or a line that an edge's end runs away along passes within rounding is
+// marked, and decided apart, by the exact segment to the light (geometry/exact_sight.h).
 //
 // build welds the objects' vertices and finds their edges. aim finds the triangles that bound a volume and the edges
 // that extrude a side. look chooses O, and sorts the surface points as seen from there into a tree. visibility adds the
-// faces of the volumes to counts in the tree, and reads them at the points that the light is in front of.
+// faces of the volumes to counts in the tree, and reads them at the points that the light is in front of; it alone asks
+// for exact segments, and the first that does sorts the triangles into a tree of boxes.
 //
 // This work is based on:
 // Frank Crow. Shadow Algorithms for Computer Graphics. 1977
@@ -32,6 +33,7 @@
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/scene/winding.h"
+#include "umbra/shadows/geometry/exact_sight.h"
 #include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/volumes/seen_volumes.h"
@@ -68,9 +70,11 @@ const std::vector<Parameter> kParameters{
 
 /// The objects as meshes that know their edges.
 struct Meshes final : Built {
-    Meshes(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), meshes(of, its_facts.objects) {}
-    [[nodiscard]] std::size_t memory_bytes() const override { return meshes.memory_bytes(); }
+    Meshes(const Scene& of, const SceneFacts& its_facts)
+        : Built(of, its_facts), meshes(of, its_facts.objects), sight(of) {}
+    [[nodiscard]] std::size_t memory_bytes() const override { return meshes.memory_bytes() + sight.memory_bytes(); }
     const SilhouetteMeshes meshes;
+    const ExactSight sight;
 };
 
 /// What bounds the volumes of one light.
@@ -165,9 +169,9 @@ public:
         const Volumes& of = as<Volumes>(aimed);
         const Seen& seen  = as<Seen>(looked);
         const Light& l    = aimed.source();
-        PointCounts counts(seen.tree, looked.points, aimed.light);
+        PointCounts counts(seen.tree, aimed.scene(), looked.points, aimed.light);
         if (counts.empty()) return;
-        const SeenVolumes volumes(of.meshes, seen.vertices, l, seen.tree.view());
+        const SeenVolumes volumes(of.meshes, seen.vertices, l, seen.tree);
         const bool depth_fail     = options.counting == Counting::depth_fail;
         const std::int32_t origin = depth_fail ? 0 : volumes.count_at_origin(of.orientation);
 
@@ -182,10 +186,12 @@ public:
         parallel_ranges(of.edges.size(), 64, [&](std::size_t begin, std::size_t end) {
             for (std::size_t e = begin; e < end; ++e) volumes.add_side(counts, of.edges[e], depth_fail);
         });
-        const bool has_area = is_area(l.kind);
-        counts.for_each([&](std::uint32_t i, std::int32_t count) {
+        const bool has_area     = is_area(l.kind);
+        const ExactSight& sight = as<Meshes>(aimed.built).sight;
+        counts.for_each([&](std::uint32_t i, std::int32_t count, bool is_sure) {
             const bool behind = has_area && centre_is_behind(aimed.scene(), looked.points, aimed.light, i);
-            out.s[i]          = origin + count > 0 || behind ? 0.0f : 1.0f;
+            const bool lit    = is_sure ? origin + count <= 0 : sight.is_lit(looked.points, i, l);
+            out.s[i]          = lit && !behind ? 1.0f : 0.0f;
         });
     }
 
@@ -200,7 +206,7 @@ public:
                 const Line line(as<Volumes>(aimed), looked.points, i);
                 Holding holding;
                 tree.visit({line.p, line.to_light, line.end, 0}, [&](TriangleId t) {
-                    holding.add(t, line);
+                    if (t != looked.points.triangle[i]) holding.add(t, line);
                     return true;
                 });
                 blockers[i] = holding.farthest;
@@ -236,7 +242,7 @@ private:
     /// From a point to the light.
     struct Line {
         Line(const Volumes& volumes, const PointBatch& points, std::size_t i)
-            : of(volumes), p(named_point(of.scene(), points, i, dvec3(0))) {
+            : of(volumes), p(exact_position(of.scene(), points, i)) {
             const Light& light = of.source();
             if (light.kind == LightKind::directional)
                 to_light = -dvec3(light.direction), end = std::numeric_limits<double>::infinity();

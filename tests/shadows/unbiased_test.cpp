@@ -11,7 +11,7 @@
 #include <random>
 
 #include "umbra/bench/golden/golden_planes.h"
-#include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"

@@ -229,6 +229,82 @@ TEST(ExactAgainstOracle, HardLights) {
     EXPECT_GT(tally.on_boundary, wanted / 200);
 }
 
+/// Compares the answers of a method that serves the scene to rounding. Returns how many: those off boundaries that it
+/// does not leave undefined.
+std::size_t judge(const char* choice, const Scene& scene, const PointBatch& points, const Oracle& truth,
+                  std::size_t& umbra) {
+    MethodCase method(choice, scene);
+    if (method.serves().how != How::to_rounding) return 0;
+    std::size_t decisions = 0;
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        method.prepare(light);
+        const VisibilityPlane plane = method.visibility(points, light);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (points.triangle[i] == kNoTriangle || !points.asks(light, i) || !plane.defined(i)) continue;
+            const Verdict right = truth.verdict(name_of(points, i), scene.lights[light]);
+            if (right == Verdict::on_boundary) continue;
+            EXPECT_EQ(plane.s[i], right == Verdict::lit ? 1.0f : 0.0f)
+                << choice << ", " << scene.name << ", light " << light << ", point " << i << ", triangle "
+                << points.triangle[i];
+            ++decisions, umbra += right == Verdict::umbra;
+        }
+    }
+    return decisions;
+}
+
+/// What serves hard lights to rounding decides exactly what rounding leaves open: by hair-thin triangles, at folds, on
+/// edges, in any scale.
+class AllToRounding : public testing::TestWithParam<const char*> {};
+
+TEST_P(AllToRounding, AgreesOnAdversarialScenes) {
+    std::size_t decisions = 0, umbra = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const AdversarialScene made = adversarial_scene(seed, LightsWanted::hard, kLights, kPoints);
+        decisions += judge(GetParam(), made.scene, made.points, Oracle(made.scene), umbra);
+    }
+    EXPECT_GT(decisions, 500u);
+    EXPECT_GT(umbra, 100u);
+}
+
+/// A wall that begins a hair above a floor, or below it: exporters write a foot at -1e-17. Points lie by the wall and
+/// under it, and on lines through its foot.
+TEST_P(AllToRounding, AgreesAtTheFootOfAWall) {
+    std::size_t decisions = 0, umbra = 0;
+    for (const float foot : {0.0f, -0x1p-149f, 0x1p-149f, -1e-20f, 1e-20f, -6e-17f, -1e-14f, -1e-9f, 1e-9f, -1e-3f}) {
+        Scene scene;
+        scene.materials.emplace_back();
+        const auto add_quad = [&](const char* name, vec3 a, vec3 along, vec3 up) {
+            add_object(scene, name, {a, a + along, a + along + up, a + up}, {}, {{0, 1, 2}, {0, 2, 3}}, 0);
+        };
+        add_quad("floor", {-4, 0, 4}, {8, 0, 0}, {0, 0, -8});
+        add_quad("wall", {-1, foot, 0.25f}, {2, 0, 0}, {0, 1.5f, 0});
+        add_quad("turned", {-2.1f, foot, -1.3f}, {1.1f, 0, 0.7f}, {0, 1.3f, 0});
+        for (const vec3 at : {vec3(0, 3, 4), vec3(-3, 2, 1), vec3(0.3f, 5, 0.2501f), vec3(2, 1, -4)}) {
+            Light light;
+            light.kind     = LightKind::point;
+            light.name     = std::to_string(scene.lights.size());
+            light.position = at;
+            scene.lights.push_back(light);
+        }
+        const std::array v{0.0f, 0x1p-149f, 0x1p-24f, 0.25f, 0.46875f, 0.469f, 0.5f, 0.53125f, 0.6f, 0.7f};
+        PointBatch points;
+        points.eye = {0, 5, 0};
+        points.resize(2 * v.size() * v.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const std::size_t k = i / 2;
+            set_point(points, i, scene, static_cast<TriangleId>(i % 2), v[k / v.size()], v[k % v.size()]);
+        }
+        face_lights(points, scene);
+        decisions += judge(GetParam(), scene, points, Oracle(scene), umbra);
+    }
+    EXPECT_GT(decisions, 1000u);
+    EXPECT_GT(umbra, 50u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, AllToRounding,
+                         testing::Values("planar_projection", "planar_projection:edges=per_triangle", "scan_line",
+                                         "shadow_volumes", "shadow_volumes:counting=depth_fail", "brute_force"));
+
 TEST(ExactAgainstOracle, Seams) {
     const std::uint64_t wanted = from_environment("UMBRA_ORACLE_SEAMS", 3000);
     std::uint64_t seed         = from_environment("UMBRA_ORACLE_SEED", 1);

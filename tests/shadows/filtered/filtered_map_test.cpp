@@ -11,8 +11,8 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/shadows/filtered/moment_map.h"
+#include "umbra/shadows/maps/answers.h"
 #include "umbra/shadows/maps/depth_lookup.h"
-#include "umbra/shadows/maps/facets.h"
 #include "umbra/tests/support/drawn_views.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/map_scenes.h"
@@ -240,8 +240,7 @@ TEST(Moments, AFloorAndABiasActAsStated) {
     EXPECT_NEAR(lit({MomentKind::msm, 40, 5, 0, 1}), 1 - hamburger({0, 0.375, 0, 0.375}, 0.5), 1e-5);
 }
 
-// ---- against PCF of the same map
-// ---------------------------------------------------------------------------------------
+// ---- against PCF of the same map ----------------------------------------------------------------------------------
 
 /// A ball, a box and a leaning sheet over a floor: many depths in one filter.
 Scene clutter(const Light& light) {
@@ -305,8 +304,7 @@ TEST(FilteredMap, OnlyLetsLightThroughAgainstPcfOfTheSameMap) {
             }
 }
 
-// ---- scenes of two depths
-// ----------------------------------------------------------------------------------------------
+// ---- scenes of two depths -----------------------------------------------------------------------------------------
 
 constexpr int kRadius = 3, kResolution = 128;
 
@@ -418,8 +416,7 @@ TEST(FilteredMap, EmptyTexelsTakeNoLightFromWhatIsDrawnAndGiveNone) {
     }
 }
 
-// ---- light leaks
-// -------------------------------------------------------------------------------------------------------
+// ---- light leaks --------------------------------------------------------------------------------------------------
 
 /// Sheets at heights 3, over x < 0, and 1, over all: the floor sees nothing of the light.
 Scene two_occluders() {
@@ -465,8 +462,7 @@ TEST(FilteredMap, VarianceLeaksBehindTwoOccludersByTheFormula) {
     EXPECT_GT(most_of("kind=evsm4,positive_exponent=1,negative_exponent=1,bleed=0"), 0.03f);
 }
 
-// ---- numbers
-// -----------------------------------------------------------------------------------------------------------
+// ---- numbers ------------------------------------------------------------------------------------------------------
 
 TEST(FilteredMap, NumbersStayWithinRangeAtExtremes) {
     for (const float size : {1.0f, 1e6f, 1e-6f})
@@ -521,8 +517,7 @@ TEST(FilteredMap, SameForAnyNumberOfThreads) {
     }
 }
 
-// ---- the map
-// -----------------------------------------------------------------------------------------------------------
+// ---- the map ------------------------------------------------------------------------------------------------------
 
 TEST(MomentMap, SamplesAreMeansOverTheirBox) {
     // Against sums over the depth map, sample by sample, across borders of tiles and of the map.
@@ -577,8 +572,7 @@ TEST(MomentMap, DepthIsLinearAndEndsAtTheFrame) {
     }
 }
 
-// ---- the method
-// --------------------------------------------------------------------------------------------------------
+// ---- the method ---------------------------------------------------------------------------------------------------
 
 TEST(FilteredMap, NothingLeaksThroughACubesSeams) {
     Scene scene;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "umbra/core/base/error.h"
 #include "umbra/tests/support/mesh_scene.h"
 
 namespace umbra {
@@ -77,6 +78,18 @@ TEST(Edges, PointsOnOppositeSidesOfTurnedNormalsSeeNoChange) {
 TEST(Edges, ThinTrianglesHaveNoNormal) {
     EXPECT_EQ(normal_unless_thin({0, 0, 0}, {1, 0, 0}, {2, 1e-7f, 0}), vec3(0));
     EXPECT_EQ(normal_unless_thin({0, 0, 0}, {1, 0, 0}, {2, 1e-4f, 0}), vec3(0, 0, 1));
+}
+
+/// Triangles are numbered in 31 bits.
+TEST(Edges, RefusesTrianglesThatItCannotNumber) {
+    Topology topology;
+    topology.triangles.resize(1);
+    topology.first_triangle = 0x7fffffffu;
+    EXPECT_NO_THROW(EdgeList{topology});
+    topology.triangles.resize(2);
+    EXPECT_THROW(EdgeList{topology}, MethodError);
+    topology.first_triangle = 0xffffffffu;
+    EXPECT_THROW(EdgeList{topology}, MethodError);
 }
 
 TEST(Edges, OfOccludersAreThoseThatBlockLight) {

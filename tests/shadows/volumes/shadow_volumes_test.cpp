@@ -40,13 +40,11 @@ Truth truth_at(const Scene& scene, const PointBatch& points, std::size_t i, cons
     using dvec3l         = glm::vec<3, Real>;
     const auto of        = [&](TriangleId t, int k) { return dvec3l(scene.vertex(t, k)); };
     const TriangleId own = points.triangle[i];
-    Real w[3]            = {1 - Real(points.u[i]) - Real(points.v[i]), points.u[i], points.v[i]};
-    if (std::min({w[0], w[1], w[2]}) <
-        0x1p-26L)  // a point on its triangle's border: as seen from within, counting_tree.h
-        for (Real& x : w) x = std::max(x, 0x1p-26L);
-    const dvec3l p   = (w[0] * of(own, 0) + w[1] * of(own, 1) + w[2] * of(own, 2)) / (w[0] + w[1] + w[2]);
-    const bool far   = light.kind == LightKind::directional;
-    const dvec3l ray = far ? -dvec3l(light.direction) : dvec3l(light.position) - p;
+    const Real w[3]      = {1 - Real(points.u[i]) - Real(points.v[i]), points.u[i], points.v[i]};
+    const bool at_border = std::min({w[0], w[1], w[2]}) == 0;
+    const dvec3l p       = w[0] * of(own, 0) + w[1] * of(own, 1) + w[2] * of(own, 2);
+    const bool far       = light.kind == LightKind::directional;
+    const dvec3l ray     = far ? -dvec3l(light.direction) : dvec3l(light.position) - p;
     Truth truth;
     bool doubtful = false;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
@@ -61,8 +59,10 @@ Truth truth_at(const Scene& scene, const PointBatch& points, std::size_t i, cons
         const dvec3l n   = glm::cross(b - a, c - a);
         const Real along = glm::dot(n, ray), height = glm::dot(n, a);  // crosses at height / along
         const Real small = 1e-12L * glm::length(n) * glm::length(a);
-        // Behind the start, beyond the light, or in the plane of a triangle that has the point on it: no occluder.
+        // Behind the start, beyond the light, or in the plane of a triangle that has the point on it: no occluder. A
+        // point on its triangle's border may lie on others too, which is a boundary.
         if (std::abs(height) <= small) {
+            doubtful |= at_border;
             continue;
         }
         if ((height > 0) != (along > 0)) continue;
