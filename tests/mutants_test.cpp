@@ -88,9 +88,9 @@ TEST(Mutants, EachChangesExactlyOnePlace) {
     }
 }
 
-TEST(Mutants, AreAsManyAsTheReadmeSays) {
+TEST(Mutants, AreAsManyAsTheChecksPageSays) {
     const std::string said = "changes the program in one of " + std::to_string(all_mutants().size()) + " places";
-    EXPECT_EQ(times(said, text_of(fs::path(UMBRA_TOP) / "README.md")), 1u) << said;
+    EXPECT_EQ(times(said, text_of(fs::path(UMBRA_TOP) / "docs/checks.md")), 1u) << said;
 }
 
 TEST(Mutants, EachSaysWhatItBreaksAndWhichTestsNotice) {

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 
-#include "umbra/bench/bias/bias_page.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/results_file.h"
+#include "umbra/bench/studies/bias/bias_report.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -58,9 +59,11 @@ Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOpt
     check_bias_map(options.map, grid);
     std::vector<BiasStudy> studies;
     Json failures = Json::array();
-    for (const std::filesystem::path& file : files) {
+    for (const auto& [file, name, folder] : chosen_scenes(files)) {
         try {
-            BiasStudy study = study_bias(prepare_scene(file, options.size), options.map, grid, options.progress);
+            PreparedScene prepared = prepare_scene(file, options.size);
+            prepared.scene.name    = name;
+            BiasStudy study        = study_bias(std::move(prepared), options.map, grid, options.progress);
             if (study.points > 0)
                 studies.push_back(std::move(study));
             else
@@ -68,8 +71,7 @@ Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOpt
         } catch (const InputError& e) {
             failed.emplace_back(e.what());
         } catch (...) {
-            failures.push_back(
-                {{"scene", file.stem().string()}, {"method", "the study"}, {"message", current_message()}});
+            failures.push_back({{"scene", name}, {"method", "the study"}, {"message", current_message()}});
         }
     }
     Json record = {{"schema", kResultsSchema},
@@ -88,30 +90,9 @@ Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOpt
     for (const BiasStudy& study : studies) record["bias"].push_back(study_json(study, grid));
 
     StagedFiles staged;
-    staged.write(options.out / "results.json", json_text(record));
-    write_bias_page(record, options.out, staged);
+    write_study_files(bias_report(record), record, options.out, staged);
     staged.commit();
     return record;
-}
-
-std::string bias_table(const Json& record) {
-    std::string text =
-        fmt::format("{:24} {:>9} {:>17} {:>17} {:>17}  {}\n", "interior: false shadow + light", "points", "auto",
-                    "receiver_plane", "best manual", "constant slope normal_offset; better than auto");
-    for (const Json& study : record["bias"]) {
-        const auto wrong = [&](const char* setting) {
-            const Json& e = study[setting];
-            return fmt::format("{:>8} {:>8}", e["false_shadow"]["interior"].get<std::uint64_t>(),
-                               e["false_light"]["interior"].get<std::uint64_t>());
-        };
-        const Json& best = study["best_manual"];
-        text += fmt::format(
-            "{:30} {:>9} {} {} {}  {:g} {:g} {:g}; {} of {}\n", study["scene"].get<std::string>(),
-            study["points"].get<std::uint64_t>(), wrong("automatic"), wrong("receiver_plane"), wrong("best_manual"),
-            best["constant"].get<double>(), best["slope"].get<double>(), best["normal_offset"].get<double>(),
-            study["settings_better_than_automatic"].get<std::size_t>(), study["settings"].get<std::size_t>());
-    }
-    return text;
 }
 
 }  // namespace umbra

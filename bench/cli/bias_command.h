@@ -1,7 +1,7 @@
 // `umbra bias`: studies the bias of the shadow z-buffer on scenes and writes the results as data and heat maps.
 #pragma once
 
-#include "umbra/bench/bias/bias_study.h"
+#include "umbra/bench/studies/bias/bias_study.h"
 
 namespace umbra {
 
@@ -14,14 +14,11 @@ struct BiasOptions {
     std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
 };
 
-/// Studies the scenes and writes OUT/results.json and the page OUT/index.html. Returns the record. The
+/// Studies the scenes and writes OUT/results.json, OUT/bias.csv and the page OUT/index.html. Returns the record. The
 /// messages of unreadable scenes, or scenes whose meshes are missing, are appended to `failed`; these are skipped.
 /// Scenes on which a method threw are in the record's `failed`; without any study nothing is written. Throws
 /// UsageError, InputError.
 Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
                   std::vector<std::string>& failed);
-
-/// The record's scenes as a table for a terminal.
-[[nodiscard]] std::string bias_table(const Json& record);
 
 }  // namespace umbra

@@ -43,8 +43,10 @@ std::string explain(const CLI::App& app, const CLI::App& command, const CLI::Par
     if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
     std::vector<std::string> options;
     for (const CLI::App* of : {&command, &app})
-        for (const CLI::Option* option : of->get_options())
+        for (const CLI::Option* option : of->get_options()) {
+            if (option->get_group().empty()) continue;  // not in the help either
             for (const std::string& name : option->get_lnames()) options.push_back("--" + name);
+        }
     for (const std::string& word : app.remaining(true))
         if (word.starts_with("--")) text += did_you_mean(word.substr(0, word.find('=')), options);
     return text;
@@ -112,7 +114,7 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
     app.footer(
         "SCENE is a file or the name of a canonical scene; METHOD is NAME or NAME:setting=value,setting=value (see "
         "umbra list).\n"
-        "Exit codes: 0 done, 1 the answer is no, 4 input unreadable, 5 a method failed or internal error, 64 wrong "
+        "Exit codes: 0 done, 1 the answer is no, 4 input unreadable, 5 a method failed or was cut short, or internal error, 64 wrong "
         "usage; diff: 0 same, 1 close, 2 differs, 3 size or channels differ, 4 unreadable.\n"
         "The script ./umbra also has: setup, test, bench, oracle, mutants, faults, check, fuzz.");
     return actions;

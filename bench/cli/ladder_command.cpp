@@ -18,6 +18,7 @@
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/staged_folder.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
@@ -41,10 +42,10 @@ std::optional<MethodChoice> textbook_form(const MethodInfo& info) {
 /// All methods but the reference, with their defaults and, where that is something else, in their textbook form.
 std::vector<MethodChoice> default_methods(bool only_by_default) {
     std::vector<MethodChoice> chosen;
-    for (const MethodInfo* info : methods()) {
-        if (!(only_by_default ? info->by_default : info->is_shown()) || info->reference) continue;
-        chosen.emplace_back(*info);
-        if (auto form = textbook_form(*info)) chosen.push_back(std::move(*form));
+    for (const MethodChoice& method : chosen_methods({}, {}, {})) {
+        if (method.info->reference || (only_by_default && !method.info->by_default)) continue;
+        chosen.push_back(method);
+        if (auto form = textbook_form(*method.info)) chosen.push_back(std::move(*form));
     }
     return chosen;
 }
@@ -109,7 +110,7 @@ std::vector<Climbed> climb_all(std::span<const Ladder* const> chosen, const std:
                     steps.show(what);
                 };
                 try {
-                    all[i].run = climb_ladder(*chosen[i], methods, progress, options.patience_s);
+                    all[i].run = climb_ladder(*chosen[i], methods, progress, options.patience_s, options.budget);
                 } catch (...) {
                     all[i].stopped = std::current_exception();
                 }
@@ -129,14 +130,14 @@ Json climb_ladders(const LadderOptions& options) {
     std::vector<const Ladder*> chosen;
     for (const std::string& name : options.names) chosen.push_back(&find_ladder(name));
     if (chosen.empty()) chosen.assign(ladders().begin(), ladders().end());
-    std::vector<MethodChoice> methods_chosen;
-    for (const std::string& text : options.methods) methods_chosen.push_back(parse_method(text));
-    if (options.methods.empty()) methods_chosen = default_methods(options.only_by_default);
+    const std::vector<MethodChoice> methods_chosen =
+        options.methods.empty() ? default_methods(options.only_by_default) : chosen_methods(options.methods, {}, {});
 
-    Json record           = {{"schema", kResultsSchema},         {"version", version()},
-                             {"command", options.command},       {"machine", machine_json(options.threads)},
-                             {"breaking_share", kBreakingShare}, {"ladders", Json::array()},
-                             {"failed", Json::array()}};
+    Json record = {{"schema", kResultsSchema},         {"version", version()},
+                   {"command", options.command},       {"machine", machine_json(options.threads)},
+                   {"breaking_share", kBreakingShare}, {"ladders", Json::array()},
+                   {"failed", Json::array()}};
+    if (options.budget.is_set()) record["budget"] = budget_json(options.budget);
     const auto add_failed = [&](const Ladder& ladder, const std::string& method) {
         record["failed"].push_back({{"ladder", ladder.name},
                                     {"rung", nullptr},

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/run/budget.h"
 #include "umbra/bench/run/describe.h"
 
 namespace umbra {
@@ -15,7 +16,8 @@ struct LadderOptions {
     std::vector<std::string> methods;  ///< as typed; empty: all that reports show (MethodInfo::is_shown) but `exact`,
                                        ///< the reference, with their defaults and in their textbook form
     bool only_by_default = false;      ///< of these, those that run on every scene alone: minutes less
-    double patience_s    = 20;         ///< as climb_ladder takes it
+    double patience_s    = 20;         ///< as climb_ladder takes it, and the budget
+    Budget budget{};
     std::filesystem::path out;
     std::string command;  ///< for the record
     int threads = 0;

@@ -46,7 +46,7 @@ void write_records(const SweepOptions& options, const SweepDone& done) {
 }  // namespace
 
 ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOptions options, const Common& common,
-                               const std::vector<fs::path>& also, Language language) {
+                               const CompareOutput& output) {
     options.command = common.command;
     options.threads = thread_count();
     ScenesDone done;
@@ -67,10 +67,13 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
     std::vector<fs::path> folders;
     for (const std::string& name : done.names) folders.push_back(options.out / name);
     if (!folders.empty()) {
-        folders.insert(folders.end(), also.begin(), also.end());
-        write_report(folders, options.out, {.failed = done.failed, .language = language});
+        folders.insert(folders.end(), output.also.begin(), output.also.end());
+        write_report(folders, options.out, {.failed = done.failed, .language = output.language});
     }
-    if (!common.quiet && !folders.empty()) print_out("{}\n", (options.out / "index.html").string());
+    if (output.as_json)
+        for (const std::string& name : done.names) print_out("{}", bytes_of(options.out / name / "results.json"));
+    else if (!common.quiet && !folders.empty())
+        print_out("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) print_error("{}\n", message);
     for (const std::string& message : done.stopped) print_error("{}\n", message);
     for (const std::string& message : done.missing) print_error("{}\n", message);

@@ -9,11 +9,15 @@
 
 namespace umbra {
 
-/// Compares the scenes and writes the pages of the results, and of the folders `also`. Prints the first page's path,
-/// and to standard error the messages of the scenes that failed. `language` is that of the page of the lectures.
+struct CompareOutput {
+    std::vector<std::filesystem::path> also{};  ///< further folders that the pages are about
+    Language language = Language::english;      ///< of the page of the lectures
+    bool as_json      = false;                  ///< prints each scene's record instead of the first page's path
+};
+/// Compares the scenes and writes the pages of the results. Prints to standard error the messages of the scenes that
+/// failed.
 ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, CompareOptions options,
-                               const Common& common, const std::vector<std::filesystem::path>& also = {},
-                               Language language = Language::english);
+                               const Common& common, const CompareOutput& output = {});
 
 /// 0; 4 where scenes could not be read; 5 where a method failed.
 [[nodiscard]] int exit_code(const ScenesDone& done);

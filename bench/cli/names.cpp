@@ -10,7 +10,7 @@
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/run/antialias.h"
-#include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/io/scene_io.h"

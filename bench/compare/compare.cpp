@@ -3,24 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <functional>
+#include <map>
+#include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/fine_picture.h"
 #include "umbra/bench/compare/image_figures.h"
 #include "umbra/bench/compare/method_files.h"
-#include "umbra/bench/compare/method_times.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/out/staged_folder.h"
-#include "umbra/bench/run/canonical.h"
-#include "umbra/bench/run/explain.h"
-#include "umbra/bench/run/noise_runs.h"
+#include "umbra/bench/run/chosen.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/steps.h"
+#include "umbra/bench/time/turns.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
@@ -29,13 +30,6 @@ namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr Repeats kOnce{1, 0};
-
-void warn(const Scene& scene, const std::function<void(const std::string&)>& receive) {
-    if (!receive) return;
-    for (const std::string& warning : scene.warnings) receive(fmt::format("{}: {}", scene.name, warning));
-}
-
 /// "name", then "name-2", ...: ids name files and must not repeat.
 std::string unique_id(std::string_view name, std::set<std::string>& used) {
     std::string id(name);
@@ -43,62 +37,56 @@ std::string unique_id(std::string_view name, std::set<std::string>& used) {
     return id;
 }
 
-/// What a method answered, differences, times and files. `at` is the light that is being worked on.
-Json method_entry(const FilePlace& place, const PreparedScene& prepared, const MethodRun& run,
-                  const MethodRun& reference, const Rendered& reference_rendered, const FinePicture& known,
-                  double& shade_ms, std::optional<LightId>& at) {
-    const Scene& scene = prepared.scene;
-    std::vector<Explained> explained;
-    at.reset();
-    const auto noise = noise_runs(*run.work, scene, prepared.points);
-    for (LightId j = 0; j < scene.lights.size(); ++j) {
-        at = j;
-        explained.push_back(explain(scene, prepared.points, j, run, reference, noise[j] ? &*noise[j] : nullptr));
-    }
-    at.reset();
-    Json entry = served_json(place.id, prepared, run, explained, reference.choice.text());
-    Rendered rendered;
-    shade_ms              = timed_ms([&] { rendered = render_planes(scene, prepared.points, run.planes); });
-    ComparedFiles written = write_compared_files(place, prepared, {run, rendered, known},
-                                                 {reference, reference_rendered, known}, explained);
-    entry["image"]        = std::move(written.image);
-    entry["files"]        = std::move(written.files);
-    return entry;
+/// A method's entry of the record, and the times of the run that its answers are from; none where it has no answers.
+struct Answered {
+    Json entry;
+    std::optional<RunTimes> first{};
+};
+
+/// Of a run in which each phase ran once.
+RunTimes times_of(const MethodRun& run) {
+    RunTimes times{.build = run.build.median, .look = run.look.median};
+    for (const Timing& t : run.aim) times.aim.push_back(t.median);
+    for (const Timing& t : run.visibility) times.visibility.push_back(t.median);
+    return times;
 }
 
-/// The methods of the options, in order; where these name none, those that are the default on this scene. Throws
-/// UsageError, also where settings contradict one another.
-std::vector<MethodChoice> chosen(const CompareOptions& options, const fs::path& scene) {
-    std::vector<MethodChoice> choices;
-    for (const std::string& text : options.methods) {
-        choices.push_back(parse_method(text));
-        static_cast<void>(choices.back().make());
+/// Runs those that have answers in turns, at most `repeats.max_runs` rounds and `repeats.budget_ms` for each phase of
+/// each, no run longer than the budget, and writes the times into their entries. One that throws gets the entry of a
+/// method that failed, and its files in `folder` go. Returns `turns` of the record: what concerns all of them.
+/// `answered` is one a choice.
+Json time_methods(const std::filesystem::path& folder, const PreparedScene& prepared,
+                  std::span<const MethodChoice> choices, std::vector<Answered>& answered, const Repeats& repeats,
+                  const Budget& budget, const std::function<void(const std::string&)>& tell) {
+    std::vector<MethodChoice> timed;
+    std::vector<std::size_t> which;
+    TurnOptions turn_options;
+    for (std::size_t k = 0; k < choices.size(); ++k) {
+        if (!answered[k].first) continue;
+        timed.push_back(choices[k]);
+        which.push_back(k);
+        turn_options.first.push_back(answered[k].first);
     }
-    choices.insert(choices.end(), options.choices.begin(), options.choices.end());
-    if (choices.empty())
-        for (const MethodInfo* info : methods())
-            if (runs_by_itself(*info, scene)) choices.emplace_back(*info);
-    return choices;
-}
-
-/// A folder for each scene. Throws UsageError where one file is given twice.
-std::vector<std::string> folders_of(const std::vector<fs::path>& files) {
-    const auto lower = [](std::string text) {
-        std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
-        return text;
-    };
-    std::set<fs::path> given;
-    std::set<std::string> taken;
-    std::vector<std::string> folders;
-    for (const fs::path& file : files) {
-        if (!given.insert(fs::weakly_canonical(file)).second)
-            throw UsageError(fmt::format("{}: is given twice, expected each scene once", file.string()));
-        const std::string name = folder_name(scene_name(file));
-        folders.push_back(name);
-        for (int k = 2; !taken.insert(lower(folders.back())).second; ++k)
-            folders.back() = fmt::format("{}-{}", name, k);
+    constexpr double phases = 4;
+    turn_options.rounds     = repeats.max_runs;
+    turn_options.budget_ms  = phases * repeats.budget_ms * static_cast<double>(timed.size());
+    turn_options.most       = budget;
+    turn_options.progress   = [&](const std::string& what) { tell("times, " + what); };
+    const double before     = load_average();
+    const Turns turns       = time_in_turns(prepared, timed, turn_options);
+    for (std::size_t t = 0; t < timed.size(); ++t) {
+        Json& entry = answered[which[t]].entry;
+        if (turns.settings[t].failed.empty()) {
+            set_times(entry, prepared.scene, turns.settings[t]);
+            continue;
+        }
+        // What throws when it runs again has no answers that anybody could rely on.
+        const std::string id = entry["id"];
+        remove_files_of(folder, id);
+        entry = failed_json(id, timed[t], prepared.scene,
+                            {timed[t].text(), {}, turns.settings[t].failed, turns.settings[t].cut});
     }
-    return folders;
+    return turns_json(turns, turn_options, {before, load_average()});
 }
 
 }  // namespace
@@ -107,67 +95,48 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
     const auto tell = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", scene_name(file), what));
     };
-    const std::vector<MethodChoice> choices = chosen(options, file);
+    const std::vector<MethodChoice> choices = chosen_methods(options.methods, options.choices, {&file, 1});
 
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size, options.pixel_samples);
     const Scene& scene           = prepared.scene;
-    warn(scene, options.warn);
+    pass_warnings(scene, options.warn);
 
     const fs::path folder = options.out / (options.folder.empty() ? folder_name(scene.name) : options.folder);
     StagedFolder stage(folder);
     const fs::path& staging = stage.folder();
 
-    Reference reference = default_reference(prepared.facts);
-    if (options.reference) {
-        reference       = {parse_method(*options.reference), false, "Chosen on the command line."};
-        reference.exact = verdict(*reference.choice.make(), prepared.facts).how == How::exactly;
-    }
-    tell("reference " + reference.choice.text());
-    const auto find_truth = [&](Reference& with) {
-        return run_reference_or_substitute(with, scene, prepared.facts, prepared.points, options.points);
-    };
-    const TruthRun truth_ran =
-        options.reference
-            ? TruthRun{run_reference(reference, scene, prepared.facts, prepared.points, options.points), std::nullopt}
-            : find_truth(reference);
-    const ReferenceRun& reference_ran = truth_ran.ran;
+    Truths truths(
+        scene, prepared.facts, prepared.points,
+        {.reference = options.reference, .points = options.points, .budget = options.budget, .progress = tell});
+    const Truth& main_truth           = truths.main();
+    const Reference& reference        = main_truth.reference;
+    const ReferenceRun& reference_ran = main_truth.ran;
     const MethodRun& reference_run    = reference_ran.run;
-    const Rendered reference_rendered = render_planes(scene, prepared.points, reference_run.planes);
+    std::map<const Truth*, Rendered> rendered_truths;
+    const auto rendered_of = [&](const Truth& truth) -> const Rendered& {
+        const auto known = rendered_truths.find(&truth);
+        if (known != rendered_truths.end()) return known->second;
+        return rendered_truths.emplace(&truth, render_planes(scene, prepared.points, truth.ran.run.planes))
+            .first->second;
+    };
 
-    Json record                  = {{"schema", kResultsSchema},
-                                    {"version", version()},
-                                    {"command", options.command},
-                                    {"machine", machine_json(options.threads)},
-                                    {"scene", scene_json(scene)},
-                                    {"facts", facts_json(prepared.facts)},
-                                    {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
-                                    {"lights", lights_json(prepared.facts)},
-                                    {"times", Json::object()},
-                                    {"turns", nullptr},
-                                    {"reference", reference_json(reference, reference_ran, scene, truth_ran.failed)},
-                                    {"methods", Json::array()}};
+    Json record = {{"schema", kResultsSchema},
+                   {"version", version()},
+                   {"command", options.command},
+                   {"machine", machine_json(options.threads)},
+                   {"scene", scene_json(scene)},
+                   {"facts", facts_json(prepared.facts)},
+                   {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
+                   {"lights", lights_json(prepared.facts)},
+                   {"times", Json::object()},
+                   {"turns", nullptr},
+                   {"reference", reference_json(main_truth, scene)},
+                   {"methods", Json::array()}};
+    if (options.budget.is_set()) record["budget"] = budget_json(options.budget);
     const FinePicture fine       = fine_picture(prepared, reference_run);
     record["reference"]["files"] = write_reference_files({staging, "reference", options.command}, prepared,
-                                                         {reference_run, reference_rendered, fine});
-
-    // Methods that measure what the reference does not measure are compared with a truth of their own.
-    struct Truth {
-        ReferenceRun ran;
-        Rendered rendered;
-    };
-    std::optional<Truth> other;
-    const auto differs_in_measure = [&](const MethodChoice& choice) {
-        const Measure measure = choice.make()->measures();
-        if (prepared.facts.hard_lights_only || measure == reference_run.work->method().measures()) return false;
-        if (!other) {
-            Reference chosen = default_reference(prepared.facts, measure);
-            tell("reference " + chosen.choice.text());
-            other.emplace(Truth{find_truth(chosen).ran, {}});
-            other->rendered = render_planes(scene, prepared.points, other->ran.run.planes);
-        }
-        return true;
-    };
+                                                         {reference_run, rendered_of(main_truth), fine});
 
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
@@ -181,27 +150,38 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
         listed.push_back(choice);
         const std::string id = unique_id(choice.info->name, used);
         const bool slow      = total(reference_run.visibility).median > options.repeats.budget_ms;
-        std::optional<LightId> at;
-        try {
-            const bool apart               = differs_in_measure(choice);
-            const MethodRun& truth         = apart ? other->ran.run : reference_run;
-            const Rendered& truth_rendered = apart ? other->rendered : reference_rendered;
-            const MethodRun run            = itself && slow && reference_ran.stand_in.empty()
-                                                 ? reference_run
-                                                 : run_method(choice, scene, prepared.facts, prepared.points, kOnce, &at);
-            if (run.service)
-                answered.push_back({method_entry({staging, id, options.command}, prepared, run, truth, truth_rendered,
-                                                 fine, shade_ms, at),
-                                    times_of(run)});
-            else
-                answered.push_back({unserved_json(id, choice, run.service)});
-        } catch (const InputError&) {  // a file that cannot be written is no fault of the method
-            throw;
-        } catch (...) {
-            answered.push_back({failed_json(id, choice, scene, at, current_message())});
+        const Truth* truth   = nullptr;
+        Json entry;
+        Trial trial{.truth = [&](const MethodRun& run) -> const MethodRun& {
+                        truth = &truths.of(run.work->method());
+                        return truth->ran.run;
+                    },
+                    .budget = options.budget,
+                    .then =
+                        [&](const Outcome& found) {
+                            entry = served_json(id, prepared, found, truth->reference.choice.text());
+                            Rendered rendered;
+                            shade_ms =
+                                timed_ms([&] { rendered = render_planes(scene, prepared.points, found.run.planes); });
+                            ComparedFiles written = write_compared_files(
+                                {staging, id, options.command}, prepared, {found.run, rendered, fine},
+                                {truth->ran.run, rendered_of(*truth), fine}, found.explained);
+                            entry["image"] = std::move(written.image);
+                            entry["files"] = std::move(written.files);
+                        }};
+        if (itself && slow && reference_ran.stand_in.empty())
+            trial.run = [&](std::optional<LightId>&) { return reference_run; };
+        const Outcome found = outcome(choice, scene, prepared.facts, prepared.points, trial);
+        if (found.failed) {
+            remove_files_of(staging, id);
+            answered.push_back({failed_json(id, choice, scene, *found.failed)});
+        } else if (found.run.service) {
+            answered.push_back({std::move(entry), times_of(found.run)});
+        } else {
+            answered.push_back({unserved_json(id, choice, found.run.service)});
         }
     }
-    record["turns"] = time_methods(staging, prepared, listed, answered, options.repeats, tell);
+    record["turns"] = time_methods(staging, prepared, listed, answered, options.repeats, options.budget, tell);
     for (Answered& a : answered) record["methods"].push_back(std::move(a.entry));
     record["times"] = {{"load_ms", prepared.load_ms},
                        {"facts_ms", prepared.facts_ms},
@@ -216,21 +196,20 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
 }
 
 ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptions& options) {
-    const std::vector<std::string> folders = folders_of(files);
+    const std::vector<ChosenScene> scenes = chosen_scenes(files);
     for (const std::string& text : options.methods) static_cast<void>(parse_method(text));
     if (options.reference) static_cast<void>(parse_method(*options.reference));
     ScenesDone done;
     Json last;
     CompareOptions numbered = options;
-    Steps steps(files.size(), options.progress);
+    Steps steps(scenes.size(), options.progress);
     numbered.progress = [&](const std::string& what) { steps.show(what); };
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        const fs::path& file = files[i];
-        numbered.folder      = folders[i];
+    for (const auto& [file, name, folder] : scenes) {
+        numbered.folder = folder;
         steps.next();
         try {
             last = compare_scene(file, numbered);
-            done.names.push_back(folders[i]);
+            done.names.push_back(folder);
             for (std::string& message : failures(last)) done.stopped.push_back(std::move(message));
         } catch (const MissingMesh& e) {
             done.missing.emplace_back(e.what());
@@ -255,11 +234,11 @@ Service render_scene(const fs::path& file, const RenderOptions& options) {
     const MethodChoice choice    = parse_method(options.method);
     const bool png               = options.out.extension() == ".png";
     const PreparedScene prepared = prepare_scene(file, options.size, png ? options.pixel_samples : 1, Work::picture);
-    warn(prepared.scene, options.warn);
+    pass_warnings(prepared.scene, options.warn);
     std::optional<LightId> at;
     MethodRun run{choice};
     try {
-        run = run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0}, &at);
+        run = run_method(choice, prepared.scene, prepared.facts, prepared.points, kOnce, &at);
     } catch (const UsageError&) {  // settings that this scene does not allow
         throw;
     } catch (...) {

@@ -25,12 +25,12 @@ struct CompareOptions {
     std::string folder;   ///< of the scene, in `out`; empty: the scene's name, made fit for a folder
     std::string command;  ///< for the records
     int threads = 0;
+    Budget budget{};  ///< of each method on each scene, and of a reference that nobody names
     Repeats repeats;  ///< of the times: at most max_runs rounds, and budget_ms for each phase of each method
     std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
     std::function<void(const std::string&)> warn;      ///< receives "SCENE: warning" of loading; may be empty
-    std::function<void(const std::filesystem::path&)>
-        add_page{};                      ///< adds a page to a folder that is whole but for
-                                         ///< that, before it is moved into place; may be empty
+    /// Adds a page to a folder that is complete except for it, before the folder is moved into place; may be empty.
+    std::function<void(const std::filesystem::path&)> add_page{};
     std::function<void()> scene_done{};  ///< after each folder; may be empty
 };
 
@@ -52,7 +52,8 @@ struct ScenesDone {
     std::vector<std::string> failed;   ///< messages
     std::vector<std::string> missing;  ///< messages: scenes whose meshes are not there
     bool internal = false;             ///< at least one of `failed` is no fault of the input: something threw
-    std::vector<std::string> stopped;  ///< messages: methods that failed on a scene, which has results all the same
+    std::vector<std::string> stopped;  ///< messages: methods that failed, or were cut short, on a scene, which has
+                                       ///< results all the same
 };
 ScenesDone compare_scenes(const std::vector<std::filesystem::path>& files, const CompareOptions& options);
 

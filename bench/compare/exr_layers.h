@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/run.h"
 #include "umbra/core/image/image.h"
 

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/pictures.h"
@@ -75,6 +76,13 @@ std::map<std::string, std::string> run_metadata(const Scene& scene, const Method
                                                 {"umbra:command", command}};
     if (const dvec3 o = scene.origin; o != dvec3(0)) metadata["umbra:origin"] = fmt::format("{} {} {}", o.x, o.y, o.z);
     return metadata;
+}
+
+void remove_files_of(const std::filesystem::path& folder, const std::string& id) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.path().filename().string().starts_with(id + ".")) files.push_back(entry.path());
+    for (const std::filesystem::path& file : files) std::filesystem::remove(file);
 }
 
 Json write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference) {

@@ -8,7 +8,7 @@
 
 #include "umbra/bench/compare/fine_picture.h"
 #include "umbra/bench/compare/image_figures.h"
-#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/run.h"
 
@@ -31,6 +31,9 @@ struct Answers {
 /// Metadata of a file that one method's answers are in.
 [[nodiscard]] std::map<std::string, std::string> run_metadata(const Scene& scene, const MethodChoice& choice,
                                                               const std::string& command);
+
+/// Removes the files of one method from the folder.
+void remove_files_of(const std::filesystem::path& folder, const std::string& id);
 
 /// Writes the reference's files and returns their names, `files` of results.json. Throws InputError where one cannot be
 /// written.

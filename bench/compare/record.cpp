@@ -4,8 +4,7 @@
 
 #include <algorithm>
 
-#include "umbra/bench/run/machine_load.h"
-#include "umbra/bench/run/timing.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
@@ -100,8 +99,18 @@ Json head_json(const std::string& id, const MethodChoice& choice, const Service&
             {"serves", service_json(service)}};
 }
 
-std::string failed_in_words(const std::optional<std::string>& light, const std::string& message) {
-    return fmt::format("It failed{}: {}", light ? fmt::format(" at light {}", *light) : "", message);
+/// `cut`: true where it was, and otherwise not there.
+Json failure_json(const Failure& failure, const Scene& scene) {
+    Json failed = {{"light", failure.light ? Json(scene.lights[*failure.light].name) : Json()},
+                   {"message", failure.message}};
+    if (failure.cut) failed["cut"] = true;
+    return failed;
+}
+
+std::string failed_in_words(const Json& failed) {
+    return fmt::format("It failed{}: {}",
+                       failed["light"].is_string() ? " at light " + failed["light"].get<std::string>() : "",
+                       failed["message"].get<std::string>());
 }
 
 Json times_json(const MethodRun& run) {
@@ -113,25 +122,26 @@ Json times_json(const MethodRun& run) {
 
 }  // namespace
 
-Json reference_json(const Reference& reference, const ReferenceRun& ran, const Scene& scene,
-                    const std::optional<Failure>& failed) {
-    Json record = {{"name", reference.choice.info->name},
-                   {"title", reference.choice.info->title},
-                   {"text", reference.choice.text()},
-                   {"parameters", parameters_json(reference.choice.settings)},
-                   {"exact", reference.exact},
-                   {"note", reference.note},
-                   {"judged", judged_json(ran)},
-                   {"times", times_json(ran.run)}};
-    if (failed)
-        record["failed"] = {{"method", failed->method},
-                            {"light", failed->light ? Json(scene.lights[*failed->light].name) : Json()},
-                            {"message", failed->message}};
+Json reference_json(const Truth& truth, const Scene& scene) {
+    const auto& [reference, ran, failed] = truth;
+    Json record                          = {{"name", reference.choice.info->name},
+                                            {"title", reference.choice.info->title},
+                                            {"text", reference.choice.text()},
+                                            {"parameters", parameters_json(reference.choice.settings)},
+                                            {"exact", reference.exact},
+                                            {"note", reference.note},
+                                            {"judged", judged_json(ran)},
+                                            {"times", times_json(ran.run)}};
+    if (failed) {
+        record["failed"]           = failure_json(*failed, scene);
+        record["failed"]["method"] = failed->method;
+    }
     return record;
 }
 
-Json served_json(const std::string& id, const PreparedScene& prepared, const MethodRun& run,
-                 std::span<const Explained> explained, const std::string& reference) {
+Json served_json(const std::string& id, const PreparedScene& prepared, const Outcome& found,
+                 const std::string& reference) {
+    const MethodRun& run  = found.run;
     Json entry            = head_json(id, run.choice, run.service);
     entry["times"]        = nullptr;
     entry["light_times"]  = nullptr;
@@ -144,8 +154,8 @@ Json served_json(const std::string& id, const PreparedScene& prepared, const Met
     entry["compared_with"] = reference;
     Json& errors = entry["errors"] = Json::array();
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
-        errors.push_back(error_json(prepared.scene.lights[j].name, explained[j]));
-        if (const auto unshadowed = explained[j].error.unshadowed; unshadowed > 0)
+        errors.push_back(error_json(prepared.scene.lights[j].name, found.explained[j]));
+        if (const auto unshadowed = found.explained[j].error.unshadowed; unshadowed > 0)
             errors.back()["unshadowed"] = unshadowed;
     }
     return entry;
@@ -179,22 +189,21 @@ Json unserved_json(const std::string& id, const MethodChoice& choice, const Serv
     return head_json(id, choice, service);
 }
 
-Json failed_json(const std::string& id, const MethodChoice& choice, const Scene& scene, std::optional<LightId> light,
-                 const std::string& message) {
-    std::optional<std::string> name;
-    if (light) name = scene.lights[*light].name;
-    Json entry      = head_json(id, choice, {How::not_at_all, failed_in_words(name, message)});
-    entry["failed"] = {{"light", name ? Json(*name) : Json()}, {"message", message}};
+Json failed_json(const std::string& id, const MethodChoice& choice, const Scene& scene, const Failure& failure) {
+    const Json failed = failure_json(failure, scene);
+    Json entry        = head_json(id, choice, {How::not_at_all, failed_in_words(failed)});
+    entry["failed"]   = failed;
     return entry;
+}
+
+std::string failure_in_words(const std::string& scene, const std::string& method, const Json& failed) {
+    return fmt::format("{}: {}: {}", scene, method, failed_in_words(failed));
 }
 
 std::vector<std::string> failures(const Json& record) {
     std::vector<std::string> messages;
-    const auto add = [&](const Json& method, const Json& failed) {
-        std::optional<std::string> light;
-        if (failed["light"].is_string()) light = failed["light"];
-        messages.push_back(fmt::format("{}: {}: {}", record["scene"]["name"].get<std::string>(),
-                                       method.get<std::string>(), failed_in_words(light, failed["message"])));
+    const auto add = [&](const std::string& method, const Json& failed) {
+        messages.push_back(failure_in_words(record["scene"]["name"], method, failed));
     };
     if (const Json& reference = record["reference"]; reference.contains("failed"))
         add(reference["failed"]["method"], reference["failed"]);
@@ -203,7 +212,7 @@ std::vector<std::string> failures(const Json& record) {
     // The reference may also be one of the methods.
     std::vector<std::string> once;
     for (std::string& message : messages)
-        if (std::find(once.begin(), once.end(), message) == once.end()) once.push_back(std::move(message));
+        if (std::ranges::find(once, message) == once.end()) once.push_back(std::move(message));
     return once;
 }
 

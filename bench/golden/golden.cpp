@@ -8,11 +8,9 @@
 #include <optional>
 #include <set>
 
-#include "umbra/bench/golden/golden_comparison.h"
+#include "umbra/bench/golden/golden_change.h"
 #include "umbra/bench/golden/golden_figures.h"
-#include "umbra/bench/golden/golden_pictures.h"
 #include "umbra/bench/golden/golden_planes.h"
-#include "umbra/bench/golden/golden_settings.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/reference.h"

@@ -7,8 +7,8 @@
 //     FOLDER/SCENE/figures.json  errors against `exact` at 320 x 180 points, {"machine": TEXT, "methods": {METHOD:
 //                                {LIGHT: {FIGURE: N or [LOW, HIGH]}}}}. N: exactly that. A range, for answers that are
 //                                sampled at random: six standard deviations each way from the mean over 32 seeds.
-//     FOLDER/SCENE/settings/...  planes of settings other than the defaults (golden_settings.h)
-//     FOLDER/SCENE/compared/...  what `umbra compare` writes, of a few scenes (golden_comparison.h)
+//     FOLDER/SCENE/settings/...  planes of settings other than the defaults (golden_change.h)
+//     FOLDER/SCENE/compared/...  what `umbra compare` writes, of a few scenes (golden_change.h)
 //
 // One small file a scene and method, so that changes keep out of each other's way in merges.
 #pragma once

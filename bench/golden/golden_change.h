@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,5 +41,27 @@ struct GoldenChange {
 /// What decides how floats are rounded here: system, compiler, whether the machine multiplies and adds in one step. Our
 /// own code is compiled so that this changes nothing; Embree is not.
 [[nodiscard]] std::string rounding_machine();
+
+// Goldens of settings other than the defaults: FOLDER/SCENE/settings/METHOD.SETTINGS.exr, S_j planes of 64 x 36 points
+// as golden.h has them, sampled answers too: equal seeds give equal bits.
+
+/// A scene on which the settings make a difference.
+struct GoldenSetting {
+    std::string_view scene, method;  ///< "stairs", "shadow_zbuffer:filter=pcf"
+};
+[[nodiscard]] std::span<const GoldenSetting> golden_settings();
+
+/// Those of the scene that are not as accepted, and files of settings that are no longer in the list; renews where
+/// asked. Throws InputError.
+[[nodiscard]] std::vector<GoldenChange> setting_changes(const std::filesystem::path& scene,
+                                                        const GoldenOptions& options);
+
+// Goldens of what reaches the user: FOLDER/SCENE/compared/ holds what `umbra compare` writes for a few scenes at 64 x
+// 36 pixels: every PNG, the reference's linear R, G, B as EXR, and results.json without times, paths and machine.
+
+/// One entry, "SCENE/compared", where any of the files is not as accepted; a line for each file or figure. Empty for
+/// scenes without such goldens. Renews where asked. Throws InputError.
+[[nodiscard]] std::vector<GoldenChange> comparison_changes(const std::filesystem::path& scene,
+                                                           const GoldenOptions& options);
 
 }  // namespace umbra

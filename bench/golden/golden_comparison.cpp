@@ -1,4 +1,4 @@
-#include "umbra/bench/golden/golden_comparison.h"
+#include "umbra/bench/golden/golden_change.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -1,6 +1,7 @@
-// S_j planes as images that keep every bit, and what differs between two of them.
+// S_j planes as images that keep every bit, what differs between two of them, and that as pictures.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -39,5 +40,10 @@ struct Changes {
 };
 
 [[nodiscard]] Changes plane_changes(const Image& before, const Image& now, const PreparedScene& prepared);
+
+/// Replaces `folder`: reference.S.<light>.png, result.S.<light>.png and difference.S.<light>.png of each changed plane,
+/// four pixels a point, and both images as EXR. Throws InputError.
+void leave_pictures(const std::filesystem::path& folder, const PreparedScene& prepared, const Image& before,
+                    const Image& now, const std::vector<ChangedPlane>& changed);
 
 }  // namespace umbra

@@ -1,4 +1,4 @@
-#include "umbra/bench/golden/golden_settings.h"
+#include "umbra/bench/golden/golden_change.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,6 @@
 #include <optional>
 #include <set>
 
-#include "umbra/bench/golden/golden_pictures.h"
 #include "umbra/bench/golden/golden_planes.h"
 #include "umbra/core/image/image_io.h"
 

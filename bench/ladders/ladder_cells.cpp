@@ -33,6 +33,15 @@ std::optional<std::size_t> rung_of(const Field& ladder, const Field& value) {
     value.refuse("the value of a rung");
 }
 
+std::string left_out_in_words(double judged_rungs, double rungs, double least_coverage) {
+    std::string words;
+    if (judged_rungs < rungs) words = fmt::format("judged on {} of {}", count(judged_rungs), counted(rungs, "rung"));
+    if (judged_rungs > 0 && least_coverage < 1)
+        words += fmt::format("{}answers {} % of the points{}", words.empty() ? "" : ", ", percent(least_coverage),
+                             judged_rungs > 1 ? " or more" : "");
+    return words;
+}
+
 json fared(const Field& ladder, const Field& method) {
     const std::string unit = ladder["unit"].text();
     std::string note;
@@ -46,9 +55,17 @@ json fared(const Field& ladder, const Field& method) {
     from("silent_from", "mostly undefined");
     from("not_judged_from", "not judged");
     const bool breaks = method["breaks_at"].present();
-    std::string words = breaks ? rung_value(*method["breaks_at"].number()) : note.empty() ? "holds" : "";
-    return {{"words", words},   {"kind", method["kind"].text()},   {"note", note}, {"why", method["why"].text()},
-            {"breaks", breaks}, {"holds", !breaks && note.empty()}};
+    const bool holds  = !breaks && note.empty();
+    std::string words = breaks ? rung_value(*method["breaks_at"].number()) : holds ? "holds" : "";
+    if (const auto judged = method["judged_rungs"].number(); judged && !breaks) {
+        const double rungs = double(ladder["rungs"].items().size()) + ladder["not_climbed"].number().value_or(0);
+        const std::string part =
+            left_out_in_words(*judged, holds ? rungs : 0, method["least_coverage"].number().value_or(1));
+        if (!part.empty()) note += (note.empty() ? "" : ", ") + part;
+    }
+    return {{"words", words},   {"kind", method["kind"].text()},
+            {"note", note},     {"why", method["why"].text()},
+            {"breaks", breaks}, {"holds", holds}};
 }
 
 }  // namespace umbra

@@ -19,6 +19,10 @@ namespace umbra {
 /// What a method is called: its title, with its preset or as typed where it runs with other than its default settings.
 [[nodiscard]] std::string label_of(const Field& method);
 
+/// What "holds" leaves out, of rungs and of points: "judged on 5 of 8 rungs, answers 43 % of the points or more"; empty
+/// where it leaves out nothing.
+[[nodiscard]] std::string left_out_in_words(double judged_rungs, double rungs, double least_coverage);
+
 /// How a method fared: the cell's main words, the class of its errors, a note beneath them, and whether it is a break.
 [[nodiscard]] nlohmann::json fared(const Field& ladder, const Field& method);
 

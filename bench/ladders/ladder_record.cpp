@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "umbra/bench/ladders/ladder_cells.h"
+
 namespace umbra {
 namespace {
 
@@ -64,6 +66,8 @@ Json method_climb_json(const LadderRun& run, std::size_t m) {
                      {"not_served_from", value_of(run, c.not_served_from)},
                      {"not_judged_from", value_of(run, c.not_judged_from)},
                      {"why", c.why},
+                     {"judged_rungs", c.judged},
+                     {"least_coverage", number(c.least_coverage)},
                      {"rungs", Json::array()}};
     if (c.breaks_at) {
         const RungOutcome& o = run.rungs[*c.breaks_at].outcomes[m];
@@ -151,6 +155,16 @@ std::string heading(const Json& ladders, const std::string& text) {
                 return fmt::format("{}@{}", method["name"].get<std::string>(), method["preset"].get<std::string>());
     return text;
 }
+
+/// How a method fared, and what that leaves out.
+std::string cell_of(const Json& method, const Json& ladder) {
+    std::string words = climb_in_words(method, ladder);
+    if (!method["breaks_at"].is_null() || !method.contains("judged_rungs")) return words;
+    const std::size_t rungs = ladder["rungs"].size() + ladder["not_climbed"].get<std::size_t>();
+    const std::string part =
+        left_out_in_words(method["judged_rungs"], words == "holds" ? double(rungs) : 0, method["least_coverage"]);
+    return part.empty() ? words : fmt::format("{} ({})", words, part);
+}
 }  // namespace
 
 std::string ladder_table(const Json& ladders) {
@@ -169,7 +183,7 @@ std::string ladder_table(const Json& ladders) {
         for (const std::string& column : columns) {
             std::string cell;
             for (const Json& method : ladder["methods"])
-                if (method["text"] == column) cell = climb_in_words(method, ladder);
+                if (method["text"] == column) cell = cell_of(method, ladder);
             row.push_back(cell);
         }
         std::string last = "no rung";

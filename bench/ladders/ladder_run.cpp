@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <iterator>
 
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
@@ -12,8 +13,6 @@
 
 namespace umbra {
 namespace {
-
-constexpr Repeats kOnce{1, 0};
 
 /// What most of the interior errors are; of equals the first.
 std::string kind_of(const VisibilityError& e) {
@@ -84,6 +83,10 @@ Climb climb(const LadderRun& run, std::size_t method) {
             if (!o.stopped.empty()) c.why = o.stopped;
         }
         const bool counted = run.ladder->wrong_sum == nullptr;  // the sum has no lit and shadow points
+        if (o.ran() && !o.silent() && !(counted && o.unjudged())) {
+            ++c.judged;
+            c.least_coverage = std::min(c.least_coverage, o.coverage());
+        }
         lasts(o.silent(), r, c.silent_from);
         lasts(!o.service, r, c.not_served_from);
         lasts(counted && o.unjudged() && !o.silent(), r, c.not_judged_from);
@@ -95,56 +98,60 @@ Climb climb(const LadderRun& run, std::size_t method) {
 }
 
 std::unique_ptr<RungStage> set_stage(Scene scene) {
-    SceneFacts facts    = find_facts(scene);
-    Reference reference = default_reference(facts);
-    MethodRun truth{std::move(reference.choice)};
+    SceneFacts facts          = find_facts(scene);
+    const Reference reference = default_reference(facts);
+    MethodRun truth{reference.choice};
     auto stage =
         std::make_unique<RungStage>(RungStage{std::move(scene), std::move(facts), PointBatch{}, std::move(truth)});
     stage->points = primary_points(RayScene(stage->scene), stage->scene, stage->scene.camera, stage->scene.width,
                                    stage->scene.height);
-    stage->truth  = run_method(stage->truth.choice, stage->scene, stage->facts, stage->points, kOnce);
+    stage->truth  = run_reference(reference, stage->scene, stage->facts, stage->points, stage->points.size()).run;
     return stage;
 }
 
 RungOutcome outcome(const RungStage& stage, const MethodChoice& method, std::vector<Explained>* explained,
-                    MethodRun* run) {
+                    MethodRun* run, const Budget& budget) {
     RungOutcome o;
-    std::optional<LightId> at;
-    try {
-        MethodRun ran = run_method(method, stage.scene, stage.facts, stage.points, kOnce, &at);
-        o.service     = ran.service;
-        if (!ran.service) return o;
-        VisibilityError sum;  // only what kinds are made of
-        double absolute = 0;
-        for (LightId j = 0; j < stage.scene.lights.size(); ++j) {
-            at                       = j;
-            Explained light          = explain(stage.scene, stage.points, j, ran, stage.truth);
-            const VisibilityError& e = light.error;
-            o.points += e.points, o.undefined += e.undefined;
-            o.false_shadow.interior += e.false_shadow.interior, o.false_shadow.edge += e.false_shadow.edge;
-            o.false_light.interior += e.false_light.interior, o.false_light.edge += e.false_light.edge;
-            sum.false_shadow.interior += e.false_shadow.interior, sum.acne += e.acne;
-            sum.penumbra_error.false_shadow += e.penumbra_error.false_shadow;
-            sum.penumbra_error.false_light += e.penumbra_error.false_light;
-            sum.leak += e.leak, sum.detachment += e.detachment, sum.unnamed += e.unnamed;
-            absolute += e.mae * double(e.points);
-            o.can_show += interior_points(stage.scene, stage.points, j, stage.truth.planes[j], ran.planes[j]);
-            if (explained != nullptr) explained->push_back(std::move(light));
-        }
-        if (o.points > 0) o.mae = absolute / double(o.points);
-        o.kind = kind_of(sum);
-        if (run != nullptr) *run = std::move(ran);
-    } catch (...) {
-        o         = {};
-        o.service = {How::approximately, "it stopped"};
-        o.stopped = current_message();
-        if (at) o.light = stage.scene.lights[*at].name;
+    Outcome found = outcome(method, stage.scene, stage.facts, stage.points,
+                            {.truth      = [&](const MethodRun&) -> const MethodRun& { return stage.truth; },
+                             .noise_runs = 0,
+                             .budget     = budget});
+    o.service     = found.run.service;
+    if (found.failed && found.failed->cut) {
+        o.service = {How::not_at_all, fmt::format("It was {}.", found.failed->message)};
+        o.cut     = true;
+        return o;
     }
+    if (found.failed) {
+        o.service = {How::approximately, "it stopped"};
+        o.stopped = found.failed->message;
+        if (found.failed->light) o.light = stage.scene.lights[*found.failed->light].name;
+        return o;
+    }
+    VisibilityError sum;  // only what kinds are made of
+    double absolute = 0;
+    for (LightId j = 0; j < found.explained.size(); ++j) {
+        const VisibilityError& e = found.explained[j].error;
+        o.points += e.points, o.undefined += e.undefined;
+        o.false_shadow.interior += e.false_shadow.interior, o.false_shadow.edge += e.false_shadow.edge;
+        o.false_light.interior += e.false_light.interior, o.false_light.edge += e.false_light.edge;
+        sum.false_shadow.interior += e.false_shadow.interior, sum.acne += e.acne;
+        sum.penumbra_error.false_shadow += e.penumbra_error.false_shadow;
+        sum.penumbra_error.false_light += e.penumbra_error.false_light;
+        sum.leak += e.leak, sum.detachment += e.detachment, sum.unnamed += e.unnamed;
+        absolute += e.mae * double(e.points);
+        o.can_show += interior_points(stage.scene, stage.points, j, stage.truth.planes[j], found.run.planes[j]);
+    }
+    if (o.points > 0) o.mae = absolute / double(o.points);
+    o.kind = kind_of(sum);
+    if (explained != nullptr) std::ranges::move(found.explained, std::back_inserter(*explained));
+    if (run != nullptr && o.service) *run = std::move(found.run);
     return o;
 }
 
 LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
-                       const std::function<void(const std::string&)>& progress, double patience_s) {
+                       const std::function<void(const std::string&)>& progress, double patience_s,
+                       const Budget& budget) {
     LadderRun run{&ladder, ladder.wrong_sum ? std::vector<MethodChoice>{} : methods, {}};
     std::vector<std::string> too_slow(run.methods.size());  // why; empty where it is not
     for (const double value : ladder.rungs) {
@@ -184,9 +191,10 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
                 continue;
             }
             const double start   = thread_seconds();
-            o                    = outcome(stage, run.methods[m]);
+            o                    = outcome(stage, run.methods[m], nullptr, nullptr, budget);
             const double seconds = thread_seconds() - start;
-            if (seconds > patience_s)
+            if (o.cut) too_slow[m] = fmt::format("On rung {:g}: {}", value, o.service.why);
+            if (!o.cut && seconds > patience_s)
                 too_slow[m] = fmt::format(
                     "It took {:.3g} s of a thread's processor time on rung {:g}, and {:g} s are allowed (--patience).",
                     seconds, value, patience_s);

@@ -9,8 +9,7 @@
 
 #include "umbra/bench/ladders/interior_points.h"
 #include "umbra/bench/ladders/ladder.h"
-#include "umbra/bench/run/explain.h"
-#include "umbra/bench/run/run.h"
+#include "umbra/bench/run/outcome.h"
 
 namespace umbra {
 
@@ -26,6 +25,7 @@ struct RungOutcome {
     Service service;
     std::string stopped;               ///< the message of the exception that ended it; empty where it ran to its end
     std::optional<std::string> light;  ///< at which it stopped; none: before any
+    bool cut             = false;      ///< it took more than its budget, and does not serve
     std::uint64_t points = 0, undefined = 0;
     VisibilityError::Kind false_shadow, false_light;
     InteriorPoints can_show;  ///< of the points that the method answers
@@ -34,6 +34,7 @@ struct RungOutcome {
 
     [[nodiscard]] std::uint64_t interior() const { return false_shadow.interior + false_light.interior; }
     [[nodiscard]] double interior_share() const { return points == 0 ? 0 : double(interior()) / double(points); }
+    [[nodiscard]] double coverage() const { return points == 0 ? 0 : double(points) / double(points + undefined); }
     [[nodiscard]] bool ran() const { return service && stopped.empty(); }
     [[nodiscard]] bool broken() const;
     /// Not broken, and its answers hold too few interior points of a kind to conclude anything from that.
@@ -68,6 +69,8 @@ struct Climb {
     std::optional<std::size_t> not_served_from;  ///< the first from which on it says that it does not serve
     std::optional<std::size_t> not_judged_from;  ///< the first from which on no rung is judged, for this method
     std::string why;                             ///< of not serving, of having stopped, or of not being judged
+    std::size_t judged    = 0;                   ///< rungs on which something can be concluded from its answers
+    double least_coverage = 1;                   ///< of these, the least share of the points that it answers
 };
 [[nodiscard]] Climb climb(const LadderRun& run, std::size_t method);
 
@@ -83,13 +86,14 @@ struct RungStage {
 
 /// A method on a stage; `explained`, if given, gets each light's errors point by point where the method ran.
 [[nodiscard]] RungOutcome outcome(const RungStage& stage, const MethodChoice& method,
-                                  std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr);
+                                  std::vector<Explained>* explained = nullptr, MethodRun* run = nullptr,
+                                  const Budget& budget = {});
 
 /// Climbs one ladder with each of the methods. `progress` is called with each step's description; may be empty. A
 /// method that took longer than `patience_s`, seconds of the calling thread's processor time, on a rung is asked on no
-/// later one: it does not serve these, and says why.
+/// later one: it does not serve these, and says why. So does one on the rung on which it took more than the budget.
 [[nodiscard]] LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& methods,
                                      const std::function<void(const std::string&)>& progress = {},
-                                     double patience_s                                       = double(kInfinity));
+                                     double patience_s = double(kInfinity), const Budget& budget = {});
 
 }  // namespace umbra

@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "umbra/bench/run/at_work.h"
-#include "umbra/bench/run/contract.h"
-#include "umbra/bench/run/stratified_sample.h"
+#include "umbra/bench/run/reference.h"
+#include "umbra/bench/run/run.h"
 #include "umbra/core/errors/visibility_error.h"
 
 namespace umbra {

@@ -4,20 +4,17 @@
 
 #include "umbra/bench/motion/growth_page.h"
 #include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/run/machine_load.h"
+#include "umbra/bench/run/chosen.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
 namespace {
 
-std::vector<MethodChoice> chosen_methods(const GrowthCommand& command, const GrowthFamily& family) {
-    std::vector<MethodChoice> chosen = command.choices;
-    for (const std::string& text : command.methods) chosen.push_back(parse_method(text));
-    if (!chosen.empty()) return chosen;
-    for (const MethodInfo* info : methods())
-        if (info->is_shown()) chosen.emplace_back(*info);
-    if (family.name == "pixels")
+std::vector<MethodChoice> methods_of(const GrowthCommand& command, const GrowthFamily& family) {
+    std::vector<MethodChoice> chosen = chosen_methods(command.methods, command.choices, {});
+    if (command.methods.empty() && command.choices.empty() && family.name == "pixels")
         for (const char* text : {"shadow_volumes:edges=silhouette", "shadow_volumes:edges=per_triangle"})
             chosen.push_back(parse_method(text));
     return chosen;
@@ -43,8 +40,7 @@ std::vector<const GrowthFamily*> chosen_families(const GrowthCommand& command) {
 
 Json measure_growth(const GrowthCommand& command) {
     const std::vector<const GrowthFamily*> families = chosen_families(command);
-    for (const GrowthFamily* family : families)
-        for (const MethodChoice& choice : chosen_methods(command, *family)) (void)choice.make();
+    static_cast<void>(chosen_methods(command.methods, command.choices, {}));  // what is typed is wrong now
     Json record = {{"schema", kResultsSchema},
                    {"version", version()},
                    {"command", command.command},
@@ -52,13 +48,14 @@ Json measure_growth(const GrowthCommand& command) {
                    {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
                    {"growth", Json::array()},
                    {"failed", Json::array()}};
+    if (command.options.turns.most.is_set()) record["budget"] = budget_json(command.options.turns.most);
     for (const GrowthFamily* family : families) {
         const auto fail = [&](const std::string& method, const std::string& message) {
             record["failed"].push_back({{"family", family->name}, {"method", method}, {"message", message}});
         };
         try {
-            const GrowthRun run = run_growth(*family, chosen_methods(command, *family),
-                                             command.most.value_or(family->most), command.options);
+            const GrowthRun run =
+                run_growth(*family, methods_of(command, *family), command.most.value_or(family->most), command.options);
             for (const GrowthSeries& series : run.series)
                 if (series.left_out.starts_with("failed")) fail(series.choice.text(), series.left_out);
             record["growth"].push_back(growth_json(run));

@@ -152,6 +152,7 @@ json family_view(const Json& family) {
     return {{"id", family["name"]},
             {"title", family["title"]},
             {"about", family["about"]},
+            {"unit", family["unit"]},
             {"charts", std::move(charts)},
             {"fits", std::move(fits)},
             {"has_crossings", !crossings.empty()},

@@ -2,6 +2,7 @@
 
 #include "umbra/bench/motion/growth.h"
 #include "umbra/bench/motion/record_view.h"
+#include "umbra/bench/pages/report_text.h"
 
 namespace umbra {
 namespace {
@@ -86,9 +87,9 @@ std::string growth_table(const Json& record) {
     for (const Json& family : record["growth"])
         table += fmt::format("{}: {}\n{}{}{}{}", text(family["name"]), text(family["about"]), times_of(family),
                              fits_of(family), crossings_of(family), external_of(family));
-    table += fmt::format("{}, {} threads, load average {} to {}\n", text(record["machine"]["cpu"]),
-                         record["machine"]["threads"].get<int>(), fixed(record["load_average"]["before"]),
-                         fixed(record["load_average"]["after"]));
+    table += fmt::format("{}, {}, load average {} to {}\n", text(record["machine"]["cpu"]),
+                         counted(record["machine"]["threads"].get<double>(), "thread"),
+                         fixed(record["load_average"]["before"]), fixed(record["load_average"]["after"]));
     return table;
 }
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "umbra/bench/run/contract.h"
+#include "umbra/bench/run/run.h"
 
 namespace umbra {
 
@@ -14,8 +14,8 @@ FrameWork frame_work(Movement movement, std::size_t lights, LightId moved) {
 }
 
 KeptMethod::KeptMethod(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
-                       std::function<double()> clock)
-    : work_(choice, scene, facts), clock_(std::move(clock)), planes_(scene.lights.size()) {}
+                       std::function<double()> clock, const Budget& most)
+    : work_(choice, scene, facts), clock_(std::move(clock)), most_(most), planes_(scene.lights.size()) {}
 
 double KeptMethod::timed(const std::function<void()>& work) const {
     const double start = clock_();
@@ -25,6 +25,7 @@ double KeptMethod::timed(const std::function<void()>& work) const {
 
 RunTimes KeptMethod::run(const FrameWork& work, const PointBatch& points) {
     const std::size_t lights = planes_.size();
+    work_.limit(most_);
     RunTimes times{0, std::vector<double>(lights), 0, std::vector<double>(lights)};
     if (work.build) {
         work_.forget_build();

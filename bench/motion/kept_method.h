@@ -26,7 +26,9 @@ struct FrameWork {
 class KeptMethod {
 public:
     /// `scene` and `facts` must outlive this, and move under it. Nothing is built yet. `clock`: milliseconds.
-    KeptMethod(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, std::function<double()> clock);
+    /// `most`: of each run.
+    KeptMethod(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, std::function<double()> clock,
+               const Budget& most = {});
 
     [[nodiscard]] const MethodChoice& choice() const { return work_.choice(); }
     [[nodiscard]] Service service() const { return work_.service(); }
@@ -44,6 +46,7 @@ private:
 
     MethodAtWork work_;
     std::function<double()> clock_;
+    Budget most_;
     std::vector<VisibilityPlane> planes_;
 };
 

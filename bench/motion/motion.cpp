@@ -4,20 +4,20 @@
 
 #include "umbra/bench/motion/motion_page.h"
 #include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/run/machine_load.h"
+#include "umbra/bench/run/chosen.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
 namespace {
 
-std::vector<MethodChoice> chosen_methods(const MotionCommand& command) {
-    std::vector<MethodChoice> chosen = command.choices;
-    for (const std::string& text : command.methods) chosen.push_back(parse_method(text));
-    if (chosen.empty())
-        for (const MethodInfo* info : methods())
-            if (info->by_default) chosen.emplace_back(*info);
-    for (const MethodChoice& choice : chosen) (void)choice.make();  // settings that contradict one another, now
+/// Where nobody names any, those that measure the visible area, which all are compared by.
+std::vector<MethodChoice> methods_on(const PreparedScene& prepared, const std::filesystem::path& file,
+                                     const MotionCommand& command) {
+    std::vector<MethodChoice> chosen = chosen_methods(command.methods, command.choices, {&file, 1});
+    if (command.methods.empty() && command.choices.empty() && !prepared.facts.hard_lights_only)
+        std::erase_if(chosen, [](const MethodChoice& choice) { return choice.make()->measures() != Measure::area; });
     return chosen;
 }
 
@@ -31,26 +31,30 @@ bool shows_a_surface(const PreparedScene& prepared) {
 
 Json measure_motion(const std::vector<std::filesystem::path>& files, const MotionCommand& command,
                     std::vector<std::string>& unreadable) {
-    const std::vector<MethodChoice> chosen = chosen_methods(command);
-    Json record                            = {{"schema", kResultsSchema},
-                                              {"version", version()},
-                                              {"command", command.command},
-                                              {"machine", machine_json(command.threads)},
-                                              {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
-                                              {"frames", command.options.frames},
-                                              {"arc_degrees", kArc},
-                                              {"area_points", command.options.area_points},
-                                              {"max_rmse", command.max_rmse},
-                                              {"motion", Json::array()},
-                                              {"failed", Json::array()}};
+    const std::vector<ChosenScene> scenes = chosen_scenes(files);
+    static_cast<void>(chosen_methods(command.methods, command.choices, files));  // what is typed is wrong now
+    Json record = {{"schema", kResultsSchema},
+                   {"version", version()},
+                   {"command", command.command},
+                   {"machine", machine_json(command.threads)},
+                   {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
+                   {"frames", command.options.frames},
+                   {"arc_degrees", kArc},
+                   {"area_points", command.options.area_points},
+                   {"max_rmse", command.max_rmse},
+                   {"motion", Json::array()},
+                   {"failed", Json::array()}};
+    if (command.options.still.most.is_set()) record["budget"] = budget_json(command.options.still.most);
     const auto fail = [&](const std::string& scene, const std::string& method, const std::string& message) {
         record["failed"].push_back({{"scene", scene}, {"method", method}, {"message", message}});
     };
-    for (const std::filesystem::path& file : files) {
+    for (const auto& [file, name, folder] : scenes) {
         try {
             PreparedScene prepared = prepare_scene(file, command.size);
             if (!shows_a_surface(prepared))
                 throw InputError(fmt::format("{}: no surface is in view, so that no point is compared", file.string()));
+            prepared.scene.name      = name;
+            const auto chosen        = methods_on(prepared, file, command);
             const SceneMotion motion = run_motion(std::move(prepared), chosen, command.options);
             for (const MethodMotion& method : motion.methods)
                 if (method.failed) fail(motion.name, method.still.choice.text(), *method.failed);
@@ -60,7 +64,7 @@ Json measure_motion(const std::vector<std::filesystem::path>& files, const Motio
         } catch (const UsageError&) {
             throw;
         } catch (...) {
-            fail(file.stem().string(), "the reference", current_message());
+            fail(name, "the reference", current_message());
         }
     }
     if (record["motion"].empty()) return record;

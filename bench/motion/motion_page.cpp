@@ -50,7 +50,7 @@ std::vector<Competitor> competitors(const Json& scene, double max_rmse) {
             const Json& m = method["movements"][name];
             c.times[k]    = m["median_ms"].get<double>();
             competes =
-                competes && m["undefined"].get<std::uint64_t>() == 0 && m["worst_rmse"].get<double>() <= max_rmse;
+                competes && m["undefined"].get<std::uint64_t>() == 0 && value(m["worst_rmse"]).value_or(0) <= max_rmse;
         }
         if (competes) all.push_back(std::move(c));
     }
@@ -111,7 +111,7 @@ json movement_cells(const Json& method, const std::string& movement) {
             {"ratio", score(value(m["frame_over_model"]["median"]))},
             {"interval", interval_in_words(m["frame_over_model"])},
             {"rmse", score(value(m["worst_rmse"]))},
-            {"undefined", m["undefined"].get<std::uint64_t>() > 0}};
+            {"answered", answered_share(m).value_or(1) < 1 ? percent(answered_share(m)) : ""}};
 }
 
 json method_view(const Json& method) {
@@ -136,7 +136,7 @@ json method_view(const Json& method) {
 std::string noise_in_words(const Json& noise_bar) {
     if (noise_bar.is_null()) return "an unknown bar";
     const std::string bar = percent(value(noise_bar)) + " %";
-    return noise_bar.get<double>() <= kMostNoise ? bar : bar + " (too much to say which method is fastest where)";
+    return !is_too_noisy(noise_bar.get<double>()) ? bar : bar + " (too much to draw which method is fastest where)";
 }
 
 json scene_view(const Json& record, const Json& scene, std::size_t number) {
@@ -161,7 +161,7 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
                                           pair["rounds"][1].is_null() ? "never" : count(value(pair["rounds"][1])))}});
     const double max_rmse = record["max_rmse"].get<double>();
     json triangles        = json::array();
-    const bool quiet      = !scene["noise_bar"].is_null() && scene["noise_bar"].get<double>() <= kMostNoise;
+    const bool quiet      = !scene["noise_bar"].is_null() && !is_too_noisy(scene["noise_bar"].get<double>());
     for (const auto& [bound, caption] :
          {std::pair{1e300, std::string("of all that answer every point")},
           {max_rmse, fmt::format("with an RMSE of at most {:g} in every frame", max_rmse)}})

@@ -4,6 +4,8 @@
 namespace umbra {
 namespace {
 
+Json if_known(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
 Json interval_json(const Interval& interval) { return {number(interval.low), number(interval.high)}; }
 
 Json ratio_json(const Ratio& ratio) {
@@ -23,8 +25,8 @@ Json frame_json(const MotionFrame& frame) {
             {"undefined", e.undefined},
             {"wrong", e.wrong},
             {"interior", e.interior ? Json(*e.interior) : Json(nullptr)},
-            {"rmse", number(e.rmse)},
-            {"max", number(e.max)}};
+            {"rmse", e.points > 0 ? number(e.rmse) : Json(nullptr)},
+            {"max", e.points > 0 ? number(e.max) : Json(nullptr)}};
 }
 
 Json method_movement_json(const SceneMotion& motion, const MethodMotion& method, Movement movement) {
@@ -41,8 +43,8 @@ Json method_movement_json(const SceneMotion& motion, const MethodMotion& method,
               {"model_ms", number(model * static_cast<double>(times.size()))},
               {"measured_over_model", number(sum / (model * static_cast<double>(times.size())))},
               {"frame_over_model", ratio_json(paired_ratio(times, std::vector<double>(times.size(), model)))},
-              {"mean_rmse", number(errors.mean_rmse)},
-              {"worst_rmse", number(errors.worst_rmse)},
+              {"mean_rmse", if_known(errors.mean_rmse)},
+              {"worst_rmse", if_known(errors.worst_rmse)},
               {"undefined", errors.undefined},
               {"interior", motion.sampled ? Json(nullptr) : Json(errors.interior)}};
     for (const MotionFrame& frame : frames) j["frames"].push_back(frame_json(frame));

@@ -58,7 +58,8 @@ public:
         result_.noise_bar = turns_.noise_bar;
         for (TurnTimes& still : turns_.settings) {
             const bool runs = still.service && still.failed.empty();
-            kept_.push_back(runs ? std::make_unique<KeptMethod>(still.choice, scene_, facts_, options.still.clock)
+            kept_.push_back(runs ? std::make_unique<KeptMethod>(still.choice, scene_, facts_, options.still.clock,
+                                                                options.still.most)
                                  : nullptr);
             result_.methods.push_back({.still = std::move(still)});
             MethodMotion& method = result_.methods.back();

@@ -64,12 +64,15 @@ double model_ms(const SceneMotion& motion, const MethodMotion& method, Movement 
 
 ErrorSummary summarise_errors(const std::vector<MotionFrame>& frames) {
     ErrorSummary summary;
+    std::vector<double> rmse;
     for (const MotionFrame& frame : frames) {
-        summary.mean_rmse += frame.errors.rmse / static_cast<double>(frames.size());
-        summary.worst_rmse = std::max(summary.worst_rmse, frame.errors.rmse);
+        if (frame.errors.points > 0) rmse.push_back(frame.errors.rmse);
         summary.undefined += frame.errors.undefined;
         summary.interior += frame.errors.interior.value_or(0);
     }
+    if (rmse.empty()) return summary;
+    summary.mean_rmse  = std::accumulate(rmse.begin(), rmse.end(), 0.0) / static_cast<double>(rmse.size());
+    summary.worst_rmse = std::ranges::max(rmse);
     return summary;
 }
 
@@ -134,10 +137,11 @@ std::vector<BreakEven> break_evens(const SceneMotion& motion, const std::vector<
     for (const std::size_t slow : competitors)
         for (const std::size_t fast : competitors) {
             const TurnTimes &a = motion.methods[slow].still, &b = motion.methods[fast].still;
-            const double setup = median(a.build) + median(a.aim) - median(b.build) - median(b.aim);
+            const auto start   = [](const TurnTimes& t) { return median(t.build) + median(t.aim); };
             const auto frame   = [](const TurnTimes& t) { return median(t.look) + median(t.visibility); };
-            const double saves = frame(b) - frame(a);
-            if (!(setup > 0 && saves > 0)) continue;
+            const double noise = 1 + motion.noise_bar;
+            if (!(start(a) > start(b) * noise && frame(b) > frame(a) * noise)) continue;
+            const double setup = start(a) - start(b), saves = frame(b) - frame(a);
             BreakEven pair{slow, fast, setup, saves, std::ceil(setup / saves), {}};
             pair.interval = {pair.frames, pair.frames};
             for (std::size_t r = 0; r < std::min(a.build.size(), b.build.size()); ++r) {

@@ -20,8 +20,8 @@ namespace umbra {
 
 /// Over the frames of a movement, both undefined where there are none.
 struct ErrorSummary {
-    double mean_rmse = 0, worst_rmse = 0;
-    std::uint64_t undefined = 0, interior = 0;  ///< over all frames
+    std::optional<double> mean_rmse, worst_rmse;  ///< of the frames with an answer; nothing where there is none
+    std::uint64_t undefined = 0, interior = 0;    ///< over all frames
 };
 [[nodiscard]] ErrorSummary summarise_errors(const std::vector<MotionFrame>& frames);
 
@@ -64,7 +64,7 @@ struct BreakEven {
     double frames = 0;
     Interval interval;  ///< of `frames` and those of each round, least and largest; infinite where one saves nothing
 };
-/// For each pair of methods where neither is first in both, at rest.
+/// For each pair of methods where neither is first in both, at rest, and both differences are beyond the noise.
 [[nodiscard]] std::vector<BreakEven> break_evens(const SceneMotion& motion,
                                                  const std::vector<std::size_t>& competitors);
 

@@ -5,6 +5,7 @@
 
 #include "umbra/bench/motion/motion.h"
 #include "umbra/bench/motion/record_view.h"
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
@@ -18,7 +19,7 @@ std::string noise_text(const Json& noise_bar) {
     if (noise_bar.is_null()) return "without a control no two times differ";
     const double bar = noise_bar.get<double>();
     return fmt::format("times that differ by less than {:.0f} % are equal{}", std::ceil(100 * bar),
-                       bar > kMostNoise ? ": the machine is too busy to compare" : "");
+                       is_too_noisy(bar) ? "; run it again when the machine is less busy" : "");
 }
 
 std::string winner_text(const Json& winner) {
@@ -31,11 +32,17 @@ std::string winner_text(const Json& winner) {
     return text;
 }
 
+/// "97.9 %" of the points of all frames.
+std::string answered_text(const Json& movement) {
+    const std::optional<double> share = answered_share(movement);
+    return share ? percent(share) + " %" : "-";
+}
+
 /// Of fewer than six frames there is no interval.
 std::string method_rows(const Json& scene) {
     std::string text =
         fmt::format("  {:34} {:8} {:>10} {:>10} {:>8}  {:>17} {:>7} {:>10} {:>10} {:>10} {:>10}\n", "method", "moves",
-                    "median ms", "model", "ratio", "interval", "holds", "mean rmse", "worst", "interior", "undefined");
+                    "median ms", "model", "ratio", "interval", "holds", "mean rmse", "worst", "interior", "answered");
     for (const Json& method : scene["methods"]) {
         const std::string name = method["text"];
         if (method.contains("failed"))
@@ -51,7 +58,7 @@ std::string method_rows(const Json& scene) {
                                 number_text(m["frame_over_model"]["median"]), number_text(interval[0]),
                                 number_text(interval[1]), coverage_text(m["frame_over_model"]),
                                 number_text(m["mean_rmse"], 4), number_text(m["worst_rmse"], 4),
-                                m["interior"].is_null() ? "-" : m["interior"].dump(), m["undefined"].dump());
+                                m["interior"].is_null() ? "-" : m["interior"].dump(), answered_text(m));
         }
     }
     return text;
@@ -80,16 +87,16 @@ std::string motion_table(const Json& record) {
                                 winner_text(row["within"]));
         for (const Json& pair : scene["break_even"])
             text += fmt::format(
-                "  {} pays off over {} from {} camera frames on{}\n", pair["method"].get<std::string>(),
-                pair["over"].get<std::string>(), number_text(pair["frames"], 0),
+                "  {} pays off over {} from {} on{}\n", pair["method"].get<std::string>(),
+                pair["over"].get<std::string>(), counted(pair["frames"].get<double>(), "camera frame"),
                 pair["rounds"][0] == pair["rounds"][1]
                     ? ""
                     : fmt::format(" ({} to {} by the rounds)", number_text(pair["rounds"][0], 0),
                                   pair["rounds"][1].is_null() ? "never" : number_text(pair["rounds"][1], 0)));
     }
-    text += fmt::format("{}, {} threads, load average {} to {}\n", record["machine"]["cpu"].get<std::string>(),
-                        record["machine"]["threads"].get<int>(), number_text(record["load_average"]["before"]),
-                        number_text(record["load_average"]["after"]));
+    text += fmt::format("{}, {}, load average {} to {}\n", record["machine"]["cpu"].get<std::string>(),
+                        counted(record["machine"]["threads"].get<double>(), "thread"),
+                        number_text(record["load_average"]["before"]), number_text(record["load_average"]["after"]));
     return text;
 }
 

@@ -11,6 +11,15 @@ std::string coverage_text(const Json& ratio) {
     return coverage > 0 ? fmt::format("{:.1f} %", 100 * coverage) : "-";
 }
 
+std::optional<double> answered_share(const Json& movement) {
+    double answered = 0, asked = 0;
+    for (const Json& frame : movement["frames"]) {
+        answered += frame["points"].get<double>();
+        asked += frame["points"].get<double>() + frame["undefined"].get<double>();
+    }
+    return asked > 0 ? std::optional(answered / asked) : std::nullopt;
+}
+
 nlohmann::json record_view(const Json& record, const char* place) {
     nlohmann::json failures = nlohmann::json::array();
     for (const Json& failure : record["failed"])
@@ -20,7 +29,7 @@ nlohmann::json record_view(const Json& record, const char* place) {
     return {{"command", without_folders(text(record["command"]))},
             {"version", record["version"]},
             {"cpu", record["machine"]["cpu"]},
-            {"threads", std::to_string(record["machine"]["threads"].get<int>())},
+            {"threads", counted(record["machine"]["threads"].get<double>(), "thread")},
             {"load", fmt::format("{} to {}", score(value(load["before"])), score(value(load["after"])))},
             {"has_failures", !failures.empty()},
             {"failures", std::move(failures)}};

@@ -17,6 +17,9 @@ namespace umbra {
 /// "97.9 %": the probability with which a ratio's interval holds it; "-" where it has none.
 [[nodiscard]] std::string coverage_text(const Json& ratio);
 
+/// The share of the points of a movement's frames that the method answers; nothing where none was asked for.
+[[nodiscard]] std::optional<double> answered_share(const Json& movement);
+
 /// The terms of a page's template that say which program measured on what machine, and what failed; `place` is the
 /// member of a failure that says where: "scene" or "family".
 [[nodiscard]] nlohmann::json record_view(const Json& record, const char* place);

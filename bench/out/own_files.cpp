@@ -18,7 +18,8 @@ using nlohmann::json;
 namespace {
 
 constexpr std::string_view kRecord = "results.json", kPage = "index.html";
-constexpr std::array<std::string_view, 4> kPageFiles = {"report.css", "slider.js", "finder.js", "pictures.js"};
+constexpr std::array<std::string_view, 2> kEnergyFiles = {"objects.csv", "faces.csv"};  // its record names no files
+constexpr std::array<std::string_view, 4> kPageFiles   = {"report.css", "slider.js", "finder.js", "pictures.js"};
 
 /// A results.json of ours of any version; discarded where it is none.
 json record_in(const fs::path& folder) {
@@ -66,6 +67,8 @@ void check_replaceable(const fs::path& folder) {
             collect_strings(record, ours);
             ours.insert({std::string(kRecord), std::string(kPage)});
             ours.insert(kPageFiles.begin(), kPageFiles.end());
+            if (record.contains("frames") && record.contains("mean"))
+                ours.insert(kEnergyFiles.begin(), kEnergyFiles.end());
         }
         const fs::path foreign = first_foreign(folder, ours);
         if (foreign.empty()) return;
@@ -81,7 +84,7 @@ bool holds_record_without(const fs::path& folder, std::string_view key) {
     return !record.is_discarded() && !record.contains(key);
 }
 
-void check_writable_beside(const fs::path& folder) {
+void check_writable_beside(const fs::path& folder, const std::vector<std::string>& more) {
     const bool page = fs::exists(folder / kPage), ours = page && is_our_page(folder / kPage);
     const auto refuse_file = [&](std::string_view name) {
         refuse(folder, fmt::format("holds {}, which umbra did not write", name));
@@ -90,6 +93,10 @@ void check_writable_beside(const fs::path& folder) {
     if (fs::exists(folder / kRecord) && record_in(folder).is_discarded()) refuse_file(kRecord);
     for (const std::string_view name : kPageFiles)
         if (!ours && fs::exists(folder / name)) refuse_file(name);
+    std::set<std::string> named;
+    collect_strings(record_in(folder), named);
+    for (const std::string& name : more)
+        if (fs::exists(folder / name) && !named.contains(name)) refuse_file(name);
 }
 
 }  // namespace umbra

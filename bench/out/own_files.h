@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace umbra {
 
@@ -13,8 +15,8 @@ void check_replaceable(const std::filesystem::path& folder);
 /// Whether the folder holds a results.json of ours, of any version, that has no such member: of another command.
 [[nodiscard]] bool holds_record_without(const std::filesystem::path& folder, std::string_view key);
 
-/// For a folder into which a results.json and pages are written beside other files. Throws InputError where one of them
-/// is there and is not ours.
-void check_writable_beside(const std::filesystem::path& folder);
+/// For a folder into which a results.json, pages and `more` files are written beside other files. Throws InputError
+/// where one of them is there and is not ours: of `more`, one that no results.json of ours there names.
+void check_writable_beside(const std::filesystem::path& folder, const std::vector<std::string>& more = {});
 
 }  // namespace umbra

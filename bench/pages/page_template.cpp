@@ -29,6 +29,25 @@ kainjow::mustache::data template_data(const json& view) {
     return object;
 }
 
+/// Settings that are a row's head may break between their words: "shadow_zbuffer:resolution=64" behind "_", ":", "=".
+std::string with_breaks_in_heads(const std::string& html) {
+    constexpr std::string_view kHead = "<th scope=\"row\">", kEnd = "</th>", kCode = "<code>", kCodeEnd = "</code>";
+    std::string broken;
+    bool in_head = false, in_code = false;
+    for (std::size_t at = 0; at < html.size(); ++at) {
+        const auto here = [&](std::string_view tag) { return html.compare(at, tag.size(), tag) == 0; };
+        if (html[at] == '<') {
+            if (here(kHead)) in_head = true;
+            if (here(kEnd)) in_head = false;
+            if (here(kCode)) in_code = true;
+            if (here(kCodeEnd)) in_code = false;
+        }
+        broken += html[at];
+        if (in_head && in_code && std::string_view("_:=,").find(html[at]) != std::string_view::npos) broken += "<wbr>";
+    }
+    return broken;
+}
+
 }  // namespace
 
 std::string render_page(std::string_view page, const PageHead& head, json view) {
@@ -48,12 +67,16 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
                                         {"break_pictures", assets::break_pictures_html},
                                         {"setup", assets::setup_html},
                                         {"scales", assets::scales_html},
+                                        {"study_table", assets::study_table_html},
+                                        {"study_words", assets::study_words_html},
+                                        {"study_picture", assets::study_picture_html},
+                                        {"study_curve", assets::study_curve_html},
                                         {"scale_colours", assets::scale_colours_html}})
         data.set(name, std::string(partial));
     kainjow::mustache::mustache text{std::string(page)};
-    std::string html = text.render(data);
+    const std::string html = text.render(data);
     if (!text.is_valid()) throw std::logic_error("report template: " + text.error_message());
-    return html;
+    return with_breaks_in_heads(html);
 }
 
 void write_page_assets(const std::filesystem::path& folder, const std::vector<std::string>& scripts,

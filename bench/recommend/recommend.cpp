@@ -11,7 +11,7 @@
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
-#include "umbra/bench/sweep/limit_text.h"
+#include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
 

@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/sweep/bounds.h"
 
 namespace umbra {
 namespace {
+
+std::string counted_views(std::size_t n) { return counted(static_cast<double>(n), "view"); }
 
 Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
@@ -20,6 +23,12 @@ std::optional<double> largest(const Metric& metric, const std::vector<Json>& vie
         most = std::max(most.value_or(*value), *value);
     }
     return most;
+}
+
+/// "1 view that was chosen on", "5 views that were chosen on", and what follows.
+std::string chosen_on(std::size_t views, std::string_view one, std::string_view more) {
+    return fmt::format("{} that {} chosen on{}", counted_views(views), views == 1 ? "was" : "were",
+                       views == 1 ? one : more);
 }
 
 /// In how many of the cells a metric is at most `bound`. One that is only known to be at least something is not.
@@ -99,8 +108,8 @@ std::string errors_in_words(const Candidate& c, const RecommendOptions& options)
     std::string text;
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Limit& limit = options.limits[k];
-        const auto most    = largest_in_words(
-               *limit.metric, c.views, fmt::format(" from {} views that were chosen on, their largest", c.views.size()));
+        const auto most    = largest_in_words(*limit.metric, c.views,
+                                              " from " + chosen_on(c.views.size(), ", its largest", ", their largest"));
         text += fmt::format("    {}: {}{}; limit {}\n", limit.metric->name,
                             c.bounds[k] ? "bound " + with_unit(*c.bounds[k], limit.metric->unit) : "no bound is known",
                             most, with_unit(limit.most, limit.metric->unit));
@@ -142,27 +151,27 @@ std::string held_out_in_words(const Recommendation& r, const RecommendOptions& o
     for (const Limit& limit : options.limits) {
         double most = 0;
         for (const Json& cell : r.held_out) most = std::max(most, possible_error(*limit.metric, cell).value_or(0));
-        text += fmt::format("    {}: at most {} in {} views that it was not chosen on; limit {}\n", limit.metric->name,
-                            with_unit(most, limit.metric->unit), views, with_unit(limit.most, limit.metric->unit));
+        text += fmt::format("    {}: at most {} in {} that it was not chosen on; limit {}\n", limit.metric->name,
+                            with_unit(most, limit.metric->unit), counted_views(views),
+                            with_unit(limit.most, limit.metric->unit));
     }
     text += open_in_words(r.candidates[*r.chosen]);
     const std::size_t tried = r.dropped.size() + 1;
-    return text + fmt::format(
-                      "  None of these {} views is beyond a limit: with {:.0f} % confidence at most {:.1f} % of "
-                      "such views are{}.\n",
-                      views, 100 * kConfidence, std::ceil(1000 * share_beyond(static_cast<int>(views), tried)) / 10,
-                      tried > 1 ? fmt::format(", as it is number {} of the settings tried on them", tried) : "");
+    return text +
+           fmt::format("  {} beyond a limit: with {:.0f} % confidence at most {:.1f} % of such views are{}.\n",
+                       views == 1 ? "This view is not" : fmt::format("None of these {} views is", views),
+                       100 * kConfidence, std::ceil(1000 * share_beyond(static_cast<int>(views), tried)) / 10,
+                       tried > 1 ? fmt::format(", as it is number {} of the settings tried on them", tried) : "");
 }
 
-std::string dropped_in_words(const Recommendation& r) {
+std::string dropped_in_words(const Recommendation& r, const RecommendOptions& options) {
     std::string text;
     for (const Dropped& d : r.dropped) {
         const Candidate& c = r.candidates[d.candidate];
-        text += fmt::format(
-            "  Dropped: {} ({:.3f} ms), within the limits in the views that were chosen on: {} {} in "
-            "view {}\n",
-            c.choice.text(), *c.cost, d.metric->name,
-            d.error ? "up to " + with_unit(*d.error, d.metric->unit) : "unknown", d.view);
+        text +=
+            fmt::format("  Dropped: {} ({:.3f} ms), within the limits in the {}: {} {} in view {}\n", c.choice.text(),
+                        *c.cost, options.views == 1 ? "view that was chosen on" : "views that were chosen on",
+                        d.metric->name, d.error ? "up to " + with_unit(*d.error, d.metric->unit) : "unknown", d.view);
     }
     return text;
 }
@@ -190,8 +199,8 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
         lines.emplace_back(std::move(name), std::move(what));
     }
     std::string text = fmt::format(
-        "  Every method, by its cheapest setting within the limits, or else its nearest, with bounds from {} views:\n",
-        options.views);
+        "  Every method, by its cheapest setting within the limits, or else its nearest, with bounds from {}:\n",
+        counted_views(static_cast<std::size_t>(options.views)));
     for (const auto& [name, what] : lines) text += fmt::format("    {:<{}}  {}\n", name, widest, what);
     return text;
 }
@@ -207,8 +216,8 @@ std::string noise_in_words(const Recommendation& r, const RecommendOptions& opti
 std::string staircase_in_words(const Recommendation& r, const RecommendOptions& options) {
     if (r.staircase.empty()) return {};
     std::string text =
-        fmt::format("  If {} may be at most E, the cheapest of the settings by their bounds from {} views:\n",
-                    options.limits.front().metric->name, options.views);
+        fmt::format("  If {} may be at most E, the cheapest of the settings by their bounds from {}:\n",
+                    options.limits.front().metric->name, counted_views(static_cast<std::size_t>(options.views)));
     for (std::size_t k = 0; k < r.staircase.size(); ++k) {
         const Step& step        = r.staircase[k];
         const std::string range = k == 0 ? fmt::format("E from {:.3g}", step.error)
@@ -296,29 +305,28 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     std::string text;
     if (!r.undecided.empty()) {
         text = fmt::format(
-            "Nothing is chosen: times vary by {:.0f} %, and these are within the limits in {} views and as cheap as "
-            "one "
-            "another, as far as can be told:\n",
-            std::ceil(100 * r.noise_bar), options.views);
+            "Nothing is chosen: times vary by {:.0f} %, and these are within the limits in {} and as cheap as "
+            "one another, as far as can be told:\n",
+            std::ceil(100 * r.noise_bar), counted_views(static_cast<std::size_t>(options.views)));
         for (const std::size_t k : r.undecided)
             text +=
                 fmt::format("  {}: {:.3f} ms a frame with {}\n{}", r.candidates[k].choice.text(), *r.candidates[k].cost,
                             to_text(options.workload), errors_in_words(r.candidates[k], options));
     } else if (!r.chosen) {
-        text = "No setting stays within the limits.\n" + dropped_in_words(r);
+        text = "No setting stays within the limits.\n" + dropped_in_words(r, options);
         if (r.nearest) {
             const Candidate& nearest = r.candidates[*r.nearest];
             const double factor      = nearest.worst_ratio(options.limits);
-            text +=
-                fmt::format("  Nearest: {}{}\n{}", nearest.choice.text(),
-                            std::isfinite(factor) ? fmt::format(", which exceeds a limit {:.3g} times", factor) : "",
-                            errors_in_words(nearest, options));
+            text += fmt::format(
+                "  Nearest: {}{}\n{}", nearest.choice.text(),
+                std::isfinite(factor) ? fmt::format(", whose largest bound is {:.3g} times its limit", factor) : "",
+                errors_in_words(nearest, options));
         }
     } else {
         const Candidate& c = r.candidates[*r.chosen];
         text = fmt::format("{}: {:.3f} ms a frame with {}\n{}", c.choice.text(), *c.cost, to_text(options.workload),
                            held_out_in_words(r, options));
-        text += dropped_in_words(r);
+        text += dropped_in_words(r, options);
         for (const Rival& rival : r.tied)
             text += fmt::format("  As cheap, within the noise: {}\n", rival_in_words(rival, r));
         for (const Rival& rival : r.untold)
@@ -334,8 +342,10 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     text += staircase_in_words(r, options);
     text += methods_in_words(r, options) + noise_in_words(r, options);
     const std::size_t asked = r.settings - r.passed_over.size();
-    text += fmt::format("  {} of {} settings were looked at, in {} views each{}.\n", r.looked_at, r.settings,
-                        options.views, r.looked_at < asked ? "; bisection saved others" : "");
+    text += fmt::format("  {} of {} {} looked at, in {} each{}.\n", r.looked_at,
+                        counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
+                        counted_views(static_cast<std::size_t>(options.views)),
+                        r.looked_at < asked ? "; bisection saved others" : "");
     if (!options.kept_in.empty())
         text += fmt::format("  Errors and times are kept in {}; --fresh measures times anew.\n", options.kept_in);
     return text;

@@ -1,4 +1,4 @@
-// The page of the lectures: docs/lectures.md in the lectures' order, with the pictures of a report.
+// The page of the lectures: their topics in the lectures' order, with the pictures of a report.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,17 +8,9 @@
 #include <vector>
 
 #include "umbra/bench/pages/report_page.h"
-#include "umbra/bench/report/lecture_texts.h"
+#include "umbra/bench/report/lecture_shows.h"
 
 namespace umbra {
-
-/// A row of docs/lectures.md, as text without markup.
-struct LectureRow {
-    std::string id, topic, source, scene, state;  ///< `scene` is empty where no scene shows the topic
-};
-
-/// The rows of the page that was compiled in, in its order.
-[[nodiscard]] const std::vector<LectureRow>& lecture_rows();
 
 /// What a report has to show the topics with.
 struct LectureSources {

@@ -1,6 +1,8 @@
-// Which pictures and figures show a topic of the lectures, where the reference's picture of its scene does not.
+// The topics of the lectures, of bench/report/lectures/topics.json: where they come from, what shows and tests them, and
+// which pictures and figures show one where the reference's picture of its scene does not.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,26 +15,34 @@ namespace umbra {
 /// Something in a results.json. `path` names members, and entries of arrays by their `name` or their number, with dots
 /// between: "models.gouraud.picture", "depths.0.picture".
 struct LectureValue {
-    Translated name;
-    std::string_view path;
+    std::string name;  ///< in English; may be empty
+    std::string path;
 };
 
 enum class FigureKind { score, count, percent };
 
 /// A measured property, of one thing or of several that the page names.
 struct LectureFigure {
-    Translated what;
+    std::string what;
     FigureKind kind;
     std::vector<LectureValue> values;
 };
 
 struct LectureShow {
-    std::string_view id;
-    std::string_view study;  ///< the command that wrote the results.json of the topic's scene; empty: `umbra compare`
+    std::string study;  ///< the command that wrote the results.json of the topic's scene; empty: `umbra compare`
     std::vector<LectureValue> pictures;
     std::vector<LectureFigure> figures;
     bool shadows = true;  ///< false: shading is compared without them
 };
+
+/// `scene` is empty where no scene shows the topic; `test` checks it and the file `code` computes it.
+struct LectureRow {
+    std::string id, source, scene, test, code, state;
+    std::optional<LectureShow> show;
+};
+
+/// In the lectures' order.
+[[nodiscard]] const std::vector<LectureRow>& lecture_rows();
 
 /// Null where the reference's picture shows the topic.
 [[nodiscard]] const LectureShow* lecture_show(std::string_view id);

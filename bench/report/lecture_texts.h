@@ -1,51 +1,33 @@
-// The words of the page of the lectures in English, German and Greek, with the lectures' own terms.
+// The languages of the page of the lectures, with the lectures' own terms: a folder each in bench/report/lectures/.
 #pragma once
 
-#include <array>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
-#include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace umbra {
 
-enum class Language { english, german, greek };
+struct Language {
+    std::string_view code;  ///< its folder, and its name in HTML: "en"
 
-/// "en", "de" or "el"; nothing for others.
+    bool operator==(const Language&) const = default;
+    static const Language english;
+};
+inline constexpr Language Language::english{"en"};
+
+/// Those that have a folder, by their codes.
+[[nodiscard]] const std::vector<Language>& languages();
+/// Nothing for one without a folder.
 [[nodiscard]] std::optional<Language> language_named(std::string_view code);
-[[nodiscard]] std::string_view code_of(Language language);
 
-struct Translated {
-    std::string_view en{}, de{}, el{};
+/// Its texts.json: {decimal_comma, phrases, chapters: {A: {title, exercises: [{question, answer}]}}, topics: {A1: {topic,
+/// proves}}, names}. `proves` is what the picture of a topic's scene shows; absent where no scene shows it. `names`
+/// translates what topics.json calls pictures and figures; English has none.
+[[nodiscard]] const nlohmann::json& lecture_words(Language language);
 
-    [[nodiscard]] std::string_view in(Language language) const;
-};
-
-/// One topic of docs/lectures.md. `proves` is what the picture of its scene shows; empty where no scene shows it.
-struct LectureText {
-    std::string_view id;
-    std::string_view german, greek;  ///< the topic; in English it is in docs/lectures.md
-    Translated proves;
-};
-
-struct Exercise {
-    Translated question, answer;
-};
-
-/// A chapter: the rows whose ids begin with its letter, and exercises.
-struct LectureChapter {
-    char letter;
-    Translated title;
-    std::array<Exercise, 2> exercises;
-};
-
-/// In the lectures' order.
-[[nodiscard]] std::span<const LectureText> lecture_texts();
-[[nodiscard]] std::span<const LectureChapter> lecture_chapters();
-
-/// Words of the page that belong to no topic.
-struct LecturePhrases {
-    Translated title, lead, works, in_part, not_yet, measured, exercise, answer, source, back;
-};
-[[nodiscard]] const LecturePhrases& lecture_phrases();
+/// A name of topics.json in the language.
+[[nodiscard]] std::string lecture_name(const std::string& english, Language language);
 
 }  // namespace umbra

@@ -165,6 +165,7 @@ json ladder_sections(const std::vector<LadderFolder>& folders, const fs::path& o
         write_ladder_page(root, folder.page, url((out / "index.html").lexically_relative(folder.page)), staged);
         sections.push_back({{"page", page},
                             {"number", number},
+                            {"which", folders.size() > 1 ? fmt::format(" {}", sections.size() + 1) : ""},
                             {"run", folders.size() > 1 ? run_view(root) : json(false)},
                             {"table", ladder_table_view(root, page)},
                             {"textbook", textbook_view(root, page)},
@@ -212,7 +213,7 @@ json lectures_section(const std::vector<SceneFiles>& files, const std::vector<St
     staged.write(
         out / "lectures.html",
         render_page(assets::lectures_html,
-                    {.title = title, .root = "", .scripts = {}, .language = std::string(code_of(options.language))},
+                    {.title = title, .root = "", .scripts = {}, .language = std::string(options.language.code)},
                     std::move(view)));
     return {{"page", "lectures.html"}};
 }

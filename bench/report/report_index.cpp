@@ -9,6 +9,7 @@
 #include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 
@@ -42,6 +43,12 @@ json cell_view(const ScenePage& scene, const Field& setting, const std::string& 
                           {"raw_interior", t.points > 0 ? fmt::format("{:.0f}", t.interior) : ""},
                           {"raw_coverage", coverage ? fmt::format("{}", *coverage) : ""}};
     return view;
+}
+
+/// The noise bar of a scene's times of a full rebuild; infinite of too few rounds, nothing in records of older versions.
+std::optional<double> noise_of(const Field& root) {
+    if (!root["turns"].present()) return std::nullopt;
+    return root["turns"]["noise_bar"].number().value_or(noise_bar({}));
 }
 
 /// The class picture of the light under which a method has the most wrong interior points; false where there is none.
@@ -135,9 +142,14 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                              {"lights", fmt::format("{}", fmt::join(lights, "; "))},
                              {"triangles", count(scene.triangles)}};
         card["thumbnail"] = files[i].figure(scene.root["reference"]["files"]["png"], "Reference", "picture", "", out);
+        const auto noise  = noise_of(scene.root);
         json cells        = json::array();
         for (const Field& setting : settings) cells.push_back(cell_view(scene, setting, href));
-        rows.push_back({{"title", scene.title}, {"href", href}, {"cells", std::move(cells)}});
+        rows.push_back({{"title", scene.title},
+                        {"href", href},
+                        {"noise", noise ? fmt::format("{}", *noise) : ""},
+                        {"loud", noise && is_too_noisy(*noise)},
+                        {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
         add_run(runs, run_view(scene.root));
         add_reference(references, reference_view(scene.root));

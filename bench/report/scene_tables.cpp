@@ -102,7 +102,9 @@ json column_groups(const std::vector<Column>& columns) {
 
 json error_view(const Field& root, const std::vector<Field>& methods) {
     const std::vector<Column> columns = counted_columns(methods);
+    bool unshadowed                   = false;  // some object receives no shadows
     json groups                       = rows_by_light(root, methods, [&](const Field& method, const Field& e) {
+        unshadowed  = unshadowed || e["unshadowed"].present();
         json counts = json::array();
         for (const Column& column : columns) {
             const auto n = e[column.group][column.member].number();
@@ -114,6 +116,7 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
                     {"on_boundary", count(e["on_boundary"].number())},
                     {"not_judged", count(e["not_judged"].number())},
                     {"away", count(e["away"].number())},
+                    {"unshadowed", count(e["unshadowed"].number().value_or(0))},
                     {"lit", count(e["lit"].number())},
                     {"umbra", count(e["umbra"].number())},
                     {"penumbra", count(e["penumbra"].number())},
@@ -124,6 +127,8 @@ json error_view(const Field& root, const std::vector<Field>& methods) {
                     {"bias", score(e["bias"].number())}};
     });
     return {{"groups", std::move(groups)},
+            {"any_unshadowed", unshadowed},
+            {"region_columns", unshadowed ? "10" : "9"},
             {"column_groups", column_groups(columns)},
             {"all_columns", std::to_string(7 + columns.size())}};
 }

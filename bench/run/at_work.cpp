@@ -14,6 +14,13 @@ constexpr std::size_t kAimsBytes = std::size_t{1} << 29;  ///< that aims may hol
 MethodAtWork::MethodAtWork(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts)
     : choice_(choice), scene_(&scene), facts_(&facts), method_(choice.make()) {}
 
+template <class Phase>
+void MethodAtWork::spend(const Phase& phase) const {
+    run_within(spending_.get(), phase);
+    if (spending_ && spending_->bounds_memory())
+        spending_->check_bytes(memory_bytes() + points_bytes() + device_bytes());
+}
+
 void MethodAtWork::set(const MethodChoice& choice) {
     if (choice.info != choice_.info) throw std::logic_error("another setting expected, found another method");
     std::shared_ptr<const Method> method = choice.make();
@@ -40,26 +47,27 @@ void MethodAtWork::forget_build() {
 }
 
 void MethodAtWork::warm_up() {
-    if (!is_warm_) method_->warm_up(*scene_, *facts_);
+    if (!is_warm_) run_within(spending_.get(), [&] { method_->warm_up(*scene_, *facts_); });
     is_warm_ = true;
 }
 
 void MethodAtWork::build() {
     if (built_) forget_build();
     warm_up();
-    built_ = method_->build(*scene_, *facts_);
+    spend([&] { built_ = method_->build(*scene_, *facts_); });
 }
 
 void MethodAtWork::aim(LightId light) {
     aimed_.erase(light);
-    aimed_[light] = method_->aim(built(), light);
-    last_         = light;
+    const Built& to_aim = built();
+    spend([&] { aimed_[light] = method_->aim(to_aim, light), last_ = light; });
     drop_aims_over_budget();
 }
 
 void MethodAtWork::look(const PointBatch& points) {
     forget_look();
-    looked_ = method_->look(built(), points);
+    const Built& to_look = built();
+    spend([&] { looked_ = method_->look(to_look, points); });
 }
 
 const Built& MethodAtWork::built() {
@@ -87,20 +95,21 @@ void MethodAtWork::drop_aims_over_budget() {
 
 void MethodAtWork::visibility(LightId light, const Visibility& out) {
     write_decided(*scene_, looked().points, light, out);
-    method_->visibility(aimed(light), looked(), out);
+    const Aimed& aim = aimed(light);
+    spend([&] { method_->visibility(aim, looked(), out); });
 }
 
 VisibilityPlane MethodAtWork::ask(const PointBatch& points, LightId light) {
-    const auto looked = method_->look(built(), points);
     VisibilityPlane plane(points.size(), facts_->has_coloured_filters);
     write_decided(*scene_, points, light, plane.out());
-    method_->visibility(aimed(light), *looked, plane.out());
+    const Aimed& aim = aimed(light);
+    spend([&] { method_->visibility(aim, *method_->look(*built_, points), plane.out()); });
     return plane;
 }
 
 void MethodAtWork::blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) {
-    const auto looked = method_->look(built(), points);
-    method_->blame(aimed(light), *looked, blockers);
+    const Aimed& aim = aimed(light);
+    spend([&] { method_->blame(aim, *method_->look(*built_, points), blockers); });
 }
 
 std::size_t MethodAtWork::memory_bytes() const {

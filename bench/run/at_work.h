@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "umbra/bench/run/budget.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/facts.h"
@@ -21,6 +22,12 @@ class MethodAtWork {
 public:
     /// Makes the method; no phase has run. Throws UsageError where the settings contradict one another.
     MethodAtWork(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts);
+
+    /// What all that follows may take, from now on; that of copies too. Phases throw CutShort where it is more.
+    void limit(const Budget& budget) {
+        spending_ = budget.is_set() ? std::make_shared<const Spending>(budget) : nullptr;
+    }
+    void lift_limit() { spending_.reset(); }
 
     /// Another setting of the same method. What the phases before the first changed one made stays.
     void set(const MethodChoice& choice);
@@ -66,6 +73,9 @@ public:
 
 private:
     void drop_aims_over_budget();
+    /// `phase` within the limit.
+    template <class Phase>
+    void spend(const Phase& phase) const;
 
     MethodChoice choice_;
     const Scene* scene_;
@@ -75,6 +85,7 @@ private:
     std::shared_ptr<const Built> built_;
     std::map<LightId, std::shared_ptr<const Aimed>> aimed_;
     std::shared_ptr<const Looked> looked_;
+    std::shared_ptr<const Spending> spending_;  ///< null: no limit
     bool is_warm_ = false;
     LightId last_ = 0;  ///< the light that was aimed at last
 };

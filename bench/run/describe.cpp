@@ -1,10 +1,13 @@
 #include "umbra/bench/run/describe.h"
 
 #include <fmt/format.h>
+#include <sched.h>
 #include <sys/sysinfo.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <thread>
 
 namespace umbra {
@@ -45,6 +48,22 @@ std::string_view version() { return UMBRA_VERSION; }
 std::string json_text(const Json& record) { return record.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+double load_average() {
+    double minute = 0;
+    return getloadavg(&minute, 1) == 1 ? minute : std::numeric_limits<double>::quiet_NaN();
+}
+
+int usable_processors() {
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set)
+                                                       : static_cast<int>(std::thread::hardware_concurrency());
+}
+
+Json budget_json(const Budget& budget) {
+    return {{"seconds", number(budget.seconds)}, {"memory_bytes", number(budget.bytes)}};
+}
 
 Json machine_json(int threads) {
     struct sysinfo info {};

@@ -2,16 +2,26 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 
-#include "umbra/bench/run/memory_needed.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
+
+enum class Work : std::uint8_t { picture, comparison };
+
+/// About the most that rendering or comparing holds at one time, bytes, for a picture of `pixels` with `samples` points
+/// each. docs/memory.md states the terms and how they were measured.
+[[nodiscard]] double memory_needed(const Scene& scene, double pixels, int samples, Work work);
+
+/// Throws InputError where that is more than this process may hold: what it is for, how much, and what there is.
+void check_memory(const Scene& scene, const std::filesystem::path& file, int width, int height, int samples, Work work);
 
 /// How long `work` takes, wall clock, milliseconds.
 template <class Work>
@@ -30,6 +40,9 @@ struct PreparedScene {
     int pixel_side = 1;
     double load_ms = 0, facts_ms = 0, rays_build_ms = 0, gbuffer_ms = 0;
 };
+
+/// "SCENE: warning" of loading and preparing, one after the other; `receive` may be empty.
+void pass_warnings(const Scene& scene, const std::function<void(const std::string&)>& receive);
 
 struct Size {
     int width = 0, height = 0;  ///< 0: the scene's own

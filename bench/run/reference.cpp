@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "umbra/bench/run/stratified_sample.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/random_bits.h"
 
@@ -130,13 +129,16 @@ Reference default_reference(const SceneFacts& facts, Measure measure) {
     return substitute(measure, why);
 }
 
-ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
-                           const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at) {
+namespace {
+
+ReferenceRun answers_of(const Reference& reference, const Scene& scene, const SceneFacts& facts,
+                        const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
+                        const Budget& budget) {
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
     ReferenceRun done{MethodRun{reference.choice}, all, all, {}};
     MethodRun& run = done.run;
-    run            = begin_run(reference.choice, scene, facts);
+    run            = begin_run(reference.choice, scene, facts, budget);
     if (!run.service)
         throw UsageError(
             fmt::format("{} cannot be the reference of this scene: {}", reference.choice.info->name, run.service.why));
@@ -144,16 +146,15 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     if (!wanted)
         wanted =
             any_area && reference.choice.info->reference ? affordable(*run.work, scene, facts, points, all, at) : all;
-    constexpr Repeats kOnce{1, 0};
     if (!any_area || *wanted >= all) {
-        run = run_method(reference.choice, scene, facts, points, kOnce, at);
+        run = run_method(reference.choice, scene, facts, points, kOnce, at, budget);
         return done;
     }
 
     const MethodRun stand_in =
         run_method(of_measure(stand_in_for_reference(), run.work->method().measures()), scene, facts, points, kOnce);
     if (!stand_in.service) {  // then every point is the reference's, however long that takes
-        run = run_method(reference.choice, scene, facts, points, kOnce, at);
+        run = run_method(reference.choice, scene, facts, points, kOnce, at, budget);
         return done;
     }
     run.is_coloured                         = stand_in.is_coloured;
@@ -175,22 +176,71 @@ ReferenceRun run_reference(const Reference& reference, const Scene& scene, const
     return done;
 }
 
-TruthRun run_reference_or_substitute(Reference& reference, const Scene& scene, const SceneFacts& facts,
-                                     const PointBatch& points, std::optional<std::uint64_t> wanted) {
-    std::optional<LightId> at;
-    Failure failed{reference.choice.text(), {}, {}};
-    Measure measure = Measure::area;
+}  // namespace
+
+ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
+                           const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
+                           const Budget& budget) {
+    ReferenceRun done = answers_of(reference, scene, facts, points, wanted, at, budget);
+    done.run.work->lift_limit();  // it is asked further, for others
+    return done;
+}
+
+Failure failure(const MethodChoice& choice, std::optional<LightId> light) {
     try {
-        measure = reference.choice.make()->measures();
-        return {run_reference(reference, scene, facts, points, wanted, &at), std::nullopt};
+        throw;
+    } catch (const CutShort& e) {
+        return {choice.text(), light, e.what(), true};
     } catch (...) {
-        failed.light   = at;
-        failed.message = current_message();
+        return {choice.text(), light, current_message()};
     }
-    reference =
-        substitute(measure, fmt::format(" {} failed{}: {}.", reference.choice.info->title,
-                                        at ? fmt::format(" at light {}", scene.lights[*at].name) : "", failed.message));
-    return {run_reference(reference, scene, facts, points, wanted), std::move(failed)};
+}
+
+Truths::Truths(const Scene& scene, const SceneFacts& facts, const PointBatch& points, TruthOptions options)
+    : scene_(scene), facts_(facts), points_(points), options_(std::move(options)) {}
+
+const Truth& Truths::main() {
+    if (main_) return *main_;
+    if (!options_.reference) return main_.emplace(found(default_reference(facts_), true));
+    Reference named{parse_method(*options_.reference), false, "Chosen on the command line."};
+    named.exact = verdict(*named.choice.make(), facts_).how == How::exactly;
+    return main_.emplace(found(std::move(named), false));
+}
+
+const Truth& Truths::of(const Method& method) {
+    const Truth& here     = main();
+    const Measure measure = method.measures();
+    if (facts_.hard_lights_only || here.ran.run.work->method().measures() == measure) return here;
+    const auto known = others_.find(measure);
+    if (known != others_.end()) return known->second;
+    return others_.emplace(measure, found(default_reference(facts_, measure), true)).first->second;
+}
+
+Truth Truths::found(Reference reference, bool replaceable) const {
+    if (options_.progress) options_.progress("reference " + reference.choice.text());
+    ReferenceRun ran{MethodRun{reference.choice}, 0, 0, {}};
+    if (options_.find && options_.find(reference, ran)) {
+        ran.run.work    = std::make_shared<MethodAtWork>(reference.choice, scene_, facts_);
+        ran.run.service = ran.run.work->service();
+        return {std::move(reference), std::move(ran)};
+    }
+    std::optional<LightId> at;
+    try {
+        ran = run_reference(reference, scene_, facts_, points_, options_.points, &at, options_.budget);
+        if (options_.keep) options_.keep(reference, ran);
+        return {std::move(reference), std::move(ran)};
+    } catch (const InputError&) {  // a file that cannot be written is no fault of the method
+        throw;
+    } catch (...) {
+        if (!replaceable) throw;
+        Failure failed = failure(reference.choice, at);
+        reference =
+            substitute(reference.choice.make()->measures(),
+                       fmt::format(" {} failed{}: {}.", reference.choice.info->title,
+                                   at ? fmt::format(" at light {}", scene_.lights[*at].name) : "", failed.message));
+        ran = run_reference(reference, scene_, facts_, points_, options_.points);
+        return {std::move(reference), std::move(ran), std::move(failed)};
+    }
 }
 
 }  // namespace umbra

@@ -6,8 +6,7 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "umbra/bench/run/contract.h"
-#include "umbra/bench/run/timing.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 namespace {
@@ -31,6 +30,12 @@ void check_contract(std::string_view name, const VisibilityPlane& plane, const P
                 "{} breaks its contract at point {}: visibility {}, half width {}, answer {}, {}", name, i, plane.s[i],
                 plane.half_width[i], static_cast<int>(plane.answer[i]), asked ? "asked for" : "not asked for"));
     }
+}
+
+Timing timing_of(std::span<const double> samples) {
+    const double middle         = median(samples);
+    const auto [least, largest] = std::minmax_element(samples.begin(), samples.end());
+    return {middle, *least, *largest, static_cast<int>(samples.size())};
 }
 
 Timing time_runs(const Repeats& repeats, const std::function<void()>& work, const std::function<void()>& before) {
@@ -69,9 +74,10 @@ std::optional<double> MethodRun::coverage(const PointBatch& points) const {
     return static_cast<double>(given) / static_cast<double>(asked);
 }
 
-MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts) {
+MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const Budget& budget) {
     MethodRun run{choice};
-    run.work        = std::make_shared<MethodAtWork>(choice, scene, facts);
+    run.work = std::make_shared<MethodAtWork>(choice, scene, facts);
+    run.work->limit(budget);
     run.service     = run.work->service();
     run.is_coloured = facts.has_coloured_filters;
     return run;
@@ -103,20 +109,25 @@ void note_memory(MethodRun& run) {
     run.device_bytes = run.work->device_bytes();
 }
 
-MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
-                     const Repeats& repeats, std::optional<LightId>* at) {
-    MethodRun run = begin_run(choice, scene, facts);
-    if (!run.service) return run;
-    MethodAtWork& work = *run.work;
-    run.build          = time_runs(
-                 repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
-    look_at(run, points, repeats);
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
+void run_lights(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
+                std::optional<LightId>* at) {
+    for (LightId light = 0; light < lights; ++light) {
         if (at != nullptr) *at = light;
         run_light(run, points, light, repeats);
     }
     if (at != nullptr) at->reset();
     note_memory(run);
+}
+
+MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
+                     const Repeats& repeats, std::optional<LightId>* at, const Budget& budget) {
+    MethodRun run = begin_run(choice, scene, facts, budget);
+    if (!run.service) return run;
+    MethodAtWork& work = *run.work;
+    run.build          = time_runs(
+                 repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
+    look_at(run, points, repeats);
+    run_lights(run, points, scene.lights.size(), repeats, at);
     return run;
 }
 

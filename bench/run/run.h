@@ -4,6 +4,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string_view>
 #include <vector>
 
 #include "umbra/bench/run/at_work.h"
@@ -14,6 +16,10 @@
 #include "umbra/shadows/method.h"
 
 namespace umbra {
+
+/// Throws std::logic_error, naming the method, where a plane that it wrote holds values outside [0, 1], or an answer
+/// for a point that is not asked for.
+void check_contract(std::string_view name, const VisibilityPlane& plane, const PointBatch& points, LightId light);
 
 /// Wall-clock times of one phase, milliseconds. One run is a figure; fewer than three say little about spread.
 struct Timing {
@@ -26,6 +32,11 @@ struct Repeats {
     int max_runs     = 6;  // the fewest that a ratio has an interval of
     double budget_ms = 300;
 };
+
+inline constexpr Repeats kOnce{1, 0};
+
+/// Of samples in any order, milliseconds. Throws std::logic_error where there is none.
+[[nodiscard]] Timing timing_of(std::span<const double> samples);
 
 /// Calls `work` repeatedly and times each call; `before`, if given, runs ahead of each, outside the clock.
 [[nodiscard]] Timing time_runs(const Repeats& repeats, const std::function<void()>& work,
@@ -57,10 +68,11 @@ struct MethodRun {
 
 /// Runs all phases for all lights. Throws std::logic_error if the method breaks its contract (values outside [0, 1],
 /// or an answer for points that it must leave alone): a picture of such values would be worse than none. Throws what
-/// the method throws; `at`, if given, then says which light it was about, none for the phases before.
+/// the method throws, and CutShort where it takes more than the budget, which stays the limit of `work`; `at`, if given,
+/// then says which light it was about, none for the phases before.
 [[nodiscard]] MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
                                    const PointBatch& points, const Repeats& repeats,
-                                   std::optional<LightId>* at = nullptr);
+                                   std::optional<LightId>* at = nullptr, const Budget& budget = {});
 
 /// The phase of the points, where it does not look at these yet: adds to `run.look`. `points` must outlive the next
 /// one.
@@ -70,11 +82,16 @@ void look_at(MethodRun& run, const PointBatch& points, const Repeats& repeats);
 /// built. `points` must outlive the next call.
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats);
 
+/// The phases of all lights, and what the values of the run hold then.
+void run_lights(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
+                std::optional<LightId>* at = nullptr);
+
 /// What the values of a run hold, into the run.
 void note_memory(MethodRun& run);
 
 /// A run of a setting whose phases are still to come: `work` and `service` are there.
-[[nodiscard]] MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts);
+[[nodiscard]] MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
+                                  const Budget& budget = {});
 
 /// Sum of the medians (and of minima and maxima) of several timings: what all lights together cost.
 [[nodiscard]] Timing total(const std::vector<Timing>& timings);

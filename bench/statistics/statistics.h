@@ -63,6 +63,14 @@ struct MedianRank {
 /// Above this noise bar times are taken again, and nothing is chosen by times that it covers.
 inline constexpr double kMostNoise = 0.3;
 
+/// Whether times vary too much to rank anything by them.
+[[nodiscard]] inline bool is_too_noisy(double noise_bar) { return noise_bar > kMostNoise; }
+
+/// Whether the noise bar tells that a median of times is above another one.
+[[nodiscard]] inline bool is_dearer(double dearer, double cheaper, double noise_bar) {
+    return dearer > cheaper * (1 + noise_bar);
+}
+
 /// Whether the ratio says that two programs take different times: its interval excludes 1, and its median lies outside
 /// the noise bar. Of equal programs it says so with at most the probability 1 - coverage.
 [[nodiscard]] bool differs(const Ratio& ratio, double noise_bar);

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "umbra/bench/compare/record.h"
-#include "umbra/bench/run/explain.h"
-#include "umbra/bench/run/noise_runs.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/bench/sweep/truth_file.h"
@@ -16,8 +15,6 @@
 
 namespace umbra {
 namespace {
-
-constexpr Repeats kOnce{1, 0};
 
 /// Every parameter with its value, so that a new default is a new key.
 std::string all_settings(const MethodChoice& choice) {
@@ -81,39 +78,35 @@ const PreparedScene& CellView::prepared() {
     return *prepared_;
 }
 
-const CellView::Truth& CellView::truth(Measure measure) {
-    if (const auto found = truths_.find(measure); found != truths_.end()) return found->second;
+Truths& CellView::truths() {
+    if (truths_) return *truths_;
     const PreparedScene& p = prepared();
-    Reference reference    = default_reference(p.facts, measure);
-    if (options_.reference && measure == Measure::area) {
-        reference       = {parse_method(*options_.reference), false, "Chosen on the command line."};
-        reference.exact = verdict(*reference.choice.make(), p.facts).how == How::exactly;
-    }
-    if (options_.progress) options_.progress(fmt::format("view {}: reference {}", view_, reference.choice.text()));
-    const std::filesystem::path file =
-        folder_ /
-        fmt::format("truth-{}.exr", combined_key({"truth", what_truth_depends_on(), all_settings(reference.choice)}));
-    Truth truth{reference, {MethodRun{reference.choice}, 0, 0, {}}, std::nullopt, {}};
-    if (read_truth(file, p.scene.lights.size(), p.points.size(), truth.ran)) {
-        MethodRun& run = truth.ran.run;
-        run.work       = std::make_shared<MethodAtWork>(reference.choice, p.scene, p.facts);
-        run.service    = run.work->service();
-    } else if (options_.reference && measure == Measure::area) {
-        truth.ran = run_reference(truth.reference, p.scene, p.facts, p.points, options_.points);
-        write_truth(file, truth.ran, p.points.raster->width, p.points.raster->height);
-    } else {
-        TruthRun found = run_reference_or_substitute(truth.reference, p.scene, p.facts, p.points, options_.points);
-        truth.ran      = std::move(found.ran);
-        truth.failed   = std::move(found.failed);
-        if (!truth.failed) write_truth(file, truth.ran, p.points.raster->width, p.points.raster->height);
-    }
-    truth.rendered = render_planes(p.scene, p.points, truth.ran.run.planes);
-    return truths_.emplace(measure, std::move(truth)).first->second;
+    const auto file_of     = [this](const Reference& reference) {
+        return folder_ / fmt::format("truth-{}.exr",
+                                         combined_key({"truth", what_truth_depends_on(), all_settings(reference.choice)}));
+    };
+    TruthOptions options{.reference = options_.reference, .points = options_.points, .budget = options_.budget};
+    options.progress = [this](const std::string& what) {
+        if (options_.progress) options_.progress(fmt::format("view {}: {}", view_, what));
+    };
+    options.find = [file_of, &p](const Reference& of, ReferenceRun& ran) {
+        return read_truth(file_of(of), p.scene.lights.size(), p.points.size(), ran);
+    };
+    options.keep = [file_of, &p](const Reference& of, const ReferenceRun& ran) {
+        write_truth(file_of(of), ran, p.points.raster->width, p.points.raster->height);
+    };
+    return truths_.emplace(p.scene, p.facts, p.points, std::move(options));
+}
+
+const Rendered& CellView::rendered(const Truth& truth) {
+    const auto known = rendered_.find(&truth);
+    if (known != rendered_.end()) return known->second;
+    const PreparedScene& p = prepared();
+    return rendered_.emplace(&truth, render_planes(p.scene, p.points, truth.ran.run.planes)).first->second;
 }
 
 Json CellView::reference() {
-    const Truth& t = truth(Measure::area);
-    Json record    = reference_json(t.reference, t.ran, prepared().scene, t.failed);
+    Json record = reference_json(truths().main(), prepared().scene);
     record.erase("times");
     return record;
 }
@@ -125,6 +118,7 @@ const std::shared_ptr<MethodAtWork>& CellView::at_work(const MethodChoice& choic
         work_.reset();
         work_ = std::make_shared<MethodAtWork>(choice, prepared().scene, prepared().facts);
     }
+    work_->limit(options_.budget);
     // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
     const ThreadLimit one(1);
     if (work_->service()) work_->built();
@@ -135,44 +129,39 @@ Json CellView::compute(const MethodChoice& choice) {
     const PreparedScene& p = prepared();
     const Scene& scene     = p.scene;
     const std::string id(choice.info->name);
-    std::optional<LightId> at;
+    const Truth* against = nullptr;
     Json cell;
-    try {
-        MethodRun run{seeded(choice, view_)};
-        run.work    = at_work(run.choice);
-        run.service = run.work->service();
-        if (!run.service) {
-            cell = unserved_json(id, choice, run.service);
-        } else {
-            for (LightId j = 0; j < scene.lights.size(); ++j) {
-                at = j;
-                run_light(run, p.points, j, kOnce);
-            }
-            note_memory(run);
-            at.reset();
-            const Measure measure = p.facts.hard_lights_only ? Measure::area : run.work->method().measures();
-            const Truth& against  = truth(measure);
-            const auto noise      = noise_runs(*run.work, scene, p.points, kCellNoiseRuns);
-            std::vector<Explained> explained;
-            for (LightId j = 0; j < scene.lights.size(); ++j) {
-                at = j;
-                explained.push_back(explain(scene, p.points, j, run, against.ran.run, noise[j] ? &*noise[j] : nullptr));
-            }
-            at.reset();
-            run.choice = choice;  // the record names the setting as it was asked for
-            cell       = served_json(id, p, run, explained, against.reference.choice.text());
-            cell.erase("times");
-            cell.erase("light_times");
-            cell["image"] =
-                image_figures(run.planes, render_planes(scene, p.points, run.planes), against.rendered).figures;
-            const auto covered = run.coverage(p.points);
-            cell["undefined"]  = covered ? Json(1 - *covered) : Json();
-        }
-    } catch (const InputError&) {  // a file that cannot be written is no fault of the method
-        throw;
-    } catch (...) {
+    Trial trial{.noise_runs = kCellNoiseRuns, .budget = options_.budget};
+    trial.run = [&](std::optional<LightId>& at) {
+        MethodRun run{choice};
+        run.is_coloured = p.facts.has_coloured_filters;
+        run.work        = at_work(seeded(choice, view_));
+        run.service     = run.work->service();
+        if (run.service) run_lights(run, p.points, scene.lights.size(), kOnce, &at);
+        return run;
+    };
+    trial.truth = [&](const MethodRun& run) -> const MethodRun& {
+        against = &truths().of(run.work->method());
+        return against->ran.run;
+    };
+    trial.then = [&](const Outcome& found) {
+        cell = served_json(id, p, found, against->reference.choice.text());
+        cell.erase("times");
+        cell.erase("light_times");
+        cell["image"] =
+            image_figures(found.run.planes, render_planes(scene, p.points, found.run.planes), rendered(*against))
+                .figures;
+        const auto covered = found.run.coverage(p.points);
+        cell["undefined"]  = covered ? Json(1 - *covered) : Json();
+    };
+    const Outcome found = outcome(choice, scene, p.facts, p.points, trial);
+    const auto whole    = [](const std::optional<Failure>& failed) { return !failed || !failed->cut; };
+    is_whole_           = whole(found.failed) && (against == nullptr || whole(against->failed));
+    if (found.failed) {
         work_.reset();
-        cell = failed_json(id, choice, scene, at, current_message());
+        cell = failed_json(id, choice, scene, *found.failed);
+    } else if (!found.run.service) {
+        cell = unserved_json(id, choice, found.run.service);
     }
     cell["view"] = view_;
     cell["key"]  = key(choice);

@@ -24,6 +24,7 @@ struct CellOptions {
     Size size{};
     std::optional<std::string> reference{};  ///< as typed; none: `default_reference`
     std::optional<std::uint64_t> points{};   ///< at which area lights are scored; none: as `run_reference` chooses
+    Budget budget{};                         ///< of each cell, and of a reference that nobody names
     std::function<void(const std::string&)> progress{};  ///< receives what takes long; may be empty
 };
 
@@ -50,15 +51,12 @@ public:
     /// follow one another and differ from a later phase on share the phases before. In view v > 0 methods that have a
     /// seed run with another one.
     [[nodiscard]] Json compute(const MethodChoice& choice);
+    /// Whether neither the method nor the truth was cut short by a budget, which no key has, in the last computed cell.
+    [[nodiscard]] bool is_whole() const { return is_whole_; }
 
 private:
-    struct Truth {
-        Reference reference;
-        ReferenceRun ran;
-        std::optional<Failure> failed;
-        Rendered rendered;
-    };
-    [[nodiscard]] const Truth& truth(Measure measure);
+    [[nodiscard]] Truths& truths();
+    [[nodiscard]] const Rendered& rendered(const Truth& truth);
     [[nodiscard]] std::string what_truth_depends_on() const;
     [[nodiscard]] const std::shared_ptr<MethodAtWork>& at_work(const MethodChoice& choice);
 
@@ -69,7 +67,9 @@ private:
     std::filesystem::path folder_;
     std::string scene_key_;
     std::optional<PreparedScene> prepared_;
-    std::map<Measure, Truth> truths_;
+    std::optional<Truths> truths_;
+    std::map<const Truth*, Rendered> rendered_;
+    bool is_whole_ = true;
     std::shared_ptr<MethodAtWork> work_;  ///< of the method that was asked last
 };
 

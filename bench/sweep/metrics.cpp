@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -215,6 +216,18 @@ Json metrics_json() {
     Json all = Json::array();
     for (const Metric& m : kMetrics) all.push_back({{"name", m.name}, {"unit", m.unit}, {"doc", m.doc}});
     return all;
+}
+
+LimitText parse_limit_text(const std::string& text, std::string_view expected) {
+    const std::size_t eq = text.find('=');
+    if (eq == std::string::npos) throw UsageError(fmt::format("--max {}: expected {}", text, expected));
+    LimitText limit{text.substr(0, eq), 0};
+    const char* end        = text.data() + text.size();
+    const auto [at, error] = std::from_chars(text.data() + eq + 1, end, limit.most);
+    if (error != std::errc() || at != end || !std::isfinite(limit.most) || limit.most < 0)
+        throw UsageError(fmt::format("--max {}: found the limit \"{}\", expected a finite number of at least 0", text,
+                                     text.substr(eq + 1)));
+    return limit;
 }
 
 }  // namespace umbra

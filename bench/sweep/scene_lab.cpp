@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <new>
 
@@ -37,15 +38,15 @@ Json SceneLab::cell(const MethodChoice& choice, int view_number) {
     Json made = here.compute(choice);
     ++computed_;
     const bool starved = made.contains("failed") && made["failed"]["message"] == std::bad_alloc().what();
-    if (!starved) store_.keep(made);
+    if (!starved && here.is_whole()) store_.keep(made);
     return made;
 }
 
 Json SceneLab::reference() {
     const std::string key = view(0).reference_key();
     if (const auto found = store_.find(key)) return found->at("reference");
-    const Json made = {{"key", key}, {"reference", view(0).reference()}};
-    store_.keep(made);
+    Json made = {{"key", key}, {"reference", view(0).reference()}};
+    if (!made["reference"].contains("failed") || !made["reference"]["failed"].contains("cut")) store_.keep(made);
     return made.at("reference");
 }
 
@@ -78,7 +79,8 @@ std::optional<RunTimes> SceneLab::price(const MethodChoice& choice) {
                         price.at("look_ms").get<double>(), price.at("visibility_ms").get<std::vector<double>>()};
     }
     if (options_.progress) options_.progress(fmt::format("price: {}", choice.text()));
-    const Turns turns  = time_in_turns(view(0).prepared(), {&choice, 1}, {.rounds = 1, .budget_ms = 0});
+    const Turns turns =
+        time_in_turns(view(0).prepared(), {&choice, 1}, {.rounds = 1, .budget_ms = 0, .most = options_.budget});
     const TurnTimes& t = turns.settings.front();
     if (t.build.empty() || !t.failed.empty()) return std::nullopt;
     RunTimes price{.build = t.build.front(), .look = t.look.front()};
@@ -115,12 +117,15 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
     };
     if (auto stored = stored_times(choices); stored && !noisy(*stored)) return std::move(*stored);
     options.progress    = options_.progress;
+    options.most        = options_.budget;
+    bool was_cut        = false;
     const auto together = [&] {
         const Turns turns = time_in_turns(view(0).prepared(), choices, options);
         TimedTogether all;
         all.turns = {
             {"pinned", turns.pinned}, {"noise_bar", number(turns.noise_bar)}, {"calibration_ms", Json::array()}};
         for (const double ms : turns.calibration) all.turns["calibration_ms"].push_back(number(ms));
+        was_cut = std::ranges::any_of(turns.settings, &TurnTimes::cut);
         for (const TurnTimes& t : turns.settings)
             all.settings.push_back(!t.build.empty() && t.failed.empty() ? turn_times_json(t) : Json());
         return all;
@@ -131,7 +136,7 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
             options_.progress(fmt::format("noise bar {:.0f} %: timing again", 100 * all.noise_bar()));
         if (TimedTogether again = together(); again.noise_bar() < all.noise_bar()) all = std::move(again);
     }
-    for (std::size_t k = 0; k < choices.size(); ++k)
+    for (std::size_t k = 0; k < choices.size() && !was_cut; ++k)
         keep_measured({{"key", machine_key("time", choices[k])}, {"times", all.settings[k]}, {"turns", all.turns}});
     return all;
 }

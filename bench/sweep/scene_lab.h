@@ -41,7 +41,7 @@ public:
 
     [[nodiscard]] bool has_cell(const MethodChoice& choice, int view);
     /// Settings of one method and build that follow one another cost one build. A cell that failed for want of
-    /// memory is not kept: it is computed again when it is asked for.
+    /// memory, or that a budget cut short, is not kept: it is computed again when it is asked for.
     [[nodiscard]] Json cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 

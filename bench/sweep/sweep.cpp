@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <set>
 
+#include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
-#include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/bench/sweep/cell_store.h"
@@ -22,12 +22,7 @@ namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
-CellOptions cell_options(const SweepPlan& plan) { return {plan.size, plan.reference, plan.points}; }
-
-/// Without --methods: what runs on every scene, and what runs by itself on each of the plan's scenes.
-bool is_default(const MethodInfo& info, const SweepPlan& plan) {
-    return std::ranges::all_of(plan.scenes, [&](const fs::path& scene) { return runs_by_itself(info, scene); });
-}
+CellOptions cell_options(const SweepPlan& plan) { return {plan.size, plan.reference, plan.points, plan.budget}; }
 
 /// What is typed is wrong before anything is computed.
 std::vector<MethodChoice> typed_settings(const SweepPlan& plan) {
@@ -35,9 +30,8 @@ std::vector<MethodChoice> typed_settings(const SweepPlan& plan) {
     for (const std::string& text : plan.settings)
         for (MethodChoice& choice : expand_settings(text)) all.push_back(std::move(choice));
     if (plan.settings.empty())
-        for (const MethodInfo* info : methods())
-            if (is_default(*info, plan))
-                for (MethodChoice& choice : default_sweep(*info)) all.push_back(std::move(choice));
+        for (const MethodChoice& method : chosen_methods({}, {}, plan.scenes))
+            for (MethodChoice& choice : default_sweep(*method.info)) all.push_back(std::move(choice));
     return all;
 }
 
@@ -79,40 +73,28 @@ void write_plan(const SweepPlan& plan, const fs::path& out) {
     if (bytes_of(out / "plan.json") != text) write_text(out / "plan.json", text);
 }
 
-std::vector<std::string> folder_names(const std::vector<fs::path>& scenes) {
-    std::vector<std::string> names;
-    std::set<std::string> taken;
-    for (const fs::path& scene : scenes) {
-        const std::string name = folder_name(scene_name(scene));
-        names.push_back(name);
-        for (int k = 2; !taken.insert(names.back()).second; ++k) names.back() = fmt::format("{}-{}", name, k);
-    }
-    return names;
-}
-
 /// A setting that failed, in words.
-std::string failure(const Scene& scene, const Json& cell) {
-    const Json& failed = cell.at("failed");
-    return fmt::format("{}: {}: It failed{}: {}", scene.name, cell.at("text").get<std::string>(),
-                       failed.at("light").is_string() ? " at light " + failed.at("light").get<std::string>() : "",
-                       failed.at("message").get<std::string>());
+std::string failure_of(const Scene& scene, const Json& cell) {
+    return failure_in_words(scene.name, cell.at("text"), cell.at("failed"));
 }
 
 Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
                   const Json& turns) {
     const bool own = options.plan.size.width == 0;
-    return {{"schema", kResultsSchema},
-            {"version", version()},
-            {"command", options.command},
-            {"machine", machine_json(options.threads)},
-            {"scene", scene_json(lab.scene())},
-            {"facts", facts_json(lab.facts())},
-            {"size",
-             {{"width", own ? lab.scene().width : options.plan.size.width},
-              {"height", own ? lab.scene().height : options.plan.size.height}}},
-            {"lights", lights_json(lab.facts())},
-            {"reference", lab.reference()},
-            {"sweep", sweep_json(swept, options.plan.views, options.workload, turns)}};
+    Json record    = {{"schema", kResultsSchema},
+                      {"version", version()},
+                      {"command", options.command},
+                      {"machine", machine_json(options.threads)},
+                      {"scene", scene_json(lab.scene())},
+                      {"facts", facts_json(lab.facts())},
+                      {"size",
+                       {{"width", own ? lab.scene().width : options.plan.size.width},
+                        {"height", own ? lab.scene().height : options.plan.size.height}}},
+                      {"lights", lights_json(lab.facts())},
+                      {"reference", lab.reference()},
+                      {"sweep", sweep_json(swept, options.plan.views, options.workload, turns)}};
+    if (options.plan.budget.is_set()) record["budget"] = budget_json(options.plan.budget);
+    return record;
 }
 
 }  // namespace
@@ -136,6 +118,7 @@ std::vector<MethodChoice> planned_settings(const SweepPlan& plan, const SceneFac
 
 std::vector<PlannedCell> planned_cells(const SweepPlan& plan) {
     static_cast<void>(typed_settings(plan));
+    static_cast<void>(chosen_scenes(plan.scenes));
     std::vector<PlannedCell> cells;
     for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
         const std::vector<MethodChoice> settings = planned_settings(plan, find_facts(load_scene(plan.scenes[s])));
@@ -159,6 +142,8 @@ std::string plan_arguments(const SweepPlan& plan) {
     if (plan.size.width > 0) line += fmt::format(" --size {}x{}", plan.size.width, plan.size.height);
     if (plan.reference) line += " --reference " + quoted(*plan.reference);
     if (plan.points) line += fmt::format(" --reference-points {}", *plan.points);
+    if (std::isfinite(plan.budget.seconds)) line += fmt::format(" --budget {}", plan.budget.seconds);
+    if (std::isfinite(plan.budget.bytes)) line += fmt::format(" --memory-budget {}", plan.budget.bytes / (1 << 20));
     return line.substr(1);
 }
 
@@ -182,32 +167,30 @@ std::size_t sweep_pack(const SweepOptions& options, Pack pack, std::vector<std::
         const auto done = lab->computed();
         const Json made = lab->cell(parse_method(cells[k].setting), view);
         computed += lab->computed() - done;
-        if (made.contains("failed")) failed.push_back(failure(lab->scene(), made));
+        if (made.contains("failed")) failed.push_back(failure_of(lab->scene(), made));
     }
     return computed;
 }
 
 SweepDone sweep(const SweepOptions& options) {
-    const CellStore store(options.out / "cells");
+    const std::vector<ChosenScene> scenes = chosen_scenes(options.plan.scenes);
     static_cast<void>(typed_settings(options.plan));
+    const CellStore store(options.out / "cells");
     write_plan(options.plan, options.out);
     SweepDone done;
-    done.folders = folder_names(options.plan.scenes);
-    for (const fs::path& file : options.plan.scenes) {
+    for (const ChosenScene& scene : scenes) {
+        done.folders.push_back(scene.folder);
         std::optional<Steps> steps;
-        const std::string name = scene_name(file);
-        CellOptions cell       = cell_options(options.plan);
-        cell.progress          = [&](const std::string& what) {
+        CellOptions cell = cell_options(options.plan);
+        cell.progress    = [&](const std::string& what) {
             if (steps)
-                steps->show(fmt::format("{}: {}", name, what));
+                steps->show(fmt::format("{}: {}", scene.name, what));
             else if (options.progress)
-                options.progress(fmt::format("{}: {}", name, what));
+                options.progress(fmt::format("{}: {}", scene.name, what));
         };
         cell.progress("loading");
-        SceneLab lab(file, cell, store);
-        if (options.warn)
-            for (const std::string& warning : lab.scene().warnings)
-                options.warn(fmt::format("{}: {}", lab.scene().name, warning));
+        SceneLab lab(scene.file, cell, store);
+        pass_warnings(lab.scene(), options.warn);
         const std::vector<MethodChoice> choices = planned_settings(options.plan, lab.facts());
         std::vector<MeasuredSetting> swept;
         for (const MethodChoice& choice : choices) swept.push_back({choice, {}, {}});
@@ -224,7 +207,7 @@ SweepDone sweep(const SweepOptions& options) {
                 if (next < missing.size() && missing[next] == std::pair(view, k)) ++next, steps->next();
                 swept[k].views.push_back(lab.cell(choices[k], view));
                 if (view == 0 && swept[k].views[0].contains("failed"))
-                    done.failed.push_back(failure(lab.scene(), swept[k].views[0]));
+                    done.failed.push_back(failure_of(lab.scene(), swept[k].views[0]));
             }
             if (view > 0) lab.release(view);
         }

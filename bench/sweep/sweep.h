@@ -22,6 +22,7 @@ struct SweepPlan {
     Size size;
     std::optional<std::string> reference{};
     std::optional<std::uint64_t> points{};
+    Budget budget{};  ///< of each cell; no part of the plan in plan.json
 };
 
 /// Part `index` of `count`, both from 1: of all cells in their order, each `count`th.

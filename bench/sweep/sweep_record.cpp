@@ -1,8 +1,12 @@
 #include "umbra/bench/sweep/sweep_record.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <cmath>
 
 #include "umbra/bench/statistics/pareto.h"
+#include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/metrics.h"
@@ -13,9 +17,13 @@ namespace {
 Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
 Json view_json(const Json& cell) {
-    Json metrics_here = Json::object();
-    for (const Metric& m : metrics()) metrics_here[std::string(m.name)] = optional_number(metric_value(m, cell));
+    Json metrics_here = Json::object(), at_least = Json::array();
+    for (const Metric& m : metrics()) {
+        metrics_here[std::string(m.name)] = optional_number(metric_value(m, cell));
+        if (is_at_least(m, cell)) at_least.push_back(std::string(m.name));
+    }
     Json view = {{"view", cell.at("view")}, {"metrics", std::move(metrics_here)}};
+    if (!at_least.empty()) view["at_least"] = std::move(at_least);
     for (const char* member : {"errors", "image"})
         if (cell.contains(member)) view[member] = cell.at(member);
     return view;
@@ -87,6 +95,36 @@ Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Work
         record["fronts"][name] = std::move(front);
     }
     return record;
+}
+
+std::string front_in_words(const Json& record) {
+    const Json &sweep = record["sweep"], &turns = sweep["turns"];
+    const double bar =
+        turns.is_object() && turns["noise_bar"].is_number() ? turns["noise_bar"].get<double>() : 0;  // 0: not known
+    const std::string what = record["scene"]["name"].get<std::string>() +
+                             ": cost of a frame, S_j error (rmse), its upper bound; ",
+                      vary = fmt::format("{:.0f} %", std::ceil(100 * bar));
+    std::vector<std::string> texts;
+    if (is_too_noisy(bar)) {
+        for (const Json& s : sweep["settings"])
+            if (s["excluded"].is_null() && s["cost_ms"].is_number() && s["values"]["rmse"].is_number())
+                texts.push_back(s["text"]);
+    } else {
+        for (const Json& text : sweep["fronts"]["rmse"]) texts.push_back(text);
+    }
+    std::string words = what + (is_too_noisy(bar) ? "not ranked, as times vary by " + vary + ":\n"
+                                : bar > 0 ? "settings that no other beats in both, costs that differ by less than " +
+                                                vary + " are not told apart:\n"
+                                          : "settings that no other beats in both:\n");
+    for (const std::string& text : texts) {
+        const Json& s =
+            *std::ranges::find(sweep["settings"], text, [](const Json& of) { return of["text"].get<std::string>(); });
+        const Json& bound = s["bounds"]["rmse"];
+        words += fmt::format("  {:>9.3f} ms  {:<9.3g}  {:<9}  {}\n", s["cost_ms"].get<double>(),
+                             s["values"]["rmse"].get<double>(),
+                             bound.is_number() ? fmt::format("{:.3g}", bound.get<double>()) : "-", text);
+    }
+    return words;
 }
 
 }  // namespace umbra

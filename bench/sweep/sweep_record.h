@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "umbra/bench/run/describe.h"
@@ -25,5 +26,9 @@ struct MeasuredSetting {
 /// TimedTogether; null where nothing was timed.
 [[nodiscard]] Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload,
                               const Json& turns);
+
+/// Of a scene's results.json: the front of the first metric, a line a setting. All settings that may be on a front, in
+/// the order of the record, where times vary too much to rank them.
+[[nodiscard]] std::string front_in_words(const Json& record);
 
 }  // namespace umbra

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <stdexcept>
 
-#include "umbra/bench/run/timing.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
@@ -200,10 +200,12 @@ private:
             try {
                 if (k == 0) {
                     work.emplace(choice_of(e), prepared_.scene, prepared_.facts);
+                    work->limit(options_.most);
                     work->warm_up();
                     build = timed([&] { work->build(); });
                 } else {
                     work->set(choice_of(e));
+                    work->limit(options_.most);
                 }
                 RunTimes run{.build = build};
                 work->forget_look();
@@ -220,7 +222,7 @@ private:
                 else
                     keep(e, std::move(run));
             } catch (...) {
-                fail(e, current_message());
+                fail(e, failure(choice_of(e), std::nullopt));
                 if (k + 1 < group.size()) {  // the others start on a method that has not thrown
                     run_group(Group(group.begin() + static_cast<std::ptrdiff_t>(k) + 1, group.end()), cold);
                 }
@@ -229,9 +231,11 @@ private:
         }
     }
 
-    void fail(Entry& e, std::string message) {
+    void fail(Entry& e, Failure failure) {
         e.playing = false;
-        if (!e.twin) turns_.settings[e.setting].failed = std::move(message);
+        if (e.twin) return;
+        turns_.settings[e.setting].failed = std::move(failure.message);
+        turns_.settings[e.setting].cut    = failure.cut;
     }
 
     void keep_cold(Entry& e, const RunTimes& run) {

@@ -35,6 +35,7 @@ struct TurnOptions {
     std::uint32_t seed = 1;     ///< of the order
     bool share_builds  = true;  ///< false: every setting has a build of its own in each round
     int threads        = 0;     ///< 0: as the process has it
+    Budget most{};              ///< of each run of a setting: one that takes more has failed
     std::function<void(const std::string&)> progress{};
     /// First runs that have already happened, one a setting (nothing for one that does not serve): they are not run
     /// again. Empty: each setting runs once before the first round.
@@ -55,6 +56,7 @@ struct TurnTimes {
     std::size_t memory_bytes = 0;      ///< of geometry and of the last light
     bool only_cold           = false;  ///< it took so long that the first run is also the one sample
     std::string failed{};              ///< the message of what it threw; its samples up to there are kept
+    bool cut = false;                  ///< it failed since a run took more than `most`
 };
 
 struct Turns {

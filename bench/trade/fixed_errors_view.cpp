@@ -23,12 +23,9 @@ const std::vector<double> kErrors = {0.1, 0.03, 0.01, 0.003, 0.001, 0};
 
 std::string error_in_words(double error) { return error > 0 ? fmt::format("{:g}", error) : "exactly 0"; }
 
-/// Whether times of a scene vary too much to say which method is the cheapest.
-bool is_loud(const SweptScene& scene) { return scene.noise_bar && *scene.noise_bar > kMostNoise; }
-
 /// Whether a method's cost is the least, as far as the noise bar tells.
 bool is_least(const SweptScene& scene, const FixedError& problem, std::size_t method) {
-    return problem.costs[method] <= problem.least * (1 + scene.noise_bar.value_or(0));
+    return !costs_more(scene, problem.costs[method], problem.least);
 }
 
 /// The coverage of the settings of a method that are within an error, but leave points without an answer and are

@@ -50,9 +50,10 @@ std::optional<SweptError> error_of(const Field& setting, const std::string& metr
         const Field value = view["metrics"][metric];
         if (!value.present()) continue;
         const double e = not_negative(value);
-        if (!error) error = SweptError{e, e};
+        if (!error) error = SweptError{.least = e, .worst = e};
         error->least = std::min(error->least, e);
         error->worst = std::max(error->worst, e);
+        for (const Field& name : view["at_least"].items()) error->at_least = error->at_least || name.text() == metric;
     }
     if (error) {
         error->bound = not_negative_if_there(setting["bounds"][metric]);

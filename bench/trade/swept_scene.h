@@ -27,6 +27,7 @@ struct FrameCost {
 struct SweptError {
     double least = 0, worst = 0;
     std::optional<double> bound{};  ///< at least `worst`; nothing where no bound is known
+    bool at_least = false;          ///< in a view it may be more than is known: `worst` is the least that it may be
 };
 
 struct SweptSetting {

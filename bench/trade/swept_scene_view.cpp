@@ -23,6 +23,9 @@ std::size_t number_on(const std::vector<std::size_t>& front, std::size_t setting
     return at == front.end() ? 0 : 1 + std::size_t(at - front.begin());
 }
 
+/// The error of the worst view: "≥ 8.00" where it may be more.
+std::string worst_in_words(const SweptError& e) { return (e.at_least ? "≥ " : "") + score(e.worst); }
+
 std::string range(double low, double high) { return fmt::format("{}–{}", milliseconds(low), milliseconds(high)); }
 
 /// A plot of one metric with its front as a list; false where no setting was both timed and compared.
@@ -35,8 +38,8 @@ json plot_view(const SweptScene& scene, const std::vector<SweptMethod>& methods,
         if (!takes_part(s, metric)) continue;
         const SweptError& e = *s.errors[metric];
         errs                = errs || e.worst > 0;
-        points.push_back({fmt::format("{}: {} ms, {}", s.text, milliseconds(s.cost->median), score(e.worst)), *s.cost,
-                          e, index_of(methods, s.method), number_on(front, i)});
+        points.push_back({fmt::format("{}: {} ms, {}", s.text, milliseconds(s.cost->median), worst_in_words(e)),
+                          *s.cost, e, index_of(methods, s.method), number_on(front, i)});
     }
     const SweptMetric& m = scene.metrics[metric];
     json view            = {{"title", m.title},
@@ -52,7 +55,7 @@ json plot_view(const SweptScene& scene, const std::vector<SweptMethod>& methods,
         view["steps"].push_back({{"title", s.title},
                                  {"label", s.label},
                                  {"colour", std::to_string(mark_style(index_of(methods, s.method)).colour)},
-                                 {"error", score(s.errors[metric]->worst)},
+                                 {"error", worst_in_words(*s.errors[metric])},
                                  {"ms", milliseconds(s.cost->median)}});
     }
     return view;
@@ -89,7 +92,7 @@ json row_view(const SweptScene& scene, const std::vector<SweptMethod>& methods, 
     for (std::size_t m = 0; m < scene.metrics.size(); ++m) {
         const auto& e            = s.errors[m];
         const std::size_t number = number_on(fronts[m], i);
-        row["errors"].push_back({{"worst", score(e ? std::optional(e->worst) : std::nullopt)},
+        row["errors"].push_back({{"worst", e ? worst_in_words(*e) : kNone},
                                  {"bound", score(e ? e->bound : std::nullopt)},
                                  {"front", number > 0 ? std::to_string(number) : ""}});
     }
@@ -132,6 +135,7 @@ json swept_scene_view(const SweptScene& scene, const std::vector<SweptMethod>& m
             {"settings", counted(double(scene.settings.size()), "setting")},
             {"workload", workload_in_words(scene.workload)},
             {"noise_bar", scene.noise_bar ? fmt::format("{:.0f}", std::ceil(100 * *scene.noise_bar)) : ""},
+            {"loud", is_loud(scene)},
             {"legend", legend_of(scene, methods)},
             {"plots", std::move(plots)},
             {"columns", std::move(columns)},

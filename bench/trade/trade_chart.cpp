@@ -78,7 +78,8 @@ json pareto_chart(const std::vector<ParetoPoint>& points) {
         const double half = points[i].front > 0 ? 8 : 5;
         labels.take({places[i].x - half, places[i].y - half, places[i].x + half, places[i].y + half});
     }
-    json marks = json::array();
+    const bool ranked = std::any_of(points.begin(), points.end(), [](const ParetoPoint& p) { return p.front > 0; });
+    json marks        = json::array();
     // Settings of the front last, so that nothing covers them.
     for (const bool front : {false, true})
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -95,6 +96,7 @@ json pareto_chart(const std::vector<ParetoPoint>& points) {
                          {"colour", std::to_string(mark_style(p.style).colour)},
                          {"words", p.words},
                          {"front", front ? std::to_string(p.front) : ""},
+                         {"beaten", ranked && !front},
                          {"label_x", ""}};
             if (front)
                 if (const auto label = labels.place_below_left(m.x, m.y, std::to_string(p.front))) {

@@ -16,7 +16,8 @@ struct ParetoPoint {
     FrameCost cost;
     SweptError error;
     std::size_t style = 0;  ///< of its method (mark_style)
-    std::size_t front = 0;  ///< its number on the front, from 1, by ascending cost; 0 where another setting beats it
+    std::size_t front = 0;  ///< its number on the front, from 1, by ascending cost; 0 where another setting beats it,
+                            ///< or where there is no front
 };
 
 /// Both axes are logarithmic; lines through a mark are the quartiles of its cost, and its error from the best view to

@@ -31,8 +31,8 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// What the exception that is being handled says, for a record of a failure: one sentence for exhausted memory and for
-/// what is no std::exception. Only in a catch block.
+/// The message of the exception that is being handled, for a record of a failure: one sentence for exhausted memory and
+/// for anything that is not a std::exception. Only in a catch block.
 [[nodiscard]] std::string current_message();
 
 }  // namespace umbra

@@ -27,10 +27,10 @@ Rational3 exact_normal(vec3 a, vec3 b, vec3 c) {
 
 double largest(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// The triangle in double. A component of the normal is a difference of two products of rounded differences: off by at
-/// most 8 units of `size`, which is the product of the largest components of the two sides. A height of something as
-/// far away as `reach` is a sum of three products with it, and off by less than 100 units of size times reach; what is
-/// computed of a disk's rim, by a few roundings more.
+/// The triangle in double. A component of the normal is a difference of two products of rounded differences: its error
+/// is at most 8 units of `size`, which is the product of the largest components of the two sides. A height of something
+/// as far away as `reach` is a sum of three products with it; its error is less than 100 units of size times reach, and
+/// that of a disk's rim a few roundings more.
 class Plane {
 public:
     Plane(vec3 a, vec3 b, vec3 c) : a_(a) {
@@ -63,7 +63,8 @@ int sign_of_difference(const Rational& h, const Rational& square) {
     return sign(h * h - square);
 }
 
-/// Of a figure that reaches as far to both sides of its centre, at the height h; `square` of how far.
+/// The signs of a figure that reaches equally far to both sides of its centre, which is at the height h; `square`: of
+/// this distance.
 HeightSigns around(const Rational& h, const Rational& square) {
     return {sign_of_difference(h, square), -sign_of_difference(-h, square)};
 }

@@ -13,8 +13,8 @@ template <class T, std::size_t N = kLanes>
 using Lanes [[gnu::vector_size(N * sizeof(T))]] = T;
 
 /// The same for loops that compilers make vector code of: for doubles, where eight are more than most registers hold.
-/// They need "unroll 1" where g++ would unroll the short loop first, and what one loop stores as vectors is what the
-/// next should load: numbers that are stored one by one make such a load wait.
+/// They need "unroll 1" where g++ would unroll the short loop first, and a loop should load the vectors that the one
+/// before it stored: numbers that are stored one by one make such a load wait.
 template <class T, std::size_t N = kLanes>
 using LaneArray = T[N];
 

@@ -21,7 +21,7 @@ double limit_in(const std::string& file) {
     return in >> bytes ? bytes : kNoLimit;
 }
 
-/// Of this process's control group and those above it, versions 1 and 2.
+/// The least limit of this process's control group and those above it, versions 1 and 2.
 double control_group_limit() {
     double least = kNoLimit;
     std::ifstream groups("/proc/self/cgroup");  // "0::/a/b" or "5:memory:/a/b"

@@ -1,12 +1,12 @@
-// How much memory the machine has, for methods that bound what they hold; and what happens to what they free.
+// How much memory the machine has, for methods that bound the memory they hold; and the way of memory that they free.
 #pragma once
 
 namespace umbra {
 
-/// Physical memory of this machine, bytes; > 0. Knows nothing of what other programs use, or of a container's limit.
+/// Physical memory of this machine, bytes; > 0. Leaves out the use by other programs and a container's limit.
 [[nodiscard]] double machine_memory();
 
-/// What this process may hold in all, bytes: the least of the machine's memory, the limits of its control groups and
+/// The most that this process may hold, bytes: the least of the machine's memory, the limits of its control groups and
 /// its limit of address space.
 [[nodiscard]] double usable_memory();
 

@@ -14,6 +14,11 @@ ThreadLimit::ThreadLimit(int threads)
 
 ThreadLimit::~ThreadLimit() = default;
 
+const WorkLimit*& WorkLimit::current() {
+    static thread_local const WorkLimit* limit = nullptr;
+    return limit;
+}
+
 int thread_count() {
     return static_cast<int>(
         std::min<std::size_t>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),

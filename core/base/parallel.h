@@ -1,4 +1,4 @@
-// Threads: TBB behind three functions. Results never depend on how work was split, nor on what ran before: tasks
+// Threads: TBB behind few functions. Results never depend on how work was split, nor on earlier work: tasks
 // compute in the floating-point mode of their caller. TBB's own default is the mode in which a thread first used it,
 // and within Embree's build that is one without denormals.
 #pragma once
@@ -27,20 +27,52 @@ private:
 };
 [[nodiscard]] int thread_count();
 
+/// A condition that may end work early: it is asked before each range of a parallel loop.
+class WorkLimit {
+public:
+    virtual ~WorkLimit() = default;
+    /// Throws where the work has to end. From many threads.
+    virtual void check() const = 0;
+
+    /// While it lives, the limit is that of this thread, and of the loops that this thread begins; nullptr: none.
+    class Scope {
+    public:
+        explicit Scope(const WorkLimit* limit) : outer_(current()) { current() = limit; }
+        ~Scope() { current() = outer_; }
+        Scope(const Scope&)            = delete;
+        Scope& operator=(const Scope&) = delete;
+
+    private:
+        const WorkLimit* outer_;
+    };
+    [[nodiscard]] static const WorkLimit*& current();
+};
+
+/// Runs `work` as a part of the work that `limit` limits, on whichever thread.
+template <class Work>
+void run_within(const WorkLimit* limit, const Work& work) {
+    const WorkLimit::Scope scope(limit);
+    if (limit != nullptr) limit->check();
+    work();
+}
+
 /// Calls body(begin, end) on disjoint ranges that cover [0, n), of about `grain` each, from many threads.
 template <class Body>
 void parallel_ranges(std::size_t n, std::size_t grain, const Body& body) {
     tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
+    const WorkLimit* const limit = WorkLimit::current();
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, n, grain),
-        [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); }, context);
+        [&](const tbb::blocked_range<std::size_t>& r) { run_within(limit, [&] { body(r.begin(), r.end()); }); },
+        context);
 }
 
 /// Calls both, perhaps at one time.
 template <class First, class Second>
 void parallel_pair(const First& first, const Second& second) {
     tbb::task_group_context context(tbb::task_group_context::bound, tbb::task_group_context::fp_settings);
-    tbb::parallel_invoke(first, second, context);
+    const WorkLimit* const limit = WorkLimit::current();
+    tbb::parallel_invoke([&] { run_within(limit, first); }, [&] { run_within(limit, second); }, context);
 }
 
 }  // namespace umbra

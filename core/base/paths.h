@@ -1,4 +1,4 @@
-// What is at a path, asked without exceptions: names come from files and command lines, and may be too long or
+// Questions about a path, answered without exceptions: names come from files and command lines, and may be too long or
 // forbidden.
 #pragma once
 

@@ -73,8 +73,8 @@ public:
     }
 
 private:
-    /// Directions some 14 degrees apart: what is farthest along one of them is at most a hundredth of the object's size
-    /// short of what is farthest along any.
+    /// Directions some 14 degrees apart: the farthest vertex along one of them is at most a hundredth of the object's
+    /// size short of the farthest along any direction.
     static constexpr std::size_t kDirections = 256;
 
     static std::vector<std::uint32_t> extremes(const Scene& scene, const std::vector<std::uint32_t>& vertices) {

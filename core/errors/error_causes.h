@@ -13,7 +13,7 @@ namespace umbra {
 
 /// Sets points apart at which the facet (the triangle, exactly) and the shading normal (which the sum uses, in double)
 /// disagree on whether any part of the light is in front of them: the smoother a mesh pretends to be, the more.
-/// What of them was wrong becomes `terminator_wrong`: there the sum multiplies S_j with 0.
+/// Those of them that were wrong become `terminator_wrong`: there the sum multiplies S_j with 0.
 void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& points, LightId light);
 
 /// Interior errors in an area light whose reference has a penumbra there become `penumbra`: a method without penumbrae
@@ -35,7 +35,7 @@ void mark_acne(ClassPlane& classes, const Scene& scene, const PointBatch& points
 /// light where that is lower. To an area light there are many segments, and the triangle's distance from the point is
 /// compared instead.
 ///
-///          light \         The shadow's root is what the occluder's foot throws, its tip what the top throws, and
+///          light \         The occluder's foot throws the shadow's root, its top throws the shadow's tip, and
 ///                 \   |    the height h at which a segment meets the occluder grows evenly from one to the other.
 ///                  \  |h   A bias takes the shadow off from the root on. A hole in the occluder, or a shadow that
 ///        ___________\_|___ is not where it should be, shows at any h; an occluder in the air has no small h.

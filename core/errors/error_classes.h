@@ -1,4 +1,4 @@
-// What each point's error is: one class a point, from which the counts and the picture both come.
+// The class of each point's error: one a point, from which the counts and the picture both come.
 #pragma once
 
 #include <array>

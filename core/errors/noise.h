@@ -26,8 +26,8 @@ public:
     /// is itself uncertain by noise / sqrt(K), so of strong noise a part stays in its class. At least one run.
     void mark(ClassPlane& classes, const VisibilityPlane& reference, float tolerance) const;
 
-    /// Over the points that both planes define. Of K runs' mean M, (M - reference)^2 is expected to be bias^2 +
-    /// variance / K; the second is taken off with the variance found, and what is left is no less than 0. So over n
+    /// Over the points that both planes define. For the mean M of K runs, (M - reference)^2 is expected to be bias^2 +
+    /// variance / K; the second is subtracted with the variance found, and the rest is at least 0. So over n
     /// points, a bias below about noise / sqrt(K) (2 / n)^(1/4) cannot be distinguished from none. At least two runs.
     [[nodiscard]] Noise result(const ClassPlane& classes, const VisibilityPlane& reference) const;
 

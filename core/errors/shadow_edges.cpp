@@ -14,7 +14,7 @@ struct Piece {
     ivec2 towards;  ///< the light: one step along an axis
 };
 
-/// Where S is 1/2 between two values on its two sides, as a share of the way.
+/// Where S is 1/2 between two values on its two sides, as a fraction of the distance.
 double crossing(float a, float b) {
     return (0.5 - static_cast<double>(a)) / (static_cast<double>(b) - static_cast<double>(a));
 }

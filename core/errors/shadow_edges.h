@@ -54,7 +54,7 @@ struct PenumbraWidth {
 /// pixel spans there.
 [[nodiscard]] bool one_surface(const PointBatch& points, std::size_t i, std::size_t j);
 
-/// What a pixel spans at point i's depth, across the line of sight, in world units.
+/// The width of a pixel at point i's depth, across the line of sight, in world units.
 [[nodiscard]] double pixel_span(const PointBatch& points, std::size_t i);
 
 }  // namespace umbra

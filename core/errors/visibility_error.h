@@ -25,7 +25,7 @@ struct VisibilityError {
         std::uint64_t interior = 0, edge = 0;
     };
     Kind false_shadow, false_light;  ///< without those at the terminator
-    Level interior;                  ///< both kinds' interior points, by what the reference is there
+    Level interior;                  ///< both kinds' interior points, by the reference there
     struct Direction {
         std::uint64_t false_shadow = 0, false_light = 0;
     };
@@ -36,7 +36,7 @@ struct VisibilityError {
     std::uint64_t detachment = 0;  ///< of false_light.interior, likewise
     std::uint64_t leak       = 0;  ///< of false_light.interior, likewise
     std::uint64_t unnamed    = 0;  ///< the rest of false_light.interior: the reference named no occluder
-    /// What is left of false_shadow.interior: the method blames another surface, or no cause was looked for.
+    /// The rest of false_shadow.interior: the method blames another surface, or no cause was looked for.
     [[nodiscard]] std::uint64_t other_shadow() const {
         return false_shadow.interior - acne - penumbra_error.false_shadow - noise_error.false_shadow;
     }
@@ -50,7 +50,7 @@ struct VisibilityError {
     double mae = 0, rmse = 0, max = 0, bias = 0;  ///< bias: mean of s - reference
 };
 
-/// `reference` and `s` are planes of the same raster batch and `classes` what they were sorted into. Throws
+/// `reference` and `s` are planes of the same raster batch, and `classes` the classes of their differences. Throws
 /// std::logic_error where one is of another size.
 [[nodiscard]] VisibilityError count_errors(const PointBatch& points, const ClassPlane& classes,
                                            const VisibilityPlane& s, const VisibilityPlane& reference);

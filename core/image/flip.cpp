@@ -30,7 +30,7 @@ struct Tile {
     int left, top, width, height;
 };
 
-/// What one thread works with, kept from tile to tile.
+/// The buffers of one thread, kept from tile to tile.
 struct Desk {
     std::array<flip::Part, 2> linear, shown;
     flip::Workspace workspace;
@@ -38,7 +38,7 @@ struct Desk {
     std::vector<float> errors;
 };
 
-/// The tile and what lies around it, of a picture whose pixel i is `colour(i)`.
+/// The tile and its surroundings, of a picture whose pixel i is `colour(i)`.
 template <class Colour>
 void cut(const Colour& colour, int width, int height, const Tile& tile, int reach, flip::Part& part) {
     part.resize(tile.width, tile.height, reach);

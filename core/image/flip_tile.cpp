@@ -14,7 +14,7 @@ namespace {
 
 // The constants of the 2020 paper.
 constexpr double kColourExponent = 0.7;    // q_c
-constexpr double kKnee           = 0.4;    // p_c: this share of the largest colour difference ...
+constexpr double kKnee           = 0.4;    // p_c: this fraction of the largest colour difference ...
 constexpr double kKneeError      = 0.95;   // p_t: ... is mapped to this error
 constexpr double kFeatureWidth   = 0.082;  // w, degrees of visual angle; the exponent q_f is 0.5, a square root
 
@@ -173,7 +173,7 @@ struct Lab {
     return e + 2.885390081777927 * s * series;
 }
 
-/// 2^x for x in [-1000, 1000], within a share of 1e-11.
+/// 2^x for x in [-1000, 1000], with a relative error below 1e-11.
 [[gnu::always_inline]] inline double exp_2(double x) {
     constexpr double kRound = 0x1.8p52;
     const double shifted    = x + kRound;  // the whole number next to x in its last bits
@@ -283,7 +283,7 @@ UMBRA_FOR_EACH_PROCESSOR void see(const Filters& filters, const Part& part, Work
         }
     }
 
-    // Along columns, and what the eye makes of it.
+    // Along columns, and the eye's response.
     seen.stride = across;
     for (auto* plane : {&seen.lightness, &seen.a, &seen.b, &seen.edges, &seen.points})
         plane->resize(across * static_cast<std::size_t>(part.height));

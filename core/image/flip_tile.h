@@ -27,26 +27,26 @@ struct Filters {
     };
     Pass y, cx;
     std::array<Pass, 2> cz;
-    /// A Gaussian, and its first and second derivatives: what finds edges and points.
+    /// A Gaussian, and its first and second derivatives, which find edges and points.
     Kernel smooth, first, second;
     int reach = 0;  ///< pixels to each side that the widest of them needs
 };
 
 /// A part of a picture, linear RGB in [0, 1], channel by channel: `width` x `height` pixels with `reach` more on each
-/// side, rows of `stride` floats. What lies beyond the picture's border repeats the border.
+/// side, rows of `stride` floats. Pixels beyond the picture's border repeat the border.
 struct Part {
     int width = 0, height = 0, reach = 0;
     std::size_t stride = 0;
     std::array<std::vector<float>, 3> rgb;
 
     void resize(int w, int h, int r);
-    /// Of the pixel at (x, y) from the part's first one; those may be as low as -reach.
+    /// The index of the pixel at (x, y) from the part's first one; both may be as low as -reach.
     [[nodiscard]] std::size_t at(int x, int y) const {
         return static_cast<std::size_t>(y + reach) * stride + static_cast<std::size_t>(x + reach);
     }
 };
 
-/// What of a part reaches the eye, in Hunt-adjusted L*a*b*, and how strong edges and points are: a number a pixel, rows
+/// A part as it reaches the eye, in Hunt-adjusted L*a*b*, and the strength of edges and points: a number a pixel, rows
 /// of `stride`.
 struct Seen {
     std::size_t stride = 0;
@@ -73,7 +73,7 @@ void tone(std::span<const float> values, float exposure, std::span<float> toned)
 /// The luminance Y of linear RGB, 1 for white.
 [[nodiscard]] float luminance(float r, float g, float b);
 
-/// From sRGB's encoding, [0, 1], in place: what linear_from_srgb makes of each.
+/// From sRGB's encoding, [0, 1], in place: linear_from_srgb of each value.
 void decode_srgb(std::span<float> values);
 
 }  // namespace umbra::flip

@@ -20,7 +20,7 @@ struct Image {
     std::vector<float> data;                      ///< width * height * channels.size()
     std::map<std::string, std::string> metadata;  ///< "umbra:scene", "umbra:method", ...; written to EXR and PNG
 
-    /// Channels of whole numbers, one value a pixel: what float cannot hold exactly. EXR alone has them.
+    /// Channels of whole numbers that float cannot hold exactly, one value a pixel. EXR alone has them.
     std::map<std::string, std::vector<std::uint32_t>> integers;
     /// 4 x 4 matrices of row vectors, p' = (p, 1) M, row by row: "worldToCamera", "worldToNDC". EXR alone has them.
     std::map<std::string, std::array<float, 16>> matrices;
@@ -33,7 +33,7 @@ struct Image {
     [[nodiscard]] float at(std::size_t pixel, std::size_t c) const { return data[pixel * channels.size() + c]; }
 };
 
-/// Gives an image of integers alone, which is no picture, floats of the same names, scaled to [0, 1].
+/// Gives an image of integers alone, which cannot be shown, floats of the same names, scaled to [0, 1].
 void spread_integers(Image& image);
 
 /// Channels that make one picture.
@@ -51,7 +51,7 @@ struct Layer {
 /// Throws std::logic_error, which names `who`, where the images differ in size or one of them is empty.
 void check_same_size(const Image& a, const Image& b, std::string_view who);
 
-/// What reads image files for scenes that need some; null where the program set none. Core has none of its own: the
+/// A reader of image files for scenes that need some; null where the program set none. Core has none of its own: the
 /// library behind read_image (image_io.h) makes every start slow.
 using ImageReader = Image (*)(const std::filesystem::path& file);
 void set_image_reader(ImageReader reader);

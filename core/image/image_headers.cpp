@@ -80,7 +80,7 @@ std::string check_png(HeaderFile& bytes) {
 }
 
 /// Sizes of attribute types, bytes. OpenEXR reads that many, whatever length the file states: with another length it
-/// reads on in the middle of an attribute and takes what it finds there for the next one's length.
+/// reads on in the middle of an attribute and takes the bytes there for the next one's length.
 constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> kSizes{{{"box2f", 16},
                                                                              {"box2i", 16},
                                                                              {"chromaticities", 32},
@@ -106,9 +106,9 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 24> kSizes{{{"b
                                                                              {"v3f", 12},
                                                                              {"v3i", 12}}};
 
-/// What is wrong with the data of an attribute, which takes all of its `length` bytes.
+/// The fault in the data of an attribute, which takes all of its `length` bytes; empty where there is none.
 std::string check_exr_data(HeaderFile& bytes, const std::string& name, std::string_view type, std::uint32_t length) {
-    const std::uint64_t end = bytes.left() - length;  // what is left behind it
+    const std::uint64_t end = bytes.left() - length;  // the bytes behind it
     const auto misfit       = [&] { return fmt::format("attribute {} is not a {} of {} bytes", name, type, length); };
     if (type == "box2i") {
         std::array<char, 16> box{};

@@ -40,8 +40,8 @@ std::string standard_name(const std::string& name) {
     return name;
 }
 
-/// Refuses what would take memory, or cannot be compared pixel by pixel, from the header alone. `held`: values of the
-/// parts before.
+/// Refuses pictures that would take too much memory, or cannot be compared pixel by pixel, from the header alone.
+/// `held`: values of the parts before.
 void check_header(const std::filesystem::path& file, const OIIO::ImageSpec& spec, std::size_t held) {
     if (spec.deep) throw InputError(fmt::format("{}: deep image (flat ones are read)", file.string()));
     if (spec.depth > 1) throw InputError(fmt::format("{}: volume (pictures are read)", file.string()));
@@ -89,8 +89,8 @@ void read_rows(const std::filesystem::path& file, OIIO::ImageInput& input, const
         throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(input.geterror())));
 }
 
-/// Reads a few rows at a time, or a row of tiles, and lets memory grow with what has been read: headers lie about
-/// sizes.
+/// Reads a few rows at a time, or a row of tiles, and lets memory grow with the rows that have been read: headers lie
+/// about sizes.
 void read_pixels(const std::filesystem::path& file, OIIO::ImageInput& input, Image& image) {
     const OIIO::ImageSpec& spec        = input.spec();
     const std::vector<ChannelRun> runs = channel_runs(spec);
@@ -146,7 +146,8 @@ std::string window_text(int width, int height, int x, int y) {
     return fmt::format("{}x{} from ({}, {})", width, height, x, y);
 }
 
-/// What the file says about how its pixels are shown. Words that mean what a file without them means are left out.
+/// The file's statements about how its pixels are shown. Those that repeat the default of a file without them are left
+/// out.
 std::map<std::string, std::string> shown_as(const OIIO::ImageSpec& spec, Encoding encoding) {
     std::map<std::string, std::string> said;
     const std::string shown = window_text(spec.full_width, spec.full_height, spec.full_x, spec.full_y);
@@ -417,7 +418,7 @@ LoadedImage read_image(const std::filesystem::path& file) {
         return loaded;
     } catch (const InputError&) {
         throw;
-    } catch (const std::exception& reason) {  // what a decoder throws through the library
+    } catch (const std::exception& reason) {  // thrown by a decoder through the library
         throw InputError(fmt::format("{}: cannot read image: {}", file.string(), one_line(reason.what())));
     }
 }

@@ -14,12 +14,12 @@ struct LoadedImage {
     Image image;                           ///< values as the file stores them, scaled to [0, 1] for integer formats
     Encoding encoding = Encoding::linear;  ///< srgb for 8- and 16-bit integer files, linear for all others
     int x = 0, y = 0;                      ///< where the stored pixels begin (an EXR's data window)
-    /// What the file says about how its pixels are shown, by subject ("colours", "display windows", "orientations",
-    /// "pixel aspect ratios"). What goes without saying is left out: sRGB's colours, the upright picture of its pixels.
+    /// The file's statements about how its pixels are shown, by subject ("colours", "display windows", "orientations",
+    /// "pixel aspect ratios"). Defaults are left out: sRGB's colours, the upright picture of its pixels.
     std::map<std::string, std::string> shown_as{};
 };
 
-/// Why pixels of the two do not belong together: sizes, windows and what the files say about showing them.
+/// Why pixels of the two do not belong together: sizes, windows, and the files' statements about showing them.
 [[nodiscard]] std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b);
 
 /// Reads any image that OpenImageIO reads, without conversion. Unsigned channels of 32 bits become Image::integers; if

@@ -32,7 +32,7 @@ struct ImageError {
 
 /// FLIP, version 1.6's definition and default viewing conditions (67 pixels per degree). `map` is per pixel in [0, 1].
 /// LDR takes sRGB-encoded values in [0, 1]; HDR takes scene-linear values, exposures found from `reference` (ACES).
-/// Images without R, G, B are taken as grey, by their first channel. NaN and what is below 0 is taken as 0. Pooled
+/// Images without R, G, B are taken as grey, by their first channel. NaN and negative values are taken as 0. Pooled
 /// values are over all pixels; median and quartiles are weighted by the error itself, since most pixels of a good
 /// picture have none. Differs from the reference implementation by less than 2e-5 on its own values of seven pairs.
 /// [Pontus Andersson, Jim Nilsson, Tomas Akenine-Moeller, Magnus Oskarsson, Kalle Astroem, Mark Fairchild, FLIP: A

@@ -68,7 +68,7 @@ double median_arriving(const Scene& scene, const std::function<bool(const Light&
 
 void warn_of_invisible_lights(Scene& scene) {
     const std::vector<TriangleId> samples = sample_triangles(scene);
-    // The brightest light at each triangle; the one at the median triangle is what the others are compared with.
+    // The brightest light at each triangle; the others are compared with the one at the median triangle.
     struct Brightest {
         double value      = 0;
         std::size_t light = 0;

@@ -20,8 +20,8 @@ inline constexpr std::size_t kArrivingSamples = 4096;
 /// for which `counts` is true; 0 where no light reaches any triangle.
 [[nodiscard]] double median_arriving(const Scene& scene, const std::function<bool(const Light&)>& counts);
 
-/// Adds a warning for every light, and for the ambient light, that adds less than 0.1 % of what the brightest light
-/// gives at the median triangle, wherever the surfaces are.
+/// Adds a warning for every light, and for the ambient light, that adds less than 0.1 % of the brightest light's
+/// contribution at the median triangle, wherever the surfaces are.
 void warn_of_invisible_lights(Scene& scene);
 
 }  // namespace umbra

@@ -1,4 +1,4 @@
-// What scenes of all formats lack or leave open: defaults, unit directions, names, and the warnings about them.
+// Completion of scenes of all formats: defaults, unit directions, names, and the warnings about them.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -15,8 +15,8 @@
 namespace umbra {
 namespace {
 
-// Of length 1; zero stays zero. A vector of that length up to rounding is left alone, so that a scene that is written
-// and read again keeps its bits.
+// The vector scaled to length 1; zero stays zero. A vector of that length up to rounding is left alone, so that a scene
+// that is written and read again keeps its bits.
 vec3 unit(vec3 v) {
     const double square = glm::dot(dvec3(v), dvec3(v));
     if (std::abs(square - 1) <= 0x1p-22 || square == 0) return v;
@@ -50,9 +50,9 @@ std::string lower(std::string text) {
     return text;
 }
 
-// A name for a message: what is long is cut, between two characters of UTF-8; a question mark replaces what would act
-// on the message around it: control characters, and those of Unicode that end a line or turn the direction of text
-// (U+2028 to U+202E, E2 80 A8 to AE; U+2066 to U+2069, E2 81 A6 to A9).
+// A name for a message: a long one is cut, between two characters of UTF-8; a question mark replaces characters that
+// would act on the message around it: control characters, and those of Unicode that end a line or turn the direction of
+// text (U+2028 to U+202E, E2 80 A8 to AE; U+2066 to U+2069, E2 81 A6 to A9).
 std::string shortened(const std::string& name) {
     constexpr std::size_t most = 60;
     const auto byte = [&](std::size_t k) { return k < name.size() ? static_cast<unsigned char>(name[k]) : 0; };

@@ -75,7 +75,7 @@ public:
         return numbers;
     }
     [[noreturn]] void fail(std::size_t offset, std::string_view message) const { source_.fail(offset, message); }
-    /// Of the next number, or of the end of the file.
+    /// Position of the next number, or of the end of the file.
     [[nodiscard]] std::size_t offset() const {
         Tokens ahead = tokens_;
         return ahead.next().offset;

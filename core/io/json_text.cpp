@@ -72,7 +72,7 @@ public:
     }
 
 private:
-    /// What the grammar allows at the cursor.
+    /// The tokens that the grammar allows at the cursor.
     struct Gap {
         std::string_view expected;
         bool may_be_string = false;
@@ -120,7 +120,7 @@ private:
                      "hexadecimal digits");
     }
 
-    /// What begins at `at`, as a message shows it.
+    /// The token that begins at `at`, as a message shows it.
     [[nodiscard]] std::string found_at(std::size_t at) const {
         const std::string& t = source_.text;
         if (std::string_view("{}[],:").find(t[at]) != std::string_view::npos) return fmt::format("\"{}\"", t[at]);
@@ -186,7 +186,7 @@ private:
     bool open(T&& empty) {
         JsonValue& v = put(std::forward<T>(empty));
         if (stack_.size() >= kMaxDepth) source_.fail(v.offset, fmt::format("nested deeper than {} levels", kMaxDepth));
-        stack_.push_back(&v);  // stays where it is: what holds it grows only after it is closed
+        stack_.push_back(&v);  // stays where it is: its parent grows only after it is closed
         last_ = Last::open;
         return true;
     }

@@ -76,7 +76,7 @@ public:
     [[nodiscard]] const JsonValue& require(std::string_view key) const;  ///< throws where it is not given
     [[nodiscard]] const JsonValue& value() const { return value_; }
 
-    // What a key says, or `fallback`.
+    // The value of a key, or `fallback`.
     [[nodiscard]] double number(std::string_view key, const Range& range, double fallback) const;
     [[nodiscard]] int integer(std::string_view key, int min, int max, int fallback) const;
     [[nodiscard]] bool boolean(std::string_view key, bool fallback) const;

@@ -1,4 +1,4 @@
-// The limits of what readers accept, each once: ranges of numbers and sizes of scenes. Internal to core.
+// The limits that readers accept, each once: ranges of numbers and sizes of scenes. Internal to core.
 #pragma once
 
 #include <cstddef>
@@ -39,14 +39,15 @@ inline constexpr Range kConeAngleRadians{0.001 * kPi / 180, static_cast<double>(
 // Refused before memory is taken, in one scene.
 inline constexpr std::uint64_t kMaxTriangles = 50'000'000;
 inline constexpr std::size_t kMaxLights      = 1024;
-inline constexpr std::uint64_t kMaxVertices  = 0xfffffffeu;  ///< what 32-bit indices can name, less one for "none"
+inline constexpr std::uint64_t kMaxVertices  = 0xfffffffeu;  ///< as many as 32-bit indices can name, less one for
+                                                             ///< "none"
 /// A few bytes of these files make thousands of triangles, so the limit is lower than for triangles written out.
 inline constexpr std::uint64_t kMaxTessellated = 20'000'000;
 
 inline constexpr std::size_t kMaxCutTriangles = 2'000'000;  ///< that masks leave of surfaces; beyond it they are whole
 
-inline constexpr std::size_t kMaxNativeFile = std::size_t{32} << 20;  ///< bytes
-inline constexpr int kMaxSegments           = 4096;                   ///< of a native object along one circle
+inline constexpr std::size_t kMaxNativeFile = std::size_t{128} << 20;  ///< bytes: a million objects
+inline constexpr int kMaxSegments           = 4096;                    ///< of a native object along one circle
 inline constexpr int kMaxSteps              = 1024;  ///< along each of two directions: two million triangles at most
 
 }  // namespace umbra

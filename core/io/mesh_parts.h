@@ -1,4 +1,4 @@
-// What PLY, OFF and STL files hold: meshes without material, camera and light. Internal to core.
+// Meshes of PLY, OFF and STL files, without material, camera and light. Internal to core.
 //
 // These formats are read here and not by a library: those at hand take memory for as many vertices as the header claims
 // before they look for them, and do not say where a fault is. Nothing is reserved by a number in the file, so the

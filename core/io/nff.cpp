@@ -32,7 +32,7 @@ namespace {
 
 constexpr int kFewest = 8, kMost = 96;
 
-// How wide a pixel is, seen from the eye: what tessellation aims at.
+// How wide a pixel is, seen from the eye: tessellation aims at edges of this length.
 struct View {
     dvec3 eye{0};
     double pixel = 0;  ///< width of a pixel at distance 1; 0: no view in the file
@@ -186,7 +186,7 @@ struct Reader {
         append(part);
     }
 
-    /// By other surfaces: what mirrors is mostly among mirrors.
+    /// By other surfaces: mirrors are mostly among mirrors.
     bool is_seen_from_nearby() {
         if (material >= scene().materials.size()) return false;
         const Material& m = scene().materials[material];

@@ -34,8 +34,8 @@ struct Corner {
     std::uint32_t normal   = kNone;
 };
 
-// One face: its corners lie in a common array. Indices from the file's beginning may name what comes later in it, so
-// they are checked at the end, and need the position for that.
+// One face: its corners lie in a common array. Indices from the file's beginning may name positions that come later in
+// it, so they are checked at the end, and need the position for that.
 struct Face {
     std::size_t offset  = 0;
     std::uint32_t first = 0;
@@ -89,12 +89,12 @@ Corner read_corner(const Tokens& tokens, Token token, const Obj& obj) {
     }
     Corner corner;
     corner.position = read_index(tokens, token, parts[0], obj.positions.size(), "vertex");
-    // Texture points have no meaning here, and exporters write 0 for "none": only what is no number at all is refused.
+    // Texture points have no meaning here, and exporters write 0 for "none": only text that is not a number is refused.
     if (n > 1 && !parts[1].empty()) {
         const std::size_t at = token.offset + std::size_t(parts[1].data() - token.text.data());
         (void)tokens.as_integer({parts[1], at}, "the texture index");
     }
-    if (n > 2) corner.normal = read_index(tokens, token, parts[2], obj.normals.size(), "normal");
+    if (n > 2 && !parts[2].empty()) corner.normal = read_index(tokens, token, parts[2], obj.normals.size(), "normal");
     return corner;
 }
 
@@ -110,7 +110,7 @@ void read_face(Tokens& tokens, Token keyword, Obj& obj, std::uint32_t group) {
     obj.faces.push_back(face);
 }
 
-// What may follow a position: a weight w, a colour, or both.
+// The terms that may follow a position: a weight w, a colour, or both.
 void note_terms_of_vertex(Tokens& tokens, IgnoredLines& skipped) {
     const Token first = tokens.next_on_line();
     if (!first) return;
@@ -127,7 +127,7 @@ void note_terms_of_vertex(Tokens& tokens, IgnoredLines& skipped) {
 Obj read_lines(const SourceText& source, const Reading& reading) {
     Obj obj;
     Tokens tokens(source, 0, true);
-    // A group is what lies between lines that change object, group, material or smoothing; coming back to an earlier
+    // A group is the faces between lines that change object, group, material or smoothing; coming back to an earlier
     // combination goes on with its group.
     std::string object, group_name, material;
     bool smooth           = false;

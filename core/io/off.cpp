@@ -1,4 +1,4 @@
-// OFF, Geomview's Object File Format, as text, and what other programs write under its name.
+// OFF, Geomview's Object File Format, as text, and the forms that other programs write under its name.
 //
 // Stuart Levy, Tamara Munzner, Mark Phillips. Geomview's Object File Format. 1991
 #include <algorithm>
@@ -88,7 +88,7 @@ std::uint64_t lines_from(Tokens ahead) {
     return lines;
 }
 
-// What follows the positions of vertices.
+// The terms that follow the positions of vertices.
 class OffVertexTerms {
 public:
     explicit OffVertexTerms(const OffHeader& header) : header_(header) {}

@@ -159,7 +159,7 @@ public:
         const std::size_t at = bytes_.offset();
         return bytes_.coordinate(at, number(type, what), what);
     }
-    /// NaN and infinity included, for what may be wrong.
+    /// NaN and infinity included, for values that may be wrong.
     double any_real(Type type, std::string_view what) {
         return ascii_ ? static_cast<double>(tokens_.any_real(what)) : number(type, what);
     }
@@ -210,7 +210,7 @@ void add_strips(MeshPart& part, const std::vector<std::int64_t>& strip) {
     }
 }
 
-// What the properties of an element mean here: for "vertex" the index of each coordinate in x y z nx ny nz, for faces
+// The meaning of an element's properties here: for "vertex" the index of each coordinate in x y z nx ny nz, for faces
 // and strips 0 for the list of vertices; kUnused elsewhere.
 constexpr int kUnused = -1;
 struct Roles {
@@ -219,7 +219,7 @@ struct Roles {
     bool has_normals = false;
 };
 
-// vertex_indices, vertex_index, and what programs make of it: vertex_indexes, vertexIndices, vert_ind.
+// vertex_indices, vertex_index, and the spellings that programs write: vertex_indexes, vertexIndices, vert_ind.
 bool names_vertices(std::string_view property) {
     return property.starts_with("vert") && property.find("ind") != property.npos;
 }

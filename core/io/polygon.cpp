@@ -22,7 +22,7 @@ dvec3 newell_normal(const std::vector<vec3>& positions, std::span<const std::uin
     return n;
 }
 
-// Whether all corners lie in one plane, up to what modelling programs and printed digits leave: a hundredth of its
+// Whether all corners lie in one plane, up to the errors of modelling programs and printed digits: a hundredth of its
 // size. A polygon that bends more has no inside of its own, so no way to cut it is more right than another.
 bool is_flat(const std::vector<vec3>& positions, std::span<const std::uint32_t> polygon) {
     const dvec3 origin(positions[polygon[0]]);

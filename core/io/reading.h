@@ -1,4 +1,4 @@
-// How a file's numbers become a scene's: which axis points up, and what positions are relative to. Internal to core.
+// How a file's numbers become a scene's: which axis points up, and the origin of positions. Internal to core.
 #pragma once
 
 #include "umbra/core/scene/scene.h"

@@ -11,13 +11,14 @@
 namespace umbra {
 
 /// Reads any scene file by its ending: .json .gltf .glb .obj .nff .ply .off .stl
-/// Everything is in world space afterwards. What the file does not say (camera, lights, ...) gets a documented default
-/// and a sentence in Scene::warnings. Throws InputError; never returns half a scene. Thread-safe.
+/// Everything is in world space afterwards. Terms that the file leaves out (camera, lights, ...) get a documented
+/// default and a sentence in Scene::warnings. Throws InputError; never returns half a scene. Thread-safe.
 ///
 /// FILE@N, where no file has that name, is frame N of the animation of FILE, a native scene; FILE alone is frame 0. Its
 /// Scene::name has @N, too. FILE@z of a mesh file (is_mesh_file) turns the file's z axis up; FILE alone is FILE@y.
 ///
-/// A scene far from the file's origin is moved to it before positions are rounded to float; Scene::origin says by what.
+/// A scene far from the file's origin is moved to it before positions are rounded to float; Scene::origin is the
+/// distance.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file);
 
 /// FILE and "@N" or "@z"; the latter is empty where a file has the whole name, or where it does not end in a number or
@@ -33,8 +34,8 @@ struct FrameOfFile {
 [[nodiscard]] bool is_mesh_file(const std::filesystem::path& file);
 [[nodiscard]] std::string mesh_endings();  ///< of those formats: ".obj .ply .off .stl"
 
-/// Scene::name of what load_scene reads: "day" of "scenes/day.json", "day@3" of "scenes/day.json@3", "part" of
-/// "part.stl@z".
+/// Scene::name of the scene that load_scene reads: "day" of "scenes/day.json", "day@3" of "scenes/day.json@3", "part"
+/// of "part.stl@z".
 [[nodiscard]] std::string scene_name(const std::filesystem::path& file);
 
 }  // namespace umbra

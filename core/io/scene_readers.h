@@ -18,7 +18,7 @@ struct SceneFile {
     Scene scene;
     bool has_camera  = false;  ///< the file says where the eye is
     bool may_be_dark = false;  ///< the file means to have no light (an explicit empty list)
-    bool has_origin  = false;  ///< the file says what its numbers are relative to: Scene::origin
+    bool has_origin  = false;  ///< the file states the origin of its numbers: Scene::origin
     Box at_rest;               ///< bounds of the objects before an animation moves them; empty: those of the scene
 };
 
@@ -38,14 +38,15 @@ struct SceneFile {
 [[nodiscard]] SceneFile read_by_ending(const std::filesystem::path& file, const std::vector<std::string_view>& endings,
                                        Reading reading = {});
 
-/// What every format shares, first half: refuses what cannot be rendered and changes nothing. Numbers are finite and
-/// within those of io/limits.h, indices in range, the camera of the file can see, the lights can shine. Throws
-/// InputError.
+/// The first half of loading that every format shares: refuses scenes that cannot be rendered and changes nothing.
+/// Numbers are finite and within those of io/limits.h, indices in range, the camera of the file can see, the lights can
+/// shine. Throws InputError.
 void check_scene(const SceneFile& read, const std::filesystem::path& file);
 
-/// The second half, for what check_scene accepted: gives a camera that frames the scene and a light where there are
-/// none, makes directions and normals unit, and light names unique and fit for a channel `S.<name>`. Adds warnings of
-/// what it assumed and of what cannot be seen. Throws InputError where the scene is too large for a camera outside it.
+/// The second half, for scenes that check_scene accepted: gives a camera that frames the scene and a light where there
+/// are none, makes directions and normals unit, and light names unique and fit for a channel `S.<name>`. Adds warnings
+/// of its assumptions and of lights that cannot be seen. Throws InputError where the scene is too large for a camera
+/// outside it.
 [[nodiscard]] Scene complete_scene(SceneFile&& read, const std::filesystem::path& file);
 
 }  // namespace umbra

@@ -133,7 +133,7 @@ void apply_material_terms(const JsonText& json, const JsonFields& fields, Materi
 
 namespace {
 
-/// Only what the law uses may be given.
+/// Only the keys that the law uses may be given.
 void read_fog(const JsonText& json, const JsonValue& v, Fog& fog) {
     const JsonFields fields(json, v, "fog",
                             {"law", "distance", "colour", "density", "start", "end", "near", "far", "dims_lights"});

@@ -19,7 +19,7 @@ namespace umbra {
 /// [width, height] in pixels.
 void read_picture_size(const JsonText& json, const JsonValue& v, Scene& scene);
 
-/// The keys of a material, and what they say; a term that is not given keeps its value.
+/// The keys of a material, and their meaning; a term that is not given keeps its value.
 [[nodiscard]] const std::vector<std::string_view>& material_keys();
 void apply_material_terms(const JsonText& json, const JsonFields& fields, Material& material);
 

@@ -1,4 +1,5 @@
-// Scenes as native files (scenes/README.md): what was made in memory, written so that it can be looked at again.
+// Scenes as native files (scenes/README.md): a scene that was made in memory is written so that it can be looked at
+// again.
 #pragma once
 
 #include <string>

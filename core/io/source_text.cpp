@@ -65,7 +65,7 @@ void SourceText::fail(std::size_t offset, std::string_view message) const {
     const auto column = 1 + std::count_if(text.begin() + std::ptrdiff_t(begin), text.begin() + std::ptrdiff_t(offset),
                                           starts_character);
 
-    // Of a long line the part around the position is shown, from a whole character to a whole one.
+    // A long line is shown in part, around the position, from a whole character to a whole one.
     std::size_t first = offset - begin > kShown - 30 ? offset - (kShown - 30) : begin;
     while (first < offset && !starts_character(text[first])) ++first;
     std::size_t last = std::min(end, first + kShown);

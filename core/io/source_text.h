@@ -12,7 +12,8 @@ namespace umbra {
 [[nodiscard]] inline bool ends_line(std::string_view text, std::size_t i) {
     return text[i] == '\n' || (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n'));
 }
-/// Where the line that `at` <= text.size() lies in ends: at what ends_line() finds, or at the end of the text.
+/// The end of the line that `at` <= text.size() lies in: a character for which ends_line() holds, or the end of the
+/// text.
 [[nodiscard]] inline std::size_t line_end(std::string_view text, std::size_t at) {
     while (at < text.size() && !ends_line(text, at)) ++at;
     return at;

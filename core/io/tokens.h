@@ -31,8 +31,8 @@ public:
     [[nodiscard]] std::size_t offset() const { return at_; }
     [[nodiscard]] std::size_t line();  ///< of offset(), counted from 1; cheap while tokens are read in order
 
-    /// The next token as a number. `what` names it in messages: "the x coordinate". Refused: what is not a number, NaN,
-    /// infinity, what lies outside kAnyNumber.
+    /// The next token as a number. `what` names it in messages: "the x coordinate". Refused: text that is not a number,
+    /// NaN, infinity, and numbers outside kAnyNumber.
     float real(std::string_view what);
     float real_on_line(std::string_view what);
     dvec3 point(std::string_view what);  ///< three numbers, across lines; not rounded to float

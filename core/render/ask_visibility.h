@@ -13,7 +13,7 @@ namespace umbra {
 /// batch is faced to all lights.
 using AskVisibility = std::function<std::vector<VisibilityPlane>(const PointBatch&)>;
 
-/// Writes S_j where it is not asked and not 0, into what is as a method wants it before the call.
+/// Writes S_j where it is not asked and not 0, into a plane that is as a method wants it before the call.
 void write_decided(const Scene& scene, const PointBatch& points, LightId light, const Visibility& out);
 
 /// S_j where nothing hides anything: 1 where some of the light is in front, else 0. The batch is faced to all lights.

@@ -32,7 +32,7 @@ dvec3 turned(dvec3 v) {
     return {cosine * v.x - sine * v.y, sine * v.x + cosine * v.y, v.z};
 }
 
-/// Adds what directions v say about one direction l; differences as they are.
+/// Adds the figures of all directions v for one direction l; differences as they are.
 void measure_from(const Brdf& f, dvec3 l, int steps, BrdfFigures& figures) {
     constexpr int kAzimuths = 4;  // of v, a step of its cosine
     double with = 0, without = 0;
@@ -47,7 +47,7 @@ void measure_from(const Brdf& f, dvec3 l, int steps, BrdfFigures& figures) {
             with += value * v.z;
             without += value;
         }
-    // Of one v: all are equal, since steps are of equal cosine.
+    // The solid angle of one v: all are equal, since steps are of equal cosine.
     const double solid_angle = 2 * kPi / (static_cast<double>(kAzimuths) * steps * steps);
     figures.energy           = std::max(figures.energy, with * solid_angle);
     figures.without_cosine   = std::max(figures.without_cosine, without * solid_angle);
@@ -96,7 +96,7 @@ Brdf brdf_of_sum(const Material& material) {
 
 namespace {
 
-/// Pi times what makes the integral of the material's lobe and the cosine 1 at normal incidence.
+/// Pi times the factor that makes the integral of the material's lobe and the cosine 1 at normal incidence.
 double peak_of(const Material& material) {
     const double n = material.shininess;
     return material.lobe == Lobe::phong ? (n + 2) / 2 : (n + 2) * (n + 4) / (8 * (std::exp2(-n / 2) + n));

@@ -1,4 +1,5 @@
-// What a surface reflects of light from one direction towards another: the lobes of the sum, and checks of them.
+// The fraction of light from one direction that a surface reflects towards another: the lobes of the sum, and checks of
+// them.
 //
 // This work is based on:
 // Bui Tuong Phong. Illumination for Computer Generated Pictures. 1975
@@ -26,16 +27,16 @@ namespace umbra {
 /// is taken.
 [[nodiscard]] dvec3 lafortune_lobes(const Material& material, dvec3 n, dvec3 l, dvec3 v);
 
-/// What the sum has for one light with I_j = 1 and f_att,j = S_j = 1, per channel: k_d O_d (N.L) + k_s O_s (lobe) + the
-/// Lafortune lobes; 0 where N.L <= 0. Unit N, L, V.
+/// The terms of the sum for one light with I_j = 1 and f_att,j = S_j = 1, per channel: k_d O_d (N.L) + k_s O_s (lobe) +
+/// the Lafortune lobes; 0 where N.L <= 0. Unit N, L, V.
 [[nodiscard]] dvec3 reflected(const Material& material, dvec3 n, dvec3 l, dvec3 v);
 
 /// A reflectance function of one channel in a local frame, z its normal: of unit directions to the light and to the
 /// eye, both with z > 0. Per steradian.
 using Brdf = std::function<double(dvec3 l, dvec3 v)>;
 
-/// Of the sum, red channel: `reflected` / (pi N.L). A light of I_j is taken to bring an irradiance of pi I_j (N.L), so
-/// that k_d O_d = 1 reflects all of it.
+/// The reflectance of the sum, red channel: `reflected` / (pi N.L). A light of I_j is taken to bring an irradiance of
+/// pi I_j (N.L), so that k_d O_d = 1 reflects all of it.
 [[nodiscard]] Brdf brdf_of_sum(const Material& material);
 
 /// The same terms as a reflectance function that is multiplied by N.L, red channel: k_d O_d / pi + k_s O_s p (lobe),
@@ -44,7 +45,7 @@ using Brdf = std::function<double(dvec3 l, dvec3 v)>;
 /// such factor.
 [[nodiscard]] Brdf brdf_with_cosine(const Material& material);
 
-/// What sampling finds of a reflectance function.
+/// Figures of a reflectance function, found by sampling.
 struct BrdfFigures {
     double largest     = 0;     ///< value of f
     double reciprocity = 0;     ///< the largest |f(l, v) - f(v, l)|, as a fraction of `largest`; 0: reciprocal

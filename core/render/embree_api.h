@@ -1,4 +1,4 @@
-// Embree 3 and 4 behind one set of calls, and what a RayScene holds of it. Internal to core/render.
+// Embree 3 and 4 behind one set of calls, and the part of it that a RayScene holds. Internal to core/render.
 #pragma once
 
 #if __has_include(<embree3/rtcore.h>)  // the order in which CMakeLists.txt looks for them
@@ -50,7 +50,7 @@ inline void occluded_list(RTCScene scene,
 }
 inline void intersect_one(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray, nullptr); }
 
-/// What the callbacks of user geometry are given of the ray: derive from it.
+/// The ray as callbacks of user geometry receive it: derive from it.
 struct RayQuery : RTCRayQueryContext {
     RayQuery() { rtcInitRayQueryContext(this); }
 };
@@ -67,7 +67,7 @@ inline void occluded_one(RTCScene scene, RTCRay& ray, RayQuery& query) {
     rtcOccluded1(scene, &ray, &arguments);
 }
 #else
-/// What the callbacks of user geometry are given of the ray: derive from it.
+/// The ray as callbacks of user geometry receive it: derive from it.
 struct RayQuery : RTCIntersectContext {
     RayQuery() { rtcInitIntersectContext(this); }
 };
@@ -98,7 +98,7 @@ inline void occluded_list(RTCScene scene, std::span<ShadowRay> rays) {
 }
 #endif
 
-/// Of a callback's arguments.
+/// The query in a callback's arguments.
 template <class Arguments>
 RayQuery& query_of(const Arguments* arguments) {
     return *static_cast<RayQuery*>(arguments->context);
@@ -129,7 +129,7 @@ struct EmbreeScene {
     EmbreeScene(const EmbreeScene&)            = delete;
     EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-    /// Builds the trees of what was attached. Throws std::runtime_error.
+    /// Builds the trees of the geometries that were attached. Throws std::runtime_error.
     void commit() {
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);

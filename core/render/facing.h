@@ -25,9 +25,9 @@ namespace umbra {
 [[nodiscard]] bool centre_of_cut_light_is_behind(const Scene& scene, const PointBatch& points, LightId light,
                                                  std::size_t i);
 
-/// Whether the centre of an area light that the plane of point i cuts is behind that plane, or in it: what methods ask
-/// that take an area light as one point, in its centre, whose S_j is then 0 there. False where the plane does not cut
-/// the light. Exact. `points.facing[light]` is filled.
+/// Whether the centre of an area light that the plane of point i cuts is behind that plane, or in it: methods ask this
+/// that take an area light as one point, at its centre; their S_j is 0 there. False where the plane does not cut the
+/// light. Exact. `points.facing[light]` is filled.
 [[nodiscard]] inline bool centre_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
     return points.facing[light][i] == Facing::partly && centre_of_cut_light_is_behind(scene, points, light, i);
 }

@@ -29,7 +29,7 @@ double farthest_start(const CameraFrame& f, const RaySpace& space) {
     return (glm::length(f.eye - dvec3(space.centre)) + window) * scale;
 }
 
-/// Eye rays as the camera defines them, split into what varies with the column and with the row of the raster.
+/// Eye rays as the camera defines them, split into terms that vary with the column and with the row of the raster.
 class EyeRays {
 public:
     EyeRays(const CameraFrame& f, const RaySpace& space)
@@ -52,7 +52,7 @@ public:
             row_.push_back(f.half_height * (2 * (y + 0.5) / f.height - 1) * f.up * (window_ ? scale : 1));
     }
 
-    /// What all packets have alike: the eye, or the direction of an orthographic view.
+    /// Sets the part that all packets have in common: the eye, or the direction of an orthographic view.
     void start(RTCRay8& ray) const {
         fill(window_ ? forward_ : eye_, window_ ? ray.dir_x : ray.org_x, window_ ? ray.dir_y : ray.org_y,
              window_ ? ray.dir_z : ray.org_z);
@@ -113,7 +113,7 @@ private:
     vec3 eye_, forward_;
     dvec3 world_eye_, centre_;
     double unit_;      ///< of ray space, in world space
-    dvec3 still_{0};   ///< what all rays have alike, in ray space: the eye, or the direction of an orthographic view
+    dvec3 still_{0};   ///< common to all rays, in ray space: the eye, or the direction of an orthographic view
     dvec3 middle_{0};  ///< perspective: forward; orthographic: the eye, in ray space
     std::vector<double> column_[3];
     std::vector<dvec3> row_;

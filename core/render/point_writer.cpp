@@ -10,7 +10,7 @@
 namespace umbra {
 namespace {
 
-constexpr Facing kOpen{0xff};  // what face_open_points looks for
+constexpr Facing kOpen{0xff};  // face_open_points looks for it
 
 using Doubles = LaneArray<double>;
 
@@ -27,7 +27,7 @@ struct PointWriter::Points8 {
     std::uint8_t flags[8];  ///< `flipped`
 };
 
-/// Triangles (a, a + b, a + c) of eight hits, and what follows from them alone.
+/// Triangles (a, a + b, a + c) of eight hits, and values that follow from them alone.
 struct PointWriter::Triangles8 {
     Doubles a[3], b[3], c[3];
     Doubles n[3], length;  ///< cross(b, c) and its length
@@ -40,7 +40,7 @@ namespace {
 /// Heights of a light over the planes of eight triangles, times the lengths of their normals.
 struct Heights8 {
     Doubles middle, rise;  ///< of the centre; of the lowest and highest part below and over it
-    double reach;          ///< the sum of the magnitudes of what they were computed from, but for the triangles
+    double reach;          ///< the sum of the magnitudes that they were computed from, except for the triangles
 };
 
 template <class Triangles8>
@@ -223,7 +223,7 @@ void PointWriter::store(const Hits8& hits, const Points8& points, int lane, std:
     std::copy_n(points.flags + lane, count, batch_.flipped.data() + i);
 }
 
-/// What a point has that is none.
+/// Writes the values of a pixel without a surface point.
 void PointWriter::clear(std::size_t i) const {
     for (std::vector<float>* plane :
          {&batch_.u, &batch_.v, &batch_.px, &batch_.py, &batch_.pz, &batch_.nx, &batch_.ny, &batch_.nz})

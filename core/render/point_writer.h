@@ -1,4 +1,4 @@
-// Surface points from what eye rays met, eight at a time. Internal to core/render.
+// Surface points from the hits of eye rays, eight at a time. Internal to core/render.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace umbra {
 
-/// What eight eye rays met, as 4 x 2 pixels.
+/// The hits of eight eye rays, as 4 x 2 pixels.
 struct Hits8 {
     TriangleId triangle[8];
     float u[8], v[8];                  ///< as Embree has them: their last bits depend on the processor
@@ -16,9 +16,9 @@ struct Hits8 {
 };
 
 /// Where eight rays meet the planes of the triangles that Embree named, in double and so alike on all processors, and
-/// what set_point and face_lights make of that, to the same bits: all but the loads are loops over lanes. What needs a
-/// second look is left to those two: barycentrics at or over an edge, slivers, triangles that the eye or a light sees
-/// edge-on.
+/// the values that set_point and face_lights compute from that, to the same bits: all but the loads are loops over
+/// lanes. Cases that need a second look are left to those two: barycentrics at or over an edge, slivers, triangles that
+/// the eye or a light sees edge-on.
 ///
 /// Threads may write different tiles of one batch. The batch has its raster, eye and size; `scene` and `batch` outlive
 /// the writer.

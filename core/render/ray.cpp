@@ -26,7 +26,7 @@ FlushDenormals::~FlushDenormals() = default;
 
 namespace {
 
-/// A ray's own triangle is no hit. Embree calls this for the few triangles that a shadow ray does hit.
+/// A ray's own triangle does not count as a hit. Embree calls this for the few triangles that a shadow ray does hit.
 void skip_own_triangle(const RTCFilterFunctionNArguments* arguments) {
     for (unsigned k = 0; k < arguments->N; ++k)
         if (RTCHitN_primID(arguments->hit, arguments->N, k) == RTCRayN_id(arguments->ray, arguments->N, k))
@@ -80,7 +80,7 @@ RayScene::RayScene(const Scene& scene, Met met) : impl_(std::make_unique<Impl>()
         if (vertices && indices) {
             std::transform(scene.positions.begin(), scene.positions.end(), vertices,
                            [&](vec3 p) { return space_.point(p); });
-            // What is not to be met has no area: triangles keep their numbers.
+            // Triangles that are not to be met have no area here, so that all keep their numbers.
             for (TriangleId t = 0; t < triangles; ++t)
                 indices[t] = met == Met::all || scene.blocks(t) ? scene.triangles[t] : uvec3(scene.triangles[t][0]);
             impl_->vertices  = {vertices, scene.positions.size()};

@@ -31,7 +31,7 @@ struct alignas(32) ShadowPacket {
     float dir_x[8]{}, dir_y[8]{}, dir_z[8]{}, time[8]{};
     float tfar[8]{};  ///< negative after the call where the ray was blocked
     std::uint32_t mask[8]{~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u, ~0u};
-    TriangleId id[8]{};  ///< this triangle is no hit; kNoTriangle: every triangle is
+    TriangleId id[8]{};  ///< this triangle does not count as a hit; kNoTriangle: every triangle does
     std::uint32_t flags[8]{};
     int valid[8]{};  ///< -1: trace this lane, 0: leave it alone. Not part of Embree's layout
 };

@@ -59,7 +59,7 @@ SampleSet::SampleSet(Sampler sampler, int count, std::uint32_t seed) : sampler_(
     if (count < 1) throw std::invalid_argument("a sample set needs samples");
     const auto blocks = static_cast<std::size_t>(count + 7) / 8;
     if (sampler == Sampler::stratified || sampler == Sampler::regular) {
-        // Rows as high as the share of the samples that they hold, so that the cells have equal areas for any count.
+        // Rows as high as the fraction of the samples that they hold, so that the cells have equal areas for any count.
         cells_.resize(blocks);
         const int rows = std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
         int i          = 0;
@@ -152,8 +152,8 @@ UMBRA_FOR_EACH_PROCESSOR void SampleSet::eight(PointKey key, int first, Samples8
 std::size_t SampleSet::memory_bytes() const { return cells_.size() * sizeof(Cell) + words_.size() * sizeof(Word); }
 
 UMBRA_FOR_EACH_PROCESSOR void map_to_disk(Samples8& points) {
-    // Of the square's coordinates (a, b) the one farther from 0 becomes the radius, their quotient q an eighth of a
-    // turn either way. The series of sine and cosine of q pi/4 err by less than 2^-26 for |q| <= 1.
+    // The one of the square's coordinates (a, b) that is farther from 0 becomes the radius, their quotient q an eighth
+    // of a turn either way. The series of sine and cosine of q pi/4 err by less than 2^-26 for |q| <= 1.
     constexpr auto h = static_cast<float>(kPi / 4);
     for (int k = 0; k < 8; ++k) {
         const float a = 2 * points.x[k] - 1, b = 2 * points.y[k] - 1;

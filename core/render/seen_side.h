@@ -15,7 +15,7 @@ inline double sum_of_magnitudes(dvec3 v) { return sum_of_magnitudes(v.x, v.y, v.
 inline bool keeps_direction(double length, double sides) { return length > 1e-6 * sides; }
 
 /// Whether the sign of the product of that vector with the way to the eye, `towards`, is beyond doubt: `reach` is the
-/// sum of the magnitudes of what the way was computed from. It is off by less than 100 roundings of 2^-53.
+/// sum of the magnitudes that the way was computed from. The product's error is less than 100 roundings of 2^-53.
 inline bool keeps_sign(double towards, double sides, double reach) { return std::abs(towards) > 1e-13 * sides * reach; }
 
 }  // namespace umbra

@@ -63,7 +63,7 @@ bool same_at(const VisibilityPlane& a, const VisibilityPlane& b, std::size_t i) 
            (a.colour.empty() || a.colour[i] == b.colour[i]);
 }
 
-/// Of each point for which `wanted` holds.
+/// The sum at each point for which `wanted` holds.
 template <class Wanted>
 void shade_some(const Scene& scene, const PointBatch& points, std::span<const VisibilityPlane> visibility, Image& image,
                 const Wanted& wanted) {

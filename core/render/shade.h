@@ -1,4 +1,4 @@
-// The sum: Phong's terms with S_j, evaluated in world space, and what makes a displayable picture of it.
+// The sum: Phong's terms with S_j, evaluated in world space, and its conversion to a picture that can be displayed.
 #pragma once
 
 #include <array>

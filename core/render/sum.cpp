@@ -56,7 +56,7 @@ double arriving_share(const Scene& scene, const Light& light, vec3 p) {
     return f_att * fog_share(scene.fog, static_cast<double>(to_light(light, p).distance));
 }
 
-/// f_att I_j (k_d O_d (N.L) + ...): what light j would give if nothing blocked it, with the angle's cosine.
+/// f_att I_j (k_d O_d (N.L) + ...): the contribution of light j if nothing blocked it, with the angle's cosine.
 /// `add_specular` adds the rest in the brackets. Says count(term) of each term of SumCounts that it evaluates.
 template <class AddSpecular, class Count>
 dvec3 PhongSum::unblocked(const Light& light, const Terms& terms, vec3 p, double cosine,

@@ -16,7 +16,7 @@
 
 namespace umbra {
 
-/// How often each term was evaluated. What a scene does not ask for stays 0.
+/// How often each term was evaluated. Counts of terms that a scene does not ask for stay 0.
 struct SumCounts {
     std::uint64_t sums     = 0;  ///< points
     std::uint64_t diffuse  = 0;  ///< pairs of a point and a light that reaches it, in front of it
@@ -37,7 +37,7 @@ struct LightCosines {
 
 class PhongSum {
 public:
-    /// Of a picture by this camera. The scene must outlive this object.
+    /// The sum for a picture by this camera. The scene must outlive this object.
     PhongSum(const Scene& scene, const CameraFrame& camera);
 
     /// R G B, scene-linear, at point i of a batch, which has a surface, with the unit normal n. `visibility`: one plane
@@ -65,11 +65,11 @@ public:
     void at_eight(const PointBatch& points, std::size_t first, unsigned which,
                   std::span<const VisibilityPlane> visibility, float* rgb) const;
 
-    /// What `at` evaluates at point i.
+    /// Counts the terms that `at` evaluates at point i.
     void count(const PointBatch& points, std::size_t i, dvec3 n, std::span<const VisibilityPlane> visibility,
                SumCounts& counts) const;
 
-    /// What arrives at the eye, through the scene's fog, of light that leaves p.
+    /// The light that arrives at the eye, through the scene's fog, of `light` that leaves p.
     [[nodiscard]] dvec3 at_the_eye(dvec3 light, vec3 p) const;
 
     /// V at point i of a batch, unit: to the eye, or against the view direction where that is constant.
@@ -79,12 +79,12 @@ public:
     /// The same at another position of the batch's picture.
     [[nodiscard]] dvec3 to_viewer_from(const PointBatch& points, dvec3 p) const;
 
-    /// Without directions and distances: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. What a surface gives where all
+    /// Without directions and distances: I_e + I_a k_a O_d + sum_j I_j k_d O_d cosine. The light of a surface where all
     /// lights are at the eye and nothing is far away.
     [[nodiscard]] dvec3 from_the_eye(TriangleId t, double cosine) const;
 
 private:
-    /// What is the same at all points of an object.
+    /// Terms that are the same at all points of an object.
     struct Terms {
         dvec3 unshadowed;  ///< I_e + I_a k_a O_d: no light can be blocked from it. I_a has those of the lights that
                            ///< light the object, where these are not attenuated
@@ -93,7 +93,7 @@ private:
         dvec3 specular;    ///< k_s O_s
         bool is_specular;
     };
-    /// `unblocked_by(j)`: f_att,j I_j (...), what light j would give if nothing blocked it.
+    /// `unblocked_by(j)`: f_att,j I_j (...), the contribution of light j if nothing blocked it.
     template <class Unblocked, class Count>
     dvec3 add_up(const PointBatch& points, std::size_t i, std::span<const VisibilityPlane> visibility,
                  const Unblocked& unblocked_by, const Count& count) const;

@@ -45,7 +45,7 @@ void dots(const Lanes3& a, const Lanes3& b, Doubles& to) {
     for (int k = 0; k < kLanes; ++k) to[k] = a.x[k] * b.x[k] + a.y[k] * b.y[k] + a.z[k] * b.z[k];
 }
 
-/// Has the processor load what the points after the eight from `first` on need of their triangles, which may lie
+/// Has the processor load the data of triangles that the points after the eight from `first` on need; they may be
 /// anywhere in a large mesh. Changes no result.
 void load_ahead(const Scene& scene, const PointBatch& points, std::size_t first) {
     if (first + 3 * kLanes > points.size()) return;

@@ -29,7 +29,7 @@ struct PointTile {
     }
 
     /// Has the processor load the tile's part of these arrays of the batch: where it is read or written later, it need
-    /// not be waited for. A row of a tile is one or two lines of the cache, and what follows it in memory is of another
+    /// not be waited for. A row of a tile is one or two lines of the cache, and the memory behind it belongs to another
     /// tile. Changes no result.
     template <class... Array>
     void load(const Array&... arrays) const {
@@ -50,7 +50,7 @@ struct PointTile {
         });
     }
 
-    /// What the tile to the right needs, while this one is worked on.
+    /// Loads the memory that the tile to the right needs, while this one is worked on.
     template <class... Array>
     void load_next(const Array&... arrays) const {
         PointTile next = *this;

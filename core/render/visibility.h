@@ -1,4 +1,4 @@
-// One light's answers: what methods write and errors are found in.
+// One light's answers: methods write them, and errors are found in them.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace umbra {
 
-/// What a method says of one point.
+/// The kind of a method's answer at one point.
 enum class Answer : std::uint8_t {
     undefined,   ///< the method cannot tell; s means nothing
     given,       ///< s is the method's answer
@@ -28,8 +28,8 @@ struct Visibility {
     std::span<vec3> colour;       ///< empty, or 0 before the call: S_j per channel, where occluders let a part of the
                                   ///< light through that has another colour (SceneFacts::has_coloured_filters). `s` is
                                   ///< the mean of its channels
-    std::atomic<std::uint64_t>* steps = nullptr;  ///< where not null, a method that counts what it does adds the number
-                                                  ///< of its steps, of about 100 ns each: the same on every machine
+    std::atomic<std::uint64_t>* steps = nullptr;  ///< where not null, a method that counts its work adds the number of
+                                                  ///< its steps, of about 100 ns each: the same on every machine
 };
 
 /// S_j of three channels as one number: their mean, and their own value where they are equal.
@@ -70,8 +70,8 @@ struct VisibilityPlane {
     [[nodiscard]] bool defined(std::size_t i) const { return answer[i] != Answer::undefined; }
 };
 
-/// What counts as a wrong S_j: for lights whose S_j is 0 or 1, the other one; for area lights, a difference that shows
-/// in a penumbra and that the noise of a sampled reference does not reach.
+/// The difference that counts as a wrong S_j: for lights whose S_j is 0 or 1, the other one; for area lights, a
+/// difference that shows in a penumbra and that the noise of a sampled reference does not reach.
 inline constexpr float kHardTolerance = 0.5f;
 inline constexpr float kAreaTolerance = 0.1f;
 [[nodiscard]] constexpr float visibility_tolerance(LightKind kind) {

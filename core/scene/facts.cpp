@@ -153,7 +153,7 @@ LightPlace place_of(const Light& light, const Scene& scene) {
 
 bool any(vec3 v) { return v != vec3(0); }
 
-/// Only what something in the scene uses: materials of objects with triangles.
+/// Only terms that something in the scene uses: materials of objects with triangles.
 void find_terms(const Scene& scene, SceneFacts& facts) {
     const bool ambient_light = any(scene.ambient) || std::any_of(scene.lights.begin(), scene.lights.end(),
                                                                  [](const Light& light) { return any(light.ambient); });

@@ -23,7 +23,7 @@ struct ObjectFacts {
     std::uint32_t duplicate_triangles  = 0;     ///< same three welded corners as an earlier one, in any order
     std::uint32_t components           = 0;     ///< connected over shared welded vertices
     bool manifold = false;  ///< closed 2-manifold, zero area allowed: two triangles an edge, in opposite directions,
-                            ///< one fan a vertex, no corner repeated; what a halfedge mesh can hold without a border
+                            ///< one fan a vertex, no corner repeated; a halfedge mesh can hold it without a border
     bool closed  = false;   ///< manifold, and none of the faults above, duplicates included
     bool outward = false;   ///< closed and of positive volume
     bool solid   = false;   ///< manifold, and each of its connected parts is of positive volume
@@ -60,18 +60,18 @@ struct SceneFacts {
     bool has_coloured_filters = false;       ///< and of some channel more than of another
     bool has_filters          = false;       ///< some triangle lets a part of the light through (Scene::lets_through)
     bool has_cutouts          = false;       ///< some triangle has an outline that is not computed (Material::cutout)
-    std::vector<UncomputedTerm> uncomputed;  ///< what materials ask for and pictures of the sum do not have
+    std::vector<UncomputedTerm> uncomputed;  ///< asked for by materials, missing in pictures of the sum
     bool hard_lights_only         = true;
     bool eye_inside_closed_object = false;
 };
 
-/// A plane counts as a receiver from this share of the scene's area on.
+/// A plane counts as a receiver from this fraction of the scene's area on.
 inline constexpr double kPlanarShare = 0.005;
 
 [[nodiscard]] std::vector<ObjectFacts> find_object_facts(const Scene& scene);  ///< one entry an object, in order
 [[nodiscard]] SceneFacts find_facts(const Scene& scene);
 
-/// What the scene asks a renderer for, and what it does not ask for: a phrase each, for people.
+/// The things that the scene asks a renderer for, and those it does not: a phrase each, for people.
 [[nodiscard]] std::vector<std::string> requires_list(const SceneFacts& facts);
 [[nodiscard]] std::vector<std::string> not_required_list(const SceneFacts& facts);
 

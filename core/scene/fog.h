@@ -14,10 +14,10 @@ enum class FogLaw : std::uint8_t {
     exponential,         ///< f = e^(-density d)
     exponential_squared  ///< f = e^(-(density d)^2)
 };
-/// What d is.
+/// The meaning of d.
 enum class FogDistance : std::uint8_t {
     radial,  ///< the distance from the eye (to the window of an orthographic camera)
-    depth    ///< its part along the view direction: what rasterizers have at hand; a picture changes as the eye turns
+    depth    ///< its part along the view direction, which rasterizers have at hand; a picture changes as the eye turns
 };
 
 struct Fog {
@@ -31,7 +31,7 @@ struct Fog {
                                           ///< which would be dark, are not dimmed
 };
 
-/// f at a distance >= 0: the share of a surface's light that arrives, [0, 1].
+/// f at a distance >= 0: the fraction of a surface's light that arrives, [0, 1].
 [[nodiscard]] double fog_share(const Fog& fog, double distance);
 
 }  // namespace umbra

@@ -1,4 +1,5 @@
-// Lights: what they are and what they give, but not what blocks them (that is S_j, see shadows/method.h).
+// Lights: their kinds and the light that they give, but not the triangles that block it (that is S_j, see
+// shadows/method.h).
 #pragma once
 
 #include <memory>

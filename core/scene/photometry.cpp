@@ -80,7 +80,7 @@ double on_meridian(const Photometry& table, std::size_t meridian, std::size_t la
     return table.candela[(about_along ? latitude : meridian) * table.vertical.size() + vertical];
 }
 
-/// The integral along one meridian, of what is linear in the angle g from the pole, times sin g.
+/// The integral along one meridian, of a function that is linear in the angle g from the pole, times sin g.
 double along_meridian(const Photometry& table, std::size_t meridian) {
     const bool from_pole               = table.type == PhotometricType::C;
     const std::vector<float>& latitude = table.type == PhotometricType::B ? table.horizontal : table.vertical;

@@ -16,14 +16,15 @@ namespace umbra {
 /// How the two angles of a table name a direction. f is the light's direction, s its `along`, perpendicular to f;
 /// V the vertical, H the horizontal angle.
 enum class PhotometricType : std::uint8_t {
-    C,  ///< V from f, 0 to 180 degrees; H around f from s, anticlockwise for who looks along f: seen from above, where
-        ///< the light points down
+    /// V from f, 0 to 180 degrees; H around f from s, anticlockwise seen along f (from above, if the light points
+    /// down).
+    C,
     B,  ///< cos H (cos V f + sin V u) + sin H s with u = s x f: the angles' common axis is s
     A   ///< cos V (cos H f + sin H s) + sin V u: the common axis is u
 };
 
-/// Intensities on a grid of angles, in degrees, increasing. An intensity is what I_j of the light is multiplied by; in
-/// the files of manufacturers its unit is the candela.
+/// Intensities on a grid of angles, in degrees, increasing. I_j of the light is multiplied by an intensity; in the
+/// files of manufacturers its unit is the candela.
 struct Photometry {
     PhotometricType type = PhotometricType::C;
     std::vector<float> vertical;    ///< C: within [0, 180]; A, B: within [-90, 90]. At least one
@@ -32,7 +33,7 @@ struct Photometry {
     std::vector<float> candela;     ///< one a pair: candela[h * vertical.size() + v], >= 0
 };
 
-/// What makes a table unusable, as "the horizontal angles end at 120 degrees, expected ...", or empty.
+/// The fault that makes a table unusable, as "the horizontal angles end at 120 degrees, expected ...", or empty.
 [[nodiscard]] std::string fault_of(const Photometry& table);
 
 /// The intensity at these angles, degrees: bilinear between the table's, 0 outside its vertical angles. `table` has no

@@ -24,7 +24,7 @@ namespace {
 struct Plane {
     dvec3 normal{0};
     dvec3 origin{0};    ///< a point of it near its triangles
-    double wobble = 0;  ///< how far the fit may be off: the mean rounding of what it was fitted to
+    double wobble = 0;  ///< the error of the fit: the mean rounding of the points that it was fitted to
 
     [[nodiscard]] double distance(dvec3 x) const { return glm::dot(normal, x - origin); }
 };
@@ -202,7 +202,7 @@ std::vector<Entry> grid_of_planes(const Scene& scene) {
     return entries;
 }
 
-/// A run of entries with one key, and what remains of its area.
+/// A run of entries with one key, and the rest of its area.
 struct Run {
     std::size_t begin = 0, end = 0;
     double area = 0;

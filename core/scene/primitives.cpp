@@ -194,8 +194,8 @@ std::vector<std::uint32_t> weld(const std::vector<vec3>& positions) {
 
 }  // namespace
 
-// Corners that meet at a position share a normal where one can walk from face to face around it over edges that are
-// no creases. So two bodies that touch in one position keep apart, and a crease may end inside a surface.
+// Corners that meet at a position share a normal where one can walk from face to face around it over edges that are not
+// creases. So two bodies that touch in one position keep apart, and a crease may end inside a surface.
 Mesh with_averaged_normals(const Mesh& mesh, float crease_degrees, NormalWeights weights) {
     const auto welded       = weld(mesh.positions);
     const auto corner_of    = [&](std::size_t corner) { return welded[mesh.triangles[corner / 3][int(corner % 3)]]; };

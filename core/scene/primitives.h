@@ -25,7 +25,7 @@ struct Mesh {
 /// Positions by `m`, normals by its inverse transpose, windings turned where `m` mirrors.
 [[nodiscard]] Mesh transformed(Mesh mesh, const mat4& m);
 
-/// What the normal of a face counts at a vertex. Only with `angle` does it not matter how faces are cut into triangles.
+/// The weight of a face's normal at a vertex. Only with `angle` does it not matter how faces are cut into triangles.
 enum class NormalWeights : std::uint8_t {
     angle,  ///< its angle there [Grit Thuermer, Charles Wuethrich, Computing Vertex Normals from Polygonal Facets,
             ///< 1998]

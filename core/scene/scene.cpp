@@ -66,7 +66,7 @@ std::uint32_t add_object(Scene& scene, std::string name, const std::vector<vec3>
         scene.normals.resize(scene.positions.size(), vec3(0));
     else
         scene.normals.insert(scene.normals.end(), normals.begin(), normals.end());
-    scene.triangles.reserve(scene.triangles.size() + triangles.size());
+    // No reserve: one of the exact size for each object copies all triangles for each, quadratic in the objects.
     for (const uvec3& t : triangles) scene.triangles.push_back(t + uvec3(base));
     scene.triangle_object.resize(scene.triangles.size(), index);
     return index;

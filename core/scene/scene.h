@@ -18,7 +18,7 @@ using TriangleId                        = std::uint32_t;
 inline constexpr TriangleId kNoTriangle = 0xffffffffu;
 inline constexpr double kMaxCoordinate  = 1e18;  ///< larger magnitudes are refused where scenes are read
 
-/// What an object takes part in.
+/// Switches: how an object takes part in the picture and in shadows.
 struct ObjectSwitches {
     bool casts_shadows    = true;  ///< false: it blocks and filters no light
     bool receives_shadows = true;  ///< false: S_j is 1 where some of the light is in front (Facing::unshadowed)
@@ -26,7 +26,7 @@ struct ObjectSwitches {
     [[nodiscard]] bool operator==(const ObjectSwitches&) const = default;
 };
 
-/// A switch, and what files call it.
+/// A switch, and its name in files.
 struct ObjectSwitch {
     std::string_view key;
     bool ObjectSwitches::*is_on;
@@ -58,7 +58,7 @@ enum class LightAmbient : std::uint8_t {
 enum class SpecularColour : std::uint8_t { O_s, O_d };      ///< the specular term is k_s O_s (...) or k_s O_d (...)
 enum class AmbientCoefficient : std::uint8_t { k_a, k_d };  ///< the ambient term is I_a k_a O_d or I_a k_d O_d
 
-/// What a triangle whose material lets light through (see transmittance) does to S_j.
+/// The effect on S_j of a triangle whose material lets light through (see transmittance).
 enum class TransparentOccluders : std::uint8_t {
     ignore,    ///< nothing: light is lost where an opaque triangle lies between, and nowhere else
     block,     ///< it blocks light as an opaque one does
@@ -106,7 +106,7 @@ struct Scene {
     int frames = 0;  ///< of the file's animation; 0: nothing moves
     int frame  = 0;  ///< the one that this scene is, [0, frames)
 
-    std::vector<std::string> warnings;  ///< what loading assumed, a sentence each
+    std::vector<std::string> warnings;  ///< assumptions of loading, a sentence each
 
     [[nodiscard]] vec3 vertex(TriangleId t, int k) const { return positions[triangles[t][k]]; }
     [[nodiscard]] const Material& material(TriangleId t) const {
@@ -118,7 +118,7 @@ struct Scene {
         return switches(t).casts_shadows &&
                (transparent == TransparentOccluders::block || coloured_transmittance(material(t)) == vec3(0));
     }
-    /// What triangle t leaves of light that passes through it, per channel: 0 where it blocks.
+    /// The fraction of light that triangle t lets through, per channel: 0 where it blocks.
     [[nodiscard]] vec3 lets_through(TriangleId t) const {
         if (blocks(t)) return vec3(0);
         const bool filters = transparent == TransparentOccluders::multiply && switches(t).casts_shadows;
@@ -139,7 +139,7 @@ void place_fixed_lights(Scene& scene);
 [[nodiscard]] dvec3 area_normal(const Scene& scene, TriangleId t);
 
 /// Adds an object: positions, normals (may be empty: face normals) and triangles in world space.
-/// Returns its index. The caller owns what it passed; everything is copied. Throws std::invalid_argument
+/// Returns its index. Everything is copied; the caller keeps its own. Throws std::invalid_argument
 /// where a triangle names a position that is not there.
 std::uint32_t add_object(Scene& scene, std::string name, const std::vector<vec3>& positions,
                          const std::vector<vec3>& normals, const std::vector<uvec3>& triangles, std::uint32_t material);

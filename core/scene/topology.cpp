@@ -37,7 +37,7 @@ std::size_t parts_of(std::size_t items) {
     return items < 16384 ? 1 : std::clamp<std::size_t>(static_cast<std::size_t>(thread_count()), 1, 8);
 }
 
-/// Of the positions from `low` on, `count` of them: the first one that is equal, counted from `low`. Through hash
+/// For each of the `count` positions from `low` on: the first one that is equal, counted from `low`. Through hash
 /// tables with open addressing.
 std::vector<std::uint32_t> first_equal(const Scene& scene, std::size_t low, std::size_t count) {
     const auto bits_of = [&](std::size_t i) { return bits(scene.positions[low + i]); };
@@ -130,7 +130,7 @@ void find_edges(Topology& topology) {
             for (std::size_t p = from; p < to; ++p) body(vertices * p / parts, vertices * (p + 1) / parts);
         });
     };
-    // Of the sides and of the edges of each vertex: how many, then where they begin.
+    // The sides and the edges of each vertex: how many, then where they begin.
     std::vector<std::uint32_t> begin(vertices + 1, 0), first_edge(vertices + 1, 0);
     const auto add_up = [](std::vector<std::uint32_t>& counts) {
         for (std::size_t v = 1; v < counts.size(); ++v) counts[v] += counts[v - 1];

@@ -36,8 +36,8 @@ struct Topology {
     }
 };
 
-/// Of triangles [first, first + count): one object's, or the whole scene's. Vertices are numbered as they are first
-/// used.
+/// The topology of triangles [first, first + count): one object's, or the whole scene's. Vertices are numbered as they
+/// are first used.
 [[nodiscard]] Topology find_topology(const Scene& scene, TriangleId first, std::uint32_t count);
 
 /// True where the three corners lie on one line, or in one point. Exact.

@@ -1,4 +1,4 @@
-// What materials ask for and pictures of the sum do not have (`umbra whitted` does): found once, warned about by
+// Terms that materials ask for and pictures of the sum do not have (`umbra whitted` does): found once, warned about by
 // readers.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace umbra {
 /// One term of a material that some object with triangles sets to other than its default.
 struct UncomputedTerm {
     std::string_view term;               ///< as native scenes write it: "opacity"
-    std::string_view consequence;        ///< what is drawn instead, for people
+    std::string_view consequence;        ///< the substitute in the picture, for people
     std::vector<std::string> materials;  ///< their names, in the scene's order; not empty
 };
 

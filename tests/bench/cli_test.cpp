@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -698,6 +699,95 @@ TEST_F(Cli, AFarSceneSaysWhatItsNumbersAreRelativeTo) {
         run("(" + std::string(UMBRA_PROGRAM) + " inspect --json " + file("far.obj") + " 2>/dev/null)");
     EXPECT_EQ(nlohmann::json::parse(answer.output)["scene"]["origin"], (nlohmann::json{569000, 5929000, 0}));
     EXPECT_FALSE(contains(umbra("inspect " + kScene).output, "Origin:"));
+}
+
+/// Commands that take scenes and write a folder, in forms that take moments.
+const std::vector<std::string> kSceneCommands = {
+    "compare --size 32x18 --methods ray_traced", "sweep --size 32x18 --methods ray_traced --views 1 --no-times",
+    "motion --size 32x18 --methods ray_traced --frames 1", "bias --size 16x9 --map resolution=64",
+    "energy --method ray_traced --points 100"};
+
+std::string first_word(const std::string& text) { return text.substr(0, text.find(' ')); }
+
+/// The names under which a record, and the folders of a command that makes some, tell scenes apart.
+std::vector<std::string> names_in(const fs::path& out, const std::string& command) {
+    std::vector<std::string> names;
+    if (command == "compare" || command == "sweep") {
+        for (const auto& entry : fs::directory_iterator(out))
+            if (fs::exists(entry.path() / "results.json")) names.push_back(entry.path().filename().string());
+        std::ranges::sort(names);
+        return names;
+    }
+    std::ifstream in(out / "results.json");
+    const nlohmann::json record = nlohmann::json::parse(in);
+    for (const nlohmann::json& scene : record[command == "energy" ? "frames" : command])
+        if (scene["scene"] != "all")
+            names.push_back(scene["scene"].is_object() ? scene["scene"]["name"] : scene["scene"]);
+    return names;
+}
+
+TEST_F(Cli, ScenesOfOneNameInAnyCaseAreToldApartByEveryCommand) {
+    fs::create_directories(folder_ / "a");
+    fs::create_directories(folder_ / "b");
+    fs::copy_file(kScene, folder_ / "a/X.json");
+    fs::copy_file(kScene, folder_ / "b/x.json");
+    const std::string x = file("a/X.json");
+    for (const std::string& command : kSceneCommands) {
+        const std::string name = first_word(command), out = file(name.c_str());
+        const std::string start = name + " " + x + " ", rest = command.substr(name.size()) + " --quiet -o " + out;
+        const Answer twice = umbra(start + file("a/../a/X.json") + rest);
+        EXPECT_EQ(twice.exit_code, 64) << command << '\n' << twice.output;
+        EXPECT_TRUE(contains(twice.output, "is given twice, expected each scene once")) << command << twice.output;
+        const Answer both = umbra(start + file("b/x.json") + rest);
+        ASSERT_EQ(both.exit_code, 0) << command << '\n' << both.output;
+        EXPECT_EQ(names_in(out, name), (std::vector<std::string>{"X", "x-2"})) << command;
+    }
+}
+
+TEST_F(Cli, EveryCommandReplacesWhatItWrote) {
+    std::vector<std::string> commands = kSceneCommands;
+    for (const char* more : {"polygons", "radiosity --size 32x18 --steps 3", "shading --size 32x18 --runs 1 --views 1",
+                             "whitted --size 32x18 --runs 1 --pixel-samples 1"})
+        commands.emplace_back(more);
+    for (const std::string& command : commands) {
+        const std::string name = first_word(command);
+        const std::string line =
+            name + " " + kScene + command.substr(name.size()) + " --quiet -o " + file(name.c_str());
+        for (const char* time : {"first", "second"}) {
+            const Answer answer = umbra(line);
+            EXPECT_EQ(answer.exit_code, 0) << time << " run of " << line << '\n' << answer.output;
+        }
+    }
+    std::ofstream(file("energy/mine.csv")) << "a user's";
+    EXPECT_EQ(umbra("energy " + kScene + " --points 100 --quiet -o " + file("energy")).exit_code, 4);
+    EXPECT_TRUE(fs::exists(file("energy/mine.csv")));
+}
+
+TEST_F(Cli, ShadowsAreSwitchedOffAlikeEverywhere) {
+    for (const std::string command : {"energy --points 100", "shading --size 32x18 --runs 1 --views 1",
+                                      "whitted --size 32x18 --runs 1 --pixel-samples 1"})
+        for (const char* off : {" --no-shadows", " --method none", " --methods none"}) {
+            const std::string name = first_word(command);
+            const Answer answer    = umbra(name + " " + kScene + command.substr(name.size()) + off +
+                                           " --json --quiet -o " + file(name.c_str()));
+            ASSERT_EQ(answer.exit_code, 0) << command << off << '\n' << answer.output;
+            EXPECT_TRUE(nlohmann::json::parse(answer.output)["method"].is_null()) << command << off;
+        }
+}
+
+TEST_F(Cli, OptionsHaveOneSpellingAndTakeTheOther) {
+    EXPECT_EQ(umbra("render " + kScene + " --methods ray_traced --size 16x9 -o " + file("a.png")).exit_code, 0);
+    EXPECT_EQ(umbra("compare --method ray_traced " + kScene + " --size 16x9 --quiet -o " + file("out")).exit_code, 0);
+    EXPECT_FALSE(contains(umbra("compare --help").output, "--method ")) << "one spelling in the help";
+    EXPECT_FALSE(contains(umbra("render --help").output, "--methods"));
+    for (const char* command : {"compare --methods ray_traced", "bias --map resolution=64"}) {
+        const std::string name = first_word(command);
+        const Answer answer    = run("(" + std::string(UMBRA_PROGRAM) + " " + name + " " + kScene +
+                                     std::string(command).substr(name.size()) + " --size 16x9 --json -o " +
+                                     file(name.c_str()) + " 2>/dev/null)");
+        ASSERT_EQ(answer.exit_code, 0) << answer.output;
+        EXPECT_EQ(nlohmann::json::parse(answer.output)["size"]["width"], 16) << "the record, and nothing else";
+    }
 }
 
 }  // namespace

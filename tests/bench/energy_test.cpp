@@ -25,6 +25,13 @@ std::string write_roof(const TemporaryFolder& folder, const std::string& animati
         .string();
 }
 
+const std::string kColumns =
+    "area,irradiance,unshadowed,coverage,irradiance_r,irradiance_g,irradiance_b,back_irradiance,back_unshadowed,"
+    "back_coverage";
+const std::string kUnit =
+    "unit: that of the lights, by luminance: lx for intensities in candelas, lengths in metres and photometric "
+    "attenuation\n";
+
 const double kSun = 0.2126 * 1 + 0.7152 * 2 + 0.0722 * 3;
 
 EnergyOptions with(const char* method, std::uint64_t points = 40000) {
@@ -82,8 +89,65 @@ TEST(Energy, FollowsTheSunFrameByFrame) {
     std::vector<std::string> rows;
     while (std::getline(in, line)) rows.push_back(line);
     ASSERT_EQ(rows.size(), 1u + 3 * 4);
-    EXPECT_EQ(rows[0], "scene,object,triangle,area,irradiance,unshadowed,coverage");
+    EXPECT_EQ(rows[0], "scene,object,triangle," + kColumns);
     EXPECT_EQ(rows[1].substr(0, 27), R"("roof@0","ground",0,32,1.74)");
+}
+
+/// A sheet of 4 x 4 with a sun of (1, 2, 3) above and a lamp below it that a plate of 2 x 2 hides from a quarter of it;
+/// a sun below has half of its light where the sheet's back is lit. A box beside closes around its inside.
+TEST(Energy, HasBothSidesOfOpenFacesAndTheirColours) {
+    const TemporaryFolder folder;
+    const auto measure = [&](const char* material) {
+        const auto file = folder.write("sheet.json", std::string(R"({"camera": {"eye": [0, 6, 9], "target": [0, 0, 0]},
+            "materials": {"sheet": )") + material + R"(},
+            "lights": [{"name": "above", "type": "directional", "direction": [0, -1, 0], "colour": [1, 2, 3]},
+                       {"name": "below", "type": "directional", "direction": [0, 1, 0], "colour": [0, 4, 0]}],
+            "objects": [{"name": "sheet", "type": "plane", "size": [4, 4], "material": "sheet"},
+                        {"name": "plate", "type": "plane", "size": [2, 2], "transform": [{"translate": [0, -1, 0]}]},
+                        {"name": "box", "type": "box", "size": [1, 1, 1], "transform": [{"translate": [9, 0, 0]}]}]})");
+        return measure_energy(std::vector<std::filesystem::path>{file}, with("exact"), folder.path());
+    };
+    const Json record = measure(R"({"k_d": 1})");
+    const Json &sheet = record["mean"][0], &plate = record["mean"][1], &box = record["mean"][2];
+    EXPECT_NEAR(sheet["irradiance"].get<double>(), kSun, 1e-5);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(sheet["irradiance_rgb"].at(c).get<double>(), c + 1, 1e-5);
+    const double green = 0.7152 * 4;
+    const Json& back   = sheet["back"];
+    EXPECT_NEAR(back["area"].get<double>(), 16, 1e-5);
+    EXPECT_NEAR(back["unshadowed"].get<double>(), green, 1e-5);
+    EXPECT_NEAR(back["irradiance"].get<double>(), green * 0.75, 5e-3 * green);
+    EXPECT_NEAR(back["irradiance_rgb"].at(1).get<double>(), 3, 0.02);
+    EXPECT_EQ(back["irradiance_rgb"].at(0), 0);
+    EXPECT_NEAR(plate["irradiance"].get<double>(), 0, 1e-9) << "under the sheet";
+    EXPECT_NEAR(plate["back"]["irradiance"].get<double>(), green, 1e-5);
+    EXPECT_TRUE(box["back"].is_null()) << "nothing is lit inside";
+    const std::string text = energy_text(record);
+    EXPECT_NE(text.find("sheet, back"), std::string::npos) << text;
+    EXPECT_EQ(text.find("box, back"), std::string::npos) << text;
+    EXPECT_NE(text.find(kUnit), std::string::npos) << text;
+
+    EXPECT_TRUE(measure(R"({"k_d": 1, "two_sided": false})")["mean"][0]["back"].is_null());
+}
+
+/// A pane that lets half of red through and nothing else.
+TEST(Energy, OfColouredShadowsIsByChannel) {
+    Scene scene;
+    scene.materials.resize(2);
+    scene.materials[1].opacity         = 0;
+    scene.materials[1].transmit_colour = {0.5f, 0, 0};
+    scene.transparent                  = TransparentOccluders::multiply;
+    add_object(scene, "ground", {{-2, 0, -2}, {2, 0, -2}, {2, 0, 2}, {-2, 0, 2}}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+    add_object(scene, "pane", {{-9, 1, -9}, {9, 1, -9}, {9, 1, 9}, {-9, 1, 9}}, {}, {{0, 2, 1}, {0, 3, 2}}, 1);
+    Light sun;
+    sun.kind                                = LightKind::directional;
+    sun.direction                           = {0, -1, 0};
+    sun.diffuse                             = {4, 4, 4};
+    scene.lights                            = {sun};
+    const std::vector<ReceivedEnergy> faces = received_by_faces(scene, find_facts(scene), with("exact", 64));
+    EXPECT_NEAR(faces[0].colour.x, 2, 1e-5);
+    EXPECT_NEAR(faces[0].colour.y, 0, 1e-9);
+    EXPECT_NEAR(faces[0].irradiance, 0.2126 * 2, 1e-5);
+    EXPECT_NEAR(faces[0].unshadowed, 4, 1e-5);
 }
 
 /// Half of the faces in the umbra, half lit: faces differ where their object is between.
@@ -172,13 +236,13 @@ TEST_F(PlantedEnergy, EachLightHasItsOwnShadow) {
     EXPECT_NEAR(record["mean"][0]["area"].get<double>(), 4, 1e-6);
     EXPECT_NEAR(record["mean"][1]["area"].get<double>(), 1, 1e-6);
     EXPECT_EQ(lines("objects.csv"),
-              (std::vector<std::string>{"scene,object,area,irradiance,unshadowed,coverage",
-                                        R"("suns","ground",4,1,2.5,1)", R"("suns","step",1,1,2.5,1)"}));
-    EXPECT_EQ(lines("faces.csv").at(3), R"("suns","step",2,0.5,1,2.5,1)");
-    EXPECT_EQ(energy_text(record),
-              "irradiance without shadows, with shadows, and their quotient; means of 1 frame\n"
-              "ground          2.5          1  0.400\n"
-              "step            2.5          1  0.400\n");
+              (std::vector<std::string>{"scene,object," + kColumns, R"("suns","ground",4,1,2.5,1,1,1,1,0,0,)",
+                                        R"("suns","step",1,1,2.5,1,1,1,1,0,0,)"}));
+    EXPECT_EQ(lines("faces.csv").at(3), R"("suns","step",2,0.5,1,2.5,1,1,1,1,0,0,)");
+    EXPECT_EQ(energy_text(record), "irradiance without shadows, with shadows, and their quotient; means of 1 frame\n" +
+                                       kUnit +
+                                       "ground          2.5          1  0.400\n"
+                                       "step            2.5          1  0.400\n");
 }
 
 /// The late sun brings 1.5 of 2.5: without an answer for it, 0.4 is covered, of which a quarter arrives.
@@ -189,12 +253,12 @@ TEST_F(PlantedEnergy, WhatHasNoAnswerIsNeitherLitNorDark) {
     EXPECT_NEAR(part["unshadowed"].get<double>(), 1, 1e-6);
     EXPECT_NEAR(part["fraction"].get<double>(), 0.25, 1e-6);
     EXPECT_NEAR(part["coverage"].get<double>(), 0.4, 1e-6);
-    EXPECT_EQ(lines("objects.csv").at(1), R"("suns","ground",4,0.25,1,0.4)");
+    EXPECT_EQ(lines("objects.csv").at(1), R"("suns","ground",4,0.25,1,0.4,0.25,0.25,0.25,0,0,)");
     EXPECT_EQ(energy_text(record),
-              "irradiance without shadows, with shadows, and their quotient; means of 1 frame\n"
-              "of the part that planted answers; last column: that part of what arrives without shadows\n"
-              "ground            1       0.25  0.250  0.400\n"
-              "step              1       0.25  0.250  0.400\n");
+              "irradiance without shadows, with shadows, and their quotient; means of 1 frame\n" + kUnit +
+                  "of the part that planted answers; last column: that part of what arrives without shadows\n"
+                  "ground            1       0.25  0.250  0.400\n"
+                  "step              1       0.25  0.250  0.400\n");
 
     // Every second point, lit: half of what arrives is covered, and all of that is there.
     const Json half = measure([](LightId, std::size_t point) { return PlantedAnswer{1, point % 2 == 0}; });
@@ -208,7 +272,7 @@ TEST_F(PlantedEnergy, WithoutAnyAnswerThereIsNoFigure) {
     EXPECT_EQ(ground["coverage"], 1) << "its points are the first 800 of 1000";
     EXPECT_EQ(step["coverage"], 0);
     for (const char* figure : {"irradiance", "unshadowed", "fraction"}) EXPECT_TRUE(step[figure].is_null()) << figure;
-    EXPECT_EQ(lines("objects.csv").at(2), R"("suns","step",1,,,0)");
+    EXPECT_EQ(lines("objects.csv").at(2), R"("suns","step",1,,,0,,,,0,0,)");
     EXPECT_NE(energy_text(record).find("step              -          -      -  0.000\n"), std::string::npos)
         << energy_text(record);
 }

@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "umbra/bench/golden/golden_planes.h"
-#include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"

@@ -31,8 +31,7 @@ using other_readers::read_png;
 using other_readers::read_text;
 using other_readers::Rgb;
 
-// ---- colours, as docs/terms.md, the legends and IEC 61966-2-1 state them
-// ---------------------------------------------
+// ---- colours, as docs/terms.md, the legends and IEC 61966-2-1 state them ------------------------------------------
 
 int shown(double linear) {
     const double v = linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
@@ -84,8 +83,7 @@ protected:
     TemporaryFolder folder_;
 };
 
-// ---- a wall, hard lights
-// ---------------------------------------------------------------------------------------------
+// ---- a wall, hard lights ------------------------------------------------------------------------------------------
 
 // Seen straight down by an orthographic view, 40 x 20 pixels of 0.1: pixel (x, y) has its centre at X = -1.95 + 0.1 x,
 // Z = -0.95 + 0.1 y. The floor Y = 0 ends at Z = 0.8: rows 18 and 19 see nothing, 18 rows of 40 points the floor.
@@ -371,8 +369,8 @@ TEST_F(Wall, RecordTellsItsFiguresApart) {
     one.displacement   = EdgeDisplacement{.mean = 31, .p95 = 32, .max = 33, .pieces = 35, .unmatched = 34};
     one.penumbra_width = PenumbraWidth{.method = 36, .reference = 37};
     one.noise          = Noise{.runs = 38, .rms = 39, .bias = 40};
-    const std::vector<Explained> explained(3, one);
-    const json found    = json::parse(served_json("planted", prepared, run, explained, "truth").dump())["errors"][1];
+    const Outcome outcome{run, std::vector<Explained>(3, one)};
+    const json found    = json::parse(served_json("planted", prepared, outcome, "truth").dump())["errors"][1];
     const json expected = json::parse(R"({"light": "top", "points": 1, "undefined": 2, "away": 3, "on_boundary": 4,
         "not_judged": 5, "lit": 6, "umbra": 7, "penumbra": 8, "false_shadow": {"interior": 9, "edge": 10, "acne": 20},
         "false_light": {"interior": 11, "edge": 12, "detachment": 21, "leak": 22},
@@ -474,8 +472,7 @@ TEST_F(Wall, DiffFindsTheSameDifference) {
     EXPECT_EQ(channel["S.below"]["max"], 0);
 }
 
-// ---- times
-// -----------------------------------------------------------------------------------------------------------
+// ---- times --------------------------------------------------------------------------------------------------------
 
 /// Each phase sleeps: build 150 ms, aim 50 at the sun, look 30, visibility 50 at "top". No time is less than its sleep,
 /// and the sum over lights is the sum.
@@ -553,8 +550,7 @@ TEST(Times, MedianLeastAndLargest) {
     EXPECT_EQ(text, (Json{{"median", 2.0}, {"min", 1.0}, {"max", 5.0}, {"runs", 3}}));
 }
 
-// ---- a penumbra
-// ------------------------------------------------------------------------------------------------------
+// ---- a penumbra ---------------------------------------------------------------------------------------------------
 
 // The same view, all of it floor. A board at Y = 1 covers X <= -2.5; a rectangle light at Y = 2 spans X from -6 to -4.
 // The segment from (X, 0) to (L, 2) passes Y = 1 at (X + L) / 2, so that the board blocks it where L <= -5 - X: of the
@@ -673,8 +669,7 @@ TEST_F(KnownAnswers, TheBracketOfARoundLightIsTheSameEverywhere) {
     EXPECT_EQ(e["bracket"]["max_half_width"], static_cast<double>(largest));
 }
 
-// ---- a lamp before a screen
-// ------------------------------------------------------------------------------------------
+// ---- a lamp before a screen ---------------------------------------------------------------------------------------
 
 /// A screen fills the plane Z = -1 before an eye at the origin with a field of view of 90 degrees: pixel (x, y) of 40
 /// by 20 sees (X, Y) = (0.1 x - 1.95, 0.95 - 0.1 y). A lamp at (0.5, 0.25, 0) has the distance d with d^2 = (X - 0.5)^2

@@ -1,8 +1,10 @@
 // What a run of ladders records, from a run made by hand whose figures are all different.
 #include "umbra/bench/ladders/ladder_record.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "umbra/bench/ladders/ladder_cells.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/run/results_file.h"
@@ -66,6 +68,58 @@ TEST(LadderRecord, WordsAndTableNameTheRung) {
     EXPECT_EQ(table["rows"][0]["cells"][0]["kind"], "leak");
     EXPECT_EQ(table["rows"][0]["cells"][1]["note"], "not served");
     EXPECT_EQ(table["rows"][0]["range"], "1 to 2");
+}
+
+/// Five rungs of ten: two are judged by what the first method answers, 0.8 and 0.6 of the points; on one it leaves most
+/// of them open, on one it answers too few in shadow, and on one nobody is judged. Five were not climbed.
+TEST(LadderRecord, HoldsSaysOfWhat) {
+    LadderRun run{&find_ladder("needles"), {parse_method("shadow_zbuffer"), parse_method("ray_traced")}, {}};
+    const std::size_t all = run.ladder->rungs.size();
+    ASSERT_GE(all, 5u);
+    struct Answered {
+        std::uint64_t points, undefined, shadow;
+    };
+    for (const Answered a :
+         {Answered{3000, 7000, 900}, {8000, 2000, 900}, {6000, 4000, 5}, {0, 0, 0}, {6000, 4000, 900}}) {
+        Rung& rung = run.rungs.emplace_back();
+        rung.value = double(run.rungs.size());
+        rung.truth = "exact";
+        if (a.points == 0) {
+            rung.unjudged = "nothing is in view";
+            continue;
+        }
+        RungOutcome part;
+        part.service = {How::approximately, "by hand"};
+        part.points = a.points, part.undefined = a.undefined;
+        part.can_show     = {a.points, 900, a.shadow};
+        RungOutcome whole = part;
+        whole.points += whole.undefined, whole.undefined = 0;
+        whole.can_show = {whole.points, 900, 900};
+        rung.outcomes  = {part, whole};
+    }
+    const Json ladder = ladder_json(run);
+    EXPECT_EQ(ladder["methods"][0]["judged_rungs"], 2);
+    EXPECT_NEAR(ladder["methods"][0]["least_coverage"].get<double>(), 0.6, 1e-12);
+    EXPECT_EQ(ladder["methods"][1]["judged_rungs"], 4);
+    EXPECT_EQ(climb_in_words(ladder["methods"][0], ladder), "holds") << "words that goldens have";
+    const std::string part  = fmt::format("judged on 2 of {} rungs, answers 60 % of the points or more", all),
+                      whole = fmt::format("judged on 4 of {} rungs", all);
+    const std::string text  = ladder_table(Json::array({ladder}));
+    EXPECT_NE(text.find("holds (" + part + ")"), std::string::npos) << text;
+    EXPECT_NE(text.find("holds (" + whole + ")"), std::string::npos) << text;
+    const TemporaryFolder folder;
+    const Json record = {{"schema", kResultsSchema}, {"breaking_share", 0.005}, {"ladders", {ladder}}};
+    const auto cells =
+        ladder_table_view(read_results(folder.write("results.json", record.dump())), "page")["rows"][0]["cells"];
+    EXPECT_EQ(cells[0]["words"], "holds");
+    EXPECT_EQ(cells[0]["note"], part);
+    EXPECT_EQ(cells[1]["note"], whole);
+    // A rung of its own, all of whose points it answers.
+    run.rungs = {run.rungs.back()};
+    EXPECT_NE(ladder_table(Json::array({ladder_json(run)})).find(fmt::format("holds (judged on 1 of {} rungs", all)),
+              std::string::npos);
+    EXPECT_EQ(left_out_in_words(8, 8, 1), "");
+    EXPECT_EQ(left_out_in_words(1, 1, 0.5), "answers 50 % of the points");
 }
 
 /// Two lights: the points of a rung are those of both.

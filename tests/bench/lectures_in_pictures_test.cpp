@@ -1,25 +1,24 @@
 // The page of the lectures: every topic in order, each picture with its own words, in three languages.
 #include <algorithm>
-#include <array>
-#include <cctype>
 #include <fstream>
+#include <regex>
 #include <set>
 #include <sstream>
 
 #include "report_fixture.h"
-#include "umbra/bench/radiosity/exchange_page.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/lecture_shows.h"
 #include "umbra/bench/report/lecture_texts.h"
-#include "umbra/bench/shading/shading_page.h"
-#include "umbra/bench/whitted/whitted_page.h"
+#include "umbra/bench/studies/radiosity/light_exchange.h"
+#include "umbra/bench/studies/shading/shading_study.h"
+#include "umbra/bench/studies/whitted/whitted_study.h"
 
 namespace umbra {
 namespace {
 
 using namespace report_fixture;
 
-constexpr std::array kLanguages{Language::english, Language::german, Language::greek};
+constexpr Language kGerman{"de"}, kGreek{"el"};
 
 /// The part of the page that belongs to one topic.
 std::string topic_of(const std::string& html, const std::string& id) {
@@ -38,45 +37,113 @@ bool has_greek(std::string_view text) {
     return false;
 }
 
-TEST(LectureTexts, EveryTopicHasItsWordsInThreeLanguages) {
-    const auto texts = lecture_texts();
-    ASSERT_EQ(texts.size(), lecture_rows().size());
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-        const LectureText& words = texts[i];
-        EXPECT_EQ(words.id, lecture_rows()[i].id);
-        EXPECT_FALSE(words.german.empty() || words.greek.empty()) << words.id;
-        const bool proved = !words.proves.en.empty();
-        EXPECT_EQ(proved, !lecture_rows()[i].scene.empty())
-            << words.id << ": a sentence where a scene shows the topic, and only there";
-        EXPECT_EQ(proved, !words.proves.de.empty()) << words.id;
-        EXPECT_EQ(proved, !words.proves.el.empty()) << words.id;
-        EXPECT_EQ(proved, has_greek(words.proves.el)) << words.id;
-        EXPECT_FALSE(has_greek(words.proves.en) || has_greek(words.german)) << words.id;
+std::set<std::string> keys_of(const json& object) {
+    std::set<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.insert(key);
+    return keys;
+}
+
+/// Words of a show that a language must have.
+std::set<std::string> names_shown() {
+    std::set<std::string> names;
+    const auto add = [&](const std::vector<LectureValue>& values) {
+        for (const LectureValue& value : values)
+            if (!value.name.empty()) names.insert(value.name);
+    };
+    for (const LectureRow& row : lecture_rows()) {
+        if (!row.show) continue;
+        add(row.show->pictures);
+        for (const LectureFigure& figure : row.show->figures) names.insert(figure.what), add(figure.values);
     }
+    return names;
+}
+
+/// What is missing, too much, or of the wrong kind in a language's words.
+std::vector<std::string> faults_of(const json& words, bool is_english) {
+    std::vector<std::string> faults;
+    const json& english = lecture_words(Language::english);
+    const auto has_text = [](const json& object, const std::string& key) { return !object.value(key, "").empty(); };
+    if (!words["decimal_comma"].is_boolean()) faults.emplace_back("decimal_comma");
+    if (keys_of(words["phrases"]) != keys_of(english["phrases"])) faults.emplace_back("phrases");
+    for (const std::string& key : keys_of(words["phrases"]))
+        if (!has_text(words["phrases"], key)) faults.push_back(key + " is no text");
+    if (keys_of(words["chapters"]) != keys_of(english["chapters"])) faults.emplace_back("chapters");
+    for (const json& chapter : words["chapters"]) {
+        if (!has_text(chapter, "title") || chapter["exercises"].size() != 2) faults.emplace_back("a chapter");
+        for (const json& exercise : chapter["exercises"])
+            if (!has_text(exercise, "question") || !has_text(exercise, "answer")) faults.emplace_back("an exercise");
+    }
+    std::set<std::string> ids;
+    for (const LectureRow& row : lecture_rows()) {
+        ids.insert(row.id);
+        if (!words["topics"].contains(row.id)) continue;
+        const json& topic = words["topics"][row.id];
+        if (!has_text(topic, "topic")) faults.push_back(row.id + ": no topic");
+        if (has_text(topic, "proves") == row.scene.empty())
+            faults.push_back(row.id + ": a sentence where a scene shows the topic, and only there");
+    }
+    if (keys_of(words["topics"]) != ids) faults.emplace_back("topics");
+    if (!is_english && keys_of(words["names"]) != names_shown()) faults.emplace_back("names");
+    return faults;
+}
+
+TEST(LectureTexts, EveryLanguageHasAllWords) {
+    ASSERT_EQ(languages().size(), 3u);
+    for (const Language language : languages())
+        EXPECT_EQ(faults_of(lecture_words(language), language == Language::english), std::vector<std::string>())
+            << language.code;
+    for (const LectureRow& row : lecture_rows()) {
+        const auto proves = [&](Language language) {
+            return lecture_words(language)["topics"][row.id].value("proves", "");
+        };
+        EXPECT_EQ(has_greek(proves(kGreek)), !row.scene.empty()) << row.id;
+        EXPECT_FALSE(has_greek(proves(Language::english)) || has_greek(proves(kGerman))) << row.id;
+    }
+}
+
+TEST(LectureTexts, PlantedFaultsAreFound) {
+    for (const char* pointer : {"/topics/C1/topic", "/topics/C1/proves", "/topics/C1", "/phrases/lead", "/chapters/D",
+                                "/chapters/D/exercises/1", "/names/flat"}) {
+        json words = lecture_words(kGerman);
+        const json::json_pointer at(pointer);
+        json& parent = words[at.parent_pointer()];
+        if (parent.is_array())
+            parent.erase(1);
+        else
+            parent.erase(at.back());
+        EXPECT_EQ(faults_of(words, false).size(), 1u) << pointer;
+    }
+}
+
+/// A cell of the page in the documentation as text: without blanks, backquotes and addresses of links; empty for a dash.
+std::string plain(std::string cell) {
+    static const std::regex link(R"(\[([^\]]*)\]\([^)]*\))");
+    cell = std::regex_replace(cell, link, "$1");
+    std::erase(cell, '`');
+    cell.erase(0, cell.find_first_not_of(' '));
+    cell.erase(cell.find_last_not_of(' ') + 1);
+    return cell == "–" ? "" : cell;
 }
 
 TEST(LectureTexts, RowsAreThoseOfThePageInTheDocumentation) {
     std::ifstream in(fs::path(UMBRA_TOP) / "docs/lectures.md");
-    std::string page, line;
-    std::size_t rows = 0;
-    while (std::getline(in, line)) {
-        if (line.size() < 4 || !line.starts_with("| ") || !std::isdigit(static_cast<unsigned char>(line[3]))) continue;
-        ASSERT_LT(rows, lecture_rows().size());
-        const LectureRow& row = lecture_rows()[rows++];
-        EXPECT_TRUE(line.starts_with("| " + row.id + " | ")) << line;
-        EXPECT_TRUE(contains(line, "| " + row.state + " |") || contains(row.state, "\"") || contains(line, "`"))
-            << line;
-        if (!row.scene.empty()) {
-            EXPECT_TRUE(contains(line, "`" + row.scene + "`")) << line;
-        }
+    std::vector<std::vector<std::string>> found, expected;
+    for (std::string line; std::getline(in, line);) {
+        if (!std::regex_search(line, std::regex(R"(^\| [A-F]\d)"))) continue;
+        std::istringstream cells(line.substr(1));
+        found.emplace_back();
+        for (std::string cell; std::getline(cells, cell, '|');) found.back().push_back(plain(cell));
     }
-    EXPECT_EQ(rows, lecture_rows().size());
-    EXPECT_EQ(rows, 76u);
+    for (const LectureRow& row : lecture_rows()) {
+        const json& words = lecture_words(Language::english)["topics"][row.id];
+        expected.push_back({row.id, words["topic"], row.source, row.scene, row.test, row.code, row.state});
+    }
+    EXPECT_EQ(found, expected);
+    EXPECT_EQ(found.size(), 76u);
 }
 
 TEST(LectureTexts, LanguagesHaveTheirCodes) {
-    for (const Language language : kLanguages) EXPECT_EQ(language_named(code_of(language)), language);
-    EXPECT_EQ(code_of(Language::greek), "el");
+    for (const Language language : languages()) EXPECT_EQ(language_named(language.code), language);
     EXPECT_FALSE(language_named("fr"));
     EXPECT_FALSE(language_named(""));
 }
@@ -145,9 +212,10 @@ TEST_F(Report, TopicsThatAreNoShadowsAreShownByTheirStudies) {
     EXPECT_TRUE(contains(topic_of(html, "C2"), "over that of Phong shading: flat 0.250.")) << topic_of(html, "C2");
     EXPECT_FALSE(contains(topic_of(html, "C5"), "<img")) << "its scene is another one";
     EXPECT_TRUE(contains(read(out / "index.html"), "shading-self_shadow/index.html"));
-    write_report({out}, out, {.language = Language::german});
+    write_report({out}, out, {.language = kGerman});
     const std::string german = topic_of(read(out / "lectures.html"), "C1");
-    EXPECT_TRUE(contains(german, "Abstand von der Phong-Schattierung (RMSE): konstant 0,0625, flach 0,125")) << german;
+    EXPECT_TRUE(contains(german, "Abstand von der Phong-Schattierung (RMSE): konstant 0,0625; flach 0,125")) << german;
+    EXPECT_TRUE(contains(german, "<figcaption>konstant<")) << german;
 }
 
 TEST_F(Report, StudiesFromElsewhereAreCopiedWithTheirPictures) {
@@ -187,20 +255,36 @@ TEST(LectureShows, NameWhatTheCommandsWrite) {
         const std::string study(show->study);
         const fs::path place = folder / (study + "-" + row.scene);
         if (study.empty()) {
-            const std::string path(show->pictures[0].path), name = path.substr(8, path.find('.', 8) - 8);
+            const std::string &path = show->pictures[0].path, name = path.substr(8, path.find('.', 8) - 8);
             EXPECT_NO_THROW(static_cast<void>(find_method(name))) << row.id << ": " << path;
             continue;
         }
         if (made.emplace(study, row.scene).second) {
             PreparedScene prepared = prepare_scene(scene_named(row.scene), small, 1, Work::picture);
             if (study == "shading")
-                write_shading_study(prepared, {.method = rays, .runs = 1, .command = ""}, place);
+                write_study(
+                    place,
+                    [&](const fs::path& to) {
+                        return compare_shading(prepared, {.method = rays, .runs = 1, .command = ""}, to);
+                    },
+                    shading_report);
             else if (study == "whitted")
-                write_whitted_study(
-                    prepared,
-                    {.method = rays, .pixel_samples = 4, .bodies = find_bodies(prepared.scene), .command = ""}, place);
+                write_study(
+                    place,
+                    [&](const fs::path& to) {
+                        return trace_whitted(
+                            prepared,
+                            {.method = rays, .pixel_samples = 4, .bodies = find_bodies(prepared.scene), .command = ""},
+                            to);
+                    },
+                    whitted_report);
             else
-                write_exchange_study(prepared, {.size = 0.5, .steps = 4, .command = ""}, place);
+                write_study(
+                    place,
+                    [&](const fs::path& to) {
+                        return exchange_light(prepared, {.size = 0.5, .steps = 4, .command = ""}, to);
+                    },
+                    exchange_report);
         }
         const Field record = read_results(place / "results.json");
         for (const LectureValue& picture : show->pictures) {
@@ -227,13 +311,13 @@ TEST_F(Report, LecturesSayWhatIsNotDone) {
 
 TEST_F(Report, LecturesAreWrittenInTheLanguageThatIsAskedFor) {
     put(out / "light_inside_view", sample("light_inside_view"));
-    write_report({out}, out, {.language = Language::german});
+    write_report({out}, out, {.language = kGerman});
     const std::string german = read(out / "lectures.html");
     EXPECT_TRUE(contains(german, "<html lang=\"de\">"));
     EXPECT_TRUE(contains(topic_of(german, "D10"), "Punktlichtquellen werfen nur Kernschatten"));
     EXPECT_TRUE(contains(topic_of(german, "D10"), "S_j einer Punktlichtquelle ist 0 oder 1"));
     EXPECT_FALSE(contains(topic_of(german, "D10"), "The edge of the shadow"));
-    write_report({out}, out, {.language = Language::greek});
+    write_report({out}, out, {.language = kGreek});
     const std::string greek = read(out / "lectures.html");
     EXPECT_TRUE(contains(greek, "<html lang=\"el\">"));
     EXPECT_TRUE(contains(topic_of(greek, "D10"), "κύρια σκιά"));

@@ -233,6 +233,25 @@ TEST_F(PageFigures, RatiosOfTimes) {
     EXPECT_EQ(HtmlTable(page_of(), "ratios-caption").at(second, "Camera"), "no difference");
 }
 
+/// Build 4, aim 6, look 10, visibility 5 ms against 4, 6, 15 and 15: an object 25 : 40, a light 11 : 21, a camera 15 : 30.
+TEST_F(PageFigures, RatiosOfTimesCountTheLookWhereItIsRepeated) {
+    const auto with_look = [](double look, double visibility) {
+        json times       = in_turns(4, 6, visibility);
+        times["look_ms"] = in_turns(0, 0, look)["visibility_ms"];
+        return times;
+    };
+    results["methods"][1]["times"] = with_look(10, 5);
+    results["methods"][2]["times"] = with_look(15, 15);
+    results["turns"]               = {{"calibration_ms", {20, 21, 22}},
+                                      {"control", {{"text", results["methods"][1]["text"]}, {"again", with_look(10.1, 5.05)}}}};
+    put(out / "court", results);
+    write_report({out}, out);
+    const HtmlTable ratios(read(out / "court/index.html"), "ratios-caption");
+    EXPECT_EQ(ratios.at("The ray_traced", "Object"), "×1.60 (1.60–1.60, 98.4 %)");
+    EXPECT_EQ(ratios.at("The ray_traced", "Light"), "×1.91 (1.91–1.91, 98.4 %)");
+    EXPECT_EQ(ratios.at("The ray_traced", "Camera"), "×2.00 (2.00–2.00, 98.4 %)");
+}
+
 /// Build 41, aim 21, look 9.3, visibility 5 ms: a moved camera takes 14.3, a moved light 26, a moved object 76.3.
 TEST_F(PageFigures, TablesOfTimes) {
     const HtmlTable times(page, "times-caption"), by_light(page, "light-times-caption");
@@ -370,6 +389,23 @@ TEST_F(PageFigures, Summary) {
     std::smatch raw;
     ASSERT_TRUE(std::regex_search(index, raw, std::regex("data-mae=\"([^\"]*)\"")));
     EXPECT_NEAR(std::stod(raw[1]), absolute / points, 1e-12);
+}
+
+/// The star of the summary ranks nothing where times vary by more than 30 %, or are of too few rounds to tell.
+TEST_F(PageFigures, TheSummaryHoldsTheNoiseOfTimes) {
+    const auto row_at = [&](const json& noise_bar) {
+        results["turns"] = {{"calibration_ms", {20}}, {"noise_bar", noise_bar}, {"control", nullptr}};
+        put(out / "court", results);
+        write_report({out}, out);
+        const std::string html = read(out / "index.html");
+        const std::size_t at   = html.find("<tr data-noise=");
+        return html.substr(at, html.find('>', at) - at);
+    };
+    EXPECT_TRUE(contains(index, "<tr data-noise=\"\"><th")) << "a record without turns";
+    EXPECT_EQ(row_at(0.12), "<tr data-noise=\"0.12\"");
+    EXPECT_EQ(row_at(0.3), "<tr data-noise=\"0.3\"");
+    EXPECT_EQ(row_at(0.31), "<tr data-noise=\"0.31\" data-loud");
+    EXPECT_EQ(row_at(nullptr), "<tr data-noise=\"inf\" data-loud");
 }
 
 /// From few triangles to many, and links that follow this order.

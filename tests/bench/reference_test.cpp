@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/stratified_sample.h"
 #include "umbra/tests/support/asked.h"
 #include "umbra/tests/support/temporary_folder.h"
 

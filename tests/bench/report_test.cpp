@@ -4,6 +4,7 @@
 #include "report_fixture.h"
 #include "umbra/bench/cli/ladder_command.h"
 #include "umbra/core/image/image_io.h"
+#include "umbra/tests/support/html_table.h"
 
 namespace umbra {
 namespace {
@@ -235,6 +236,26 @@ TEST_F(Report, AClassThatIsCountedGetsItsColumn) {
     EXPECT_TRUE(contains(page, "<td class=\"wrong\">12</td><td>1\u202f034</td><td>5</td><td>0</td><td>987</td>"));
 }
 
+/// Points that no method is asked for, since their objects receive no shadows: a column where there are some.
+TEST_F(Report, PointsOfObjectsWithoutShadowsAreCountedApart) {
+    json results = sample("court");
+    put(out / "court", results);
+    write_report({out}, out);
+    const std::string column = "Of objects that receive no shadows", none = read(out / "court/index.html");
+    EXPECT_FALSE(contains(none, column));
+    EXPECT_TRUE(contains(none, "<tr class=\"group\"><th colspan=\"9\" scope=\"rowgroup\">lamp</th></tr>"));
+    results["methods"][1]["errors"][0]["unshadowed"] = 2345;
+    put(out / "court", results);
+    write_report({out}, out);
+    const std::string page = read(out / "court/index.html");
+    const other_readers::HtmlTable table(page, "regions-caption");
+    const std::string method = results["methods"][1]["title"], other = results["methods"][2]["title"];
+    EXPECT_EQ(table.at("lamp / " + method, column), "2\u202f345");
+    EXPECT_EQ(table.at("lamp / " + other, column), "0");
+    EXPECT_EQ(table.at("blue sky #2 / " + method, column), "0");
+    EXPECT_TRUE(contains(page, "<tr class=\"group\"><th colspan=\"10\" scope=\"rowgroup\">lamp</th></tr>"));
+}
+
 TEST_F(Report, PenumbraAndNoiseAreNoOtherFalseShadow) {
     json results = sample("court");
     for (const std::size_t method : {1, 2})
@@ -359,7 +380,8 @@ TEST_F(Report, KeepsEveryRunOfLadders) {
         write_report({out, folder / "first", folder / "second"}, out);
         const std::string index = read(out / "index.html");
         for (const char* part : {"id=\"stability\"", "id=\"stability-2\"", "href=\"ladders/index.html#shininess\"",
-                                 "href=\"ladders-2/index.html#shininess\"", "Another run"})
+                                 "href=\"ladders-2/index.html#shininess\"", "Another run", ">Stability 1</a>",
+                                 "Stability 2: where each method breaks"})
             EXPECT_TRUE(contains(index, part)) << part;
         EXPECT_FALSE(contains(index, "id=\"stability-3\""));
         EXPECT_TRUE(contains(read(out / "ladders-2/index.html"), "Another run"));

@@ -236,6 +236,15 @@ TEST(NoiseBar, IsTheFartherBoundOnTheLargerSide) {
     EXPECT_EQ(noise_bar({}), kInfinite);
 }
 
+TEST(NoiseBar, RanksNothingAboveThirtyPercent) {
+    EXPECT_FALSE(is_too_noisy(0.3));
+    EXPECT_TRUE(is_too_noisy(0.301));
+    EXPECT_TRUE(is_too_noisy(noise_bar({}))) << "of too few rounds";
+    EXPECT_TRUE(is_dearer(5.1, 4, 0.25));
+    EXPECT_FALSE(is_dearer(5, 4, 0.25));
+    EXPECT_FALSE(is_dearer(3, 4, 0));
+}
+
 TEST(Differs, NeedsBothTheIntervalAndTheBar) {
     EXPECT_TRUE(differs({1.2, {1.1, 1.3}, 7}, 0.05));
     EXPECT_TRUE(differs({0.5, {0.4, 0.6}, 7}, 0.05));

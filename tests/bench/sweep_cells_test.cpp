@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "umbra/bench/recommend/recommend.h"
-#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/bench/sweep/grid.h"
@@ -173,6 +173,7 @@ TEST(CellKey, ChangesWithEverythingThatIsAskedFor) {
     add("sides exchanged", 0, {.size = {27, 48}}, plain);
     add("a reference", 0, {.size = {48, 27}, .reference = "exact"}, plain);
     add("another reference", 0, {.size = {48, 27}, .reference = "ray_traced:samples=256"}, plain);
+    add("its other setting", 0, {.size = {48, 27}, .reference = "ray_traced:samples=64"}, plain);
     add("points", 0, {.size = {48, 27}, .points = 100}, plain);
     add("more points", 0, {.size = {48, 27}, .points = 1000}, plain);
     const MethodInfo& info = *parse_method(plain).info;
@@ -360,6 +361,28 @@ TEST(CellView, ComparesWithTheTruthOfTheMethodsOwnMeasure) {
     EXPECT_NE(area["compared_with"], irradiance["compared_with"]);
 }
 
+/// A cell's picture is that of a comparison, colours of filters included.
+TEST(CellView, HasColouredShadows) {
+    const TemporaryFolder folder;
+    const auto file = folder.write("stained.json", R"({
+        "camera": {"eye": [0, 4, 4], "target": [0, 0, 0]}, "transparent_occluders": "multiply",
+        "materials": {"glass": {"opacity": 0.5, "transmit_colour": [1, 0.5, 0.25]}},
+        "lights": [{"type": "directional", "direction": [0.2, -1, 0]}],
+        "objects": [{"type": "plane", "size": [8, 8]},
+                    {"type": "plane", "size": [2, 1], "material": "glass", "transform": [{"translate": [0, 1, 0]}]}]})");
+    const auto own  = std::make_shared<const Scene>(load_scene(file));
+    CellView view(own, file, 0, {.size = {48, 27}}, folder.path());
+    const MethodChoice choice = parse_method("ray_traced");
+    const Json cell           = view.compute(choice);
+    const PreparedScene& p    = view.prepared();
+    const MethodRun run       = run_method(choice, p.scene, p.facts, p.points, kOnce);
+    const MethodRun truth     = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt).run;
+    ASSERT_FALSE(run.planes[0].colour.empty());
+    EXPECT_EQ(cell["image"], image_figures(run.planes, render_planes(p.scene, p.points, run.planes),
+                                           render_planes(p.scene, p.points, truth.planes))
+                                 .figures);
+}
+
 /// Coloured shadows, which three channels of S_j make.
 TEST(TruthFile, KeepsColours) {
     const TemporaryFolder folder;
@@ -533,6 +556,21 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
                 1e-12);
     EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60}, {})["settings"][1]["cost_ms"].get<double>(), 3 + 2 + 10 + 100,
                 1e-12);
+
+    // In words, the front is ranked where times can tell: the second setting is beaten, the last one is unfit.
+    const auto words = [&](const Json& turns) {
+        return front_in_words({{"scene", {{"name", "court"}}}, {"sweep", sweep_json(settings, 1, {60, 0, 0}, turns)}});
+    };
+    const std::string head = "court: cost of a frame, S_j error (rmse), its upper bound; ",
+                      one  = "      4.000 ms  0.1        -          ray_traced:samples=1\n",
+                      two  = "      5.000 ms  0.2        -          ray_traced:samples=2\n",
+                      four = "      6.000 ms  0          -          ray_traced:samples=4\n";
+    EXPECT_EQ(words({}), head + "settings that no other beats in both:\n" + one + four);
+    EXPECT_EQ(words({{"noise_bar", 0.042}}), head +
+                                                 "settings that no other beats in both, costs that differ by less "
+                                                 "than 5 % are not told apart:\n" +
+                                                 one + four);
+    EXPECT_EQ(words({{"noise_bar", 0.31}}), head + "not ranked, as times vary by 31 %:\n" + one + two + four);
 }
 
 /// What a sweep says of a setting is its error in the view that is hardest for it.
@@ -552,6 +590,29 @@ TEST(Sweep, ValuesAreThoseOfTheWorstView) {
     const Json record = sweep_json({{setting}}, 3, {60, 0, 0}, {});
     EXPECT_EQ(record["settings"][0]["values"]["rmse"], 0.3);
     EXPECT_EQ(record["settings"][0]["views"][2]["metrics"]["rmse"], 0.2);
+}
+
+TEST(SweepRecord, NamesTheFiguresThatMayBeLarger) {
+    const auto cell = [](int view, int unmatched) {
+        Json one      = {{"text", "ray_traced"}, {"name", "ray_traced"},
+                         {"title", "t"},         {"parameters", Json::object()},
+                         {"view", view},         {"serves", {{"how", "approximately"}, {"why", "."}}},
+                         {"undefined", 0}};
+        one["errors"] = {
+            {{"light", "l"},
+             {"points", 1000},
+             {"edge_displacement_px",
+              {{"mean", 0.5}, {"p95", 1}, {"max", 2}, {"pieces", 100}, {"unmatched", unmatched}, {"reach", 8}}}}};
+        return one;
+    };
+    const MeasuredSetting setting{parse_method("ray_traced"), {cell(0, 0), cell(1, 1), cell(2, 50)}, {}};
+    const Json record = sweep_json({{setting}}, 3, {60, 0, 0}, {});
+    const Json& views = record["settings"][0]["views"];
+    EXPECT_FALSE(views[0].contains("at_least"));
+    // One of 100 pieces is in the mean and is the farthest, but is not among the first 95.
+    EXPECT_EQ(views[1]["at_least"], (Json{"edge_displacement_px.mean", "edge_displacement_px.max"}));
+    EXPECT_EQ(views[2]["at_least"],
+              (Json{"edge_displacement_px.mean", "edge_displacement_px.p95", "edge_displacement_px.max"}));
 }
 
 std::string text_of(const fs::path& file) {

@@ -341,6 +341,21 @@ TEST_F(RecommendByHand, WhereAllAreDroppedNothingIsChosen) {
         << recommendation_text(r, o_);
 }
 
+TEST_F(RecommendByHand, OneViewIsNoViews) {
+    o_.held_out             = 1;
+    const std::string words = recommendation_text(recommended(four_methods()), o_);
+    EXPECT_NE(
+        words.find("in 1 view that it was not chosen on; limit 0.01\n  This view is not beyond a limit: with 95 % "
+                   "confidence at most 95.0 % of such views are.\n"),
+        std::string::npos)
+        << words;
+    o_.views               = 1;
+    const std::string from = recommendation_text(recommend(lab_, o_), o_);
+    EXPECT_NE(from.find("settings were looked at, in 1 view each.\n"), std::string::npos) << from;
+    EXPECT_NE(from.find("with bounds from 1 view:\n"), std::string::npos) << from;
+    for (const std::string& text : {words, from}) EXPECT_EQ(text.find("1 views"), std::string::npos) << text;
+}
+
 TEST_F(RecommendByHand, WithoutFurtherViewsNothingIsSaidOfThem) {
     o_.held_out            = 0;
     const Recommendation r = recommended(four_methods());

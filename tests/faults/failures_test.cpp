@@ -113,6 +113,90 @@ TEST_F(Failures, ASubstituteReplacesAReferenceThatThrows) {
     EXPECT_TRUE(contains(text_of(file("out2/index.html")), "first: a &lt;planted&gt; defect"));
 }
 
+/// What takes more than its budget has failed, in words and as a record, and nothing else has.
+TEST_F(Failures, WhatTakesTooLongIsCutShortAndTheRestIsWhole) {
+    for (const char* plant : {"visibility 1 hang", "aim - slow", "blame 1 hang"}) {
+        fs::remove_all(file("out"));
+        const ProgramAnswer answer = planted(fmt::format("shadow_zbuffer {} first", plant), kCompare + " --budget 2");
+        EXPECT_EQ(answer.exit_code, 5) << plant << '\n' << answer.output;
+        EXPECT_TRUE(contains(answer.output, "It failed at light panel: cut short after ")) << answer.output;
+        EXPECT_TRUE(contains(answer.output, ", the budget is 2 s (--budget)\n")) << answer.output;
+        const json first = json_of(file("out/first/results.json")), second = json_of(file("out/second/results.json"));
+        EXPECT_EQ(first["methods"][0]["failed"]["cut"], true) << plant;
+        EXPECT_EQ(first["methods"][0]["failed"]["light"], "panel") << plant;
+        EXPECT_EQ(first["methods"][1]["errors"].size(), 2u) << plant << ": the other method goes on";
+        EXPECT_EQ(first["budget"], (json{{"seconds", 2.0}, {"memory_bytes", nullptr}}));
+        EXPECT_FALSE(second["methods"][0].contains("failed")) << plant << ": the other scene goes on";
+        for (const char* page : {"out/first/index.html", "out/index.html"})
+            EXPECT_TRUE(contains(text_of(file(page)), "cut short after")) << page;
+    }
+    EXPECT_EQ(planted("", kCompare + "3").exit_code, 0);
+    EXPECT_FALSE(json_of(file("out3/first/results.json")).contains("budget")) << "nothing is limited";
+}
+
+TEST_F(Failures, AReferenceThatIsCutShortIsReplaced) {
+    EXPECT_EQ(planted("exact visibility 1 hang first", kCompare + " --budget 2").exit_code, 5);
+    const json record = json_of(file("out/first/results.json")), &reference = record["reference"];
+    EXPECT_EQ(reference["failed"]["cut"], true);
+    EXPECT_EQ(reference["failed"]["light"], "panel");
+    EXPECT_EQ(reference["name"], "ray_traced");
+    for (const json& method : record["methods"]) EXPECT_EQ(method["errors"].size(), 2u);
+    EXPECT_TRUE(
+        contains(text_of(file("out/first/index.html")), "The reference exact failed at light panel: cut short"));
+}
+
+/// 2048 x 2048 depths of four bytes are 16 MiB; the volumes of a box take kilobytes.
+TEST_F(Failures, AMethodOverItsMemoryIsCutShortAndTheOthersAreWhole) {
+    const ProgramAnswer answer = planted(
+        "",
+        "compare first.json --quiet --methods shadow_zbuffer:resolution=2048 shadow_volumes --memory-budget 4 -o out");
+    EXPECT_EQ(answer.exit_code, 5);
+    EXPECT_TRUE(contains(answer.output, "It failed at light lamp: cut short at ")) << answer.output;
+    EXPECT_TRUE(contains(answer.output, "MiB of memory, the budget is 4 MiB (--memory-budget)")) << answer.output;
+    const json record = json_of(file("out/first/results.json"));
+    EXPECT_EQ(record["methods"][0]["failed"]["cut"], true);
+    EXPECT_EQ(record["methods"][1]["errors"].size(), 2u);
+    EXPECT_TRUE(record["reference"]["exact"]);
+    EXPECT_EQ(record["budget"], (json{{"seconds", nullptr}, {"memory_bytes", 4.0 * (1 << 20)}}));
+}
+
+/// No key of a cell has the budget: what was cut short is computed again.
+TEST_F(Failures, ACellThatIsCutShortIsNotKept) {
+    const std::string sweep =
+        "sweep first.json --quiet --methods shadow_volumes planar_projection --views 1 --no-times --budget 2 -o out";
+    EXPECT_EQ(planted("shadow_volumes visibility 1 hang", sweep).exit_code, 5);
+    const auto settings = [&] { return json_of(file("out/results.json"))["sweep"]["settings"]; };
+    EXPECT_EQ(settings()[0]["failed"]["cut"], true);
+    EXPECT_EQ(settings()[0]["excluded"], "it failed");
+    EXPECT_FALSE(settings()[1].contains("failed"));
+    EXPECT_EQ(planted("", sweep).exit_code, 0);
+    EXPECT_FALSE(settings()[0].contains("failed"));
+}
+
+TEST_F(Failures, LaddersAndMotionGoOnWithoutWhatIsCutShort) {
+    const std::string plant = "shadow_volumes visibility - hang";
+    EXPECT_EQ(planted(plant, "ladder thin_walls --methods shadow_volumes planar_projection --budget 2 --quiet -o out")
+                  .exit_code,
+              0);
+    const json ladder = json_of(file("out/results.json"))["ladders"][0];
+    for (const json& rung : ladder["methods"][0]["rungs"]) {
+        EXPECT_EQ(rung["serves"]["how"], "not");
+        EXPECT_TRUE(contains(rung["serves"]["why"], "cut short after")) << rung;
+    }
+    EXPECT_EQ(ladder["methods"][0]["not_served_from"], ladder["rungs"][0]["value"]);
+    EXPECT_NE(ladder["methods"][1]["rungs"][0]["serves"]["how"], "not");
+
+    const ProgramAnswer motion = planted(plant,
+                                         "motion hard/first.json --methods shadow_volumes planar_projection "
+                                         "--frames 1 --size 32x18 --budget 2 --quiet -o moved");
+    EXPECT_EQ(motion.exit_code, 5);
+    EXPECT_TRUE(contains(motion.output, "first: shadow_volumes: at rest: cut short after ")) << motion.output;
+    const json record = json_of(file("moved/results.json"));
+    ASSERT_EQ(record["motion"][0]["methods"].size(), 2u);
+    EXPECT_EQ(record["motion"][0]["methods"][1]["movements"]["camera"]["frames"].size(), 1u);
+    EXPECT_TRUE(contains(text_of(file("moved/index.html")), "cut short after"));
+}
+
 TEST_F(Failures, ABlamingReferenceIsNamed) {
     EXPECT_EQ(planted("exact blame 0 exception first",
                       "compare first.json --methods shadow_zbuffer:resolution=64,bias=manual,constant=128 -o out")

@@ -1,13 +1,15 @@
 // The program `umbra` with a defect: every method that it makes is wrapped, and the wrapper throws where UMBRA_PLANT
 // says, "METHOD PHASE LIGHT HOW [SCENE]". PHASE is build, aim, look, visibility or blame; LIGHT a number from 0, or "-"
 // for any; SCENE names the only scene that is concerned. HOW: "exception"; "bad_alloc"; "worker" throws from a thread
-// of a parallel loop; "unknown" throws what is no std::exception; "contract" answers 1.5. The linker redirects
-// MethodInfo::make to this file.
+// of a parallel loop; "unknown" throws what is no std::exception; "contract" answers 1.5; "hang" begins parallel loops
+// for ever; "slow" sleeps for a second and a half, and goes on. The linker redirects MethodInfo::make to this file.
+#include <chrono>
 #include <cstdlib>
 #include <new>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <thread>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/core/base/parallel.h"
@@ -29,8 +31,15 @@ const Plant& plant() {
     return planted;
 }
 
-[[noreturn]] void fail() {
+void fail() {
     const std::string& how = plant().how;
+    if (how == "slow") {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+        return;
+    }
+    while (how == "hang")
+        parallel_ranges(8, 1,
+                        [](std::size_t, std::size_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
     if (how == "bad_alloc") throw std::bad_alloc();
     if (how == "unknown") throw 42;
     if (how == "worker")

@@ -5,7 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "umbra/bench/run/explain.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/bench/run/run.h"

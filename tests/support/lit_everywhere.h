@@ -1,9 +1,9 @@
 // Pictures without occluders: every light reaches every point that faces it.
 #pragma once
 
+#include "umbra/bench/studies/light/shading_models.h"
 #include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/render/gbuffer.h"
-#include "umbra/core/render/shading_models.h"
 
 namespace umbra {
 

@@ -10,7 +10,7 @@
 #include "umbra/bench/cli/terminal.h"
 #include "umbra/bench/golden/golden.h"
 #include "umbra/bench/out/place_lock.h"
-#include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/chosen.h"
 
 namespace umbra {
 namespace {

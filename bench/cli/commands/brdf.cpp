@@ -1,10 +1,6 @@
-#include <CLI/CLI.hpp>
-
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/shading/brdf_table.h"
+#include "umbra/bench/cli/options.h"
+#include "umbra/bench/studies/brdf/brdf_table.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
@@ -18,10 +14,7 @@ struct BrdfLine {
 
 int brdf(const BrdfLine& line, const Common& common) {
     const Json record = measure_materials(load_scene(scene_file(line.scene, common.up)), line.steps, common.command);
-    if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet)
-        print_out("{}", without_controls(brdf_text(record)));
+    print_record(line.as_json, common, record, [&] { return study_text(brdf_report(record)); });
     return kDone;
 }
 
@@ -29,12 +22,12 @@ int brdf(const BrdfLine& line, const Common& common) {
 
 Action brdf_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<BrdfLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
+    add_scene(app, line->scene)->required();
     app.add_option("--steps", line->steps, "Angles from the normal that are sampled; four times as many about it")
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_flag("--json", line->as_json, "Print the record instead of the table");
+    add_json(app, line->as_json);
     return [line, &common] { return brdf(*line, common); };
 }
 

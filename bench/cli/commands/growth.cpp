@@ -1,9 +1,7 @@
 #include "umbra/bench/motion/growth.h"
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/core/base/parallel.h"
@@ -22,12 +20,10 @@ int growth(GrowthLine line, const Common& common) {
     command.threads        = thread_count();
     check_writable_beside(command.out);
     const PlaceLock lock = PlaceLock::inside(command.out);
-    Json record;
-    {
-        const Terminal terminal(common.quiet);
-        command.options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record                   = measure_growth(command);
-    }
+    Json record          = on_terminal(common, [&](const auto& progress) {
+        command.options.progress = progress;
+        return measure_growth(command);
+    });
     if (line.as_json)
         print_out("{}", json_text(record));
     else if (!common.quiet && !record["growth"].empty())
@@ -46,7 +42,7 @@ Action growth_command(CLI::App& app, const Common& common) {
     app.add_option("--over", command.over,
                    "What grows: triangles, bodies, pixels, lights, samples, resolution (default: all)")
         ->type_name("SIZE");
-    app.add_option("--methods", command.methods, "Methods, with settings (default: all)")->type_name("METHOD");
+    add_methods(app, command.methods);
     app.add_option("--max", command.most,
                    "The largest size, with one --over (default: triangles 1e6, pixels 2048 x 2048)")
         ->check(number_in(1, 1e12, "a number from 1 to 1e12"))
@@ -55,8 +51,9 @@ Action growth_command(CLI::App& app, const Common& common) {
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("-o,--output", command.out, "Folder to write to")->type_name("DIR")->required();
-    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
+    add_budget(app, command.options.turns.most);
+    add_output(app, command.out);
+    add_json(app, line->as_json);
     return [line, &common] { return growth(*line, common); };
 }
 

@@ -1,9 +1,7 @@
 #include "umbra/bench/motion/motion.h"
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/core/base/error.h"
@@ -14,7 +12,6 @@ namespace {
 
 struct MotionLine {
     std::vector<std::string> scenes;
-    std::string size;
     bool as_json = false;
     MotionCommand command;
 };
@@ -23,19 +20,16 @@ int motion(MotionLine line, const Common& common) {
     MotionCommand& command = line.command;
     return_scenes(command.methods, line.scenes);
     if (line.scenes.empty()) throw UsageError("motion: SCENE is required");
-    if (!line.size.empty()) command.size = parse_size(line.size);
     command.command  = common.command;
     command.threads  = thread_count();
     const auto files = scene_files(line.scenes, common.up);
     check_writable_beside(command.out);
     const PlaceLock lock = PlaceLock::inside(command.out);
     std::vector<std::string> unreadable;
-    Json record;
-    {
-        const Terminal terminal(common.quiet);
-        command.options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record                   = measure_motion(files, command, unreadable);
-    }
+    Json record = on_terminal(common, [&](const auto& progress) {
+        command.options.progress = progress;
+        return measure_motion(files, command, unreadable);
+    });
     if (line.as_json)
         print_out("{}", json_text(record));
     else if (!common.quiet && !record["motion"].empty())
@@ -52,13 +46,14 @@ int motion(MotionLine line, const Common& common) {
 Action motion_command(CLI::App& app, const Common& common) {
     const auto line        = std::make_shared<MotionLine>();
     MotionCommand& command = line->command;
-    app.add_option("SCENE", line->scenes, "Scenes: files or names of scenes (required)")->type_name("");
-    app.add_option("--methods", command.methods, "Methods, with settings (default: all)")->type_name("METHOD");
+    add_scenes(app, line->scenes);
+    add_methods(app, command.methods);
     app.add_option("--frames", command.options.frames, "Frames of each movement")
         ->check(number_in(1, 10000, "an integer from 1 to 10000"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--size", line->size, "Size of the pictures (default: 320x180)")->type_name("WIDTHxHEIGHT");
+    add_size(app, command.size, "320x180");
+    add_budget(app, command.options.still.most);
     app.add_option("--reference-points", command.options.area_points,
                    "Compare area lights at about N stratified points a frame")
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
@@ -68,8 +63,8 @@ Action motion_command(CLI::App& app, const Common& common) {
         ->check(number_in(0, 1, "a number from 0 to 1"))
         ->capture_default_str()
         ->type_name("E");
-    app.add_option("-o,--output", command.out, "Folder to write to")->type_name("DIR")->required();
-    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
+    add_output(app, command.out);
+    add_json(app, line->as_json);
     return [line, &common] { return motion(*line, common); };
 }
 

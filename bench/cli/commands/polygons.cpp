@@ -1,9 +1,6 @@
-#include <CLI/CLI.hpp>
-
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/lit_polygons.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/prepare.h"
@@ -28,10 +25,7 @@ int polygons(const PolygonsLine& line, const Common& common) {
     const Json record = write_lit_polygons(prepared.scene, prepared.facts, staged.folder());
     write_text(staged.folder() / "results.json", json_text(record));
     staged.commit();
-    if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet)
-        print_out("{}", without_controls(lit_polygons_text(record)));
+    print_record(line.as_json, common, record, [&] { return lit_polygons_text(record); });
     return kDone;
 }
 
@@ -39,9 +33,9 @@ int polygons(const PolygonsLine& line, const Common& common) {
 
 Action polygons_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<PolygonsLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
-    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
-    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    add_scene(app, line->scene)->required();
+    add_json(app, line->as_json);
+    add_output(app, line->out);
     return [line, &common] { return polygons(*line, common); };
 }
 

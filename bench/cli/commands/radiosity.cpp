@@ -1,38 +1,33 @@
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/radiosity/exchange_page.h"
+#include "umbra/bench/cli/options.h"
+#include "umbra/bench/studies/radiosity/light_exchange.h"
 
 namespace umbra {
 namespace {
 
 struct RadiosityLine {
-    std::string scene, size;
+    std::string scene;
+    Size size;
     std::filesystem::path out;
     bool as_json = false;
     ExchangeOptions options;
 };
 
 int radiosity(const RadiosityLine& line, const Common& common) {
-    ExchangeOptions options = line.options;
-    options.command         = common.command;
-    const PreparedScene prepared =
-        prepare_scene(scene_file(line.scene, common.up), line.size.empty() ? Size{} : parse_size(line.size));
-    Json record;
-    {
-        const Terminal terminal(common.quiet);
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record           = write_exchange_study(prepared, options, line.out);
-    }
-    if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet)
-        print_out("{} patches, {} steps, {:.2g} % of the power unshot\n{}\n", record["patches"].get<std::uint64_t>(),
-                  record["steps"].get<int>(), 100 * record["unshot"].back().get<double>(),
-                  (line.out / "index.html").string());
+    ExchangeOptions options      = line.options;
+    options.command              = common.command;
+    const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size);
+    const Json record            = on_terminal(common, [&](const auto& progress) {
+        options.progress = progress;
+        return write_study(
+                       line.out, [&](const std::filesystem::path& folder) { return exchange_light(prepared, options, folder); },
+                       exchange_report);
+    });
+    print_record(line.as_json, common, record, [&] {
+        return fmt::format("{}{}\n", study_text(exchange_report(record)), (line.out / "index.html").string());
+    });
     return kDone;
 }
 
@@ -41,7 +36,7 @@ int radiosity(const RadiosityLine& line, const Common& common) {
 Action radiosity_command(CLI::App& app, const Common& common) {
     const auto line          = std::make_shared<RadiosityLine>();
     ExchangeOptions& options = line->options;
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
+    add_scene(app, line->scene)->required();
     app.add_option("--patch", options.size, "Longest edge of a patch, in scene diagonals")
         ->check(number_in(0.001, 1, "a number from 0.001 to 1"))
         ->capture_default_str()
@@ -58,9 +53,9 @@ Action radiosity_command(CLI::App& app, const Common& common) {
         ->check(number_in(1, 4096, "an integer from 1 to 4096"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
-    app.add_flag("--json", line->as_json, "Print results.json instead of a line");
-    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    add_size(app, line->size);
+    add_json(app, line->as_json, "a line");
+    add_output(app, line->out);
     return [line, &common] { return radiosity(*line, common); };
 }
 

@@ -2,13 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdlib>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/sweep.h"
 #include "umbra/core/base/error.h"
@@ -19,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct RecommendLine {
-    std::string scene, size, reference, workload, cells;
+    std::string scene, workload, cells;
     std::vector<std::string> limits, methods;
-    std::optional<std::uint64_t> points;
+    CellOptions cell;
     bool as_json = false, fresh = false;
     RecommendOptions options;
 };
@@ -42,14 +39,8 @@ int recommend(RecommendLine line, const Common& common) {
     for (const std::string& limit : line.limits) options.limits.push_back(parse_limit(limit));
     if (!line.workload.empty()) options.workload = parse_workload(line.workload);
     SweepPlan plan;
-    plan.settings = line.methods;
-    CellOptions cell;
-    if (!line.size.empty()) cell.size = parse_size(line.size);
-    if (!line.reference.empty()) {
-        static_cast<void>(parse_method(line.reference).make());
-        cell.reference = line.reference;
-    }
-    cell.points = line.points;
+    plan.settings     = line.methods;
+    CellOptions& cell = line.cell;
     Recommendation found;
     {
         const Terminal terminal(common.quiet);
@@ -58,8 +49,7 @@ int recommend(RecommendLine line, const Common& common) {
         options.kept_in = store.folder().string();
         SceneLab lab(scene_file(line.scene, common.up), cell, store);
         if (line.fresh) lab.measure_anew();
-        for (const std::string& warning : lab.scene().warnings)
-            terminal.warn(fmt::format("{}: {}", lab.scene().name, warning));
+        pass_warnings(lab.scene(), [&](const std::string& warning) { terminal.warn(warning); });
         options.choices = planned_settings(plan, lab.facts());
         found           = recommend(lab, options);
     }
@@ -72,15 +62,14 @@ int recommend(RecommendLine line, const Common& common) {
 
 Action recommend_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<RecommendLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("");
+    add_scene(app, line->scene);
     app.add_option("--max", line->limits, "The largest error: METRIC=LIMIT (metrics: umbra list metrics); repeatable")
         ->type_name("METRIC=E")
         ->take_all();
     app.add_option("--workload", line->workload, "Events a second (default: camera=60,light=1,object=0)")
         ->type_name("LIST");
-    app.add_option("--methods", line->methods,
-                   "Candidates: METHOD, METHOD@PRESET, METHOD:k=a|b (default: the methods' own sweeps)")
-        ->type_name("METHOD");
+    add_methods(app, line->methods,
+                "Candidates: METHOD, METHOD@PRESET, METHOD:k=a|b (default: the methods' own sweeps)");
     app.add_option("--views", line->options.views, "Views to choose on: the scene's own, and jittered ones")
         ->capture_default_str()
         ->check(CLI::Range(2, 1000))
@@ -91,11 +80,9 @@ Action recommend_command(CLI::App& app, const Common& common) {
         ->capture_default_str()
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
-    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
-    app.add_option("--reference", line->reference, "Reference method (default: as for compare)")->type_name("METHOD");
-    app.add_option("--reference-points", line->points, "Score area lights at about N stratified points")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
-        ->type_name("N");
+    add_size(app, line->cell.size);
+    add_reference(app, line->cell.reference, line->cell.points);
+    add_budget(app, line->cell.budget);
     app.add_option("-o,--output", line->cells,
                    "Folder of a sweep whose cells are used and added to (default: $XDG_CACHE_HOME/umbra/cells or "
                    "~/.cache/umbra/cells)")

@@ -1,27 +1,21 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/compare/compare.h"
-#include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
 namespace {
 
 struct RenderLine {
-    std::string scene, size;
+    std::string scene;
     RenderOptions options;
 };
 
 int render(const RenderLine& line, const Common& common) {
-    RenderOptions options = line.options;
-    options.command       = common.command;
-    if (!line.size.empty()) options.size = parse_size(line.size);
+    RenderOptions options    = line.options;
+    options.command          = common.command;
     const std::string ending = options.out.extension().string();
     if (ending != ".exr" && ending != ".png")
         throw UsageError(
@@ -38,17 +32,11 @@ int render(const RenderLine& line, const Common& common) {
 
 Action render_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<RenderLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
-    app.add_option("--method", line->options.method, "Method, with settings")
-        ->capture_default_str()
-        ->type_name("METHOD");
-    app.add_option("--size", line->size, "Size of the picture (default: the scene's)")->type_name("WIDTHxHEIGHT");
-    line->options.pixel_samples = kPictureSamples;
-    app.add_option("--pixel-samples", line->options.pixel_samples,
-                   "Points a pixel of a PNG: 1, 4, 9, 16 ... (an EXR has pixel centres)")
-        ->check(pixel_samples())
-        ->capture_default_str()
-        ->type_name("N");
+    add_scene(app, line->scene)->required();
+    add_method(app, line->options.method, "Method, with settings");
+    add_size(app, line->options.size);
+    add_pixel_samples(app, line->options.pixel_samples,
+                      "Points a pixel of a PNG: 1, 4, 9, 16 ... (an EXR has pixel centres)");
     app.add_flag("--geometry", line->options.with_geometry,
                  "Also write surface points, ids and cameras to the EXR (docs/exr.md)");
     app.add_option("-o,--output", line->options.out, "FILE.exr or FILE.png")->type_name("FILE")->required();

@@ -2,26 +2,23 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <optional>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
-#include "umbra/bench/radiosity/exchange_page.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/lecture_shows.h"
 #include "umbra/bench/run/antialias.h"
-#include "umbra/bench/run/canonical.h"
-#include "umbra/bench/shading/shading_page.h"
+#include "umbra/bench/run/chosen.h"
+#include "umbra/bench/studies/radiosity/light_exchange.h"
+#include "umbra/bench/studies/shading/shading_study.h"
+#include "umbra/bench/studies/whitted/whitted_study.h"
 #include "umbra/bench/sweep/grid.h"
-#include "umbra/bench/whitted/whitted_page.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -34,6 +31,7 @@ struct ReportLine {
     std::string out;
     std::string language = "en";
     bool without_exr     = false;
+    Budget budget{.seconds = 300};  // one slow method holds up no report
 };
 
 /// Of the times on the pages: a third of what `umbra compare` takes.
@@ -71,15 +69,16 @@ std::vector<fs::path> compared_scenes() {
 }
 
 /// What a study does, in a form that takes seconds: `umbra COMMAND SCENE OPTIONS` does the same.
-void write_study(const LectureShow& show, const fs::path& file, const fs::path& folder) {
+void study_topic(const LectureShow& show, const fs::path& file, const fs::path& folder) {
     const std::string start = fmt::format("umbra {} {}", show.study, file.stem().string());
     const MethodChoice rays = parse_method("ray_traced");
     if (show.study == "shading") {
         const auto method = show.shadows ? std::optional(rays) : std::nullopt;
-        write_shading_study(
-            prepare_scene(file, {}),
-            {.method = method, .runs = 1, .command = start + " --runs 1 --views 1" + (method ? "" : " --no-shadows")},
-            folder);
+        const ShadingOptions options{
+            .method = method, .runs = 1, .command = start + " --runs 1 --views 1" + (method ? "" : " --no-shadows")};
+        write_study(
+            folder, [&](const fs::path& to) { return compare_shading(prepare_scene(file, {}), options, to); },
+            shading_report);
     } else if (show.study == "whitted") {
         PreparedScene prepared = prepare_scene(file, {400, 225}, 1, Work::picture);
         correct_warnings(prepared.scene);
@@ -91,10 +90,13 @@ void write_study(const LectureShow& show, const fs::path& file, const fs::path& 
             options.bodies.reset();
         else
             options.command += " --formula";
-        write_whitted_study(prepared, options, folder);
+        write_study(
+            folder, [&](const fs::path& to) { return trace_whitted(prepared, options, to); }, whitted_report);
     } else {
-        write_exchange_study(prepare_scene(file, {}),
-                             {.size = 0.09, .steps = 2500, .command = start + " --patch 0.09 --steps 2500"}, folder);
+        const ExchangeOptions options{.size = 0.09, .steps = 2500, .command = start + " --patch 0.09 --steps 2500"};
+        write_study(
+            folder, [&](const fs::path& to) { return exchange_light(prepare_scene(file, {}), options, to); },
+            exchange_report);
     }
 }
 
@@ -111,7 +113,7 @@ std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& commo
         try {
             const Terminal terminal(common.quiet);
             terminal.progress(name);
-            write_study(*show, scene_named(row.scene), folder);
+            study_topic(*show, scene_named(row.scene), folder);
             folders.push_back(folder);
         } catch (const std::exception& error) {
             print_error("{}: {}\n", name, error.what());
@@ -122,12 +124,14 @@ std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& commo
 }
 
 /// All canonical scenes, all ladders, the trade on some scenes, and studies of the lectures' other topics.
-int run_everything(const fs::path& out, Language language, const Common& common) {
+int run_everything(const fs::path& out, Language language, const Budget& budget, const Common& common) {
     LadderOptions ladders;
-    ladders.out              = out / "ladders";
-    ladders.only_by_default  = true;
-    const bool climbed       = climb_on_terminal(ladders, common)["failed"].empty();
-    const SweepOptions sweep = canonical_sweep(out / "trade");
+    ladders.out             = out / "ladders";
+    ladders.only_by_default = true;
+    ladders.budget          = budget;
+    const bool climbed      = climb_on_terminal(ladders, common)["failed"].empty();
+    SweepOptions sweep      = canonical_sweep(out / "trade");
+    sweep.plan.budget       = budget;
     std::vector<fs::path> also{ladders.out};
     bool swept = true;
     if (!sweep.plan.scenes.empty()) {
@@ -140,23 +144,32 @@ int run_everything(const fs::path& out, Language language, const Common& common)
     options.out           = out;
     options.pixel_samples = kPictureSamples;
     options.repeats       = kReportRepeats;
+    options.budget        = budget;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
-    const ScenesDone done = compare_on_terminal(compared_scenes(), options, common, also, language);
-    const int code        = exit_code(done);
+    const ScenesDone done =
+        compare_on_terminal(compared_scenes(), options, common, {.also = also, .language = language});
+    const int code = exit_code(done);
     if (!climbed || !swept || studies_failed > 0) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
+/// Of the languages of the page of the lectures.
+std::string codes() {
+    std::string all;
+    for (const Language language : languages()) all += (all.empty() ? "" : ", ") + std::string(language.code);
+    return all;
+}
+
 int report(const ReportLine& line, const Common& common) {
     const std::optional<Language> language = language_named(line.language);
-    if (!language) throw UsageError(fmt::format("report: --lang {}: expected en, de or el", line.language));
+    if (!language) throw UsageError(fmt::format("report: --lang {}: expected one of {}", line.language, codes()));
     if (line.without_exr && line.folders.empty())
         throw UsageError("report: --no-exr: no DIR given, expected a folder whose results to copy without EXRs");
     fs::path out = line.out;
     if (out.empty()) out = line.folders.size() == 1 ? line.folders[0] : "results";
     check_writable_beside(out);
     const PlaceLock lock = PlaceLock::inside(out);
-    if (line.folders.empty()) return run_everything(out, *language, common);
+    if (line.folders.empty()) return run_everything(out, *language, line.budget, common);
     write_report({line.folders.begin(), line.folders.end()}, out,
                  {.language = *language, .with_exr = !line.without_exr});
     if (!common.quiet) print_out("{}\n", (out / "index.html").string());
@@ -172,8 +185,9 @@ Action report_command(CLI::App& app, const Common& common) {
         ->type_name("");
     app.add_option("-o,--output", line->out, "Folder to write to (default: results; given one DIR, that folder)")
         ->type_name("DIR");
-    app.add_option("--lang", line->language, "Language of the page of the lectures: en, de or el (default: en)")
+    app.add_option("--lang", line->language, "Language of the page of the lectures: " + codes() + " (default: en)")
         ->type_name("LANG");
+    add_budget(app, line->budget);
     app.add_flag("--no-exr", line->without_exr, "Leave out the EXRs of results that are copied to the output folder");
     return [line, &common] { return report(*line, common); };
 }

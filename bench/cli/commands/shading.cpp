@@ -1,20 +1,22 @@
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <string>
 #include <vector>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/shading/shading_page.h"
+#include "umbra/bench/cli/options.h"
+#include "umbra/bench/studies/shading/shading_study.h"
 
 namespace umbra {
 namespace {
 
 struct ShadingLine {
-    std::string scene, size, method = "ray_traced";
+    std::string scene;
+    Size size;
+    ShadowMethod method;
     std::vector<std::string> limits;
     std::filesystem::path out;
-    bool as_json = false, no_shadows = false;
+    bool as_json = false;
     ShadingOptions options;
 };
 
@@ -22,19 +24,19 @@ int shading(const ShadingLine& line, const Common& common) {
     ShadingOptions options = line.options;
     options.command        = common.command;
     for (const std::string& limit : line.limits) options.limits.push_back(parse_shading_limit(limit));
-    if (!line.no_shadows) options.method = parse_method(line.method);
-    const PreparedScene prepared =
-        prepare_scene(scene_file(line.scene, common.up), line.size.empty() ? Size{} : parse_size(line.size));
+    options.method               = line.method.choice();
+    const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size);
     if (options.method)
         if (const Service service = verdict(*options.method->make(), prepared.facts); !service) {
             print_error("{} does not serve this scene: {}\n", options.method->text(), service.why);
             return kNo;
         }
-    const Json record = write_shading_study(prepared, options, line.out);
-    if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet)
-        print_out("{}{}\n", shading_text(record), (line.out / "index.html").string());
+    const Json record = write_study(
+        line.out, [&](const std::filesystem::path& folder) { return compare_shading(prepared, options, folder); },
+        shading_report);
+    print_record(line.as_json, common, record, [&] {
+        return fmt::format("{}{}\n", study_text(shading_report(record)), (line.out / "index.html").string());
+    });
     return record.contains("choice") && record["choice"]["model"].is_null() ? kNo : kDone;
 }
 
@@ -42,11 +44,8 @@ int shading(const ShadingLine& line, const Common& common) {
 
 Action shading_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<ShadingLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
-    app.add_option("--method", line->method, "Method of the shadows, with settings")
-        ->capture_default_str()
-        ->type_name("METHOD");
-    app.add_flag("--no-shadows", line->no_shadows, "Every light reaches every point that faces it");
+    add_scene(app, line->scene)->required();
+    add_shadow_method(app, line->method);
     app.add_option("--max", line->limits,
                    "Name the cheapest model within METRIC=E: rmse, flip or perceived, from phong; repeatable")
         ->type_name("METRIC=E")
@@ -59,9 +58,9 @@ Action shading_command(CLI::App& app, const Common& common) {
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
-    app.add_flag("--json", line->as_json, "Print results.json instead of the table");
-    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    add_size(app, line->size);
+    add_json(app, line->as_json);
+    add_output(app, line->out);
     return [line, &common] { return shading(*line, common); };
 }
 

@@ -2,16 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
-
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 
@@ -22,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct SweepLine {
     std::vector<std::string> scenes;
-    std::string size, reference, settings_file, workload, pack;
+    std::string settings_file, workload, pack;
     std::optional<std::size_t> list;
     std::vector<std::string> merge;
     bool no_times = false, as_json = false;
@@ -40,24 +38,6 @@ void print_list(const SweepOptions& options, std::size_t parts) {
                   parts, fs::absolute(options.out).string());
 }
 
-/// The fronts of the first metric, a line a setting.
-void print_fronts(const SweepDone& done) {
-    for (const Json& record : done.records) {
-        const Json& sweep = record["sweep"];
-        print_out("{}: cost of a frame, S_j error (rmse), its upper bound; settings that no other beats in both:\n",
-                  record["scene"]["name"].get<std::string>());
-        for (const Json& text : sweep["fronts"]["rmse"])
-            for (const Json& s : sweep["settings"])
-                if (s["text"] == text) {
-                    const Json& bound = s["bounds"]["rmse"];
-                    print_out("  {:>9.3f} ms  {:<9.3g}  {:<9}  {}\n", s["cost_ms"].get<double>(),
-                              s["values"]["rmse"].get<double>(),
-                              bound.is_number() ? fmt::format("{:.3g}", bound.get<double>()) : "-",
-                              text.get<std::string>());
-                }
-    }
-}
-
 int sweep(SweepLine line, const Common& common) {
     SweepOptions& options = line.options;
     return_scenes(options.plan.settings, line.scenes);
@@ -69,11 +49,6 @@ int sweep(SweepLine line, const Common& common) {
     if (!line.settings_file.empty())
         for (const MethodChoice& choice : settings_in_file(line.settings_file))
             options.plan.settings.push_back(choice.text());
-    if (!line.size.empty()) options.plan.size = parse_size(line.size);
-    if (!line.reference.empty()) {
-        static_cast<void>(parse_method(line.reference).make());
-        options.plan.reference = line.reference;
-    }
     if (!line.workload.empty()) options.workload = parse_workload(line.workload);
     options.times = !line.no_times;
     for (const fs::path& file : scene_files(line.scenes, common.up)) options.plan.scenes.push_back(fs::absolute(file));
@@ -87,21 +62,26 @@ int sweep(SweepLine line, const Common& common) {
     if (!line.pack.empty()) {
         const Pack pack = parse_pack(line.pack);
         std::vector<std::string> failed;
-        const Terminal terminal(common.quiet);
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        sweep_pack(options, pack, failed);
+        on_terminal(common, [&](const auto& progress) {
+            options.progress = progress;
+            return sweep_pack(options, pack, failed);
+        });
         for (const std::string& message : failed) print_error("{}\n", message);
         return failed.empty() ? kDone : kInternal;
     }
     check_writable_beside(options.out);
     const PlaceLock lock = PlaceLock::inside(options.out);
-    if (!line.merge.empty()) options.plan = merged_plan({line.merge.begin(), line.merge.end()}, options.out);
+    if (!line.merge.empty()) {
+        const Budget budget = options.plan.budget;
+        options.plan        = merged_plan({line.merge.begin(), line.merge.end()}, options.out);
+        options.plan.budget = budget;
+    }
     const SweepDone done = sweep_on_terminal(options, common);
     if (line.as_json) {
         for (const Json& record : done.records) print_out("{}", json_text(record));
     } else if (!common.quiet) {
-        print_fronts(done);
-        print_out("{} cells, {} of them computed now\n{}\n", done.cells, done.computed,
+        for (const Json& record : done.records) print_out("{}", front_in_words(record));
+        print_out("{}, {} of them computed now\n{}\n", counted(static_cast<double>(done.cells), "cell"), done.computed,
                   (options.out / "index.html").string());
     }
     return done.failed.empty() ? kDone : kInternal;
@@ -111,22 +91,18 @@ int sweep(SweepLine line, const Common& common) {
 
 Action sweep_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<SweepLine>();
-    app.add_option("SCENE", line->scenes, "Scenes: files or names of scenes")->type_name("");
-    app.add_option("--methods", line->options.plan.settings,
-                   "Settings: METHOD, METHOD@PRESET, METHOD:k=a|b|c,l=d|e (default: the methods' own sweeps)")
-        ->type_name("METHOD");
+    add_scenes(app, line->scenes, "Scenes: files or names of scenes");
+    add_methods(app, line->options.plan.settings,
+                "Settings: METHOD, METHOD@PRESET, METHOD:k=a|b|c,l=d|e (default: the methods' own sweeps)");
     app.add_option("--settings", line->settings_file, "A file of such settings, one a line")->type_name("FILE");
     app.add_option("--views", line->options.plan.views,
                    "Views: the scene's own, and others with camera and lights jittered")
         ->capture_default_str()
         ->check(CLI::Range(1, 1000))
         ->type_name("N");
-    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
-    app.add_option("--reference", line->reference, "Reference method (default: as for compare)")->type_name("METHOD");
-    app.add_option("--reference-points", line->options.plan.points,
-                   "Score area lights at about N stratified points (default: all points, if affordable)")
-        ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
-        ->type_name("N");
+    add_size(app, line->options.plan.size);
+    add_reference(app, line->options.plan.reference, line->options.plan.points);
+    add_budget(app, line->options.plan.budget);
     app.add_option("--workload", line->workload,
                    "Events a second that the cost of a frame is for (default: camera=60,light=1,object=0)")
         ->type_name("LIST");
@@ -138,10 +114,8 @@ Action sweep_command(CLI::App& app, const Common& common) {
         ->default_str("0");
     app.add_option("--pack", line->pack, "Compute part K of N of the cells, and nothing else")->type_name("K/N");
     app.add_option("--merge", line->merge, "Put folders with parts of one sweep together")->type_name("DIR");
-    app.add_flag("--json", line->as_json, "Print results.json instead of the fronts");
-    app.add_option("-o,--output", line->options.out, "Folder to write to, and to go on from")
-        ->type_name("DIR")
-        ->required();
+    add_json(app, line->as_json, "the fronts");
+    add_output(app, line->options.out, "Folder to write to, and to go on from");
     return [line, &common] { return sweep(*line, common); };
 }
 

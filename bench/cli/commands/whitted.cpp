@@ -1,20 +1,20 @@
-#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
 #include <algorithm>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
-#include "umbra/bench/run/antialias.h"
-#include "umbra/bench/whitted/whitted_page.h"
+#include "umbra/bench/cli/options.h"
+#include "umbra/bench/studies/whitted/whitted_study.h"
 
 namespace umbra {
 namespace {
 
 struct WhittedLine {
-    std::string scene, size, method = "ray_traced", places = "regular";
+    std::string scene, places = "regular";
+    Size size;
+    ShadowMethod method;
     std::filesystem::path out;
-    bool as_json = false, no_shadows = false, formula = false;
+    bool as_json = false, formula = false;
     WhittedOptions options;
 };
 
@@ -32,9 +32,8 @@ int whitted(const WhittedLine& line, const Common& common) {
     WhittedOptions options = line.options;
     options.command        = common.command;
     options.places         = places_named(line.places);
-    if (!line.no_shadows) options.method = parse_method(line.method);
-    PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up),
-                                           line.size.empty() ? Size{} : parse_size(line.size), 1, Work::picture);
+    options.method         = line.method.choice();
+    PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size, 1, Work::picture);
     correct_warnings(prepared.scene);
     if (options.method)
         if (const std::string why = refusal(*options.method, prepared.facts); !why.empty()) {
@@ -51,14 +50,15 @@ int whitted(const WhittedLine& line, const Common& common) {
     Json record;
     {
         const Terminal terminal(common.quiet);
-        for (const std::string& warning : prepared.scene.warnings) terminal.warn(prepared.scene.name + ": " + warning);
+        pass_warnings(prepared.scene, [&](const std::string& warning) { terminal.warn(warning); });
         options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record           = write_whitted_study(prepared, options, line.out);
+        record           = write_study(
+                      line.out, [&](const std::filesystem::path& folder) { return trace_whitted(prepared, options, folder); },
+                      whitted_report);
     }
-    if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet)
-        print_out("{}{}\n", whitted_text(record), (line.out / "index.html").string());
+    print_record(line.as_json, common, record, [&] {
+        return fmt::format("{}{}\n", study_text(whitted_report(record)), (line.out / "index.html").string());
+    });
     return kDone;
 }
 
@@ -67,11 +67,8 @@ int whitted(const WhittedLine& line, const Common& common) {
 Action whitted_command(CLI::App& app, const Common& common) {
     const auto line         = std::make_shared<WhittedLine>();
     WhittedOptions& options = line->options;
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
-    app.add_option("--method", line->method, "Method of the shadows, with settings")
-        ->capture_default_str()
-        ->type_name("METHOD");
-    app.add_flag("--no-shadows", line->no_shadows, "Every light reaches every point that faces it");
+    add_scene(app, line->scene)->required();
+    add_shadow_method(app, line->method);
     app.add_option("--depth", options.depth, "Rays on a path, the eye ray included; 1: no mirrors, no glass")
         ->check(number_in(1, 32, "an integer from 1 to 32"))
         ->capture_default_str()
@@ -81,11 +78,7 @@ Action whitted_command(CLI::App& app, const Common& common) {
         ->check(number_in(0, 1, "a number from 0 to 1"))
         ->capture_default_str()
         ->type_name("W");
-    options.pixel_samples = kPictureSamples;
-    app.add_option("--pixel-samples", options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...")
-        ->check(pixel_samples())
-        ->capture_default_str()
-        ->type_name("N");
+    add_pixel_samples(app, options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...");
     std::vector<std::string> places;
     for (const EyePlaces p : kEyePlaces) places.emplace_back(to_string(p));
     app.add_option(
@@ -104,9 +97,9 @@ Action whitted_command(CLI::App& app, const Common& common) {
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--size", line->size, "Size of the pictures (default: the scene's)")->type_name("WIDTHxHEIGHT");
-    app.add_flag("--json", line->as_json, "Print results.json instead of the tables");
-    app.add_option("-o,--output", line->out, "Folder to write to")->type_name("DIR")->required();
+    add_size(app, line->size);
+    add_json(app, line->as_json, "the tables");
+    add_output(app, line->out);
     return [line, &common] { return whitted(*line, common); };
 }
 

@@ -1,13 +1,11 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/run/at_work.h"
-#include "umbra/bench/run/canonical.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/core/base/error.h"
@@ -16,7 +14,8 @@ namespace umbra {
 namespace {
 
 struct WhyLine {
-    std::string scene, light, size;
+    std::string scene, light;
+    Size size;
     int x = 0, y = 0;
     std::vector<std::string> methods;
     bool as_json = false;
@@ -107,7 +106,7 @@ std::string text_of(const Json& record) {
 
 int why(const WhyLine& line, const Common& common) {
     const std::filesystem::path file = scene_file(line.scene, common.up);
-    const PreparedScene prepared     = prepare_scene(file, line.size.empty() ? Size{} : parse_size(line.size), 1);
+    const PreparedScene prepared     = prepare_scene(file, line.size);
     const Scene& scene               = prepared.scene;
     const PointBatch& points         = prepared.points;
     const int width = points.raster->width, height = points.raster->height;
@@ -121,11 +120,7 @@ int why(const WhyLine& line, const Common& common) {
     }
     if (!line.light.empty() && std::ranges::find(scene.lights, line.light, &Light::name) == scene.lights.end())
         throw UsageError(fmt::format("no light \"{}\" in {}", line.light, scene.name));
-    std::vector<MethodChoice> choices;
-    for (const std::string& text : line.methods) choices.push_back(parse_method(text));
-    if (choices.empty())
-        for (const MethodInfo* info : methods())
-            if (runs_by_itself(*info, file)) choices.emplace_back(*info);
+    const std::vector<MethodChoice> choices = chosen_methods(line.methods, {}, {&file, 1});
 
     const vec3 p = points.position(i);
     Json record  = {
@@ -161,13 +156,12 @@ int why(const WhyLine& line, const Common& common) {
 
 Action why_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<WhyLine>();
-    app.add_option("SCENE", line->scene, "Scene: a file or a scene's name")->type_name("")->required();
+    add_scene(app, line->scene)->required();
     app.add_option("X", line->x, "Column of the pixel, from 0")->type_name("")->required();
     app.add_option("Y", line->y, "Row of the pixel, from 0 at the top")->type_name("")->required();
     app.add_option("--light", line->light, "One light (default: all)")->type_name("NAME");
-    app.add_option("--methods", line->methods, "Methods, with settings (default: those that compare runs)")
-        ->type_name("METHOD");
-    app.add_option("--size", line->size, "Size of the picture (default: the scene's)")->type_name("WIDTHxHEIGHT");
+    add_methods(app, line->methods, "Methods, with settings (default: those that compare runs)");
+    add_size(app, line->size);
     app.add_flag("--json", line->as_json, "Print the reasons as JSON");
     return [line, &common] { return why(*line, common); };
 }

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdio>
 
-#include "umbra/bench/run/machine_load.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/time/turns.h"

@@ -73,7 +73,8 @@ void check_version(const JsonText& json) {
         json.fail(*version, fmt::format("version \"{:.20}\", expected \"2.0\"", json.string(*version, "version")));
 }
 
-// What is needed to understand the geometry must be known; what only changes the appearance may be ignored.
+// Extensions that are needed to understand the geometry must be known; those that only change the appearance may be
+// ignored.
 void check_extensions(const JsonText& json, std::vector<std::string>& warnings) {
     static constexpr std::array<std::string_view, 9> kRead{
         "KHR_lights_punctual",        "EXT_lights_area",     "EXT_mesh_gpu_instancing",

@@ -20,7 +20,7 @@ namespace umbra {
 namespace {
 
 constexpr double kMostTexels = 1 << 30;  ///< looked at for one mesh: some seconds
-constexpr double kSliver     = 1e-6;     ///< of a texel or, if smaller, of the triangle: what is rounding alone
+constexpr double kSliver     = 1e-6;     ///< of a texel or, if smaller, of the triangle: rounding alone
 constexpr double kNoArea     = 1e-14;    ///< texels
 
 /// Bytes as a file of memory alone: nothing is left where the program ends.
@@ -29,7 +29,7 @@ public:
     explicit MemoryFile(std::string_view bytes) : handle_(memfd_create("texture", MFD_CLOEXEC)) {
         while (handle_ >= 0 && !bytes.empty()) {
             const auto written = ::write(handle_, bytes.data(), bytes.size());
-            if (written <= 0) break;  // what reads the file then says that it is short
+            if (written <= 0) break;  // the reader of the file then reports that it is short
             bytes.remove_prefix(std::size_t(written));
         }
     }
@@ -127,7 +127,7 @@ std::vector<dvec2> clipped(const std::vector<dvec2>& polygon, int axis, double s
 
 double cross2(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-/// One triangle of a mesh and what maps its texels to space.
+/// One triangle of a mesh and the map of its texels to space.
 class TriangleCut {
 public:
     TriangleCut(const Mesh& from, const uvec3& corners, const std::array<dvec2, 3>& texels)
@@ -164,7 +164,7 @@ public:
     }
 
 private:
-    /// What each corner counts at p; of a corner exactly 1.
+    /// The weight of each corner at p; at a corner exactly 1.
     [[nodiscard]] dvec3 shares_at(dvec2 p) const {
         dvec3 shares(0);
         for (int k = 0; k < 3; ++k)

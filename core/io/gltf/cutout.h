@@ -27,11 +27,11 @@ struct Cutout {
     [[nodiscard]] bool keeps(std::int64_t x, std::int64_t y) const;
 };
 
-/// What materials[].pbrMetallicRoughness.baseColorTexture leaves where alpha is at least `least`. Throws InputError
+/// The texels of materials[].pbrMetallicRoughness.baseColorTexture whose alpha is at least `least`. Throws InputError
 /// where the image cannot be read.
 [[nodiscard]] Cutout read_cutout(const JsonText& json, GltfData& data, const JsonValue& texture, double least);
 
-/// What is left of a mesh whose positions have these texture coordinates. Neighbouring texels make one rectangle, and
+/// The rest of a mesh whose positions have these texture coordinates. Neighbouring texels make one rectangle, and
 /// each rectangle one polygon of each triangle. Nothing where that takes more than `most` triangles, or looks at more
 /// texels than a few seconds allow.
 [[nodiscard]] std::optional<Mesh> cut_out(const Mesh& mesh, const std::vector<dvec2>& at, const Cutout& cutout,

@@ -120,7 +120,7 @@ std::string find_not_finite(const GltfAccessor& accessor, std::string_view what)
     return found;
 }
 
-/// The accessors that some primitive names as its NORMAL. What is malformed here is refused where it is read.
+/// The accessors that some primitive names as its NORMAL. A malformed accessor is refused where it is read.
 std::set<std::size_t> find_normal_accessors(const JsonText& json) {
     std::set<std::size_t> normals;
     const auto elements = [](const JsonValue* list) {

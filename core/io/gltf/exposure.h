@@ -1,4 +1,4 @@
-// glTF's lights are given in lux and candela: what that means for the picture. Internal to core.
+// glTF's lights are given in lux and candela: their exposure in the picture. Internal to core.
 #pragma once
 
 #include "umbra/core/scene/scene.h"

@@ -1,4 +1,4 @@
-// extras.umbra, an object beside what the format itself defines: an object's custom property "umbra" (of type Python in
+// extras.umbra, an object that the format leaves to programs: an object's custom property "umbra" (of type Python in
 // Blender) is written there. Its keys are those of the native scene files.
 //
 //   on                key                      value

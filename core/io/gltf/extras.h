@@ -1,4 +1,4 @@
-// What glTF lacks, from `extras.umbra`: Phong terms, area lights, and what belongs to a scene. Internal to core.
+// Terms that glTF lacks, from `extras.umbra`: Phong terms, area lights, and terms of the whole scene. Internal to core.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace umbra {
 /// That of the scene that the file shows.
 [[nodiscard]] const JsonValue* find_scene_umbra(const JsonText& json);
 
-// Each refuses keys that it does not know, and changes only what is given.
+// Each refuses keys that it does not know, and changes only the terms that are given.
 void apply_material_extras(const JsonText& json, const JsonValue& umbra, Material& material);
 void apply_light_extras(const JsonText& json, const JsonValue& umbra, Light& light);
 
@@ -29,7 +29,7 @@ struct SceneExtras {
     bool ambient  = false;
     bool exposure = false;
 };
-/// Says what was given.
+/// Returns which terms were given.
 SceneExtras apply_scene_extras(const JsonText& json, const JsonValue& umbra, Scene& scene);
 
 }  // namespace umbra

@@ -1,7 +1,7 @@
 // glTF 2.0 scenes, .gltf and .glb.
 //
 // The document is read as JSON with the offset of each value, not by one of the glTF libraries: those at hand follow
-// indices and lengths of the file unchecked, and can name no line. What is read here is a small part of the format.
+// indices and lengths of the file unchecked, and can name no line. This file reads a small part of the format.
 //
 //   glTF                            here
 //   pbrMetallicRoughness            c = baseColorFactor, m = metallicFactor, F0 = 0.04 (1 - m) + c m, a = roughness^2:
@@ -31,8 +31,7 @@
 //   (no ambient light)              I_a = 0.1
 //   morph targets                   displaced by the weights of the mesh, or of the node where it has some
 //   skins                           sum_k w_k J_k B_k p / sum_k w_k: joints J_k where the file's nodes place them,
-//   inverse
-//                                   bind matrices B_k; the transform of the mesh's own node does not count
+//                                   inverse bind matrices B_k; the transform of the mesh's own node does not count
 //   textures, vertex colours, animations   not read, with a warning
 //   EXT_mesh_gpu_instancing         an object for each instance and primitive
 //   points, lines                   left out, with a warning
@@ -110,7 +109,7 @@ std::vector<Lens> read_lenses(const JsonText& json, std::vector<std::string>& wa
     return lenses;
 }
 
-/// What belongs to the whole scene: its name, and the terms of extras.umbra or what is assumed instead.
+/// Terms of the whole scene: its name, and the terms of extras.umbra or the defaults in their place.
 void read_scene_terms(const JsonText& json, Scene& scene) {
     if (const JsonValue* shown = shown_scene(json)) scene.title = name_or(json, *shown, "");
     scene.ambient = vec3(0.1f);

@@ -24,7 +24,7 @@ inline constexpr std::string_view kAreaLights     = "EXT_lights_area";
 /// is the luminous intensity along its axis, luminance times area.
 [[nodiscard]] std::optional<Light> read_flat_light(const JsonText& json, const JsonValue& v, std::size_t index,
                                                    std::vector<std::string>& warnings);
-/// Turns what read_flat_light made, whose `direction` is that of the node already, and scales it by the largest of the
+/// Turns a light of read_flat_light, whose `direction` is that of the node already, and scales it by the largest of the
 /// node's scales: one factor, so that a disk stays a disk. `along` is the node's x axis, of length 1.
 void scale_area_light(const dmat4& scene_from_node, dvec3 along, Light& light);
 

@@ -31,7 +31,7 @@ Material default_gltf_material() {
 
 namespace {
 
-// Textures are not read, but a fault in what refers to them may be a fault of the whole.
+// Textures are not read, but a fault in a reference to them may be a fault of the whole.
 void check_textures(const JsonText& json, const JsonValue& object, std::initializer_list<std::string_view> keys,
                     GltfNotes& notes) {
     for (const auto key : keys)
@@ -98,7 +98,7 @@ Material read_gltf_material(const JsonText& json, const JsonValue& v, std::size_
     m.transmit = static_cast<float>(
         number_or(json, extension(json, v, "KHR_materials_transmission"), "transmissionFactor", kShare, 0));
     if (m.transmit > 0) m.transmit_colour = vec3(glm::min(c, dvec3(1)));
-    // Where the file is silent, glTF has 1.5, which only matters to what transmits.
+    // Where the file is silent, glTF has 1.5, which only matters to materials that transmit.
     const JsonValue* given = extension(json, v, "KHR_materials_ior");
     const double ior       = number_or(json, given, "ior", kNotNegative, 1.5);
     if ((m.transmit > 0 || given) && ior > 0) m.index_of_refraction = static_cast<float>(ior);

@@ -22,7 +22,7 @@ inline constexpr double kMaxWhole = 9007199254740992.0;  ///< 2^53: beyond it JS
 [[nodiscard]] std::uint64_t whole(const JsonText& json, const JsonValue& v, std::string_view what, double min,
                                   double max);
 
-// What a member says, or `fallback` where the object is null or lacks it.
+// The value of a member, or `fallback` where the object is null or lacks it.
 [[nodiscard]] double number_or(const JsonText& json, const JsonValue* object, std::string_view key, const Range& range,
                                double fallback);
 [[nodiscard]] dvec3 vector_or(const JsonText& json, const JsonValue* object, std::string_view key, const Range& range,

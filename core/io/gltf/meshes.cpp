@@ -162,7 +162,7 @@ std::optional<Primitive> read_primitive(const JsonText& json, const GltfData& da
     primitive.mesh.triangles = as_triangles(corners, mode);
     primitive.targets        = read_targets(json, data, v, what, position->count);
 
-    // Only what triangles use is kept: many primitives may share one long list of positions.
+    // Only vertices that triangles use are kept: many primitives may share one long list of positions.
     const std::vector<vec3> positions = data.vectors(*position);
     const std::vector<vec3> normals   = normal ? data.vectors(*normal) : std::vector<vec3>{};
     std::vector<std::uint32_t> local(positions.size(), 0xffffffffu);

@@ -18,7 +18,7 @@ struct MorphTarget {
     const GltfAccessor* normals   = nullptr;
 };
 
-/// Four joints of a skin that move a vertex, by their share.
+/// Four joints of a skin that move a vertex, with their weights.
 struct Influence {
     glm::uvec4 joints{0};
     vec4 weights{0};

@@ -19,7 +19,7 @@ dmat4 transform_of(dvec3 translation, glm::dquat rotation, dvec3 scale) {
     return m;
 }
 
-/// Of unit length; `rounding` is how far from that the file may be.
+/// The rotation at unit length; `rounding` is how far from that the file may be.
 glm::dquat unit_rotation(const JsonText& json, const JsonValue& at, const std::string& what, glm::dquat q,
                          double rounding) {
     if (const double length = glm::length(q); !(std::abs(length - 1) <= rounding))

@@ -39,8 +39,8 @@ Mesh morphed(const GltfData& data, const Primitive& primitive, const std::vector
     return out;
 }
 
-/// The mean of the joints' transforms that move vertex i, by their weights. `sound` becomes false where these are no
-/// shares.
+/// The mean of the joints' transforms that move vertex i, by their weights. `sound` becomes false where a weight is
+/// negative or their sum is 0.
 dmat4 blend(const Primitive& primitive, const std::vector<dmat4>& joints, std::size_t i, bool& sound) {
     dmat4 sum(0);
     double total = 0;

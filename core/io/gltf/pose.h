@@ -21,14 +21,14 @@ struct Skin {
 /// From the mesh's space to the scene's, one a joint.
 [[nodiscard]] std::vector<dmat4> place_joints(const Skin& skin, const std::vector<dmat4>& scene_from_node);
 
-/// What a node does to its mesh.
+/// The effect of a node on its mesh.
 struct Pose {
     dmat4 scene_from_mesh{1};
     const std::vector<dmat4>* joints = nullptr;  ///< of its skin, which replaces scene_from_mesh; null: it has none
     std::vector<double> weights;                 ///< of morph targets; empty: those of the mesh
 };
 
-/// The mesh in the scene's space. `at` is what asks for it, for messages.
+/// The mesh in the scene's space. `at` is the node that asks for it, for messages.
 [[nodiscard]] Mesh posed(const JsonText& json, const JsonValue& at, const GltfData& data, const Primitive& primitive,
                          const Pose& pose, GltfNotes& notes);
 

@@ -16,7 +16,7 @@
 
 namespace umbra {
 
-/// What nodes refer to by index, as the file lists it.
+/// The things that nodes refer to by index, as the file lists them.
 struct GltfParts {
     std::vector<AlphaMask> masks;                ///< of the file's materials
     std::vector<std::optional<Cutout>> cutouts;  ///< of the same; nothing: none, or it cannot be read
@@ -29,14 +29,14 @@ struct GltfParts {
 
 class GltfSceneBuilder {
 public:
-    /// All arguments must outlive this object. What it places is relative to `origin`, in world space.
+    /// All arguments must outlive this object. It places things relative to `origin`, in world space.
     GltfSceneBuilder(const JsonText& json, const GltfData& data, const GltfParts& parts, const dvec3& origin,
                      SceneFile& read, GltfNotes& notes);
 
     /// Checks every node's references, those of nodes outside the scene included, and how many triangles they place:
     /// many nodes may share one large mesh.
     void check_references(const std::vector<Node>& nodes) const;
-    /// Places what the trees below `roots` refer to.
+    /// Places the meshes, lights and cameras of the trees below `roots`.
     void place_trees(const std::vector<Node>& nodes, const std::vector<std::size_t>& roots);
     /// A file without nodes is a library of meshes: they are shown where they are.
     void place_all_meshes();

@@ -105,7 +105,7 @@ Photometry read_ies_of(const JsonText& json, const JsonValue& v, const std::file
     }
 }
 
-/// The direction of a goniometric light, and what turns its table about it.
+/// The direction of a goniometric light, and the turn of its table about it.
 void read_goniometric(const JsonText& json, const JsonFields& f, const std::filesystem::path& folder,
                       const dvec3& origin, Light& light, std::vector<std::string>& warnings) {
     f.exclude("ies", "distribution");
@@ -218,7 +218,7 @@ Light read_light(const JsonText& json, const JsonValue& v, const std::filesystem
     return light;
 }
 
-/// Names of objects, and NAME of NAME/PART: what lights_object() knows.
+/// Names of objects, and NAME of NAME/PART: the names that lights_object() knows.
 std::set<std::string_view> names_and_beginnings(const std::vector<Object>& objects) {
     std::set<std::string_view> names;
     for (const Object& object : objects) {

@@ -9,12 +9,12 @@
 
 namespace umbra {
 
-/// What becomes one object of the scene.
+/// A part that becomes one object of the scene.
 struct NativePart {
     std::string name;
     Mesh mesh;
     std::uint32_t material = 0;  ///< index into Scene::materials
-    dvec3 origin{0};             ///< what positions of the mesh are relative to
+    dvec3 origin{0};             ///< positions of the mesh are relative to it
     ObjectSwitches switches{};
 };
 

@@ -83,7 +83,7 @@ Mesh at_origin(const JsonText& json, const JsonFields& f, dvec3& origin) {
     return make(json, f);
 }
 
-/// Of a mesh by itself: what a transform moves need not be where the scene is.
+/// The origin of a mesh by itself: before its transform, a mesh may be far from the scene.
 dvec3 origin_of(const std::vector<dvec3>& positions) {
     if (positions.empty()) return dvec3(0);
     dvec3 low = positions.front(), high = low;

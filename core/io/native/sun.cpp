@@ -20,7 +20,7 @@ constexpr Range kLatitude{-90, 90, "an angle in degrees, from -90 (south) to 90 
 constexpr Range kLongitude{-180, 180, "an angle in degrees, from -180 (west) to 180 (east)"};
 constexpr int kFirstYear = 1800, kLastYear = 2200;
 
-/// What is left of a time while it is read from its beginning.
+/// The rest of a time while it is read from its beginning.
 class TimeText {
 public:
     explicit TimeText(std::string_view text) : rest_(text) {}
@@ -50,8 +50,8 @@ private:
     std::string_view rest_;
 };
 
-/// Days since noon of 1 January 2000, universal time, of "2026-06-21T14:00:00+02:00", seconds left out or not; none
-/// where it is no such text. Fractions of a second are left out.
+/// Days since noon of 1 January 2000, universal time, of "2026-06-21T14:00:00+02:00", seconds left out or not; none for
+/// any other text. Fractions of a second are left out.
 std::optional<double> days_of(std::string_view written) {
     namespace chr = std::chrono;
     TimeText text(written);

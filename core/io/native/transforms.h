@@ -8,7 +8,7 @@
 
 namespace umbra {
 
-/// A list of steps, each applied to what the ones before it made. The step "fit" depends on the extent of `parts`.
+/// A list of steps, each applied to the result of those before it. The step "fit" depends on the extent of `parts`.
 [[nodiscard]] dmat4 read_transform(const JsonText& json, const JsonValue& v, const std::vector<NativePart>& parts);
 
 }  // namespace umbra

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <limits>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -52,6 +54,46 @@ TEST(ParallelRanges, ComputeInTheModeOfTheirCaller) {
         const FlushDenormals flush;
         EXPECT_EQ(halves(), flushed);
     });
+}
+
+/// Ends the work when it is asked for the tenth time.
+struct TenRanges final : WorkLimit {
+    mutable std::atomic<int> asked = 0;
+    void check() const override {
+        if (++asked >= 10) throw std::runtime_error("ten ranges");
+    }
+};
+
+TEST(WorkLimit, EndsTheLoopsOfItsScopeAndNoOther) {
+    const TenRanges limit;
+    int ranges       = 0;
+    const auto loops = [&] {
+        for (int k = 0; k < 20; ++k) parallel_ranges(1, 1, [&](std::size_t, std::size_t) { ++ranges; });
+    };
+    {
+        const WorkLimit::Scope scope(&limit);
+        EXPECT_THROW(loops(), std::runtime_error);
+        EXPECT_EQ(ranges, 9);
+        EXPECT_THROW(parallel_pair([] {}, [] {}), std::runtime_error);
+        const WorkLimit::Scope free(nullptr);
+        EXPECT_NO_THROW(loops());
+    }
+    EXPECT_EQ(WorkLimit::current(), nullptr);
+    const int asked = limit.asked;
+    EXPECT_NO_THROW(loops());
+    EXPECT_EQ(limit.asked, asked) << "no loop outside asks it";
+}
+
+/// A loop within a range of a loop is work of the same limit, on whichever thread.
+TEST(WorkLimit, HoldsForLoopsWithinLoops) {
+    const TenRanges limit;
+    const WorkLimit::Scope scope(&limit);
+    EXPECT_THROW(parallel_ranges(4, 1,
+                                 [](std::size_t begin, std::size_t end) {
+                                     for (std::size_t k = 3 * begin; k < 3 * end; ++k)
+                                         parallel_ranges(1, 1, [](std::size_t, std::size_t) {});
+                                 }),
+                 std::runtime_error);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 namespace umbra {
 namespace {
 
-/// The penumbra whose S is known, and what a method makes of it with 8 seeds, plus `offset`.
+/// The penumbra whose S is known, and a method's answers to it with 8 seeds, plus `offset`.
 struct Measured {
     Noise noise;
     double predicted;  ///< of independent samples: sqrt of the mean of S (1 - S) / N

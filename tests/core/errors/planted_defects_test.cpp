@@ -4,8 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "umbra/bench/run/explain.h"
-#include "umbra/bench/run/noise_runs.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -128,7 +127,7 @@ TEST(PlantedDefects, TooMuchBiasIsDetachment) {
 
 TEST(PlantedDefects, DetachmentIsTheFirstHalfOfAShadowAtEverySize) {
     // All shadow is lost. The wall is 1.6 high and ends at x = -1.485; the sun moves 0.5 to the side on 1 down, so that
-    // what is below half of the height is within 0.4. A segment may enter the wall, 0.03 thick, at its end.
+    // shadow of the lower half of the wall is within 0.4. A segment may enter the wall, 0.03 thick, at its end.
     for (const int width : {160, 320, 1280}) {
         Scene scene  = wall_and_board();
         scene.width  = width;
@@ -212,7 +211,7 @@ TEST(PlantedDefects, ABoundaryMovedByThreePixelsIsThreePixelsOff) {
         EXPECT_EQ(e.displacement->p95, shift);
         EXPECT_GE(e.displacement->mean, shift * 0.72);  // 160 of 220, and more where the upper end ends
         EXPECT_LE(e.displacement->mean, shift * 0.8);
-        // What is beyond the band counts as interior: a strip on either side.
+        // Points beyond the band count as interior: a strip on either side.
         const std::uint64_t strip = static_cast<std::uint64_t>(inner) * static_cast<std::uint64_t>(rows);
         EXPECT_NEAR(static_cast<double>(e.error.false_light.interior), static_cast<double>(strip), 3.0 * inner);
         EXPECT_NEAR(static_cast<double>(e.error.false_shadow.interior), static_cast<double>(strip), 3.0 * inner);

@@ -113,7 +113,7 @@ TEST(Flip, OnePixelSpreadsByTheFiltersRadiusAndNoFurther) {
     EXPECT_LT(flip_ldr(a, b, 134).max, flip.max);
 }
 
-/// Also where what lies around the pixel is the same in both pictures but for this one.
+/// Also where the two pictures differ in this pixel alone.
 TEST(Flip, OnePixelSpreadsAlikeToBothSidesWhereverItLies) {
     const Image a = constant(200, 41, vec3(0.5f));
     for (std::size_t x = 60; x < 140; ++x) {

@@ -360,7 +360,7 @@ TEST_F(ImageIo, RefusesChunksAndAttributesLongerThanTheFile) {
         << refusal(folder / "lie.png");
 }
 
-/// OpenEXR reads some attributes without regard to their length, and then takes what follows for another's: 600 bytes
+/// OpenEXR reads some attributes without regard to their length, and then takes the next bytes for another's: 600 bytes
 /// made it take two gigabytes.
 TEST_F(ImageIo, RefusesAttributesThatAreNoneOfTheirLength) {
     write_image(folder / "a.exr", noise(8, 8, {"R", "G", "B"}));
@@ -396,7 +396,7 @@ TEST_F(ImageIo, RefusesAttributesThatAreNoneOfTheirLength) {
     EXPECT_NE(answer(with("preview", "preview", one)).find("not a preview"), std::string::npos);
 }
 
-/// What the second part's header says is read as the first's is.
+/// The second part's header is read as the first's is.
 TEST_F(ImageIo, RefusesWhatALaterPartClaims) {
     write_image(folder / "a.exr", noise(8, 8, {"R", "G", "B"}));
     std::string exr = bytes_of(folder / "a.exr");

@@ -28,7 +28,8 @@ Image noise(int width, int height, std::uint32_t seed, std::vector<std::string> 
 }
 
 TEST(ImageError, EqualsIdiffOnABox) {
-    // What OpenImageIO's idiff prints for 64x64x3 of 0.1 against the same with green 0.6 in 11x11 pixels from (5, 17).
+    // Figures that OpenImageIO's idiff prints for 64x64x3 of 0.1 against the same with green 0.6 in 11x11 pixels from
+    // (5, 17).
     const Image a = constant(64, 64, 0.1f);
     Image b       = a;
     for (std::size_t y = 17; y <= 27; ++y)

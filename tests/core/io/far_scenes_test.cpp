@@ -14,7 +14,7 @@ std::string vector(dvec3 o, double x, double y, double z) {
     return fmt::format("[{}, {}, {}]", o.x + x, o.y + y, o.z + z);
 }
 
-/// Of a scene and of its twin, all but where they are and what was said of it.
+/// Everything of a scene and of its twin is equal, except for their positions and the warnings about them.
 void expect_twins(Scene afar, const Scene& here, dvec3 offset) {
     EXPECT_EQ(here.origin, dvec3(0));
     EXPECT_EQ(afar.origin, offset);

@@ -1252,7 +1252,7 @@ TEST(Glb, Mutants) {
     });
 }
 TEST(Glb, MutantsOfTheContainer) {
-    // Most are refused for their lengths; some change what no one reads.
+    // Most are refused for their lengths; some change bytes that nothing reads.
     expect_survives_mutants("glb", {glb(R"({"asset": {"version": "2.0"}})", std::string(2000, 'x'))});
 }
 

@@ -159,7 +159,8 @@ void expect_spelled(const Photometry& table, const std::string& text) {
     EXPECT_EQ(table.candela, (std::vector<float>{100, 80, 20, 0})) << text;
 }
 
-/// What the format forbids, and programs write: read all the same, with a sentence where something is assumed.
+/// Forms that the format forbids and programs write: they are read all the same, with a sentence where something is
+/// assumed.
 TEST(Ies, OtherSpellings) {
     struct Other {
         std::string from, to, warning;

@@ -252,9 +252,10 @@ INSTANTIATE_TEST_SUITE_P(
     }),
     [](const auto& test) { return test.param.name; });
 
-// ---- what the formats forbid and other programs write ----
+// ---- forms that the formats forbid and other programs write ----
 
-/// The file has the pyramid's triangles, and says what it left out or assumed; nothing where `warning` is empty.
+/// The file has the pyramid's triangles, and a warning says what was left out or assumed; none where `warning` is
+/// empty.
 void expect_pyramid(const std::string& text, std::string_view warning) {
     const TemporaryFolder folder;
     const Scene right = load_scene(folder.write("right.off", with(kOff, " 255 0 0", "")));
@@ -433,7 +434,7 @@ TEST(Stl, SolidsWithoutAnEnd) {
     }
 }
 
-/// The number of facets may be unknown when the header is written; what lies behind the facets is told of.
+/// The number of facets may be unknown when the header is written; bytes behind the facets are reported.
 TEST(Stl, BinaryWithANumberOfFacetsThatIsNone) {
     const TemporaryFolder folder;
     for (const char* beginning : {"solid", "heavy", "SOLID"}) {

@@ -250,7 +250,7 @@ TEST(NativeScene, ObjectsSayWhatTheyTakePartIn) {
     EXPECT_EQ(of(R"(, "seen_by_camera": false)"), (ObjectSwitches{true, true, false}));
 }
 
-/// All parts of a mesh file follow the object; what the object does not say is the file's.
+/// All parts of a mesh file follow the object; terms that the object does not state are the file's.
 TEST(NativeScene, PartsOfAMeshTakePartInWhatTheObjectSays) {
     const TemporaryFolder folder;
     folder.write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\no a\nf 1 2 3\no b\nf 1 3 4\n");

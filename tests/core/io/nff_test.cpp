@@ -145,7 +145,8 @@ TEST(Nff, FineWhereTheViewIsNearCoarseWhereItIsFar) {
     EXPECT_EQ(previous, 48u);
 }
 
-/// What mirrors or is clear has twice as many segments around, and along: 16 x 8, two rows of which are triangles.
+/// A body that mirrors or is clear has twice as many segments around, and along: 16 x 8, two rows of which are
+/// triangles.
 TEST(Nff, TwiceAsFineWhereNeighboursAreMirrored) {
     const TemporaryFolder folder;
     const auto triangles = [&](const std::string& fill) {

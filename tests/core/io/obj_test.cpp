@@ -61,6 +61,16 @@ TEST(Obj, PositionsAreSplitWhereNormalsDiffer) {
     EXPECT_EQ(scene.normals[scene.triangles[2].x], vec3(0));
 }
 
+/// "v//" and "v/t/", as some exporters write corners without a normal.
+TEST(Obj, CornersWithAnEmptyNormalHaveNone) {
+    const TemporaryFolder folder;
+    const Scene scene =
+        load_scene(folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1// 2// 3//\nf 1/1/ 2/1/ 3/1/\n"));
+    ASSERT_EQ(scene.triangles.size(), 2u);
+    EXPECT_EQ(scene.positions.size(), 3u);
+    for (const vec3 normal : scene.normals) EXPECT_EQ(normal, vec3(0));
+}
+
 TEST(Obj, NumbersTooNearToZeroAreZero) {
     const TemporaryFolder folder;
     const Scene scene = load_scene(
@@ -204,7 +214,7 @@ TEST(Obj, HashesInNames) {
     const TemporaryFolder folder;
     (void)folder.write("a.mtl",
                        "newmtl Material #25\nKd 1 0 0\nnewmtl Material #26\nKd 0 1 0\nnewmtl plain\nKd 0 0 1\n"
-                       "newmtl noted # a comment\nKd 1 1 0\nnewmtl #1\nKd 0 1 1\n");
+                       "newmtl noted # a comment\nKd 1 1 0\nnewmtl #1\nKd 0 1 1\nnewmtl Material\nKd 1 0 1\n");
     const std::string triangle = "\nf 1 2 3\n";
     const Scene scene          = load_scene(folder.write(
                  "a.obj", "mtllib a.mtl # materials\nv 0 0 0 # origin\nv 1 0 0\nv 0 1 0\no Box#1\nusemtl Material #25" +

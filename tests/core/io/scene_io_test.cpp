@@ -1,4 +1,4 @@
-// What loading does whatever the format: dispatch, unreadable files, the checks and defaults that all share.
+// Loading, for every format: dispatch, unreadable files, the checks and defaults that all share.
 #include "umbra/core/io/scene_io.h"
 
 #include <sys/stat.h>
@@ -74,7 +74,7 @@ TEST(LoadScene, FilesThatCannotBeReadSayWhy) {
     EXPECT_NE(message_of(folder.path() / "endless.json").find("is a device, expected a file"), std::string::npos);
     const auto large = folder.write("large.json", "{");
     std::filesystem::resize_file(large, std::uintmax_t{1} << 34);  // takes no room on the disk
-    EXPECT_NE(message_of(large).find("larger than 32 MB"), std::string::npos);
+    EXPECT_NE(message_of(large).find("larger than 128 MB"), std::string::npos);
 }
 
 /// A pipe that nobody writes to: opening it would wait for ever. Also by a link, and as a file that another one names.

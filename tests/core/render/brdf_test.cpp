@@ -1,4 +1,4 @@
-// Reflection: lobes and how they relate, what sampling finds of them, Lafortune's, and the variants of the sum.
+// Reflection: lobes and how they relate, their figures by sampling, Lafortune's lobes, and the variants of the sum.
 #include "umbra/core/render/brdf.h"
 
 #include <gtest/gtest.h>

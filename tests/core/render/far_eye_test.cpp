@@ -1,5 +1,5 @@
 // Eyes and lights so far from the scene, or so much larger, that floats cannot hold both: the picture stays right, or
-// is refused with the reason. What Embree takes for a ray has coordinates below 2^60; beyond, it ends the process.
+// is refused with the reason. Embree's rays have coordinates below 2^60; beyond, it ends the process.
 #include <gtest/gtest.h>
 
 #include <cmath>

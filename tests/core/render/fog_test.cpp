@@ -1,16 +1,16 @@
-// Fog: its laws, its place in the sum, and what it is written as.
+// Fog: its laws, its place in the sum, and its form in scene files.
 #include "umbra/core/scene/fog.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "umbra/bench/studies/light/shading_models.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/io/scene_writer.h"
 #include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/render/gbuffer.h"
-#include "umbra/core/render/shading_models.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/tests/support/temporary_folder.h"
 

@@ -1,4 +1,4 @@
-// What stays the same where Embree runs with other instructions, as it does on other machines. Its kernels fuse
+// Answers stay the same where Embree runs with other instructions, as it does on other machines. Its kernels fuse
 // multiply and add from AVX2 on, and sum in another order with AVX-512: the last bits of its barycentrics differ, so
 // that ours are computed without it.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What interpolation between vertices does to a picture: silhouettes, polygons turned in their plane, normals that are
+// Effects of interpolation between vertices on a picture: silhouettes, polygons turned in their plane, normals that are
 // not the surface's, and the choice of triangles.
 #include <gtest/gtest.h>
 
@@ -80,7 +80,7 @@ TEST(Triangulation, TheDiagonalShows) {
 }
 
 /// Values at the corners of a polygon, interpolated along its two edges on the row y = 0 and then along the row, at x =
-/// 0: what scan converters do with polygons of four corners.
+/// 0: as scan converters draw polygons of four corners.
 double along_rows(const std::array<std::pair<double, double>, 4>& corners, const std::array<double, 4>& values) {
     std::vector<std::pair<double, double>> ends;  // x, value
     for (std::size_t k = 0; k < 4; ++k) {

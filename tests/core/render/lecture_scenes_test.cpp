@@ -73,7 +73,8 @@ TEST(LectureScenes, TheHollowIsDarkForThreeReasons) {
     }
 }
 
-/// Of the area, by triangles: half for the sun, (1 - r / d) / 2 for a lamp at the distance d from the middle.
+/// The lit fraction of the area, by triangles: half for the sun, (1 - r / d) / 2 for a lamp at the distance d from the
+/// middle.
 TEST(LectureScenes, TheLitShareIsAHalfOrLess) {
     const Scene scene = scene_named("lit_share");
     for (const char* ball : {"left_ball", "right_ball"}) {
@@ -90,7 +91,7 @@ TEST(LectureScenes, TheLitShareIsAHalfOrLess) {
     }
 }
 
-/// The share of the ground in shadow that the eye sees: none with the sun behind it, much with the sun before it.
+/// The fraction of the ground in shadow that the eye sees: none with the sun behind it, much with the sun before it.
 TEST(LectureScenes, ARoughSurfaceHidesItsShadowsFromTheLight) {
     const Scene scene       = scene_named("rough_ground");
     const PointBatch points = primary(scene);

@@ -1,4 +1,4 @@
-// What the lectures say of shadows, asked of every method.
+// Statements of the lectures about shadows, tested with every method.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace umbra {
 namespace {
 
-/// What a method that says exactly may get wrong, and one that says approximately: shares of the points.
+/// The fraction of the points that may be wrong, of a method that says exactly and of one that says approximately.
 double allowed(const Service& service) { return service.how == How::exactly ? 0 : 0.01; }
 
 class Lecture : public testing::TestWithParam<const MethodInfo*> {

@@ -48,7 +48,7 @@ TEST(LightPoints, FillARectangle) {
     }
 }
 
-/// Of a disk around `c` across `n`: rings by their areas, sectors by their angles.
+/// Points of a disk around `c` across `n`: rings by their areas, sectors by their angles.
 void expect_even_disk(const Light& light, dvec3 p, dvec3 c, dvec3 n, double radius) {
     EXPECT_EQ(part(light, p, [&](dvec3 q) { return std::abs(glm::dot(q - c, n)) < 1e-12; }), 1);
     EXPECT_EQ(part(light, p, [&](dvec3 q) { return glm::length(q - c) <= radius * (1 + 1e-12); }), 1);

@@ -8,10 +8,10 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "umbra/bench/studies/light/shading_models.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
-#include "umbra/core/render/shading_models.h"
 #include "umbra/core/scene/primitives.h"
 
 namespace umbra {
@@ -57,7 +57,7 @@ TEST(Normals, NotNormalisedAreGouraudForDiffuseLightFromInfinity) {
     EXPECT_GT(brighter, 0.2);
 }
 
-/// What OpenGL does with a normal under a modelview matrix: the inverse transpose, then one of two lengths.
+/// A normal in OpenGL under a modelview matrix: the inverse transpose, then one of two lengths.
 struct OpenGlNormal {
     dvec3 normalize;  ///< GL_NORMALIZE: of unit length
     dvec3 rescale;    ///< GL_RESCALE_NORMAL: over the length of the third row of the matrix' inverse
@@ -87,7 +87,7 @@ TEST(Normals, RescalingIsNormalisingForEvenScaleAlone) {
     EXPECT_LT(largest_difference(turn), 1e-6);
     EXPECT_LT(largest_difference(turn * glm::scale(mat4(1), vec3(3))), 1e-6);
     EXPECT_LT(largest_difference(glm::scale(mat4(1), vec3(0.25f)) * turn), 1e-6);
-    // Stretched by 3 along z: what faces x or y comes out three times as long, and as bright.
+    // Stretched by 3 along z: normals along x or y come out three times as long, and their faces as bright.
     EXPECT_NEAR(largest_difference(glm::scale(mat4(1), vec3(1, 1, 3))), 2, 1e-5);
     EXPECT_GT(largest_difference(turn * glm::scale(mat4(1), vec3(1, 3, 0.25f))), 0.5);
 }

@@ -7,7 +7,7 @@
 namespace umbra {
 namespace {
 
-/// What a camera at the height of a person sees of a floor of the given width, and of a box on it.
+/// The points of a floor of the given width, and of a box on it, that a camera at the height of a person sees.
 PointBatch view_of_floor(float width, Scene& scene) {
     scene = Scene{};
     scene.materials.emplace_back();

@@ -45,7 +45,7 @@ Scene slope_and_soup(unsigned seed) {
     }
     add_object(scene, "soup", corners, {}, triangles, 1);
 
-    // Of each kind one at large, one in the plane of the slope, and some next to it.
+    // Each kind of light anywhere, in the plane of the slope, and next to it.
     for (const float lift : {4.0f, 0.0f, 1e-6f, -1e-6f, 0.3f}) {
         const vec3 at = on + vec3(0, lift, 0);
         for (const LightKind kind : {LightKind::point, LightKind::spot}) scene.lights.push_back(light_at(kind, at));

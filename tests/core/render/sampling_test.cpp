@@ -99,8 +99,7 @@ TEST(Sobol, IsANetForEveryPoint) {
     }
 }
 
-// ---- how variance falls with the number of samples
-// ---------------------------------------------------------------------
+// ---- how variance falls with the number of samples ----------------------------------------------------------------
 
 double variance(Sampler sampler, int count, const std::function<double(vec2)>& f) {
     const SampleSet set(sampler, count, 1);

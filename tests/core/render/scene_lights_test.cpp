@@ -1,4 +1,4 @@
-// What scene files may say of lights, and what the sum makes of it: the photometric law, goniometric lights, ambient
+// Lights in scene files, and their effect on the sum: the photometric law, goniometric lights, ambient
 // terms, lights that are off, that leave out objects, that are fixed to the camera.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -200,7 +200,7 @@ TEST(Lights, FixedToTheCameraMoveWithIt) {
     EXPECT_EQ(find_facts(scene).lights[0].place, LightPlace::at_eye);
 }
 
-/// Lights have no geometry: a ray into one meets what is behind it.
+/// Lights have no geometry: a ray into one meets the surface behind it.
 TEST(Lights, AreNotSeen) {
     const Scene scene       = scene_with(R"("background": 0.25, "lights": [
         {"type": "sphere", "position": [0, 0, -1], "radius": 0.9, "intensity": 9, "fixed_to": "camera"}])");
@@ -220,7 +220,7 @@ TEST(Warnock, IsAnAttenuatedLightAtTheEye) {
     PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 160, 90);
     face_lights(points, scene);
     std::vector<VisibilityPlane> lit(1, VisibilityPlane(points.size()));
-    lit[0].s.assign(points.size(), 1.0f);  // what the eye sees, a light at the eye reaches
+    lit[0].s.assign(points.size(), 1.0f);  // a light at the eye reaches every point that the eye sees
     const Image image = shade(scene, points, lit);
     double nearest = 0, farthest = 1;
     for (std::size_t i = 0; i < points.size(); ++i) {

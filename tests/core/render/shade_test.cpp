@@ -46,7 +46,7 @@ struct Table {
     }
 };
 
-/// Of random S_j, some of them the same in both.
+/// With random S_j, some of them the same in both.
 TEST(Shade, FromAKnownPictureIsTheSamePicture) {
     Light first, second;
     first.kind = second.kind = LightKind::point;
@@ -205,7 +205,7 @@ TEST(Shade, LightBehindThePlaneGivesNothingWhateverTheVertexNormalsSay) {
     EXPECT_EQ(rgb(table.shaded(), 0), vec3(0));
 }
 
-/// The facet faces the light, the vertex normals do not: N.L < 0 is no negative light.
+/// The facet faces the light, the vertex normals do not: N.L < 0 does not make negative light.
 TEST(Shade, NormalsThatFaceAwayTakeNoLightAway) {
     Table table(glossy(1), {point_light({9, 1, 0})});
     table.scene.materials[0].k_d      = vec3(1);

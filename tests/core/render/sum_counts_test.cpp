@@ -1,4 +1,4 @@
-// Only what a scene requires: how often each term of the sum is evaluated.
+// Only terms that a scene requires: how often each term of the sum is evaluated.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// Bodies against closed forms of the polyhedra that they are, and against the topology of what they approximate.
+// Bodies against closed forms of the polyhedra that they are, and against the topology of the bodies that they
+// approximate.
 #include "umbra/core/scene/primitives.h"
 
 #include <array>
@@ -131,7 +132,7 @@ TEST(Primitives, TorusHasOneHoleAndPappusVolume) {
     const Mesh mesh = make_torus(2, 0.5f, 64, 24);
     expect_closed(mesh, 0);
     EXPECT_EQ(measure(mesh).vertices, 64 * 24);
-    // Pappus for the inscribed tube, with the polygon's share of a full turn in place of 2 pi.
+    // Pappus for the inscribed tube, with a polygon's perimeter in place of the circle's.
     EXPECT_NEAR(measure(mesh).volume, perimeter(2, 64) * std::cos(kPi / 64) * polygon_area(0.5, 24), 2e-3);
     EXPECT_NEAR(measure(make_torus(2, 0.5f, 600, 200)).volume, 2 * kPi * 2 * kPi * 0.25, 2e-3);
 }

@@ -38,7 +38,7 @@ TEST_P(EveryScene, LoadsWithoutWarningAndIsSeen) {
         }
     }
     const Scene scene = load_scene(GetParam());
-    // Scanned meshes have faces without area; what lies behind surfaces or is mirrored, umbra whitted alone shows; and
+    // Scanned meshes have faces without area; umbra whitted alone shows surfaces behind clear ones and in mirrors; and
     // one scene is about materials that reflect more than arrives.
     const std::string name = GetParam().stem().string();
     const auto expected    = [&](const std::string& w) {

@@ -100,7 +100,7 @@ TEST(Topology, DegenerateMeansExactlyOnOneLine) {
     EXPECT_TRUE(is_degenerate({1, 2, 3}, {1, 2, 3}, {4, 5, 6}));
     EXPECT_FALSE(is_degenerate({0, 0, 0}, {third, third, 1}, {2 * third, std::nextafter(2 * third, 1.0f), 2}));
     EXPECT_FALSE(is_degenerate({0, 0, 0}, {1e-30f, 0, 0}, {0, 1e-30f, 0})) << "its area underflows in float only";
-    // A far sliver whose area is below what double keeps of its products.
+    // A far sliver whose area is below the rounding of its products in double.
     EXPECT_FALSE(is_degenerate({1e10f, 0, 1e-30f}, {2e10f, 0, 0}, {4e10f, 0, 0}));
 }
 

@@ -1,0 +1,78 @@
+// Options that several commands have, each with one name, one form and one meaning; and what commands do alike around
+// their work: progress, the record or the text.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/cli/command.h"
+#include "umbra/bench/cli/streams.h"
+#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/run/budget.h"
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/prepare.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// SCENE, one or several.
+CLI::Option* add_scene(CLI::App& app, std::string& scene);
+CLI::Option* add_scenes(CLI::App& app, std::vector<std::string>& scenes,
+                        const std::string& about = "Scenes: files or names of scenes (required)");
+
+/// --size WIDTHxHEIGHT.
+void add_size(CLI::App& app, Size& size, const std::string& by_default = "the scene's");
+
+/// --pixel-samples N, kPictureSamples where it is not given.
+void add_pixel_samples(CLI::App& app, int& samples, const std::string& about);
+
+/// --methods METHOD..., for which --method may be typed too.
+void add_methods(CLI::App& app, std::vector<std::string>& methods,
+                 const std::string& about = "Methods, with settings (default: all)");
+
+/// --method METHOD, for which --methods may be typed too.
+void add_method(CLI::App& app, std::string& method, const std::string& about);
+
+/// The method of S_j in a command that is about something else.
+struct ShadowMethod {
+    std::string text = "ray_traced";
+    bool none        = false;
+
+    /// Nothing: every light reaches every point that faces it. Throws UsageError.
+    [[nodiscard]] std::optional<MethodChoice> choice() const;
+};
+/// --method METHOD or none, and --no-shadows.
+void add_shadow_method(CLI::App& app, ShadowMethod& method);
+
+/// --reference METHOD, refused where there is no such method, and --reference-points N.
+void add_reference(CLI::App& app, std::optional<std::string>& reference, std::optional<std::uint64_t>& points,
+                   const std::string& by_default = "as for compare");
+
+/// --budget S and --memory-budget MIB.
+void add_budget(CLI::App& app, Budget& budget);
+
+/// -o DIR, which is required, and --json.
+void add_output(CLI::App& app, std::filesystem::path& out, const std::string& about = "Folder to write to");
+void add_json(CLI::App& app, bool& as_json, const std::string& instead_of = "the table");
+
+/// work(progress), with its progress on the terminal. Returns what `work` returns.
+template <class Work>
+auto on_terminal(const Common& common, const Work& work) {
+    const Terminal terminal(common.quiet);
+    return work(std::function<void(const std::string&)>([&](const std::string& what) { terminal.progress(what); }));
+}
+
+/// The record where it is asked for, otherwise text(), which is not called where --quiet leaves it out.
+template <class Text>
+void print_record(bool as_json, const Common& common, const Json& record, const Text& text) {
+    if (as_json)
+        print_out("{}", json_text(record));
+    else if (!common.quiet)
+        print_out("{}", without_controls(text()));
+}
+
+}  // namespace umbra

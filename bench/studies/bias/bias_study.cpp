@@ -1,0 +1,180 @@
+#include "umbra/bench/studies/bias/bias_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "umbra/bench/run/at_work.h"
+#include "umbra/bench/run/reference.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace {
+
+/// What a light's points are compared with.
+struct LightTruth {
+    enum class Place : std::uint8_t { unjudged, interior, edge };
+    std::vector<Place> place;
+    std::vector<float> s;
+};
+
+LightTruth find_truth(MethodAtWork& reference, const PointBatch& points, LightId light) {
+    VisibilityPlane plane(points.size());
+    reference.visibility(light, plane.out());
+    const std::vector<std::uint8_t> band = edge_band(points, light, plane, kHardTolerance);
+    LightTruth truth{std::vector<LightTruth::Place>(points.size(), LightTruth::Place::unjudged), {}};
+    for (std::size_t i = 0; i < points.size(); ++i)
+        if (points.facing[light][i] == Facing::front && plane.answer[i] == Answer::given)
+            truth.place[i] = band[i] != 0 ? LightTruth::Place::edge : LightTruth::Place::interior;
+    truth.s = std::move(plane.s);
+    return truth;
+}
+
+BiasErrors count_wrong(const LightTruth& truth, const VisibilityPlane& plane) {
+    BiasErrors errors;
+    for (std::size_t i = 0; i < plane.s.size(); ++i) {
+        if (truth.place[i] == LightTruth::Place::unjudged || plane.answer[i] != Answer::given) continue;
+        const float difference = plane.s[i] - truth.s[i];
+        if (std::abs(difference) <= kHardTolerance) continue;
+        VisibilityError::Kind& kind = difference < 0 ? errors.false_shadow : errors.false_light;
+        ++(truth.place[i] == LightTruth::Place::edge ? kind.edge : kind.interior);
+    }
+    return errors;
+}
+
+/// The studied method on one scene. A setting repeats only the phases that it changes.
+class Lookups {
+public:
+    Lookups(const PreparedScene& prepared, const MethodChoice& choice)
+        : points_(prepared.points),
+          choice_(choice),
+          method_(choice, prepared.scene, prepared.facts),
+          plane_(prepared.points.size()) {}
+    [[nodiscard]] BiasErrors errors(LightId light, const LightTruth& truth, const Settings& settings) {
+        choice_.settings = settings;
+        method_.set(choice_);
+        if (!method_.looks_at(points_)) method_.look(points_);
+        plane_.clear();
+        method_.visibility(light, plane_.out());
+        return count_wrong(truth, plane_);
+    }
+
+private:
+    const PointBatch& points_;
+    MethodChoice choice_;
+    MethodAtWork method_;
+    VisibilityPlane plane_;
+};
+
+constexpr std::string_view kStudied = "shadow_zbuffer";  // the method whose bias this command is about
+
+MethodChoice choose(const std::string& settings) {
+    MethodChoice choice =
+        parse_method(settings.empty() ? std::string(kStudied) : fmt::format("{}:{}", kStudied, settings));
+    for (const char* studied : {"bias", "constant", "slope", "normal_offset"})
+        if (!choice.settings.is_default(studied))
+            throw UsageError(
+                fmt::format("--map {}: the study varies {}, expected settings of maps and filters", settings, studied));
+    return choice;
+}
+
+Settings with_bias(Settings settings, std::string_view mode, double constant, double slope, double normal_offset) {
+    settings.set("bias", mode);
+    settings.set("constant", constant);
+    settings.set("slope", slope);
+    settings.set("normal_offset", normal_offset);
+    return settings;
+}
+
+/// Every light without extent, in its centre.
+void harden_lights(PreparedScene& prepared) {
+    for (Light& light : prepared.scene.lights)
+        if (is_area(light.kind)) light.kind = LightKind::point;
+    face_lights(prepared.points, prepared.scene);
+    prepared.facts = find_facts(prepared.scene);
+}
+
+}  // namespace
+
+BiasErrors& BiasErrors::operator+=(const BiasErrors& other) {
+    false_shadow.interior += other.false_shadow.interior;
+    false_shadow.edge += other.false_shadow.edge;
+    false_light.interior += other.false_light.interior;
+    false_light.edge += other.false_light.edge;
+    return *this;
+}
+
+BiasGrid default_bias_grid() {
+    const std::vector<double> doubling{0, 0.125, 0.25, 0.5, 1, 2, 4, 8, 16, 32, 64, 128};
+    return {doubling, doubling, {0, 1, 2, 4}};
+}
+
+const BiasCell& best_cell(const BiasStudy& study) {
+    return *std::ranges::min_element(study.cells, {}, [](const BiasCell& c) {
+        return std::tuple(c.errors.interior(), c.errors.edge(), c.constant + c.slope + c.normal_offset);
+    });
+}
+
+std::size_t better_cells(const BiasStudy& study) {
+    return static_cast<std::size_t>(std::ranges::count_if(
+        study.cells, [&](const BiasCell& c) { return c.errors.interior() < study.automatic.interior(); }));
+}
+
+BiasStudy add_up(const std::vector<BiasStudy>& studies) {
+    BiasStudy all = studies.at(0);
+    all.name      = "all";
+    all.title     = "All scenes";
+    all.lights.clear();
+    for (std::size_t k = 1; k < studies.size(); ++k) {
+        all.points += studies[k].points;
+        all.automatic += studies[k].automatic;
+        all.receiver_plane += studies[k].receiver_plane;
+        for (std::size_t i = 0; i < all.cells.size(); ++i) all.cells[i].errors += studies[k].cells[i].errors;
+    }
+    return all;
+}
+
+void check_bias_map(const std::string& settings, const BiasGrid& grid) {
+    const MethodChoice studied = choose(settings);
+    for (double offset : grid.normal_offsets)
+        (void)studied.info->make(with_bias(studied.settings, "manual", 0, 0, offset));
+}
+
+BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const BiasGrid& grid,
+                     const std::function<void(const std::string&)>& progress) {
+    check_bias_map(settings, grid);
+    const MethodChoice studied = choose(settings);
+    harden_lights(prepared);
+    const Scene& scene = prepared.scene;
+    BiasStudy study{scene.name, scene.title, {}, 0, {}, {}, {}};
+    for (const Light& light : scene.lights) study.lights.push_back(light.name);
+    for (double offset : grid.normal_offsets)
+        for (double slope : grid.slopes)
+            for (double constant : grid.constants) study.cells.push_back({constant, slope, offset, {}});
+
+    const Reference reference = default_reference(prepared.facts);
+    progress(fmt::format("{}: {}", scene.name, reference.choice.info->name));
+    MethodAtWork exact(reference.choice, scene, prepared.facts);
+    exact.look(prepared.points);
+    Lookups lookups(prepared, studied);
+    const auto bias = [&](std::string_view mode, double constant, double slope, double normal_offset) {
+        return with_bias(studied.settings, mode, constant, slope, normal_offset);
+    };
+    for (LightId light = 0; light < scene.lights.size(); ++light) {
+        const LightTruth truth = find_truth(exact, prepared.points, light);
+        study.points += static_cast<std::uint64_t>(
+            std::ranges::count_if(truth.place, [](LightTruth::Place p) { return p != LightTruth::Place::unjudged; }));
+        study.automatic += lookups.errors(light, truth, bias("auto", 0, 0, 0));
+        study.receiver_plane += lookups.errors(light, truth, bias("receiver_plane", 0, 0, 0));
+        for (BiasCell& cell : study.cells) {
+            if (cell.constant == 0 && cell.slope == 0)
+                progress(
+                    fmt::format("{}: {}, normal offset {}", scene.name, scene.lights[light].name, cell.normal_offset));
+            cell.errors += lookups.errors(light, truth, bias("manual", cell.constant, cell.slope, cell.normal_offset));
+        }
+    }
+    return study;
+}
+
+}  // namespace umbra

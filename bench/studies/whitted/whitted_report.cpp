@@ -1,0 +1,228 @@
+#include <fmt/format.h>
+
+#include <map>
+
+#include "report_assets.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/studies/whitted/whitted_study.h"
+
+namespace umbra {
+namespace {
+
+using Names = std::map<std::string, std::string>;
+
+const Names kAboutPhases{{"eye_rays", "What each eye ray meets, in packets of neighbouring rays: the raster"},
+                         {"secondary_rays", "What mirrored and refracted rays meet"},
+                         {"shadows", "S_j of all these points, and which lights are in front of them"},
+                         {"sums", "The sum at these points"},
+                         {"directions", "Where mirrored and refracted rays go"},
+                         {"gathering", "Adding intensities, from the last depth to the first"}},
+    kAboutWays{{"raster", "Eye rays from the raster, other rays from mirrors and glass alone"},
+               {"eye_rays", "Each eye ray by itself, other rays from mirrors and glass alone"},
+               {"everywhere", "Each eye ray by itself, mirrored rays from every surface"},
+               {"any_weight", "Eye rays from the raster, no ray too light"}},
+    kAboutKinds{{"eye", "eye rays"},
+                {"reflected", "reflected rays"},
+                {"refracted", "refracted rays"},
+                {"met", "rays that met a surface"},
+                {"shadow", "shadow rays"},
+                {"total_reflections", "total reflections"}},
+    kAboutPlaces{
+        {"regular", ""}, {"jittered", ", each anywhere in its part of the pixel"}, {"random", ", anywhere in it"}};
+
+std::string in(const Names& names, const std::string& name) {
+    const auto found = names.find(name);
+    return found == names.end() ? name : found->second;
+}
+
+std::string figure(const Json& value, int digits) {
+    return value.is_null() ? kNone : fmt::format("{:.{}f}", value.get<double>(), digits);
+}
+
+std::string how_many(const Json& value, const char* noun = "ray") { return counted(value.get<double>(), noun); }
+std::string digits(const Json& value) { return value.is_null() ? kNone : score(value.get<double>()); }
+std::string amount(const Json& value) { return count(value.get<double>()); }
+
+/// "RMSE 0.01 from the picture, FLIP 0.02".
+std::string errors_of(const Json& picture, const char* whole = "the picture") {
+    return fmt::format("RMSE {} from {}, FLIP {}", figure(picture["rmse"], 5), whole, figure(picture["flip"], 4));
+}
+
+/// The entries, each with what its name means.
+Json explained(Json entries, const Names& names) {
+    for (Json& entry : entries) entry["about"] = in(names, entry["name"]);
+    return entries;
+}
+
+/// Eye, reflected, refracted and shadow rays of all depths, and the time.
+std::string lead(const Json& record) {
+    std::string text;
+    for (const auto& [key, noun] : {std::pair{"eye", "eye ray"},
+                                    {"reflected", "reflected ray"},
+                                    {"refracted", "refracted ray"},
+                                    {"shadow", "shadow ray"}}) {
+        double all = 0;
+        for (const Json& d : record["depths"]) all += d[key].get<double>();
+        text += (text.empty() ? "" : ", ") + counted(all, noun);
+    }
+    return fmt::format("{}; {} ms without building.", text, figure(record["total_ms"], 1));
+}
+
+void show_picture(const Json& record, StudyReport& report) {
+    std::vector<StudyPicture>& seen = report.pictures["seen"];
+    seen.push_back(
+        {record["picture"], "The scene with mirrors and glass",
+         fmt::format("The picture: {} a pixel{}, up to depth {}.", how_many(record["pixel_samples"], "eye ray"),
+                     in(kAboutPlaces, record["pixel_places"]), amount(record["depth"]))});
+    seen.push_back({record["rays_picture"], "The scene, brighter where a pixel has more rays",
+                    fmt::format("Size of the tree of rays: black 1 ray an eye ray, white {:.3g}.",
+                                record["most_rays_a_pixel"].get<double>())});
+    if (const Json& blind = record["blind"]; !blind.is_null()) {
+        seen.push_back({blind["picture"], "The scene, coloured where light arrives by way of a mirror",
+                        fmt::format("Not seen: {} of diffuse surfaces to which a plane mirror sends light, {} of them "
+                                    "(orange) in shadow of that light.",
+                                    how_many(blind["points"], "pixel"), amount(blind["points_in_shadow"]))});
+        report.sentences.push_back({fmt::format("light by way of a plane mirror, not seen: {} pixels, {} of them in "
+                                                "shadow",
+                                                amount(blind["points"]), amount(blind["points_in_shadow"])),
+                                    Shown::in_terminal});
+    }
+    if (const Json& door = record["screen_door"]; !door.is_null()) {
+        seen.push_back({door["picture"], "The scene with surfaces drawn through a screen of eye rays",
+                        fmt::format("Screen door instead of blending: each eye ray sees a surface that lets light "
+                                    "through alone, or what is behind it alone. {}; {}. Surfaces of equal opacity hide "
+                                    "one another.",
+                                    how_many(door["rays"]), errors_of(door))});
+        report.sentences.push_back({fmt::format("screen door instead of blending: RMSE {}, {}", figure(door["rmse"], 5),
+                                                how_many(door["rays"])),
+                                    Shown::in_terminal});
+    }
+    if (const Json& single = record["single"]; !single.is_null())
+        seen.push_back({single["picture"], "The scene with one eye ray a pixel",
+                        fmt::format("One eye ray a pixel: {}.", errors_of(single))});
+    for (const Json& d : record["depths"])
+        report.pictures["depths"].push_back({d["picture"], "The scene with rays up to depth " + amount(d["depth"]),
+                                             fmt::format("Up to depth {}.", amount(d["depth"]))});
+}
+
+void show_tables(const Json& record, StudyReport& report) {
+    Json phases = explained(record["phases"], kAboutPhases);
+    for (Json& phase : phases) phase["percent"] = 100 * phase["fraction"].get<double>();
+    report.tables = {
+        {"depths",
+         "Rays and errors by depth",
+         {{"depth", "depth", kCount},
+          {.key = "eye", .head = "eye", .notation = kCount, .shown = Shown::in_terminal},
+          {"reflected", "reflected", kCount},
+          {"refracted", "refracted", kCount},
+          {"met", "met a surface", kCount},
+          {"left", "left", kCount},
+          {"shadow", "shadow rays", kCount},
+          {.key = "total_reflections", .head = "total reflections", .notation = kCount, .shown = Shown::on_page},
+          {"too_light", "too light", kCount},
+          {"too_deep", "too deep", kCount},
+          {"rmse", "RMSE", decimals(5)},
+          {.key = "flip", .head = "FLIP", .notation = decimals(4), .shown = Shown::on_page}},
+         record["depths"]},
+        {"phases",
+         "Time of the picture by phase",
+         {{.key = "name", .head = "phase", .shown = Shown::in_terminal},
+          {.key = "about", .head = "phase", .shown = Shown::on_page},
+          {"ms", "time", decimals(1), "ms"},
+          {"percent", "part", decimals(1), "%"}},
+         std::move(phases)},
+        {"ways",
+         "The picture with more rays than it requires",
+         {{.key = "name", .head = "way", .shown = Shown::in_terminal},
+          {.key = "about", .head = "rays", .shown = Shown::on_page},
+          {"rays", "traced", kCount},
+          {"ms", "time", decimals(1), "ms"},
+          {"different_pixels", "pixels that differ", kCount},
+          {.key = "max_difference", .head = "largest difference", .notation = kSignificant, .shown = Shown::on_page}},
+         explained(record["ways"], kAboutWays)}};
+}
+
+void show_formula(const Json& record, StudyReport& report) {
+    report.words["formula"] = Json::array();
+    const Json& formula     = record["formula"];
+    if (formula.is_null()) return;
+    const double boxes  = formula["bodies"]["boxes"].get<double>();
+    const Json& samples = formula["light_samples"];
+    report.words["formula"].push_back({{"spheres", how_many(formula["bodies"]["spheres"], "sphere")},
+                                       {"boxes", count(boxes) + (boxes == 1 ? " box" : " boxes")},
+                                       {"replaced", how_many(formula["triangles_replaced"], "triangle")},
+                                       {"left", how_many(formula["triangles_left"], "triangle")},
+                                       {"samples", samples.is_null() ? "" : amount(samples)}});
+    report.pictures["formula"] = {
+        {record["picture"], "The scene with its spheres and boxes as triangles",
+         fmt::format("Triangles: {} ms.", figure(record["total_ms"], 1))},
+        {formula["picture"], "The scene with its spheres and boxes by formula",
+         fmt::format("By formula: {}, {} ms; {}, largest difference {}.", how_many(formula["rays"]),
+                     figure(formula["ms"], 1), errors_of(formula, "the picture of triangles"),
+                     digits(formula["max_difference"]))}};
+    report.sentences.push_back(
+        {fmt::format("by formula (spheres: {}, boxes: {}, instead of {} triangles): {} ms; RMSE {}, FLIP {}, largest "
+                     "difference {}",
+                     amount(formula["bodies"]["spheres"]), count(boxes), amount(formula["triangles_replaced"]),
+                     figure(formula["ms"], 1), figure(formula["rmse"], 5), figure(formula["flip"], 4),
+                     fmt::format("{:.4g}", formula["max_difference"].get<double>())),
+         Shown::in_terminal});
+    StudyTable kinds{.name    = "formula",
+                     .caption = "Rays of all depths",
+                     .columns = {{.key = "kind", .head = "rays", .shown = Shown::in_terminal},
+                                 {.key = "about", .head = "rays", .shown = Shown::on_page},
+                                 {"triangles", "triangles", kCount},
+                                 {"formula", "by formula", kCount}},
+                     .rows    = Json::array()};
+    for (const auto& [kind, found] : formula["totals"].items())
+        kinds.rows.push_back({{"kind", kind},
+                              {"about", in(kAboutKinds, kind)},
+                              {"triangles", formula["totals_of_triangles"][kind]},
+                              {"formula", found}});
+    report.tables.push_back(std::move(kinds));
+}
+
+void show_search(const Json& search, StudyReport& report) {
+    report.words["search"] = Json::array();
+    if (search.is_null()) return;
+    report.words["search"].push_back({{"rays", amount(search["rays"])},
+                                      {"of", amount(search["of"])},
+                                      {"triangles", amount(search["triangles"])},
+                                      {"tree", digits(search["tree_us"])},
+                                      {"search", digits(search["search_us"])},
+                                      {"ratio", digits(search["ratio"])},
+                                      {"seconds", score(search["all_by_search_ms"].get<double>() / 1000)},
+                                      {"different", amount(search["different"])}});
+    report.sentences.push_back(
+        {fmt::format("a ray: {} µs by the tree of boxes, {} µs against all {} triangles ({} rays)",
+                     digits(search["tree_us"]), digits(search["search_us"]), amount(search["triangles"]),
+                     amount(search["rays"])),
+         Shown::in_terminal});
+}
+
+}  // namespace
+
+StudyReport whitted_report(const Json& record) {
+    const std::string title = record["scene"]["title"].get<std::string>();
+    const double undefined  = record["undefined"].get<double>();
+    StudyReport report{.title = "Ray tracing: " + title, .page = assets::whitted_html};
+    report.words = {{"title", title},
+                    {"lead", lead(record)},
+                    {"method", record["method"].is_null() ? Json("none") : record["method"]},
+                    {"warnings", record["scene"]["warnings"]},
+                    {"depth", amount(record["depth"])},
+                    {"least_weight", fmt::format("{:g}", record["least_weight"].get<double>())},
+                    {"has_mirrors", !record["blind"].is_null()},
+                    {"glossy", record["glossy"]},
+                    {"undefined", undefined > 0 ? count(undefined) : ""}};
+    show_tables(record, report);
+    show_search(record["search"], report);
+    show_picture(record, report);
+    show_formula(record, report);
+    if (undefined > 0)
+        report.sentences.push_back(
+            {fmt::format("S_j left undefined and taken as lit: {}", count(undefined)), Shown::in_terminal});
+    return report;
+}
+
+}  // namespace umbra

@@ -1,0 +1,435 @@
+#include "umbra/bench/studies/whitted/whitted_study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "umbra/bench/run/antialias.h"
+#include "umbra/bench/run/asked_method.h"
+#include "umbra/bench/studies/light/formula_scene.h"
+#include "umbra/bench/studies/light/mirrored_light.h"
+#include "umbra/bench/studies/light/whitted.h"
+#include "umbra/core/image/image_io.h"
+#include "umbra/core/image/metrics.h"
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/render/shade.h"
+#include "umbra/core/scene/uncomputed.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostTests = 1e8;  ///< of a ray and a triangle, in the search
+
+/// How a picture's rays are traced.
+enum class Way : std::uint8_t { raster, eye_rays, everywhere, any_weight };
+constexpr std::array kWays{Way::raster, Way::eye_rays, Way::everywhere, Way::any_weight};
+constexpr std::array<std::string_view, 4> kWayNames{"raster", "eye_rays", "everywhere", "any_weight"};
+
+/// A picture and where its time went, milliseconds.
+struct Traced {
+    RayTree tree;
+    TreeLight light;
+    Image linear;  ///< of pixels
+    double eye_ms = 0, gather_ms = 0;
+
+    [[nodiscard]] double ms() const {
+        return eye_ms + tree.trace_ms + tree.spawn_ms + tree.face_ms + light.shadow_ms + light.sum_ms + gather_ms;
+    }
+    [[nodiscard]] std::uint64_t rays() const {
+        std::uint64_t rays = 0;
+        for (const RayLevel& level : tree.levels) rays += level.counts.traced();
+        return rays;
+    }
+};
+
+/// All that the ways share.
+struct Study {
+    const PreparedScene& prepared;
+    const WhittedOptions& options;
+    const RayScene& rays;
+    int side;
+
+    [[nodiscard]] const Scene& scene() const { return prepared.scene; }
+    [[nodiscard]] int width() const { return prepared.points.raster->width; }
+    [[nodiscard]] int height() const { return prepared.points.raster->height; }
+    [[nodiscard]] Image picture(const Traced& traced, int depth) const {
+        return box_filtered(gather(scene(), traced.tree, traced.light, depth), side);
+    }
+    [[nodiscard]] Image shown(const Image& linear) const { return displayed(linear, scene().tone, scene().exposure); }
+    void say(const std::string& what) const {
+        if (options.progress) options.progress(what);
+    }
+};
+
+PointBatch eye_points(const Study& study, bool one_by_one) {
+    const int width = study.width(), height = study.height();
+    const EyePlaces places = study.options.places;
+    if (!one_by_one && places == EyePlaces::regular)
+        return subpixel_points(study.rays, study.scene(), width, height, study.side);
+    return trace_eye_rays(study.rays, study.scene(),
+                          frame(study.scene().camera, width * study.side, height * study.side), places, study.side);
+}
+
+Traced trace_once(const Study& study, Way way, AskedMethod& shadows, Transparency transparency = Transparency::blend) {
+    const TreeOptions options{.depth        = study.options.depth,
+                              .least_weight = way == Way::any_weight ? 0 : study.options.least_weight,
+                              .everywhere   = way == Way::everywhere,
+                              .transparency = transparency,
+                              .glossy       = study.options.glossy,
+                              .eye_places   = study.options.places,
+                              .side         = study.side};
+    Traced traced;
+    PointBatch eye;
+    traced.eye_ms = timed_ms([&] { eye = eye_points(study, way == Way::eye_rays || way == Way::everywhere); });
+    traced.tree   = trace_rays(study.rays, study.scene(), std::move(eye), options);
+    std::vector<std::vector<VisibilityPlane>> visibility;
+    const double shadow_ms = timed_ms([&] {
+        std::vector<const PointBatch*> batches;
+        for (const RayLevel& level : traced.tree.levels) batches.push_back(&level.points);
+        visibility = shadows.of(batches);
+    });
+    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
+    traced.light.shadow_ms = shadow_ms;
+    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
+    return traced;
+}
+
+/// The fastest of some runs; all make the same picture.
+Traced trace(const Study& study, Way way, AskedMethod& shadows) {
+    Traced fastest = trace_once(study, way, shadows);
+    for (int run = 1; run < study.options.runs; ++run)
+        if (Traced again = trace_once(study, way, shadows); again.ms() < fastest.ms()) fastest = std::move(again);
+    return fastest;
+}
+
+Json counts_json(std::size_t level, const RayCounts& counts) {
+    return {{"depth", level + 1},
+            {"eye", counts.eye},
+            {"reflected", counts.reflected},
+            {"refracted", counts.refracted},
+            {"met", counts.met},
+            {"left", counts.traced() - counts.met},
+            {"shadow", counts.shadow},
+            {"total_reflections", counts.total},
+            {"too_light", counts.too_light},
+            {"too_deep", counts.too_deep}};
+}
+
+/// Rays of all depths by kind.
+Json totals_json(const RayTree& tree) {
+    RayCounts all;
+    for (const RayLevel& level : tree.levels) {
+        all.eye += level.counts.eye, all.reflected += level.counts.reflected;
+        all.refracted += level.counts.refracted, all.shadow += level.counts.shadow;
+        all.met += level.counts.met, all.total += level.counts.total;
+    }
+    return {{"eye", all.eye}, {"reflected", all.reflected}, {"refracted", all.refracted},
+            {"met", all.met}, {"shadow", all.shadow},       {"total_reflections", all.total}};
+}
+
+Json depths_json(const Study& study, const Traced& traced, const fs::path& folder) {
+    Json depths        = Json::array();
+    const Image& whole = traced.linear;
+    const Image shown  = study.shown(whole);
+    for (std::size_t level = 0; level < traced.tree.levels.size(); ++level) {
+        const int depth        = static_cast<int>(level) + 1;
+        const Image linear     = study.picture(traced, depth);
+        const Image picture    = study.shown(linear);
+        const std::string file = fmt::format("depth_{}.png", depth);
+        write_image(folder / file, picture);
+        Json counts       = counts_json(level, traced.tree.levels[level].counts);
+        counts["rmse"]    = number(image_error(whole, linear).rmse);
+        counts["flip"]    = number(flip_ldr(shown, picture).mean);
+        counts["picture"] = file;
+        depths.push_back(std::move(counts));
+    }
+    return depths;
+}
+
+Json phases_json(const Traced& traced) {
+    Json phases      = Json::array();
+    const double all = traced.ms();
+    const auto add   = [&](const char* name, double ms) {
+        phases.push_back({{"name", name}, {"ms", number(ms)}, {"fraction", number(all > 0 ? ms / all : 0)}});
+    };
+    add("eye_rays", traced.eye_ms);
+    add("secondary_rays", traced.tree.trace_ms);
+    add("shadows", traced.tree.face_ms + traced.light.shadow_ms);
+    add("sums", traced.light.sum_ms);
+    add("directions", traced.tree.spawn_ms);
+    add("gathering", traced.gather_ms);
+    return phases;
+}
+
+Json way_json(Way way, const Traced& traced, const Traced& raster) {
+    const ImageError error = image_error(raster.linear, traced.linear);
+    return {{"name", kWayNames[static_cast<std::size_t>(way)]},
+            {"rays", traced.rays()},
+            {"ms", number(traced.ms())},
+            {"different_pixels", error.differing},
+            {"max_difference", number(error.max)}};
+}
+
+/// Whether a ray meets both triangles, or none, at one place: at an edge it may meet either neighbour.
+bool same_place(const Scene& scene, const Ray& ray, TriangleId one, TriangleId other) {
+    if (one == other) return true;
+    if (one == kNoTriangle || other == kNoTriangle) return false;
+    return std::abs(distance_to_plane(scene, ray, one) - distance_to_plane(scene, ray, other)) <=
+           1e-6 * static_cast<double>(bounds(scene).diagonal());
+}
+
+/// Secondary rays by the tree of boxes and against every triangle, one thread each.
+Json search_json(const Study& study, const RayTree& tree) {
+    std::size_t all = 0;
+    for (std::size_t level = 1; level < tree.levels.size(); ++level) all += tree.levels[level].rays.size();
+    if (all == 0) return {};
+    const std::size_t triangles = study.scene().triangles.size();
+    const auto most             = static_cast<std::size_t>(kMostTests / static_cast<double>(triangles));
+    const std::size_t step      = std::max<std::size_t>(1, all / std::clamp<std::size_t>(most, 1, 100'000));
+    std::vector<Ray> sample;
+    std::size_t next = 0, at = 0;
+    for (std::size_t level = 1; level < tree.levels.size(); ++level)
+        for (std::size_t i = 0; i < tree.levels[level].rays.size(); ++i, ++at)
+            if (at == next) {
+                sample.push_back(secondary_ray(study.scene(), tree, level, i));
+                next += step;
+            }
+    std::vector<TriangleId> by_tree(sample.size()), by_search(sample.size());
+    const auto run_tree = [&] {
+        const FlushDenormals flush;
+        for (std::size_t k = 0; k < sample.size(); ++k) by_tree[k] = first_by_tree(study.rays, sample[k]);
+    };
+    run_tree();  // fills the caches
+    const double tree_ms   = timed_ms(run_tree),
+                 search_ms = timed_ms([&] {
+                     for (std::size_t k = 0; k < sample.size(); ++k)
+                         by_search[k] = first_by_search(study.rays, study.scene(), sample[k]);
+                 });
+    std::size_t different  = 0;
+    for (std::size_t k = 0; k < sample.size(); ++k)
+        different += same_place(study.scene(), sample[k], by_tree[k], by_search[k]) ? 0 : 1;
+    const auto rays = static_cast<double>(sample.size());
+    return {{"triangles", triangles},
+            {"rays", sample.size()},
+            {"of", all},
+            {"tree_us", number(1000 * tree_ms / rays)},
+            {"search_us", number(1000 * search_ms / rays)},
+            {"ratio", tree_ms > 0 ? number(search_ms / tree_ms) : Json()},
+            {"all_by_search_ms", number(search_ms / rays * static_cast<double>(all))},
+            {"different", different}};
+}
+
+/// Rays a pixel, black 1, white the most.
+Image ray_picture(const Study& study, const RayTree& tree, double& most) {
+    const std::vector<std::uint32_t> rays = rays_by_eye_ray(tree);
+    Image fine(study.width() * study.side, study.height() * study.side, {"R", "G", "B"});
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) fine.at(i, c) = static_cast<float>(rays[i]);
+    Image image       = box_filtered(fine, study.side);
+    most              = static_cast<double>(*std::ranges::max_element(image.data));
+    const float range = static_cast<float>(std::max(most - 1, 1.0));
+    for (float& value : image.data) value = srgb_from_linear(std::clamp((value - 1) / range, 0.0f, 1.0f));
+    return image;
+}
+
+bool is_diffuse(const Material& material) { return material.k_d * material.O_d != vec3(0); }
+
+/// Pixel centres that lights reach over plane mirrors, orange where S_j of such a light is 0, in a dim picture.
+Json blind_json(const Study& study, AskedMethod& shadows, const Image& shown, const fs::path& folder) {
+    const PointBatch& points              = study.prepared.points;
+    const std::vector<MirrorPlane> planes = mirror_planes(study.scene());
+    if (planes.empty()) return {};
+    const std::vector<VisibilityPlane> straight = shadows(points);
+    std::vector<std::uint8_t> reached(points.size(), 0), dark(points.size(), 0);
+    for (LightId j = 0; j < study.scene().lights.size(); ++j) {
+        const std::vector<std::uint8_t> lit = lit_by_mirrors(study.rays, study.scene(), points, j, planes);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (lit[i] == 0 || !is_diffuse(study.scene().material(points.triangle[i]))) continue;
+            reached[i] = 1;
+            if (!points.faces(j, i) || (straight[j].defined(i) && straight[j].s[i] == 0)) dark[i] = 1;
+        }
+    }
+    Image map = shown;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const vec3 orange(0.9f, 0.6f, 0.0f), pale(0.34f, 0.71f, 0.91f);
+        for (int c = 0; c < 3; ++c) {
+            float& value = map.at(i, static_cast<std::size_t>(c));
+            value        = 0.4f * value + (reached[i] != 0 ? 0.6f * (dark[i] != 0 ? orange : pale)[c] : 0.0f);
+        }
+    }
+    write_image(folder / "blind.png", map);
+    const auto marked = [](const std::vector<std::uint8_t>& marks) {
+        return static_cast<std::uint64_t>(std::ranges::count(marks, std::uint8_t{1}));
+    };
+    return {{"planes", planes.size()},
+            {"points", marked(reached)},
+            {"points_in_shadow", marked(dark)},
+            {"picture", "blind.png"}};
+}
+
+/// Null where the eye sees through no surface.
+Json screen_door_json(const Study& study, const Traced& blended, AskedMethod& shadows, const Image& shown,
+                      const fs::path& folder) {
+    if (std::ranges::all_of(blended.tree.levels, [](const RayLevel& level) { return level.own.empty(); })) return {};
+    const Traced traced = trace_once(study, Way::raster, shadows, Transparency::screen_door);
+    const Image picture = study.shown(traced.linear);
+    write_image(folder / "screen_door.png", picture);
+    return {{"rmse", number(image_error(blended.linear, traced.linear).rmse)},
+            {"flip", number(flip_ldr(shown, picture).mean)},
+            {"rays", traced.rays()},
+            {"ms", number(traced.ms())},
+            {"picture", "screen_door.png"}};
+}
+
+/// The picture of one eye ray a pixel, of those that the whole has. Null where it has no more.
+Json single_json(const Study& study, const Traced& traced, const Image& shown, const fs::path& folder) {
+    if (study.side == 1) return {};
+    const Image fine = gather(study.scene(), traced.tree, traced.light, study.options.depth);
+    Image linear(study.width(), study.height(), fine.channels);
+    const auto side = static_cast<std::size_t>(study.side), width = static_cast<std::size_t>(study.width());
+    for (std::size_t i = 0; i < traced.linear.data.size() / 3; ++i) {
+        const std::size_t x = i % width * side + side / 2, y = i / width * side + side / 2;
+        for (std::size_t c = 0; c < 3; ++c) linear.at(i, c) = fine.at(y * width * side + x, c);
+    }
+    const Image picture = study.shown(linear);
+    write_image(folder / "single.png", picture);
+    return {{"rmse", number(image_error(traced.linear, linear).rmse)},
+            {"flip", number(flip_ldr(shown, picture).mean)},
+            {"picture", "single.png"}};
+}
+
+/// The picture in which rays meet bodies by formula.
+Traced trace_formula(const Study& study, const FormulaScene& bodies) {
+    const TreeOptions options{.depth        = study.options.depth,
+                              .least_weight = study.options.least_weight,
+                              .glossy       = study.options.glossy,
+                              .eye_places   = study.options.places,
+                              .side         = study.side};
+    const CameraFrame raster = frame(study.scene().camera, study.width() * study.side, study.height() * study.side);
+    Traced traced;
+    traced.tree = bodies.trace(raster, options);
+    std::vector<std::vector<VisibilityPlane>> visibility;
+    const double shadow_ms = timed_ms([&] {
+        for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
+            visibility.push_back(study.options.method
+                                     ? bodies.visibility(traced.tree, level)
+                                     : lit_everywhere(study.scene(), traced.tree.levels[level].points));
+    });
+    traced.light           = light_of_rays(study.scene(), traced.tree, visibility);
+    traced.light.shadow_ms = shadow_ms;
+    traced.gather_ms       = timed_ms([&] { traced.linear = study.picture(traced, study.options.depth); });
+    return traced;
+}
+
+/// Null without bodies.
+Json formula_json(const Study& study, const Traced& triangles, const Image& shown, const fs::path& folder) {
+    if (!study.options.bodies) return {};
+    const Bodies& bodies = *study.options.bodies;
+    std::optional<FormulaScene> scene;
+    const double build_ms = timed_ms([&] { scene.emplace(study.scene(), bodies); });
+    Traced traced         = trace_formula(study, *scene);
+    for (int run = 1; run < study.options.runs; ++run)
+        if (Traced again = trace_formula(study, *scene); again.ms() < traced.ms()) traced = std::move(again);
+    const Image picture = study.shown(traced.linear);
+    write_image(folder / "formula.png", picture);
+    const ImageError error = image_error(triangles.linear, traced.linear);
+    const bool sampled     = study.options.method && std::ranges::any_of(study.scene().lights, is_area, &Light::kind);
+    Json depths            = Json::array();
+    for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
+        depths.push_back(counts_json(level, traced.tree.levels[level].counts));
+    return {{"bodies", {{"spheres", bodies.count(BodyKind::sphere)}, {"boxes", bodies.count(BodyKind::box)}}},
+            {"triangles_replaced", bodies.triangles()},
+            {"triangles_left", study.scene().triangles.size() - bodies.triangles()},
+            {"light_samples", sampled ? Json(kFormulaLightSamples) : Json()},
+            {"depths", std::move(depths)},
+            {"totals", totals_json(traced.tree)},
+            {"totals_of_triangles", totals_json(triangles.tree)},
+            {"rays", traced.rays()},
+            {"build_ms", number(build_ms)},
+            {"ms", number(traced.ms())},
+            {"rmse", number(error.rmse)},
+            {"max_difference", number(error.max)},
+            {"flip", number(flip_ldr(shown, picture).mean)},
+            {"picture", "formula.png"}};
+}
+
+}  // namespace
+
+void correct_warnings(Scene& scene) {
+    for (const UncomputedTerm& term : find_uncomputed(scene)) {
+        if (term.term == kCutout) continue;
+        const std::string beginning = fmt::format("The {} is not computed", in_words(term));
+        std::erase_if(scene.warnings, [&](const std::string& w) { return w.starts_with(beginning); });
+    }
+}
+
+std::string refusal_of(const MethodInfo& method) {
+    if (!method.needs_raster) return "";
+    return "it answers for the points of a raster alone, and what mirrors and glass show lies elsewhere";
+}
+
+Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options, const fs::path& folder) {
+    const int side = samples_along_side(options.pixel_samples);
+    check_memory(prepared.scene, prepared.scene.source, prepared.points.raster->width, prepared.points.raster->height,
+                 options.pixel_samples, Work::picture);
+    double rays_ms = 0, method_ms = 0;
+    std::optional<RayScene> rays;
+    rays_ms = timed_ms([&] { rays.emplace(prepared.scene); });
+    std::optional<AskedMethod> shadows;
+    method_ms = timed_ms([&] { shadows.emplace(prepared.scene, prepared.facts, options.method); });
+    const Study study{prepared, options, *rays, side};
+
+    study.say("tracing");
+    const Traced raster = trace(study, Way::raster, *shadows);
+    const Image shown   = study.shown(raster.linear);
+    write_image(folder / "whitted.png", shown);
+    double most_rays = 0;
+    write_image(folder / "rays.png", ray_picture(study, raster.tree, most_rays));
+
+    Json ways = Json::array();
+    for (const Way way : kWays) {
+        study.say(fmt::format("tracing: {}", kWayNames[static_cast<std::size_t>(way)]));
+        ways.push_back(way_json(way, way == Way::raster ? raster : trace(study, way, *shadows), raster));
+    }
+    study.say("testing every triangle");
+    Json search = search_json(study, raster.tree);
+    Json blind  = blind_json(study, *shadows, shown, folder);
+    Json door   = screen_door_json(study, raster, *shadows, shown, folder);
+    Json single = single_json(study, raster, shown, folder);
+    if (options.bodies) study.say("tracing: formula");
+    Json formula = formula_json(study, raster, shown, folder);
+    return {{"schema", kResultsSchema},
+            {"version", version()},
+            {"command", options.command},
+            {"scene", scene_json(prepared.scene)},
+            {"method", options.method ? Json(options.method->text()) : Json()},
+            {"depth", options.depth},
+            {"least_weight", number(options.least_weight)},
+            {"pixel_samples", options.pixel_samples},
+            {"pixel_places", to_string(options.places)},
+            {"glossy", options.glossy},
+            {"picture", "whitted.png"},
+            {"rays_picture", "rays.png"},
+            {"most_rays_a_pixel", number(most_rays)},
+            {"undefined", raster.light.undefined},
+            {"depths", depths_json(study, raster, folder)},
+            {"build_ms", {{"tree_of_boxes", number(rays_ms)}, {"method", number(method_ms)}}},
+            {"total_ms", number(raster.ms())},
+            {"phases", phases_json(raster)},
+            {"ways", std::move(ways)},
+            {"search", std::move(search)},
+            {"blind", std::move(blind)},
+            {"screen_door", std::move(door)},
+            {"single", std::move(single)},
+            {"formula", std::move(formula)}};
+}
+
+}  // namespace umbra
