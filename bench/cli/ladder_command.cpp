@@ -160,7 +160,7 @@ Json climb_ladders(const LadderOptions& options) {
             LadderRun& run = *climbed[i].run;
             if (run.methods.size() > 1) {
                 progress(fmt::format("{}: times", ladder->name));
-                run.first_rung_ms = time_first_rung(*ladder, run.methods);
+                run.first_rung_ms = time_first_rung(*ladder, run.methods, {.most = options.budget});
             }
             Json entry = ladder_json(run);
             for (Json& failed : failed_climbs_json(run)) record["failed"].push_back(std::move(failed));

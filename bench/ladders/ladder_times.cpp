@@ -11,6 +11,7 @@ std::vector<std::vector<double>> time_first_rung(const Ladder& ladder, std::span
     TurnOptions turns;
     turns.rounds           = options.rounds;
     turns.budget_ms        = options.budget_ms;
+    turns.most             = options.most;
     turns.share_builds     = false;
     turns.calibration_loop = [] {};  // ratios within one run need none
     std::vector<std::vector<double>> times;

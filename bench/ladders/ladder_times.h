@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/run/budget.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -12,6 +13,7 @@ namespace umbra {
 struct LadderTurns {
     int rounds       = 6;    ///< at most
     double budget_ms = 600;  ///< for all methods together, without their first runs
+    Budget most{};           ///< of each run of a method: one that takes more is not timed
 };
 
 /// [method][round]: milliseconds of build, aim and visibility over all lights, as time_in_turns measures them: samples

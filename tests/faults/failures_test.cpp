@@ -173,8 +173,19 @@ TEST_F(Failures, ACellThatIsCutShortIsNotKept) {
     EXPECT_FALSE(settings()[0].contains("failed"));
 }
 
-TEST_F(Failures, MotionGoesOnWithoutWhatIsCutShort) {
-    const std::string plant    = "shadow_volumes visibility - hang";
+TEST_F(Failures, LaddersAndMotionGoOnWithoutWhatIsCutShort) {
+    const std::string plant = "shadow_volumes visibility - hang";
+    EXPECT_EQ(planted(plant, "ladder thin_walls --methods shadow_volumes planar_projection --budget 2 --quiet -o out")
+                  .exit_code,
+              0);
+    const json ladder = json_of(file("out/results.json"))["ladders"][0];
+    for (const json& rung : ladder["methods"][0]["rungs"]) {
+        EXPECT_EQ(rung["serves"]["how"], "not");
+        EXPECT_TRUE(contains(rung["serves"]["why"], "cut short after")) << rung;
+    }
+    EXPECT_EQ(ladder["methods"][0]["not_served_from"], ladder["rungs"][0]["value"]);
+    EXPECT_NE(ladder["methods"][1]["rungs"][0]["serves"]["how"], "not");
+
     const ProgramAnswer motion = planted(plant,
                                          "motion hard/first.json --methods shadow_volumes planar_projection "
                                          "--frames 1 --size 32x18 --budget 2 --quiet -o moved");
