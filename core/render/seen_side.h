@@ -3,12 +3,9 @@
 
 #include <cmath>
 
-#include "umbra/core/base/math.h"
+#include "umbra/core/base/rounding.h"
 
 namespace umbra {
-
-inline double sum_of_magnitudes(double x, double y, double z) { return std::abs(x) + std::abs(y) + std::abs(z); }
-inline double sum_of_magnitudes(dvec3 v) { return sum_of_magnitudes(v.x, v.y, v.z); }
 
 /// Whether the cross product of a triangle's sides, `length` long, has kept its direction: each component is off by a
 /// few roundings of `sides`, the product of their magnitudes. Of a sliver it may be noise.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/rounding.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/core/render/light_points.h"
 #include "umbra/shadows/geometry/exact_sight.h"
@@ -41,8 +42,6 @@ const std::vector<Parameter> kParameters{
                                         .min   = 1,
                                         .max   = 50000000}),
 };
-
-double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// A sign, -1 or 1; open where rounding may have made it.
 struct Sign {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "umbra/core/base/rounding.h"
 #include "umbra/shadows/exact/horizon.h"
 
 namespace umbra::exact_visibility {
@@ -44,7 +45,7 @@ int side_of(const LightHalf& g, const Corner& c) {
     const dvec3 terms  = g.near * c.near;
     const double value = terms.x + terms.y + terms.z;
     // Each term is off by five roundings, and the sum by two more.
-    const double bound = 16 * 0x1p-53 * (std::abs(terms.x) + std::abs(terms.y) + std::abs(terms.z));
+    const double bound = 16 * 0x1p-53 * sum_of_magnitudes(terms);
     if (g.is_near && c.is_near && value > bound) return 1;
     if (g.is_near && c.is_near && value < -bound) return -1;
     return static_cast<int>(CGAL::sign(dot(g.exact, c.exact)));

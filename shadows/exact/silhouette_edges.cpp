@@ -1,6 +1,7 @@
 #include "umbra/shadows/exact/silhouette_edges.h"
 
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/base/rounding.h"
 #include "umbra/shadows/exact/edge_lanes.h"
 
 namespace umbra::exact_visibility {
@@ -97,7 +98,7 @@ bool SilhouetteEdges::cancels_around(const Viewpoint& viewpoint, const Candidate
     for (std::uint32_t k = 0; k < 2; ++k) {
         const dvec3 n(edge.normal[k]);
         const double over = glm::dot(d.value, n);
-        if (!(std::abs(over) > sure + around * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z)))) return false;
+        if (!(std::abs(over) > sure + around * sum_of_magnitudes(n))) return false;
         change += (over > 0) == (uses(edge)[k].forward != 0) ? 1 : -1;
     }
     return change == 0;
@@ -147,7 +148,7 @@ UMBRA_FOR_EACH_PROCESSOR void SilhouetteEdges::pick(const Viewpoint& viewpoint, 
     std::array<RegionPlane, 5> planes;
     for (std::size_t k = 0; k < planes.size(); ++k) {
         const dvec3 n     = region.planes[k].normal;
-        const double size = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+        const double size = sum_of_magnitudes(n);
         planes[k]         = {float(n.x / size),
                              float(n.y / size),
                              float(n.z / size),

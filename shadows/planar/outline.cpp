@@ -10,6 +10,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/base/rounding.h"
 
 namespace umbra::planar {
 namespace {

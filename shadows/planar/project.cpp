@@ -7,6 +7,7 @@
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/predicates.h"
+#include "umbra/core/base/rounding.h"
 #include "umbra/core/render/light_points.h"
 #include "umbra/core/render/sampling.h"
 #include "umbra/shadows/geometry/point_tree.h"
@@ -238,8 +239,6 @@ EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, doubl
     const dvec3 n = sign * glm::cross(source.at_infinity ? -source.at : from - source.at, to - from);
     return {n.x, n.y, -glm::dot(n, from)};
 }
-
-double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 double farthest(const Reach& reach) {
     const dvec2 far = glm::max(glm::abs(reach.low), glm::abs(reach.high));

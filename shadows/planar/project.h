@@ -129,8 +129,6 @@ struct EdgeFunction {
 /// det(from - source, to - from, p - from) times `sign`. Both triangles of an edge get the same, of opposite signs.
 [[nodiscard]] EdgeFunction side_of_edge(const LocalSource& source, dvec3 from, dvec3 to, double sign);
 
-[[nodiscard]] double sum_of_magnitudes(dvec3 v);
-
 /// A bound on the magnitudes of the points that may be asked: |x| + |y|, twice.
 [[nodiscard]] double farthest(const Reach& reach);
 

@@ -19,6 +19,7 @@
 #include <tuple>
 
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/base/rounding.h"
 #include "umbra/core/render/facing.h"
 #include "umbra/shadows/geometry/exact_sight.h"
 #include "umbra/shadows/method.h"
@@ -165,8 +166,6 @@ struct Sight final : Built {
     [[nodiscard]] std::size_t memory_bytes() const override { return exact.memory_bytes(); }
     const ExactSight exact;
 };
-
-double sum_of_magnitudes(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// The shadows of all triangles for one light.
 class Shadows final : public Aimed {

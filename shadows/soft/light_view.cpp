@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "umbra/core/base/lanes.h"
+#include "umbra/core/base/rounding.h"
 
 namespace umbra::soft {
 namespace {
@@ -18,9 +19,6 @@ constexpr double kRounded  = 0x1p-20;       ///< more than rounding moves a poin
 constexpr double kFar      = 0x1p60;        ///< of lights farther than this nothing is projected
 constexpr double kEnd      = rays::kTraced;  ///< W where rays end
 constexpr double kEndDoubt = 0x1p-18;        ///< of W where a ray meets a triangle: 64 roundings
-
-/// At least the length.
-double size(dvec3 v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
 
 /// A segment's part, from its beginning 0 to its end 1.
 struct Stretch {
@@ -111,9 +109,10 @@ std::optional<FlatEdge> LightView::flatten(const LightEdge& edge) const {
     const dvec3 first = dvec3(edge.a) - o_, last = dvec3(edge.b) - o_, e = last - first, s = first + last;
     const dvec3 n      = glm::cross(e, s);
     const double slope = std::abs(glm::dot(n, u_)) + std::abs(glm::dot(n, v_));  // of (e x s) . d, at most its root 2
-    const double far   = std::max(size(first), size(last));
-    const double doubt =
-        16 * kUnit * (kReach + span_ * stretch_ + far * stretch_ / least + 2 * size(e) * (size(s) + 2) * span_ / slope);
+    const double far   = std::max(sum_of_magnitudes(first), sum_of_magnitudes(last));
+    const double doubt = 16 * kUnit *
+                         (kReach + span_ * stretch_ + far * stretch_ / least +
+                          2 * sum_of_magnitudes(e) * (sum_of_magnitudes(s) + 2) * span_ / slope);
     if (!(doubt < kDoubt)) return std::nullopt;
 
     flat.is_there = true;

@@ -22,6 +22,7 @@
 
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/base/math.h"
+#include "umbra/core/base/rounding.h"
 #include "umbra/core/render/ray.h"
 #include "umbra/shadows/geometry/box_tree.h"
 #include "umbra/shadows/geometry/edges.h"
@@ -62,7 +63,7 @@ public:
     /// Plane `plane` of a lane: dot(normal, q - from) + offset >= 0.
     void set(std::size_t lane, std::size_t plane, dvec3 normal, dvec3 from, double offset) {
         // Coordinates are within 2 each way. A normal's component is rounded, and so are its product, and three sums.
-        const double size  = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
+        const double size  = sum_of_magnitudes(normal);
         const double slack = 0x1p-19 * (4 * size + std::abs(offset));
         x_[plane][lane] = static_cast<float>(normal.x), y_[plane][lane] = static_cast<float>(normal.y),
         z_[plane][lane]      = static_cast<float>(normal.z);
