@@ -101,7 +101,7 @@ std::string largest_in_words(const Metric& metric, const std::vector<Json>& view
 
 std::string open_in_words(const Candidate& c) {
     const double open = most_undefined(c);
-    return open > 0 ? fmt::format("    errors are of the points that it answers: all but {:.2g} %\n", 100 * open) : "";
+    return open > 0 ? fmt::format("    errors are of the points that it answers: all but {:.3g} %\n", 100 * open) : "";
 }
 
 std::string errors_in_words(const Candidate& c, const RecommendOptions& options) {

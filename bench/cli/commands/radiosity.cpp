@@ -45,7 +45,7 @@ Action radiosity_command(CLI::App& app, const Common& common) {
         ->check(number_in(0, 1e6, "an integer from 0 to 1000000"))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--until", options.until, "End where no more than this share of the power is unshot")
+    app.add_option("--until", options.until, "End where no more than this fraction of the power is unshot")
         ->check(number_in(0, 1, "a number from 0 to 1"))
         ->capture_default_str()
         ->type_name("SHARE");

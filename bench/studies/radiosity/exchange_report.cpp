@@ -33,9 +33,9 @@ StudyReport exchange_report(const Json& record) {
             .page      = assets::radiosity_html,
             .tables    = {std::move(convergence)},
             .pictures  = {{"light", std::move(light)}},
-            .curves    = {{"steps", "share of the power unshot", "Convergence: what was not sent yet.",
+            .curves    = {{"steps", "fraction of the power unshot", "Convergence: what was not sent yet.",
                            record["unshot"].get<std::vector<double>>()}},
-            .sentences = {{fmt::format("{} patches, {} steps, {:.2g} % of the power unshot",
+            .sentences = {{fmt::format("{} patches, {} steps, {:.3g} % of the power unshot",
                                        count(record["patches"].get<double>()), count(record["steps"].get<double>()),
                                        100 * record["unshot"].back().get<double>())}},
             .words = {{"title", title}, {"arrived", fmt::format("{:.1f} %", 100 * record["arrived"].get<double>())}}};

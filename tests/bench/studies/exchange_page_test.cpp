@@ -68,15 +68,15 @@ TEST(LightExchange, PicturesOfAGlowingRoomAreEven) {
 
 TEST(LightExchange, PageShowsTheRecord) {
     const TemporaryFolder folder;
-    const Json record = {{"schema", 1},
-                         {"version", "1"},
-                         {"command", "umbra radiosity"},
-                         {"scene", {{"title", "T"}}},
-                         {"patches", 1234},
-                         {"steps", 2},
-                         {"unshot", {1.0, 0.1, 0.01}},
-                         {"arrived", 0.625},
-                         {"elements", {{{"light", "lamp"}, {"picture", "elements_1.png"}}}}};
+    Json record = {{"schema", 1},
+                   {"version", "1"},
+                   {"command", "umbra radiosity"},
+                   {"scene", {{"title", "T"}}},
+                   {"patches", 1234},
+                   {"steps", 2},
+                   {"unshot", {1.0, 0.1, 0.01}},
+                   {"arrived", 0.625},
+                   {"elements", {{{"light", "lamp"}, {"picture", "elements_1.png"}}}}};
     StagedFiles staged;
     write_study_page(exchange_report(record), record, folder.path(), staged);
     staged.commit();
@@ -87,6 +87,12 @@ TEST(LightExchange, PageShowsTheRecord) {
     // From the upper left corner to the lower right one: two decades over two steps.
     EXPECT_NE(page.find("d=\"M64.0 14.0L247.0 132.0L430.0 250.0\""), std::string::npos)
         << page.substr(page.find("class=\"line\""), 200);
+
+    record["unshot"] = {1.0, 0.9996};
+    StagedFiles again;
+    write_study_page(exchange_report(record), record, folder.path(), again);
+    again.commit();
+    EXPECT_NE(text_of(folder.path() / "index.html").find("2 steps, 100 % of the power unshot"), std::string::npos);
 }
 
 }  // namespace
