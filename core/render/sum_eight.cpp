@@ -83,8 +83,9 @@ bool PhongSum::has_lanes(std::span<const VisibilityPlane> visibility) const {
            std::ranges::all_of(visibility, [](const VisibilityPlane& plane) { return plane.colour.empty(); });
 }
 
+// The next and add_light are compiled apart: in one function, g++ makes no vector code of half of their loops.
 /// Positions, normals, directions to the eye, and the terms of the objects.
-void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight& e) const {
+UMBRA_FOR_EACH_PROCESSOR void PhongSum::load_surfaces(const PointBatch& points, std::size_t first, Eight& e) const {
     Lanes3 face, corner[3];
     Doubles share[3];
     if (e.which == kAll) {
@@ -196,8 +197,8 @@ bool PhongSum::load_visibility(std::size_t j, const PointBatch& points, std::siz
 }
 
 /// S_j f_att,j I_j (k_d O_d (N.L) + k_s O_s (R.V)^n) of light j.
-void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t first, const VisibilityPlane& visibility,
-                         Eight& e) const {
+UMBRA_FOR_EACH_PROCESSOR void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t first,
+                                                  const VisibilityPlane& visibility, Eight& e) const {
     const Light& light = scene_->lights[j];
     Doubles s;  // 0: nothing to add
     if (!load_visibility(j, points, first, visibility, e, s)) return;
@@ -295,8 +296,8 @@ void PhongSum::add_light(std::size_t j, const PointBatch& points, std::size_t fi
     add(e.sum.z, e.diffuse.z, e.specular.z, light.diffuse.z, light.specular.z);
 }
 
-UMBRA_FOR_EACH_PROCESSOR void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned which,
-                                                 std::span<const VisibilityPlane> visibility, float* rgb) const {
+void PhongSum::at_eight(const PointBatch& points, std::size_t first, unsigned which,
+                        std::span<const VisibilityPlane> visibility, float* rgb) const {
     const auto write = [&](int k, float r, float g, float b) {
         float* const to = rgb + 3 * (first + static_cast<std::size_t>(k));
         to[0] = r, to[1] = g, to[2] = b;
