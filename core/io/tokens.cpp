@@ -36,7 +36,10 @@ std::string lowered(std::string_view text) {
 Tokens::Tokens(const SourceText& source, std::size_t begin, bool commas)
     : source_(source), at_(begin), commas_(commas && source.text.find(',') != source.text.npos) {
     constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-    if (begin == 0 && source.text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+    if (begin != 0) return;
+    if (source.text.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+    if (source.text.starts_with("\xff\xfe") || source.text.starts_with("\xfe\xff"))
+        source.fail(0, "the file is in UTF-16, expected UTF-8 or ASCII");
 }
 
 bool Tokens::is_blank(char c) const {

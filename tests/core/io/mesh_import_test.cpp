@@ -458,6 +458,29 @@ TEST(Ply, AnyNumberOfElementsWithoutPropertiesIsNothing) {
     EXPECT_EQ(scene.triangles.size(), 2u);
 }
 
+// As some shells write what a program prints. No reader guesses at it.
+TEST(TextFormats, FilesInUtf16AreNamedSo) {
+    const TemporaryFolder folder;
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const auto& [name, text] :
+         {std::pair{"a.obj", obj}, {"a.off", kOff}, {"a.nff", std::string("v\nfrom 0 0 1\n")}})
+        for (const bool little : {true, false}) {
+            std::string wide = little ? "\xff\xfe" : "\xfe\xff";
+            for (const char c : text) {
+                wide += little ? c : '\0';
+                wide += little ? '\0' : c;
+            }
+            try {
+                (void)load_scene(folder.write(name, wide));
+                ADD_FAILURE() << name << " is read";
+            } catch (const InputError& error) {
+                EXPECT_NE(std::string(error.what()).find("the file is in UTF-16, expected UTF-8 or ASCII"),
+                          std::string::npos)
+                    << error.what();
+            }
+        }
+}
+
 TEST(Off, Mutants) { expect_survives_mutants("off", {kOff}); }
 TEST(Ply, Mutants) { expect_survives_mutants("ply", {kPly, binary_ply(false), binary_ply(true)}); }
 TEST(Stl, Mutants) { expect_survives_mutants("stl", {kStl, binary_stl(2, 2)}); }
