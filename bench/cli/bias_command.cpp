@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/bench/studies/bias/bias_report.h"
 #include "umbra/core/base/error.h"
 
@@ -74,17 +74,15 @@ Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOpt
             failures.push_back({{"scene", name}, {"method", "the study"}, {"message", current_message()}});
         }
     }
-    Json record = {{"schema", kResultsSchema},
-                   {"version", version()},
-                   {"command", options.command},
-                   {"machine", machine_json(options.threads)},
+    Json record = to_record(head_record(options.command));
+    record.update({{"machine", to_record(machine_record(options.threads))},
                    {"size", {{"width", options.size.width}, {"height", options.size.height}}},
                    {"map", options.map},
                    {"constants", grid.constants},
                    {"slopes", grid.slopes},
                    {"normal_offsets", grid.normal_offsets},
                    {"bias", Json::array()},
-                   {"failed", std::move(failures)}};
+                   {"failed", std::move(failures)}});
     if (studies.empty()) return record;
     if (studies.size() > 1) studies.insert(studies.begin(), add_up(studies));
     for (const BiasStudy& study : studies) record["bias"].push_back(study_json(study, grid));

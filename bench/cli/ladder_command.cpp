@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "umbra/bench/ladders/ladder_break.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
@@ -19,7 +19,6 @@
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
@@ -50,13 +49,12 @@ std::vector<MethodChoice> default_methods(bool only_by_default) {
     return chosen;
 }
 
-/// Writes the scene that breaks a method, and its pictures.
-void add_break(Json& method, const std::filesystem::path& folder, const LadderRun& run, std::size_t m) {
+/// What the files of a break are named by.
+std::string break_name(const LadderRun& run, std::size_t m) {
     const auto same = std::count_if(run.methods.begin(), run.methods.begin() + std::ptrdiff_t(m),
                                     [&](const MethodChoice& other) { return other.info == run.methods[m].info; });
-    const std::string name =
-        fmt::format("{}.{}{}", run.ladder->name, run.methods[m].info->name, same ? fmt::format("-{}", same + 1) : "");
-    method["break"] = write_break(folder, name, *run.ladder, method["breaks_at"], run.methods[m]);
+    return fmt::format("{}.{}{}", run.ladder->name, run.methods[m].info->name,
+                       same ? fmt::format("-{}", same + 1) : "");
 }
 
 /// A textbook form that was climbed beside the default form.
@@ -69,7 +67,8 @@ bool is_twin(const std::vector<MethodChoice>& all, const MethodChoice& method) {
 /// Where a textbook form breaks, on the ladder on which the default form holds for the most rungs longer.
 struct TextbookBreak {
     const Ladder* ladder = nullptr;
-    std::size_t entry    = 0;  ///< index into `ladders` of the record
+    std::size_t entry    = 0;  ///< index into LaddersRecord::ladders
+    double rung          = 0;
     std::size_t method   = 0;
     std::size_t gain     = 0;  ///< rungs
 };
@@ -81,7 +80,7 @@ void find_textbook_break(const LadderRun& run, std::size_t m, std::size_t entry,
         if (run.methods[d].text() != run.methods[m].info->name) continue;
         const std::size_t until = climb(run, d).breaks_at.value_or(run.rungs.size());
         if (until > *textbook.breaks_at && until - *textbook.breaks_at > best.gain)
-            best = {run.ladder, entry, m, until - *textbook.breaks_at};
+            best = {run.ladder, entry, run.rungs[*textbook.breaks_at].value, m, until - *textbook.breaks_at};
     }
 }
 
@@ -121,7 +120,7 @@ std::vector<Climbed> climb_all(std::span<const Ladder* const> chosen, const std:
 
 }  // namespace
 
-Json climb_ladders(const LadderOptions& options) {
+LaddersRecord climb_ladders(const LadderOptions& options) {
     if (holds_record_without(options.out, "ladders"))
         throw InputError(
             fmt::format("{}: holds the results of another command and is not replaced, expected another folder "
@@ -133,21 +132,18 @@ Json climb_ladders(const LadderOptions& options) {
     const std::vector<MethodChoice> methods_chosen =
         options.methods.empty() ? default_methods(options.only_by_default) : chosen_methods(options.methods, {}, {});
 
-    Json record = {{"schema", kResultsSchema},         {"version", version()},
-                   {"command", options.command},       {"machine", machine_json(options.threads)},
-                   {"breaking_share", kBreakingShare}, {"ladders", Json::array()},
-                   {"failed", Json::array()}};
-    if (options.budget.is_set()) record["budget"] = budget_json(options.budget);
+    LaddersRecord record{.head           = head_record(options.command),
+                         .machine        = machine_record(options.threads),
+                         .breaking_share = kBreakingShare,
+                         .budget         = budget_record(options.budget)};
     const auto add_failed = [&](const Ladder& ladder, const std::string& method) {
-        record["failed"].push_back({{"ladder", ladder.name},
-                                    {"rung", nullptr},
-                                    {"method", method},
-                                    {"light", nullptr},
-                                    {"message", current_message()}});
+        record.failed.push_back(
+            {.ladder = std::string(ladder.name), .method = method, .failure = {.message = current_message()}});
     };
     std::vector<TextbookBreak> textbook(methods_chosen.size());  // by method
     StagedFolder staged(options.out);
-    std::filesystem::create_directory(staged.folder() / "breaks");
+    const std::filesystem::path breaks = staged.folder() / "breaks";
+    std::filesystem::create_directory(breaks);
     std::vector<Climbed> climbed = climb_all(chosen, methods_chosen, options);
     Steps steps(chosen.size(), options.progress);
     const auto progress = [&](const std::string& what) { steps.show(what); };
@@ -162,25 +158,26 @@ Json climb_ladders(const LadderOptions& options) {
                 progress(fmt::format("{}: times", ladder->name));
                 run.first_rung_ms = time_first_rung(*ladder, run.methods, {.most = options.budget});
             }
-            Json entry = ladder_json(run);
-            for (Json& failed : failed_climbs_json(run)) record["failed"].push_back(std::move(failed));
+            LadderRecord entry = ladder_record(run);
+            std::ranges::move(failed_climbs(run), std::back_inserter(record.failed));
             for (std::size_t m = 0; m < run.methods.size(); ++m) {
                 if (is_twin(run.methods, run.methods[m])) {  // one scene a form is enough to see why
-                    find_textbook_break(run, m, record["ladders"].size(), textbook[m]);
+                    find_textbook_break(run, m, record.ladders.size(), textbook[m]);
                     continue;
                 }
-                const Climb c = climb(run, m);
-                if (!c.breaks_at || !run.rungs[*c.breaks_at].outcomes[m].ran()) continue;
+                const std::optional<std::size_t> breaks_at = climb(run, m).breaks_at;
+                if (!breaks_at || !run.rungs[*breaks_at].outcomes[m].ran()) continue;
                 progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
                 try {
-                    add_break(entry["methods"][m], staged.folder() / "breaks", run, m);
+                    entry.methods[m].shown =
+                        write_break(breaks, break_name(run, m), *ladder, run.rungs[*breaks_at].value, run.methods[m]);
                 } catch (const InputError&) {  // a file that cannot be written
                     throw;
                 } catch (...) {
                     fail(run.methods[m].text());
                 }
             }
-            record["ladders"].push_back(std::move(entry));
+            record.ladders.push_back(std::move(entry));
         } catch (const InputError&) {
             throw;
         } catch (...) {
@@ -192,17 +189,16 @@ Json climb_ladders(const LadderOptions& options) {
         const MethodChoice& method = methods_chosen[best.method];
         progress(fmt::format("{}: what breaks {}", best.ladder->name, method.text()));
         try {
-            Json& entry    = record["ladders"][best.entry]["methods"][best.method];
-            entry["break"] = write_break(staged.folder() / "breaks",
-                                         fmt::format("{}.{}-{}", best.ladder->name, method.info->name, kTextbook),
-                                         *best.ladder, entry["breaks_at"], method);
+            record.ladders[best.entry].methods[best.method].shown =
+                write_break(breaks, fmt::format("{}.{}-{}", best.ladder->name, method.info->name, kTextbook),
+                            *best.ladder, best.rung, method);
         } catch (const InputError&) {
             throw;
         } catch (...) {
             add_failed(*best.ladder, method.text());
         }
     }
-    write_text(staged.folder() / "results.json", json_text(record));
+    write_text(staged.folder() / "results.json", json_text(to_record(record)));
     write_ladder_page(staged.folder());
     staged.commit();
     return record;

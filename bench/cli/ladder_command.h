@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/run/budget.h"
-#include "umbra/bench/run/describe.h"
 
 namespace umbra {
 
@@ -26,6 +26,6 @@ struct LadderOptions {
 
 /// Climbs and writes OUT: results.json, breaks/ with a small scene and pictures of each break, index.html. The folder
 /// is written under another name and then renamed. Returns the record in results.json. Throws UsageError, InputError.
-Json climb_ladders(const LadderOptions& options);
+LaddersRecord climb_ladders(const LadderOptions& options);
 
 }  // namespace umbra

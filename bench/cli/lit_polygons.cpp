@@ -147,16 +147,15 @@ std::string drawing_text(const LitPolygons& polygons, const PlanarReceiver& plan
     return text + "</g>\n</svg>\n";
 }
 
-/// {area, lit_area} of some triangles.
 template <class Triangles>
-Json areas(const LitPolygons& polygons, const Triangles& triangles) {
-    double area = 0, lit = 0;
+LitAreaRecord lit_area(const LitPolygons& polygons, const Triangles& triangles) {
+    LitAreaRecord sum{0, 0};
     for (const TriangleId t : triangles) {
         const LitTriangle triangle(polygons, t);
-        area += triangle.area();
-        lit += triangle.lit_area();
+        sum.area += triangle.area();
+        sum.lit_area += triangle.lit_area();
     }
-    return {{"area", number(area)}, {"lit_area", number(lit)}};
+    return sum;
 }
 
 /// Names of files: the light's, with its number where two lights have one name.
@@ -172,9 +171,8 @@ std::vector<std::string> file_names(const Scene& scene) {
 
 }  // namespace
 
-Json write_lit_polygons(const Scene& scene, const SceneFacts& facts, const fs::path& folder) {
-    Json record = {
-        {"schema", kResultsSchema}, {"version", version()}, {"scene", scene_json(scene)}, {"lights", Json::array()}};
+LitPolygonsRecord write_lit_polygons(const Scene& scene, const SceneFacts& facts, const fs::path& folder) {
+    LitPolygonsRecord record{.version = std::string(version()), .scene = scene_record(scene)};
     const std::vector<std::string> names       = file_names(scene);
     const std::unique_ptr<const Method> method = atherton_weiler.make();
     const std::unique_ptr<const Built> built   = method->build(scene, facts);
@@ -184,34 +182,31 @@ Json write_lit_polygons(const Scene& scene, const SceneFacts& facts, const fs::p
         const std::unique_ptr<const Aimed> aimed = method->aim(*built, light);
         const auto& polygons                     = as<LitPolygons>(*aimed);
         const std::string title = fmt::format("What {} lights in {}", scene.lights[light].name, scene.name);
-        Json entry              = {{"name", scene.lights[light].name}, {"mesh", names[light] + ".obj"}};
-        entry.update(areas(polygons, all));
-        write_text(folder / (names[light] + ".obj"), mesh_text(polygons, title));
-        entry["planes"] = Json::array();
+        LitLightRecord entry{scene.lights[light].name, names[light] + ".obj", lit_area(polygons, all)};
+        write_text(folder / entry.mesh, mesh_text(polygons, title));
         for (std::size_t k = 0; k < facts.planes.size(); ++k) {
             const PlanarReceiver& plane = facts.planes[k];
-            Json drawn                  = {{"drawing", fmt::format("{}_plane_{}.svg", names[light], k + 1)},
-                                           {"normal", {number(plane.normal.x), number(plane.normal.y), number(plane.normal.z)}}};
-            drawn.update(areas(polygons, plane.triangles));
-            write_text(folder / drawn["drawing"].get<std::string>(), drawing_text(polygons, plane, title));
-            entry["planes"].push_back(std::move(drawn));
+            LitPlaneRecord drawn{fmt::format("{}_plane_{}.svg", names[light], k + 1),
+                                 {plane.normal.x, plane.normal.y, plane.normal.z},
+                                 lit_area(polygons, plane.triangles)};
+            write_text(folder / drawn.drawing, drawing_text(polygons, plane, title));
+            entry.planes.push_back(std::move(drawn));
         }
-        record["lights"].push_back(std::move(entry));
+        record.lights.push_back(std::move(entry));
     }
     return record;
 }
 
-std::string lit_polygons_text(const Json& record) {
+std::string lit_polygons_text(const LitPolygonsRecord& record) {
     std::string text;
-    const auto line = [&](const std::string& name, const Json& entry, const char* file) {
-        const double area = entry["area"].get<double>(), lit = entry["lit_area"].get<double>();
-        fmt::format_to(Out(text), "{:<28} {:>12.6g} of {:>12.6g} lit{}  {}\n", name, lit, area,
-                       area > 0 ? fmt::format(" ({:.1f} %)", 100 * lit / area) : "", entry[file].get<std::string>());
+    const auto line = [&](const std::string& name, const LitAreaRecord& of, const std::string& file) {
+        fmt::format_to(Out(text), "{:<28} {:>12.6g} of {:>12.6g} lit{}  {}\n", name, of.lit_area, of.area,
+                       of.area > 0 ? fmt::format(" ({:.1f} %)", 100 * of.lit_area / of.area) : "", file);
     };
-    for (const Json& light : record["lights"]) {
-        line(light["name"].get<std::string>(), light, "mesh");
-        for (std::size_t k = 0; k < light["planes"].size(); ++k)
-            line(fmt::format("  plane {}", k + 1), light["planes"][k], "drawing");
+    for (const LitLightRecord& light : record.lights) {
+        line(light.name, light.lit, light.mesh);
+        for (std::size_t k = 0; k < light.planes.size(); ++k)
+            line(fmt::format("  plane {}", k + 1), light.planes[k].lit, light.planes[k].drawing);
     }
     return text;
 }

@@ -8,14 +8,62 @@
 
 namespace umbra {
 
+struct LitAreaRecord {
+    double area = kUnknown, lit_area = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<LitAreaRecord>) {
+    of("area", &LitAreaRecord::area, "of the triangles that the light does not see edge-on");
+    of("lit_area", &LitAreaRecord::lit_area, "");
+}
+
+struct LitPlaneRecord {
+    std::string drawing{};
+    std::vector<double> normal{};
+    LitAreaRecord lit{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LitPlaneRecord>) {
+    of("drawing", &LitPlaneRecord::drawing, "its file");
+    of("normal", &LitPlaneRecord::normal, "");
+    of.all(&LitPlaneRecord::lit);
+}
+
+struct LitLightRecord {
+    std::string name{}, mesh{};
+    LitAreaRecord lit{};
+    std::vector<LitPlaneRecord> planes{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LitLightRecord>) {
+    of("name", &LitLightRecord::name, "");
+    of("mesh", &LitLightRecord::mesh, "its file");
+    of.all(&LitLightRecord::lit);
+    of("planes", &LitLightRecord::planes, "the scene's large planes, largest first");
+}
+
+struct LitPolygonsRecord {
+    int schema = kResultsSchema;
+    std::string version{};
+    SceneRecord scene{};
+    std::vector<LitLightRecord> lights{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LitPolygonsRecord>) {
+    of("schema", &LitPolygonsRecord::schema, "");
+    of("version", &LitPolygonsRecord::version, "");
+    of("scene", &LitPolygonsRecord::scene, "");
+    of("lights", &LitPolygonsRecord::lights, "");
+}
+
 /// Writes into `folder`, of each light: LIGHT.obj, its lit polygons in world space, cut into triangles, an object of
 /// the file for each of the scene's; and LIGHT_plane_K.svg for each of facts.planes, from 1, largest first: lit
-/// polygons bright, umbra dark, in units of the world. Every light is hard. Returns {schema, version, scene, lights:
-/// [{name, mesh, area, lit_area, planes: [{drawing, normal, area, lit_area}]}]}; areas are of the triangles that the
-/// light does not see edge-on. Throws InputError where a file cannot be written.
-[[nodiscard]] Json write_lit_polygons(const Scene& scene, const SceneFacts& facts, const std::filesystem::path& folder);
+/// polygons bright, umbra dark, in units of the world. Every light is hard. Throws InputError where a file cannot be
+/// written.
+[[nodiscard]] LitPolygonsRecord write_lit_polygons(const Scene& scene, const SceneFacts& facts,
+                                                   const std::filesystem::path& folder);
 
 /// The areas as a table for people.
-[[nodiscard]] std::string lit_polygons_text(const Json& record);
+[[nodiscard]] std::string lit_polygons_text(const LitPolygonsRecord& record);
 
 }  // namespace umbra

@@ -8,8 +8,8 @@
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/report/report.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/bench/trade/trade_page.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
@@ -85,16 +85,16 @@ int exit_code(const ScenesDone& done) {
     return done.failed.empty() ? kDone : kUnreadable;
 }
 
-Json climb_on_terminal(LadderOptions options, const Common& common) {
+LaddersRecord climb_on_terminal(LadderOptions options, const Common& common) {
     options.command = common.command;
     options.threads = thread_count();
-    Json record;
+    LaddersRecord record;
     {
         const Terminal terminal(common.quiet);
         options.progress = [&](const std::string& what) { terminal.progress(what); };
         record           = climb_ladders(options);
     }
-    for (const Json& failed : record["failed"]) print_error("{}\n", failed_climb_in_words(failed));
+    for (const ListedFailureRecord& failed : record.failed) print_error("{}\n", failed_climb_in_words(failed));
     return record;
 }
 

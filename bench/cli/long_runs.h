@@ -23,7 +23,7 @@ ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, 
 [[nodiscard]] int exit_code(const ScenesDone& done);
 
 /// Climbs; returns the record. Prints what failed to standard error.
-Json climb_on_terminal(LadderOptions options, const Common& common);
+LaddersRecord climb_on_terminal(LadderOptions options, const Common& common);
 
 /// Sweeps, writes OUT/<scene>/results.json, OUT/results.json and the page OUT/index.html. Prints what failed to
 /// standard error.

@@ -39,7 +39,7 @@ std::string unique_id(std::string_view name, std::set<std::string>& used) {
 
 /// A method's entry of the record, and the times of the run that its answers are from; none where it has no answers.
 struct Answered {
-    Json entry;
+    MethodRecord entry;
     std::optional<RunTimes> first{};
 };
 
@@ -55,9 +55,9 @@ RunTimes times_of(const MethodRun& run) {
 /// each, no run longer than the budget, and writes the times into their entries. One that throws gets the entry of a
 /// method that failed, and its files in `folder` go. Returns `turns` of the record: what concerns all of them.
 /// `answered` is one a choice.
-Json time_methods(const std::filesystem::path& folder, const PreparedScene& prepared,
-                  std::span<const MethodChoice> choices, std::vector<Answered>& answered, const Repeats& repeats,
-                  const Budget& budget, const std::function<void(const std::string&)>& tell) {
+TurnsRecord time_methods(const std::filesystem::path& folder, const PreparedScene& prepared,
+                         std::span<const MethodChoice> choices, std::vector<Answered>& answered, const Repeats& repeats,
+                         const Budget& budget, const std::function<void(const std::string&)>& tell) {
     std::vector<MethodChoice> timed;
     std::vector<std::size_t> which;
     TurnOptions turn_options;
@@ -75,23 +75,23 @@ Json time_methods(const std::filesystem::path& folder, const PreparedScene& prep
     const double before     = load_average();
     const Turns turns       = time_in_turns(prepared, timed, turn_options);
     for (std::size_t t = 0; t < timed.size(); ++t) {
-        Json& entry = answered[which[t]].entry;
+        MethodRecord& entry = answered[which[t]].entry;
         if (turns.settings[t].failed.empty()) {
             set_times(entry, prepared.scene, turns.settings[t]);
             continue;
         }
         // What throws when it runs again has no answers that anybody could rely on.
-        const std::string id = entry["id"];
+        const std::string id = entry.id;
         remove_files_of(folder, id);
-        entry = failed_json(id, timed[t], prepared.scene,
-                            {timed[t].text(), {}, turns.settings[t].failed, turns.settings[t].cut});
+        entry = failed_record(id, timed[t], prepared.scene,
+                              {timed[t].text(), {}, turns.settings[t].failed, turns.settings[t].cut});
     }
-    return turns_json(turns, turn_options, {before, load_average()});
+    return turns_record(turns, turn_options, {before, load_average()});
 }
 
 }  // namespace
 
-Json compare_scene(const fs::path& file, const CompareOptions& options) {
+Results compare_scene(const fs::path& file, const CompareOptions& options) {
     const auto tell = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", scene_name(file), what));
     };
@@ -121,22 +121,18 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
             .first->second;
     };
 
-    Json record = {{"schema", kResultsSchema},
-                   {"version", version()},
-                   {"command", options.command},
-                   {"machine", machine_json(options.threads)},
-                   {"scene", scene_json(scene)},
-                   {"facts", facts_json(prepared.facts)},
-                   {"size", {{"width", prepared.points.raster->width}, {"height", prepared.points.raster->height}}},
-                   {"lights", lights_json(prepared.facts)},
-                   {"times", Json::object()},
-                   {"turns", nullptr},
-                   {"reference", reference_json(main_truth, scene)},
-                   {"methods", Json::array()}};
-    if (options.budget.is_set()) record["budget"] = budget_json(options.budget);
-    const FinePicture fine       = fine_picture(prepared, reference_run);
-    record["reference"]["files"] = write_reference_files({staging, "reference", options.command}, prepared,
-                                                         {reference_run, rendered_of(main_truth), fine});
+    Results results{.head      = head_record(options.command),
+                    .machine   = machine_record(options.threads),
+                    .scene     = scene_record(scene),
+                    .facts     = facts_record(prepared.facts),
+                    .size      = {static_cast<std::uint64_t>(prepared.points.raster->width),
+                                  static_cast<std::uint64_t>(prepared.points.raster->height)},
+                    .lights    = light_records(prepared.facts),
+                    .reference = reference_record(main_truth, scene),
+                    .budget    = budget_record(options.budget)};
+    const FinePicture fine  = fine_picture(prepared, reference_run);
+    results.reference.files = write_reference_files({staging, "reference", options.command}, prepared,
+                                                    {reference_run, rendered_of(main_truth), fine});
 
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
@@ -151,7 +147,7 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
         const std::string id = unique_id(choice.info->name, used);
         const bool slow      = total(reference_run.visibility).median > options.repeats.budget_ms;
         const Truth* truth   = nullptr;
-        Json entry;
+        MethodRecord entry;
         Trial trial{.truth = [&](const MethodRun& run) -> const MethodRun& {
                         truth = &truths.of(run.work->method());
                         return truth->ran.run;
@@ -159,40 +155,40 @@ Json compare_scene(const fs::path& file, const CompareOptions& options) {
                     .budget = options.budget,
                     .then =
                         [&](const Outcome& found) {
-                            entry = served_json(id, prepared, found, truth->reference.choice.text());
+                            entry = served_record(id, prepared, found, truth->reference.choice.text());
                             Rendered rendered;
                             shade_ms =
                                 timed_ms([&] { rendered = render_planes(scene, prepared.points, found.run.planes); });
                             ComparedFiles written = write_compared_files(
                                 {staging, id, options.command}, prepared, {found.run, rendered, fine},
                                 {truth->ran.run, rendered_of(*truth), fine}, found.explained);
-                            entry["image"] = std::move(written.image);
-                            entry["files"] = std::move(written.files);
+                            entry.image = written.image;
+                            entry.files = std::move(written.files);
                         }};
         if (itself && slow && reference_ran.stand_in.empty())
             trial.run = [&](std::optional<LightId>&) { return reference_run; };
         const Outcome found = outcome(choice, scene, prepared.facts, prepared.points, trial);
         if (found.failed) {
             remove_files_of(staging, id);
-            answered.push_back({failed_json(id, choice, scene, *found.failed)});
+            answered.push_back({failed_record(id, choice, scene, *found.failed)});
         } else if (found.run.service) {
             answered.push_back({std::move(entry), times_of(found.run)});
         } else {
-            answered.push_back({unserved_json(id, choice, found.run.service)});
+            answered.push_back({unserved_record(id, choice, found.run.service)});
         }
     }
-    record["turns"] = time_methods(staging, prepared, listed, answered, options.repeats, options.budget, tell);
-    for (Answered& a : answered) record["methods"].push_back(std::move(a.entry));
-    record["times"] = {{"load_ms", prepared.load_ms},
-                       {"facts_ms", prepared.facts_ms},
-                       {"rays_build_ms", prepared.rays_build_ms},
-                       {"gbuffer_ms", prepared.gbuffer_ms},
-                       {"shade_ms", shade_ms}};
-    write_text(staging / "results.json", json_text(record));
+    results.turns = time_methods(staging, prepared, listed, answered, options.repeats, options.budget, tell);
+    for (Answered& a : answered) results.methods.push_back(std::move(a.entry));
+    results.times = {{"load_ms", prepared.load_ms},
+                     {"facts_ms", prepared.facts_ms},
+                     {"rays_build_ms", prepared.rays_build_ms},
+                     {"gbuffer_ms", prepared.gbuffer_ms},
+                     {"shade_ms", shade_ms}};
+    write_text(staging / "results.json", record_text(results));
     if (options.add_page) options.add_page(staging);
     stage.commit();
     if (options.scene_done) options.scene_done();
-    return record;
+    return results;
 }
 
 ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptions& options) {
@@ -200,7 +196,7 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
     for (const std::string& text : options.methods) static_cast<void>(parse_method(text));
     if (options.reference) static_cast<void>(parse_method(*options.reference));
     ScenesDone done;
-    Json last;
+    Results last;
     CompareOptions numbered = options;
     Steps steps(scenes.size(), options.progress);
     numbered.progress = [&](const std::string& what) { steps.show(what); };
@@ -224,7 +220,7 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
     }
     if (files.size() == 1 && done.names.size() == 1) {
         StagedFiles staged;
-        staged.write(options.out / "results.json", json_text(with_prefix(last, done.names[0] + "/")));
+        staged.write(options.out / "results.json", record_text(with_prefix(last, done.names[0] + "/")));
         staged.commit();
     }
     return done;

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
+#include "umbra/bench/run/results.h"
 #include "umbra/bench/run/run.h"
 
 namespace umbra {
@@ -40,7 +40,7 @@ struct CompareOptions {
 /// contract has an entry that says so (`failed`), and the others go on; a reference that throws is replaced, unless the
 /// options name it. Returns the record that it wrote. Throws InputError, UsageError, and what a reference throws that
 /// cannot be replaced.
-Json compare_scene(const std::filesystem::path& file, const CompareOptions& options);
+Results compare_scene(const std::filesystem::path& file, const CompareOptions& options);
 
 /// All scenes one after the other, each in a folder of its own name; scenes of one name, in any case, get -2, -3 and so
 /// on behind it in the order of `files`. Where there is one only, OUT/results.json is a copy with paths that hold

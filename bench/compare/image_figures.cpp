@@ -21,11 +21,8 @@ ImageFigures image_figures(std::span<const VisibilityPlane> planes, Rendered ren
                 }
     ImageFigures f;
     f.flip    = flip_ldr(reference.shown, rendered.shown);
-    f.figures = {{"rmse", number(image_error(rendered.linear, reference.linear).rmse)},
-                 {"psnr", number(image_error(rendered.shown, reference.shown).psnr)},
-                 {"ssim", number(ssim(rendered.shown, reference.shown))},
-                 {"flip", number(f.flip.mean)},
-                 {"flip_hdr", number(flip_hdr(reference.linear, rendered.linear).mean)}};
+    f.figures = {image_error(rendered.linear, reference.linear).rmse, image_error(rendered.shown, reference.shown).psnr,
+                 ssim(rendered.shown, reference.shown), f.flip.mean, flip_hdr(reference.linear, rendered.linear).mean};
     return f;
 }
 

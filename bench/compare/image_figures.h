@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/results.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
@@ -20,8 +20,8 @@ struct Rendered {
 
 /// The differences over covered pixels: where a method leaves any light undefined, the reference's pixel is used.
 struct ImageFigures {
-    Json figures;  ///< `image` of results.json
-    Flip flip;     ///< of the displayed pictures, with its map
+    ImageRecord figures;
+    Flip flip;  ///< of the displayed pictures, with its map
 };
 [[nodiscard]] ImageFigures image_figures(std::span<const VisibilityPlane> planes, Rendered rendered,
                                          const Rendered& reference);

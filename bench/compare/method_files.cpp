@@ -16,12 +16,12 @@ namespace umbra {
 namespace {
 
 /// All but the map of FLIP. `explained` is empty for the reference, which has nothing to differ from.
-Json write_files(const FilePlace& place, const PreparedScene& prepared, const Answers& method,
-                 const MethodRun& reference, std::span<const Explained> explained) {
+FilesRecord write_files(const FilePlace& place, const PreparedScene& prepared, const Answers& method,
+                        const MethodRun& reference, std::span<const Explained> explained) {
     const Scene& scene       = prepared.scene;
     const PointBatch& points = prepared.points;
     const MethodRun& run     = method.run;
-    Json files               = {{"exr", place.id + ".exr"}, {"png", place.id + ".png"}, {"lights", Json::object()}};
+    FilesRecord files{.exr = {place.id + ".exr"}, .png = {place.id + ".png"}};
 
     const bool is_reference = explained.empty();
     Image full              = exr_image(method.rendered.linear, scene, points, run,
@@ -32,17 +32,17 @@ Json write_files(const FilePlace& place, const PreparedScene& prepared, const An
     std::vector<std::pair<std::string, std::function<Image()>>> pictures;
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const std::string& light = scene.lights[j].name;
-        Json entry               = {{"visibility", fmt::format("{}.S.{}.png", place.id, light)}};
-        pictures.emplace_back(entry["visibility"], [&, j] { return visibility_picture(points, run.planes[j]); });
+        LightFilesRecord entry{.visibility = {fmt::format("{}.S.{}.png", place.id, light)}};
+        pictures.emplace_back(entry.visibility.name, [&, j] { return visibility_picture(points, run.planes[j]); });
         if (!is_reference) {
-            entry["difference"] = fmt::format("{}.diff.{}.png", place.id, light);
-            pictures.emplace_back(entry["difference"],
+            entry.difference = {fmt::format("{}.diff.{}.png", place.id, light)};
+            pictures.emplace_back(entry.difference.name,
                                   [&, j] { return difference_picture(points, j, run.planes[j], reference.planes[j]); });
-            entry["classes"] = fmt::format("{}.classes.{}.png", place.id, light);
-            pictures.emplace_back(entry["classes"],
+            entry.classes = {fmt::format("{}.classes.{}.png", place.id, light)};
+            pictures.emplace_back(entry.classes.name,
                                   [&, j] { return class_picture(points, explained[j].classes, reference.planes[j]); });
         }
-        files["lights"][light] = std::move(entry);
+        files.lights.emplace_back(light, std::move(entry));
     }
     parallel_ranges(pictures.size() + 2, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
@@ -58,11 +58,11 @@ Json write_files(const FilePlace& place, const PreparedScene& prepared, const An
 }
 
 /// The differences of the pictures; their map goes into a file.
-Json image_json(const std::filesystem::path& map, const PointBatch& points, const Answers& method,
-                const Rendered& reference) {
+ImageRecord write_flip(const std::filesystem::path& map, const PointBatch& points, const Answers& method,
+                       const Rendered& reference) {
     ImageFigures found = image_figures(method.run.planes, method.rendered, reference);
     write_image(map, flip_picture(points, method.run.planes, found.flip.map));
-    return std::move(found.figures);
+    return found.figures;
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void remove_files_of(const std::filesystem::path& folder, const std::string& id)
     for (const std::filesystem::path& file : files) std::filesystem::remove(file);
 }
 
-Json write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference) {
+FilesRecord write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference) {
     return write_files(place, prepared, reference, reference.run, {});
 }
 
@@ -95,8 +95,8 @@ ComparedFiles write_compared_files(const FilePlace& place, const PreparedScene& 
     ComparedFiles written;
     // Each has parts that one thread does alone.
     parallel_pair([&] { written.files = write_files(place, prepared, method, reference.run, explained); },
-                  [&] { written.image = image_json(place.folder / map, prepared.points, method, reference.rendered); });
-    written.files["flip"] = map;
+                  [&] { written.image = write_flip(place.folder / map, prepared.points, method, reference.rendered); });
+    written.files.flip = {map};
     return written;
 }
 

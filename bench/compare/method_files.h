@@ -35,14 +35,14 @@ struct Answers {
 /// Removes the files of one method from the folder.
 void remove_files_of(const std::filesystem::path& folder, const std::string& id);
 
-/// Writes the reference's files and returns their names, `files` of results.json. Throws InputError where one cannot be
-/// written.
-Json write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference);
+/// Writes the reference's files and returns their names. Throws InputError where one cannot be written.
+FilesRecord write_reference_files(const FilePlace& place, const PreparedScene& prepared, const Answers& reference);
 
-/// Writes a method's files, among them the map of FLIP, and returns their names and the differences of the pictures,
-/// `files` and `image` of results.json. `explained` is one a light. Throws InputError where one cannot be written.
+/// Writes a method's files, among them the map of FLIP, and returns their names and the differences of the pictures.
+/// `explained` is one a light. Throws InputError where one cannot be written.
 struct ComparedFiles {
-    Json files, image;
+    FilesRecord files;
+    ImageRecord image;
 };
 ComparedFiles write_compared_files(const FilePlace& place, const PreparedScene& prepared, const Answers& method,
                                    const Answers& reference, std::span<const Explained> explained);

@@ -249,15 +249,14 @@ Json measure_energy(std::span<const fs::path> scenes, const EnergyOptions& optio
     }
     write_text(folder / "objects.csv", rows);
     write_text(folder / "faces.csv", face_rows);
-    Json mean = mean_of(received, names);
-    return {{"schema", kResultsSchema},
-            {"version", version()},
-            {"command", options.command},
-            {"method", options.method ? Json(options.method->text()) : Json()},
-            {"unit", kUnit},
-            {"points", options.points},
-            {"frames", std::move(frames)},
-            {"mean", std::move(mean)}};
+    Json mean   = mean_of(received, names);
+    Json record = to_record(head_record(options.command));
+    record.update({{"method", options.method ? Json(options.method->text()) : Json()},
+                   {"unit", kUnit},
+                   {"points", options.points},
+                   {"frames", std::move(frames)},
+                   {"mean", std::move(mean)}});
+    return record;
 }
 
 std::string energy_text(const Json& record) {

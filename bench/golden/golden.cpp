@@ -134,13 +134,13 @@ std::string_view to_string(GoldenChange::Kind kind) {
 }
 
 std::string rounding_machine() {
-    const Json machine = machine_json(1);
+    const MachineRecord machine = machine_record(1);
 #if defined(__x86_64__)
     const bool fused = __builtin_cpu_supports("fma") != 0;
 #else
     const bool fused = true;
 #endif
-    return fmt::format("{}, {}, {}", machine["system"].get<std::string>(), machine["compiler"].get<std::string>(),
+    return fmt::format("{}, {}, {}", machine.system, machine.compiler,
                        fused ? "fused multiply and add" : "no fused multiply and add");
 }
 

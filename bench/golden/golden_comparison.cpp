@@ -68,15 +68,15 @@ Image linear_colours(const fs::path& file) {
 /// The files of a comparison as they are kept, in `folder`.
 void run_comparison(const fs::path& scene, const Compared& compared, const fs::path& folder) {
     CompareOptions options;
-    options.methods   = compared.methods;
-    options.points    = compared.points;
-    options.size      = kGoldenSize;
-    options.out       = folder;
-    options.repeats   = {1, 0};
-    const Json record = compare_scene(scene, options);
-    const fs::path of = folder / record["scene"]["name"].get<std::string>();
+    options.methods       = compared.methods;
+    options.points        = compared.points;
+    options.size          = kGoldenSize;
+    options.out           = folder;
+    options.repeats       = {1, 0};
+    const Results results = compare_scene(scene, options);
+    const fs::path of     = folder / results.scene.name;
     write_image(of / kLinear, linear_colours(of / "reference.exr"));
-    write_text(of / kRecord, lasting(record).dump(1) + "\n");
+    write_text(of / kRecord, lasting(to_record(results)).dump(1) + "\n");
 }
 
 bool is_kept(const fs::path& file) {

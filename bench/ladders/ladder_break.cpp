@@ -25,8 +25,8 @@ bool still_breaks(const Scene& scene, const MethodChoice& method, const RungOutc
 
 }  // namespace
 
-Json write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder, double value,
-                 const MethodChoice& method) {
+BreakRecord write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder,
+                        double value, const MethodChoice& method) {
     const Scene whole        = ladder.scene(value);
     const RungOutcome broken = outcome(*set_stage(whole), method);
     Scene scene              = minimal_scene(
@@ -51,17 +51,17 @@ Json write_break(const std::filesystem::path& folder, const std::string& name, c
     write_image(folder / file(".truth.png"), visibility_picture(stage->points, stage->truth.planes[worst]));
     write_image(folder / file(".classes.png"),
                 class_picture(stage->points, explained[worst].classes, stage->truth.planes[worst]));
-    return {{"scene", file(".json")},
-            {"visibility", file(".S.png")},
-            {"truth", file(".truth.png")},
-            {"classes", file(".classes.png")},
-            {"light", scene.lights[worst].name},
-            {"width", scene.width},
-            {"height", scene.height},
-            {"triangles", scene.triangles.size()},
-            {"triangles_before", whole.triangles.size()},
-            {"points", o.points},
-            {"interior", o.interior()}};
+    return {.scene            = file(".json"),
+            .visibility       = file(".S.png"),
+            .truth            = file(".truth.png"),
+            .classes          = file(".classes.png"),
+            .light            = scene.lights[worst].name,
+            .width            = static_cast<std::uint64_t>(scene.width),
+            .height           = static_cast<std::uint64_t>(scene.height),
+            .triangles        = scene.triangles.size(),
+            .triangles_before = whole.triangles.size(),
+            .points           = o.points,
+            .interior         = o.interior()};
 }
 
 }  // namespace umbra

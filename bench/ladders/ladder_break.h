@@ -2,16 +2,37 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/record/record.h"
 
 namespace umbra {
 
+/// What a break is shown by: files in the folder of breaks, the size of the scene, and the errors on it.
+struct BreakRecord {
+    std::string scene{}, visibility{}, truth{}, classes{}, light{};
+    std::uint64_t width = 0, height = 0, triangles = 0, triangles_before = 0, points = 0, interior = 0;
+};
+template <class Fields>
+void describe(Fields& of, Is<BreakRecord>) {
+    of.name("break", "");
+    of.must("scene", &BreakRecord::scene, "a reduced scene that reproduces the break, which the pictures show");
+    of.must("visibility", &BreakRecord::visibility, "");
+    of.must("truth", &BreakRecord::truth, "");
+    of.must("classes", &BreakRecord::classes, "");
+    of("light", &BreakRecord::light, "");
+    of("width", &BreakRecord::width, "");
+    of("height", &BreakRecord::height, "");
+    of("triangles", &BreakRecord::triangles, "");
+    of("triangles_before", &BreakRecord::triangles_before, "");
+    of("points", &BreakRecord::points, "");
+    of("interior", &BreakRecord::interior, "");
+}
+
 /// Reduces the scene of the rung where the method broke, and writes NAME.json (a native scene), and the S of the
-/// method, of the truth, and the classes of the errors as PNGs into `folder`. Returns what results.json says of them:
-/// file names seen from `folder`, the size of the scene, and the errors on it.
-Json write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder, double value,
-                 const MethodChoice& method);
+/// method, of the truth, and the classes of the errors as PNGs into `folder`.
+BreakRecord write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder,
+                        double value, const MethodChoice& method);
 
 }  // namespace umbra

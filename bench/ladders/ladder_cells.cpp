@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/pages/report_text.h"
@@ -18,54 +19,46 @@ std::string rung_value(double value) {
     return (factor == "1" ? "" : factor + "·") + "10" + superscript(std::stoi(text.substr(e + 1)));
 }
 
-std::string label_of(const Field& method) {
-    if (method["text"].text() == method["name"].text()) return method["title"].text();
-    if (const std::string preset = method["preset"].text(); !preset.empty())
-        return fmt::format("{}, {}", method["title"].text(), preset);
-    return method["text"].text();
+std::string label_of(const ClimbRecord& climbed) {
+    if (climbed.text == climbed.name) return climbed.title;
+    return climbed.preset ? fmt::format("{}, {}", climbed.title, *climbed.preset) : climbed.text;
 }
 
-std::optional<std::size_t> rung_of(const Field& ladder, const Field& value) {
-    if (!value.present()) return std::nullopt;
-    const auto rungs = ladder["rungs"].items();
-    for (std::size_t r = 0; r < rungs.size(); ++r)
-        if (rungs[r]["value"].number() == value.number()) return r;
-    value.refuse("the value of a rung");
+std::optional<std::size_t> rung_of(const LadderRecord& ladder, const std::optional<double>& value) {
+    const auto rung = std::ranges::find(ladder.rungs, value, &Rung::value);
+    if (rung == ladder.rungs.end()) return std::nullopt;
+    return rung - ladder.rungs.begin();
 }
 
-std::string left_out_in_words(double judged_rungs, double rungs, double least_coverage) {
+std::string left_out_in_words(const LadderRecord& ladder, const ClimbRecord& climbed) {
+    if (climbed.breaks_at || !climbed.judged_rungs) return "";
+    const bool holds          = !climbed.not_served_from && !climbed.silent_from && !climbed.not_judged_from;
+    const std::uint64_t rungs = ladder.rungs.size() + ladder.not_climbed, judged_rungs = *climbed.judged_rungs;
+    const double least_coverage = climbed.least_coverage.value_or(1);
     std::string words;
-    if (judged_rungs < rungs) words = fmt::format("judged on {} of {}", count(judged_rungs), counted(rungs, "rung"));
+    if (holds && judged_rungs < rungs)
+        words = fmt::format("judged on {} of {}", count(double(judged_rungs)), counted(double(rungs), "rung"));
     if (judged_rungs > 0 && least_coverage < 1)
         words += fmt::format("{}answers {} % of the points{}", words.empty() ? "" : ", ", percent(least_coverage),
                              judged_rungs > 1 ? " or more" : "");
     return words;
 }
 
-json fared(const Field& ladder, const Field& method) {
-    const std::string unit = ladder["unit"].text();
+json fared(const LadderRecord& ladder, const ClimbRecord& climbed) {
     std::string note;
-    const auto from = [&](const char* key, const char* words) {
-        if (const auto r = rung_of(ladder, method[key])) {
-            if (!note.empty()) note += ", ";
-            note += *r == 0 ? std::string(words) : fmt::format("{} from {}", words, rung_value(*method[key].number()));
-        }
+    const auto add  = [&](const std::string& words) { note += (note.empty() ? "" : ", ") + words; };
+    const auto from = [&](const std::optional<double>& rung, const char* words) {
+        if (rung) add(rung_of(ladder, rung) == 0u ? words : fmt::format("{} from {}", words, rung_value(*rung)));
     };
-    from("not_served_from", "not served");
-    from("silent_from", "mostly undefined");
-    from("not_judged_from", "not judged");
-    const bool breaks = method["breaks_at"].present();
-    const bool holds  = !breaks && note.empty();
-    std::string words = breaks ? rung_value(*method["breaks_at"].number()) : holds ? "holds" : "";
-    if (const auto judged = method["judged_rungs"].number(); judged && !breaks) {
-        const double rungs = double(ladder["rungs"].items().size()) + ladder["not_climbed"].number().value_or(0);
-        const std::string part =
-            left_out_in_words(*judged, holds ? rungs : 0, method["least_coverage"].number().value_or(1));
-        if (!part.empty()) note += (note.empty() ? "" : ", ") + part;
-    }
-    return {{"words", words},   {"kind", method["kind"].text()},
-            {"note", note},     {"why", method["why"].text()},
-            {"breaks", breaks}, {"holds", holds}};
+    from(climbed.not_served_from, "not served");
+    from(climbed.silent_from, "mostly undefined");
+    from(climbed.not_judged_from, "not judged");
+    const std::optional<double>& breaks_at = climbed.breaks_at;
+    const bool holds                       = !breaks_at && note.empty();
+    const std::string words                = breaks_at ? rung_value(*breaks_at) : holds ? "holds" : "";
+    if (const std::string part = left_out_in_words(ladder, climbed); !part.empty()) add(part);
+    return {{"words", words},     {"kind", climbed.kind.value_or("")}, {"note", note},
+            {"why", climbed.why}, {"breaks", breaks_at.has_value()},   {"holds", holds}};
 }
 
 }  // namespace umbra

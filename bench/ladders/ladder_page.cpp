@@ -24,70 +24,64 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// The methods of all ladders, as typed, in the order in which they first appear; the sum is not one of them.
-std::vector<Field> methods_of(const Field& root) {
-    std::vector<Field> all;
-    for (const Field& ladder : root["ladders"].items())
-        for (const Field& method : ladder["methods"].items()) {
-            const std::string text = method["text"].required_text();
-            if (is_textbook_twin(ladder, method)) continue;  // it has a table of its own
-            if (std::none_of(all.begin(), all.end(), [&](const Field& m) { return m["text"].text() == text; }))
-                all.push_back(method);
+std::vector<const ClimbRecord*> methods_of(const LaddersRecord& record) {
+    std::vector<const ClimbRecord*> all;
+    for (const LadderRecord& ladder : record.ladders)
+        for (const ClimbRecord& climbed : ladder.methods) {
+            if (is_textbook_twin(ladder, climbed)) continue;  // it has a table of its own
+            if (std::ranges::none_of(all, [&](const ClimbRecord* m) { return m->text == climbed.text; }))
+                all.push_back(&climbed);
         }
     return all;
 }
 
-json chart_of(const Field& ladder, double limit) {
+json chart_of(const LadderRecord& ladder, double limit) {
     std::vector<std::string> rungs;
     std::vector<double> judged;
-    for (const Field& rung : ladder["rungs"].items()) {
-        if (rung["unjudged"].present()) continue;
-        judged.push_back(rung["value"].number().value_or(0));
-        rungs.push_back(rung_value(judged.back()));
+    for (const Rung& rung : ladder.rungs) {
+        if (!rung.unjudged.empty()) continue;
+        judged.push_back(rung.value);
+        rungs.push_back(rung_value(rung.value));
     }
     std::vector<std::string> styles;  // methods by name; a textbook form has its method's style
-    for (const Field& method : ladder["methods"].items())
-        if (!is_textbook_twin(ladder, method)) styles.push_back(method["name"].text());
+    for (const ClimbRecord& climbed : ladder.methods)
+        if (!is_textbook_twin(ladder, climbed)) styles.push_back(climbed.name);
     std::vector<RungSeries> series;
     std::size_t own = 0;
-    for (const Field& method : ladder["methods"].items()) {
+    for (const ClimbRecord& climbed : ladder.methods) {
         RungSeries s;
-        s.label  = label_of(method);
-        s.dashed = is_textbook_twin(ladder, method);
-        s.style  = s.dashed
-                       ? std::size_t(std::find(styles.begin(), styles.end(), method["name"].text()) - styles.begin())
-                       : own++;
-        for (const Field& rung : method["rungs"].items()) s.shares.push_back(rung["interior_share"].number());
-        if (rung_of(ladder, method["breaks_at"]))
-            s.breaks_at = std::find(judged.begin(), judged.end(), *method["breaks_at"].number()) - judged.begin();
+        s.label  = label_of(climbed);
+        s.dashed = is_textbook_twin(ladder, climbed);
+        s.style  = s.dashed ? std::size_t(std::ranges::find(styles, climbed.name) - styles.begin()) : own++;
+        for (const RungOutcomeRecord& rung : climbed.rungs) s.shares.push_back(rung.interior_share);
+        if (climbed.breaks_at) s.breaks_at = std::ranges::find(judged, *climbed.breaks_at) - judged.begin();
         series.push_back(std::move(s));
     }
     return rung_chart(rungs, series, limit);
 }
 
-json break_view(const Field& ladder, const Field& method) {
-    const Field b          = method["break"];
-    const std::string name = b["scene"].required_text();
-    const auto picture     = [&](const char* key, const std::string& what, const std::string& alt) {
-        return json{{"src", url(fs::path("breaks") / b[key].required_text())},
+json break_view(const LadderRecord& ladder, const ClimbRecord& climbed, const BreakRecord& shown) {
+    const auto picture = [&](const std::string& file, const std::string& what, const std::string& alt) {
+        return json{{"src", url(fs::path("breaks") / file)},
                     {"alt", alt},
                     {"what", what},
-                    {"width", fmt::format("{:g}", b["width"].number().value_or(0))},
-                    {"height", fmt::format("{:g}", b["height"].number().value_or(0))}};
+                    {"width", std::to_string(shown.width)},
+                    {"height", std::to_string(shown.height)}};
     };
-    const std::string label = label_of(method);
+    const std::string label = label_of(climbed);
     return {{"label", label},
-            {"at", fmt::format("{} {}", rung_value(*method["breaks_at"].number()), ladder["unit"].text())},
-            {"kind", method["kind"].text()},
-            {"interior", count(b["interior"].number())},
-            {"points", count(b["points"].number())},
-            {"triangles", count(b["triangles"].number())},
-            {"before", count(b["triangles_before"].number())},
-            {"href", url(fs::path("breaks") / name)},
-            {"command", fmt::format("umbra compare breaks/{} --methods {} -o again", name, method["text"].text())},
+            {"at", climbed.breaks_at ? fmt::format("{} {}", rung_value(*climbed.breaks_at), ladder.unit) : ""},
+            {"kind", climbed.kind.value_or("")},
+            {"interior", count(double(shown.interior))},
+            {"points", count(double(shown.points))},
+            {"triangles", count(double(shown.triangles))},
+            {"before", count(double(shown.triangles_before))},
+            {"href", url(fs::path("breaks") / shown.scene)},
+            {"command", fmt::format("umbra compare breaks/{} --methods {} -o again", shown.scene, climbed.text)},
             {"pictures",
-             {picture("truth", "reference", fmt::format("S of {}, computed by the reference", b["light"].text())),
-              picture("visibility", "method", fmt::format("S of {}, computed by {}", b["light"].text(), label)),
-              picture("classes", "errors", "Classes of the wrong points")}}};
+             {picture(shown.truth, "reference", fmt::format("S of {}, computed by the reference", shown.light)),
+              picture(shown.visibility, "method", fmt::format("S of {}, computed by {}", shown.light, label)),
+              picture(shown.classes, "errors", "Classes of the wrong points")}}};
 }
 
 /// Breaks that show a property of their method, and the property. These sentences do not come from the run: they are
@@ -107,65 +101,60 @@ constexpr Telling kTelling[] = {
      "the reference has a wide penumbra."},
 };
 
-json ladder_view(const Field& ladder, double limit) {
-    json view      = {{"name", ladder["name"].required_text()},
-                      {"title", ladder["title"].required_text()},
-                      {"about", ladder["about"].text()},
-                      {"unit", ladder["unit"].text()},
-                      {"rows", json::array()},
-                      {"breaks", json::array()}};
-    const bool sum = ladder["methods"].items().size() == 1 && ladder["methods"].items()[0]["name"].text() == "sum";
+json ladder_view(const LadderRecord& ladder, double limit) {
+    json view      = {{"name", ladder.name}, {"title", ladder.title}, {"about", ladder.about},
+                      {"unit", ladder.unit}, {"rows", json::array()}, {"breaks", json::array()}};
+    const bool sum = ladder.methods.size() == 1 && ladder.methods[0].name == "sum";
     view["chart"]  = sum ? json(false) : chart_of(ladder, limit);
-    if (!sum) view["chart"]["unit_words"] = ladder["unit"].text();
+    if (!sum) view["chart"]["unit_words"] = ladder.unit;
     view["rungs"] = json::array();
     std::string truth;
-    for (const Field& rung : ladder["rungs"].items()) {
-        if (const std::string by = rung["truth"].text(); truth.find(by) == std::string::npos)
-            truth += (truth.empty() ? "" : ", then ") + by;
+    for (const Rung& rung : ladder.rungs) {
+        if (truth.find(rung.truth) == std::string::npos) truth += (truth.empty() ? "" : ", then ") + rung.truth;
         if (!sum)
-            view["rungs"].push_back({{"value", rung_value(rung["value"].number().value_or(0))},
-                                     {"lit", count(rung["interior_lit"].number())},
-                                     {"shadow", count(rung["interior_shadow"].number())},
-                                     {"unjudged", rung["unjudged"].text()}});
+            view["rungs"].push_back({{"value", rung_value(rung.value)},
+                                     {"lit", count(double(rung.can_show.lit))},
+                                     {"shadow", count(double(rung.can_show.shadow))},
+                                     {"unjudged", rung.unjudged}});
     }
     view["truth"]     = truth;
     view["has_rungs"] = !view["rungs"].empty();
-    for (const Field& method : ladder["methods"].items()) {
-        json row      = fared(ladder, method);
-        row["label"]  = label_of(method);
+    for (const ClimbRecord& climbed : ladder.methods) {
+        json row      = fared(ladder, climbed);
+        row["label"]  = label_of(climbed);
         row["key"]    = sum ? "" : view["chart"]["lines"][view["rows"].size()]["key"].get<std::string>();
         row["colour"] = sum ? "" : view["chart"]["lines"][view["rows"].size()]["colour"].get<std::string>();
         view["rows"].push_back(std::move(row));
-        if (method["break"].present() && !is_textbook_twin(ladder, method))
-            view["breaks"].push_back(break_view(ladder, method));
+        if (climbed.shown && !is_textbook_twin(ladder, climbed))
+            view["breaks"].push_back(break_view(ladder, climbed, *climbed.shown));
     }
     return view;
 }
 
 }  // namespace
 
-json ladder_table_view(const Field& root, const std::string& page) {
-    const std::vector<Field> methods = methods_of(root);
-    json view                        = {{"columns", json::array()}, {"rows", json::array()}};
-    for (const Field& method : methods) view["columns"].push_back(label_of(method));
-    for (const Field& ladder : root["ladders"].items()) {
-        json row          = {{"title", ladder["title"].required_text()},
-                             {"unit", ladder["unit"].text()},
-                             {"href", page + "#" + ladder["name"].required_text()},
+json ladder_table_view(const LaddersRecord& record, const std::string& page) {
+    const std::vector<const ClimbRecord*> methods = methods_of(record);
+    json view                                     = {{"columns", json::array()}, {"rows", json::array()}};
+    for (const ClimbRecord* column : methods) view["columns"].push_back(label_of(*column));
+    for (const LadderRecord& ladder : record.ladders) {
+        json row          = {{"title", ladder.title},
+                             {"unit", ladder.unit},
+                             {"href", page + "#" + ladder.name},
                              {"cells", json::array()}};
         std::string range = "not judged";
         std::optional<double> first, last;
-        for (const Field& rung : ladder["rungs"].items())
-            if (!rung["unjudged"].present()) {
-                last  = rung["value"].number().value_or(0);
-                first = first.value_or(*last);
+        for (const Rung& rung : ladder.rungs)
+            if (rung.unjudged.empty()) {
+                last  = rung.value;
+                first = first.value_or(rung.value);
             }
         if (first) range = fmt::format("{} to {}", rung_value(*first), rung_value(*last));
         row["range"] = range;
-        for (const Field& column : methods) {
+        for (const ClimbRecord* column : methods) {
             json cell = {{"absent", true}};
-            for (const Field& method : ladder["methods"].items())
-                if (method["text"].text() == column["text"].text()) cell = fared(ladder, method);
+            for (const ClimbRecord& climbed : ladder.methods)
+                if (climbed.text == column->text) cell = fared(ladder, climbed);
             row["cells"].push_back(std::move(cell));
         }
         view["rows"].push_back(std::move(row));
@@ -173,32 +162,31 @@ json ladder_table_view(const Field& root, const std::string& page) {
     return view;
 }
 
-json ladder_showcase_view(const Field& root, const std::string& page) {
+json ladder_showcase_view(const LaddersRecord& record, const std::string& page) {
     json all = json::array();
     for (const Telling& telling : kTelling)
-        for (const Field& ladder : root["ladders"].items())
-            for (const Field& method : ladder["methods"].items()) {
-                if (ladder["name"].text() != telling.ladder || method["text"].text() != telling.method ||
-                    !method["break"].present())
-                    continue;
-                json view         = break_view(ladder, method);
+        for (const LadderRecord& ladder : record.ladders)
+            for (const ClimbRecord& climbed : ladder.methods) {
+                if (ladder.name != telling.ladder || climbed.text != telling.method || !climbed.shown) continue;
+                json view         = break_view(ladder, climbed, *climbed.shown);
                 const auto folder = fs::path(page).parent_path();
                 for (json& picture : view["pictures"])
                     picture["src"] = url(folder / "") + picture["src"].get<std::string>();
                 view["sees"]  = telling.sees;
-                view["title"] = ladder["title"].text();
+                view["title"] = ladder.title;
                 view["href"]  = page + "#" + telling.ladder;
                 all.push_back(std::move(view));
             }
     return all;
 }
 
-void write_ladder_page(const Field& root, const fs::path& folder, const std::string& report, StagedFiles& staged) {
-    const double limit      = root["breaking_share"].number().value_or(0);
+void write_ladder_page(const LaddersRecord& record, const fs::path& folder, const std::string& report,
+                       StagedFiles& staged) {
+    const double limit      = record.breaking_share.value_or(0);
     json view               = {{"report", report},
-                               {"table", ladder_table_view(root, "")},
-                               {"textbook", textbook_view(root, "")},
-                               {"run", run_view(root)},
+                               {"table", ladder_table_view(record, "")},
+                               {"textbook", textbook_view(record, "")},
+                               {"run", run_view(record.head, record.machine)},
                                {"share", fmt::format("{:g}", 100 * limit)},
                                {"least", count(double(kLeastOfAKind))},
                                {"least_share", fmt::format("{:g}", 100 * kLeastShareOfAKind)},
@@ -206,21 +194,21 @@ void write_ladder_page(const Field& root, const fs::path& folder, const std::str
                                {"ladders", json::array()}};
     view["textbook_breaks"] = json::array();
     int broken              = 0;
-    for (const Field& ladder : root["ladders"].items()) {
+    for (const LadderRecord& ladder : record.ladders) {
         view["ladders"].push_back(ladder_view(ladder, limit));
-        for (const Field& method : ladder["methods"].items()) {
-            const bool textbook = is_textbook_twin(ladder, method);
-            if (!textbook) broken += method["breaks_at"].present();
-            if (!textbook || !method["break"].present()) continue;
-            json one      = break_view(ladder, method);
-            one["title"]  = ladder["title"].text();
-            one["anchor"] = fmt::format("#{}", ladder["name"].text());
+        for (const ClimbRecord& climbed : ladder.methods) {
+            const bool textbook = is_textbook_twin(ladder, climbed);
+            if (!textbook) broken += climbed.breaks_at.has_value();
+            if (!textbook || !climbed.shown) continue;
+            json one      = break_view(ladder, climbed, *climbed.shown);
+            one["title"]  = ladder.title;
+            one["anchor"] = fmt::format("#{}", ladder.name);
             view["textbook_breaks"].push_back(std::move(one));
         }
     }
-    view["failures"]     = listed_failures(root);
+    view["failures"]     = listed_failures(record.failed);
     view["has_failures"] = !view["failures"].empty();
-    view["ladder_count"] = counted(double(root["ladders"].items().size()), "ladder");
+    view["ladder_count"] = counted(double(record.ladders.size()), "ladder");
     view["break_count"]  = counted(broken, "break");
 
     const PageHead head = {"Stability: where each method breaks", "", {"pictures.js"}};
@@ -230,7 +218,7 @@ void write_ladder_page(const Field& root, const fs::path& folder, const std::str
 
 void write_ladder_page(const fs::path& folder) {
     StagedFiles staged;
-    write_ladder_page(read_results(folder / "results.json"), folder, "", staged);
+    write_ladder_page(read_ladders(folder / "results.json"), folder, "", staged);
     staged.commit();
 }
 

@@ -9,106 +9,103 @@
 namespace umbra {
 namespace {
 
-Json outcome_json(const RungOutcome& o) {
-    Json j = {{"serves", service_json(o.service)}};
-    if (!o.stopped.empty()) j["stopped"] = o.stopped;
-    if (!o.ran()) return j;
-    j["points"]          = o.points;
-    j["undefined"]       = o.undefined;
-    j["false_shadow"]    = {{"interior", o.false_shadow.interior}, {"edge", o.false_shadow.edge}};
-    j["false_light"]     = {{"interior", o.false_light.interior}, {"edge", o.false_light.edge}};
-    j["interior_lit"]    = o.can_show.lit;
-    j["interior_shadow"] = o.can_show.shadow;
-    j["interior_share"]  = number(o.interior_share());
-    j["mae"]             = number(o.mae);
-    j["broken"]          = o.broken();
-    j["kind"]            = o.kind.empty() ? Json(nullptr) : Json(o.kind);
-    return j;
+RungOutcomeRecord outcome_record(const RungOutcome& o) {
+    RungOutcomeRecord record{.serves = service_record(o.service), .stopped = o.stopped};
+    if (!o.ran()) return record;
+    record.points          = o.points;
+    record.undefined       = o.undefined;
+    record.false_shadow    = o.false_shadow;
+    record.false_light     = o.false_light;
+    record.interior_lit    = o.can_show.lit;
+    record.interior_shadow = o.can_show.shadow;
+    record.interior_share  = o.interior_share();
+    record.mae             = o.mae;
+    record.broken          = o.broken();
+    record.kind.emplace();
+    if (!o.kind.empty()) *record.kind = o.kind;
+    return record;
 }
 
-Json rung_json(const Rung& rung) {
-    Json j = {{"value", rung.value},
-              {"truth", rung.truth},
-              {"surface_points", rung.surface_points},
-              {"lit", rung.lit},
-              {"umbra", rung.umbra},
-              {"penumbra", rung.penumbra},
-              {"on_boundary", rung.on_boundary},
-              {"interior_lit", rung.can_show.lit},
-              {"interior_shadow", rung.can_show.shadow}};
-    if (!rung.unjudged.empty()) j["unjudged"] = rung.unjudged;
-    return j;
-}
-
-/// The value of a rung that a climb names; null where it names none.
-Json value_of(const LadderRun& run, const std::optional<std::size_t>& rung) {
-    return rung ? Json(run.rungs[*rung].value) : Json(nullptr);
-}
-
-/// The preset whose settings these are; null where it is none.
-Json preset_of(const MethodChoice& choice) {
+/// The preset whose settings these are.
+std::optional<std::string> preset_of(const MethodChoice& choice) {
     if (choice.text() == choice.info->name) return "default";
     for (const Preset& preset : choice.info->presets)
         if (parse_method(fmt::format("{}@{}", choice.info->name, preset.name)).text() == choice.text())
-            return preset.name;
-    return nullptr;
+            return std::string(preset.name);
+    return {};
 }
 
-Json method_climb_json(const LadderRun& run, std::size_t m) {
-    const Climb c = climb(run, m);
-    Json j        = {{"name", run.methods.empty() ? "sum" : std::string(run.methods[m].info->name)},
-                     {"title", run.methods.empty() ? "The sum" : std::string(run.methods[m].info->title)},
-                     {"text", run.methods.empty() ? "sum" : run.methods[m].text()},
-                     {"preset", run.methods.empty() ? Json() : preset_of(run.methods[m])},
-                     {"breaks_at", value_of(run, c.breaks_at)},
-                     {"kind", nullptr},
-                     {"silent_from", value_of(run, c.silent_from)},
-                     {"not_served_from", value_of(run, c.not_served_from)},
-                     {"not_judged_from", value_of(run, c.not_judged_from)},
-                     {"why", c.why},
-                     {"judged_rungs", c.judged},
-                     {"least_coverage", number(c.least_coverage)},
-                     {"rungs", Json::array()}};
+ClimbRecord climb_record(const LadderRun& run, std::size_t m) {
+    const Climb c       = climb(run, m);
+    const auto value_of = [&](const std::optional<std::size_t>& rung) {
+        return rung ? std::optional(run.rungs[*rung].value) : std::nullopt;
+    };
+    ClimbRecord record{.name = "sum", .title = "The sum", .text = "sum"};
+    if (!run.methods.empty()) {
+        const MethodChoice& method = run.methods[m];
+        record.name                = method.info->name;
+        record.title               = method.info->title;
+        record.text                = method.text();
+        record.preset              = preset_of(method);
+    }
+    record.breaks_at       = value_of(c.breaks_at);
+    record.silent_from     = value_of(c.silent_from);
+    record.not_served_from = value_of(c.not_served_from);
+    record.not_judged_from = value_of(c.not_judged_from);
+    record.why             = c.why;
+    record.judged_rungs    = c.judged;
+    record.least_coverage  = c.least_coverage;
     if (c.breaks_at) {
         const RungOutcome& o = run.rungs[*c.breaks_at].outcomes[m];
-        j["kind"]            = o.stopped.empty() ? o.kind : run.methods.empty() ? "wrong sum" : "stopped";
+        record.kind          = o.stopped.empty() ? o.kind : run.methods.empty() ? "wrong sum" : "stopped";
     }
     for (const Rung& rung : run.rungs)
-        if (rung.unjudged.empty()) j["rungs"].push_back(outcome_json(rung.outcomes[m]));
-    if (m < run.first_rung_ms.size()) j["first_rung_ms"] = run.first_rung_ms[m];
-    return j;
+        if (rung.unjudged.empty()) record.rungs.push_back(outcome_record(rung.outcomes[m]));
+    if (m < run.first_rung_ms.size()) record.first_rung_ms = run.first_rung_ms[m];
+    return record;
+}
+
+LadderWordsRecord words_of(const Ladder& ladder) {
+    return {std::string(ladder.name), std::string(ladder.title), std::string(ladder.about), std::string(ladder.unit)};
 }
 
 }  // namespace
 
-Json ladder_info_json(const Ladder& ladder) {
-    return {{"name", ladder.name},
-            {"title", ladder.title},
-            {"about", ladder.about},
-            {"unit", ladder.unit},
-            {"rungs", std::vector<double>(ladder.rungs.begin(), ladder.rungs.end())}};
+LadderInfoRecord ladder_info(const Ladder& ladder) {
+    return {words_of(ladder), {ladder.rungs.begin(), ladder.rungs.end()}};
 }
 
-Json ladder_json(const LadderRun& run) {
-    Json j     = ladder_info_json(*run.ladder);
-    j["rungs"] = Json::array();
-    for (const Rung& rung : run.rungs) j["rungs"].push_back(rung_json(rung));
-    j["not_climbed"] = run.ladder->rungs.size() - run.rungs.size();
-    j["methods"]     = Json::array();
+LadderRecord ladder_record(const LadderRun& run) {
+    LadderRecord record{words_of(*run.ladder), run.rungs, run.ladder->rungs.size() - run.rungs.size(), {}};
     for (std::size_t m = 0; m < std::max<std::size_t>(run.methods.size(), run.methods.empty()); ++m)
-        j["methods"].push_back(method_climb_json(run, m));
-    return j;
+        record.methods.push_back(climb_record(run, m));
+    return record;
 }
 
-Json failed_climbs_json(const LadderRun& run) {
-    Json all       = Json::array();
+LaddersRecord read_ladders(const std::filesystem::path& file) {
+    const Field root     = read_results(file);
+    LaddersRecord record = from_record<LaddersRecord>(root);
+    for (const Field& ladder : root["ladders"].items()) {
+        const std::vector<Field> rungs = ladder["rungs"].items();
+        for (const Field& method : ladder["methods"].items())
+            for (const char* key : {"breaks_at", "silent_from", "not_served_from", "not_judged_from"})
+                if (const auto value = method[key].number();
+                    value && std::ranges::none_of(rungs, [&](const Field& r) { return r["value"].number() == value; }))
+                    method[key].refuse("the value of a rung");
+    }
+    return record;
+}
+
+Json ladders_schema() { return schema_of<LaddersRecord>("results.json of umbra ladder: where methods break"); }
+
+std::vector<ListedFailureRecord> failed_climbs(const LadderRun& run) {
+    std::vector<ListedFailureRecord> all;
     const auto add = [&](double rung, const std::string& method, const std::optional<std::string>& light,
                          const std::string& message) {
-        all.push_back({{"ladder", run.ladder->name},
-                       {"rung", rung},
-                       {"method", method},
-                       {"light", light ? Json(*light) : Json()},
-                       {"message", message}});
+        all.push_back({.ladder  = std::string(run.ladder->name),
+                       .rung    = rung,
+                       .method  = method,
+                       .failure = {.light = light, .message = message}});
     };
     for (const Rung& rung : run.rungs)
         if (!rung.failed.empty()) add(rung.value, "the reference", {}, rung.failed);
@@ -121,75 +118,64 @@ Json failed_climbs_json(const LadderRun& run) {
     return all;
 }
 
-std::string failed_climb_in_words(const Json& failed) {
-    return fmt::format("{}: {}: It failed{}{}: {}", failed["ladder"].get<std::string>(),
-                       failed["method"].get<std::string>(),
-                       failed["rung"].is_null() ? "" : fmt::format(" at {:g}", failed["rung"].get<double>()),
-                       failed["light"].is_null() ? "" : fmt::format(", light {}", failed["light"].get<std::string>()),
-                       failed["message"].get<std::string>());
+std::string failed_climb_in_words(const ListedFailureRecord& failed) {
+    const std::optional<std::string>& light = failed.failure.light;
+    return fmt::format("{}: {}: It failed{}{}: {}", failed.ladder, failed.method,
+                       failed.rung ? fmt::format(" at {:g}", *failed.rung) : "",
+                       light ? fmt::format(", light {}", *light) : "", failed.failure.message);
 }
 
-std::string climb_in_words(const Json& method, const Json& ladder) {
-    const auto value = [&](const char* key) { return method[key].get<double>(); };
+std::string climb_in_words(const ClimbRecord& climbed, const LadderRecord& ladder) {
     std::string words;
-    if (!method["breaks_at"].is_null())
-        words = fmt::format("{:g} {}", value("breaks_at"), method["kind"].get<std::string>());
-    for (const auto& [key, what] : {std::pair("not_served_from", "not served"),
-                                    {"silent_from", "mostly undefined"},
-                                    {"not_judged_from", "not judged"}}) {
-        if (method[key].is_null()) continue;
-        const bool never = value(key) == ladder["rungs"][0]["value"].get<double>();
+    if (climbed.breaks_at) words = fmt::format("{:g} {}", *climbed.breaks_at, climbed.kind.value_or(""));
+    for (const auto& [from, what] : {std::pair(climbed.not_served_from, "not served"),
+                                     {climbed.silent_from, "mostly undefined"},
+                                     {climbed.not_judged_from, "not judged"}}) {
+        if (!from) continue;
+        const bool never = rung_of(ladder, from) == 0u;
         if (!words.empty()) words += "; ";
-        words += never ? what : fmt::format("{} from {:g}", what, value(key));
+        words += never ? what : fmt::format("{} from {:g}", what, *from);
     }
     return words.empty() ? "holds" : words;
 }
 
 namespace {
 /// A column of the table: the method as typed, by its preset where it has one.
-std::string heading(const Json& ladders, const std::string& text) {
-    for (const Json& ladder : ladders)
-        for (const Json& method : ladder["methods"])
-            if (method["text"] == text && method.contains("preset") && method["preset"].is_string() &&
-                method["preset"] != "default")
-                return fmt::format("{}@{}", method["name"].get<std::string>(), method["preset"].get<std::string>());
+std::string heading(std::span<const LadderRecord> ladders, const std::string& text) {
+    for (const LadderRecord& ladder : ladders)
+        for (const ClimbRecord& climbed : ladder.methods)
+            if (climbed.text == text && climbed.preset && climbed.preset != "default")
+                return fmt::format("{}@{}", climbed.name, *climbed.preset);
     return text;
 }
 
 /// How a method fared, and what that leaves out.
-std::string cell_of(const Json& method, const Json& ladder) {
-    std::string words = climb_in_words(method, ladder);
-    if (!method["breaks_at"].is_null() || !method.contains("judged_rungs")) return words;
-    const std::size_t rungs = ladder["rungs"].size() + ladder["not_climbed"].get<std::size_t>();
-    const std::string part =
-        left_out_in_words(method["judged_rungs"], words == "holds" ? double(rungs) : 0, method["least_coverage"]);
+std::string cell_of(const ClimbRecord& climbed, const LadderRecord& ladder) {
+    const std::string words = climb_in_words(climbed, ladder), part = left_out_in_words(ladder, climbed);
     return part.empty() ? words : fmt::format("{} ({})", words, part);
 }
 }  // namespace
 
-std::string ladder_table(const Json& ladders) {
+std::string ladder_table(std::span<const LadderRecord> ladders) {
     // Columns are the methods in the order in which they first appear; ladders over the sum have a column of their own.
     std::vector<std::string> columns;
-    for (const Json& ladder : ladders)
-        for (const Json& method : ladder["methods"])
-            if (const std::string name = method["text"];
-                std::find(columns.begin(), columns.end(), name) == columns.end())
-                columns.push_back(name);
+    for (const LadderRecord& ladder : ladders)
+        for (const ClimbRecord& climbed : ladder.methods)
+            if (std::ranges::find(columns, climbed.text) == columns.end()) columns.push_back(climbed.text);
     std::vector<std::vector<std::string>> rows(1, {"ladder"});
     for (const std::string& column : columns) rows[0].push_back(heading(ladders, column));
     rows[0].emplace_back("judged up to");
-    for (const Json& ladder : ladders) {
-        std::vector<std::string> row = {ladder["name"]};
+    for (const LadderRecord& ladder : ladders) {
+        std::vector<std::string> row = {ladder.name};
         for (const std::string& column : columns) {
             std::string cell;
-            for (const Json& method : ladder["methods"])
-                if (method["text"] == column) cell = cell_of(method, ladder);
+            for (const ClimbRecord& climbed : ladder.methods)
+                if (climbed.text == column) cell = cell_of(climbed, ladder);
             row.push_back(cell);
         }
         std::string last = "no rung";
-        for (const Json& rung : ladder["rungs"])
-            if (!rung.contains("unjudged"))
-                last = fmt::format("{:g} {}", rung["value"].get<double>(), ladder["unit"].get<std::string>());
+        for (const Rung& rung : ladder.rungs)
+            if (rung.unjudged.empty()) last = fmt::format("{:g} {}", rung.value, ladder.unit);
         row.push_back(last);
         rows.push_back(std::move(row));
     }

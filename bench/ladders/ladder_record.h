@@ -1,29 +1,165 @@
-// What a climb found, as the record that results.json holds, and as the table that the terminal shows.
+// What climbs found, as results.json of `umbra ladder` holds it, and as the table that the terminal shows.
 #pragma once
 
+#include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "umbra/bench/ladders/ladder_break.h"
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/run/describe.h"
 
 namespace umbra {
 
-/// The entry of one ladder in `ladders` of results.json (bench/ladders/ladders.schema.json).
-[[nodiscard]] Json ladder_json(const LadderRun& run);
+template <class Fields>
+void describe(Fields& of, Is<VisibilityError::Kind>) {
+    of("interior", &VisibilityError::Kind::interior, "");
+    of("edge", &VisibilityError::Kind::edge, "");
+}
 
-/// Entries of `failed` of results.json: methods and references that threw on a ladder, at their first such rung.
-[[nodiscard]] Json failed_climbs_json(const LadderRun& run);
-/// "LADDER: METHOD: It failed at RUNG, light LIGHT: message", of one such entry.
-[[nodiscard]] std::string failed_climb_in_words(const Json& failed);
+/// RungOutcome; where the method did not run to its end, without figures.
+struct RungOutcomeRecord {
+    ServiceRecord serves{};
+    std::string stopped{};
+    std::optional<std::uint64_t> points{}, undefined{};
+    std::optional<VisibilityError::Kind> false_shadow{}, false_light{};
+    std::optional<std::uint64_t> interior_lit{}, interior_shadow{};
+    std::optional<double> interior_share{}, mae{};
+    std::optional<bool> broken{};
+    std::optional<std::optional<std::string>> kind{};  ///< with figures; null: no point is wrong
+};
+template <class Fields>
+void describe(Fields& of, Is<RungOutcomeRecord>) {
+    of.name("outcome", "what a method made of a rung; without figures where it did not run to its end");
+    of("serves", &RungOutcomeRecord::serves, "");
+    of.may("stopped", &RungOutcomeRecord::stopped, "what it threw");
+    of.may("points", &RungOutcomeRecord::points, "");
+    of.may("undefined", &RungOutcomeRecord::undefined, "");
+    of.may("false_shadow", &RungOutcomeRecord::false_shadow, "");
+    of.may("false_light", &RungOutcomeRecord::false_light, "");
+    of.may("interior_lit", &RungOutcomeRecord::interior_lit, "as of the rung, of the points that the method answers");
+    of.may("interior_shadow", &RungOutcomeRecord::interior_shadow, "likewise");
+    of.may("interior_share", &RungOutcomeRecord::interior_share, "", {{}, 0, 1});
+    of.may("mae", &RungOutcomeRecord::mae, "", {{}, 0, 1});
+    of.may("broken", &RungOutcomeRecord::broken, "");
+    of.may("kind", &RungOutcomeRecord::kind, "");
+}
 
-/// A ladder as `umbra list --json` names it: name, title, about, unit, rungs.
-[[nodiscard]] Json ladder_info_json(const Ladder& ladder);
+/// How a method fared on a ladder. Rungs are named by their values.
+struct ClimbRecord {
+    std::string name{}, title{}, text{};
+    std::optional<std::string> preset{};
+    std::optional<double> breaks_at{};
+    std::optional<std::string> kind{};
+    std::optional<double> silent_from{}, not_served_from{}, not_judged_from{};
+    std::string why{};
+    std::optional<std::uint64_t> judged_rungs{};
+    std::optional<double> least_coverage{};
+    std::vector<RungOutcomeRecord> rungs{};
+    std::optional<std::vector<double>> first_rung_ms{};
+    std::optional<BreakRecord> shown{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ClimbRecord>) {
+    of.name("climb", "how a method fared on a ladder; rungs are named by their values, null: none");
+    of("name", &ClimbRecord::name, "");
+    of("title", &ClimbRecord::title, "");
+    of.must("text", &ClimbRecord::text, "method and settings, as typed");
+    of("preset", &ClimbRecord::preset, "whose settings these are; null where they are of none");
+    of("breaks_at", &ClimbRecord::breaks_at, "");
+    of("kind", &ClimbRecord::kind, "",
+       one_of({"acne", "false shadow", "leak", "detachment", "false light", "penumbra", "stopped", "wrong sum"}));
+    of("silent_from", &ClimbRecord::silent_from, "from here on to the last rung, most points are undefined");
+    of("not_served_from", &ClimbRecord::not_served_from, "from here on to the last rung");
+    of("not_judged_from", &ClimbRecord::not_judged_from,
+       "from here on to the last rung, too few interior points of a kind, no points or no reference");
+    of("why", &ClimbRecord::why, "");
+    of.may("judged_rungs", &ClimbRecord::judged_rungs, "on which it ran and has enough interior points of each kind");
+    of.may("least_coverage", &ClimbRecord::least_coverage,
+           "of the judged rungs: the least share of the points that it answers", {{}, 0, 1});
+    of("rungs", &ClimbRecord::rungs, "of the judged rungs");
+    of.may("first_rung_ms", &ClimbRecord::first_rung_ms,
+           "build, aim and visibility on the first rung, a value a round, all methods in turns; empty where the method "
+           "does not serve it");
+    of.may("break", &ClimbRecord::shown, "");
+}
 
-/// A row a ladder, a column a method: the rung that breaks and the kind of error, from the array of `ladder_json`s.
-[[nodiscard]] std::string ladder_table(const Json& ladders);
+struct LadderWordsRecord {
+    std::string name{}, title{}, about{}, unit{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LadderWordsRecord>) {
+    of.must("name", &LadderWordsRecord::name, "");
+    of.must("title", &LadderWordsRecord::title, "");
+    of("about", &LadderWordsRecord::about, "");
+    of("unit", &LadderWordsRecord::unit, "of the value of a rung");
+}
+
+/// A ladder as `umbra list --json` names it.
+struct LadderInfoRecord : LadderWordsRecord {
+    std::vector<double> rungs{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LadderInfoRecord>) {
+    of.name("ladder", "");
+    describe(of, Is<LadderWordsRecord>{});
+    of("rungs", &LadderInfoRecord::rungs, "");
+}
+
+/// A ladder that was climbed.
+struct LadderRecord : LadderWordsRecord {
+    std::vector<Rung> rungs{};
+    std::uint64_t not_climbed = 0;
+    std::vector<ClimbRecord> methods{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LadderRecord>) {
+    of.name("ladder", "");
+    describe(of, Is<LadderWordsRecord>{});
+    of("rungs", &LadderRecord::rungs, "");
+    of("not_climbed", &LadderRecord::not_climbed, "rungs beyond the last of `rungs`");
+    of("methods", &LadderRecord::methods, "");
+}
+
+struct LaddersRecord {
+    HeadRecord head{};
+    MachineRecord machine{};
+    std::optional<double> breaking_share{};
+    std::vector<LadderRecord> ladders{};
+    std::vector<ListedFailureRecord> failed{};
+    std::optional<BudgetRecord> budget{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LaddersRecord>) {
+    of.all(&LaddersRecord::head);
+    of("machine", &LaddersRecord::machine, "");
+    of("breaking_share", &LaddersRecord::breaking_share,
+       "a method that serves a scene approximately breaks where a larger fraction of the compared points is wrong in "
+       "the interior",
+       {{}, 0, 1});
+    of("ladders", &LaddersRecord::ladders, "");
+    of("failed", &LaddersRecord::failed, "methods, references and whole ladders");
+    of.may("budget", &LaddersRecord::budget, "");
+}
+
+/// Throws InputError: "FILE:/POINTER: found WHAT, expected WHAT".
+[[nodiscard]] LaddersRecord read_ladders(const std::filesystem::path& file);
+[[nodiscard]] Json ladders_schema();  ///< JSON Schema, draft 4
+
+[[nodiscard]] LadderInfoRecord ladder_info(const Ladder& ladder);
+[[nodiscard]] LadderRecord ladder_record(const LadderRun& run);
+
+/// Methods and references that threw on a ladder, at their first such rung.
+[[nodiscard]] std::vector<ListedFailureRecord> failed_climbs(const LadderRun& run);
+/// "LADDER: METHOD: It failed at RUNG, light LIGHT: message".
+[[nodiscard]] std::string failed_climb_in_words(const ListedFailureRecord& failed);
+
+/// A row a ladder, a column a method: the rung that breaks and the kind of error.
+[[nodiscard]] std::string ladder_table(std::span<const LadderRecord> ladders);
 
 /// One cell of that table.
-[[nodiscard]] std::string climb_in_words(const Json& method, const Json& ladder);
+[[nodiscard]] std::string climb_in_words(const ClimbRecord& climbed, const LadderRecord& ladder);
 
 }  // namespace umbra

@@ -3,15 +3,14 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 
-#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/ladders/ladder_record.h"
 
 namespace umbra {
 
 /// Whether an entry of `methods` of a ladder is the textbook form of a method whose default form was climbed, too.
-[[nodiscard]] bool is_textbook_twin(const Field& ladder, const Field& method);
+[[nodiscard]] bool is_textbook_twin(const LadderRecord& ladder, const ClimbRecord& climbed);
 
 /// How the textbook form of a method fared on a ladder beside the default form.
 enum class Textbook : std::uint8_t {
@@ -24,10 +23,11 @@ struct TextbookClimb {
     Textbook outcome = Textbook::same;
     int rungs        = 0;  ///< that the default form holds for longer; negative where it breaks earlier
 };
-[[nodiscard]] TextbookClimb compare_with_textbook(const Field& ladder, const Field& textbook, const Field& by_default);
+[[nodiscard]] TextbookClimb compare_with_textbook(const LadderRecord& ladder, const ClimbRecord& textbook,
+                                                  const ClimbRecord& by_default);
 
 /// Counts and times by method, and a row for each ladder where the two forms differ (textbook_table.html); false where
 /// no ladder has both forms of a method. `page` as for ladder_table_view.
-[[nodiscard]] nlohmann::json textbook_view(const Field& root, const std::string& page);
+[[nodiscard]] nlohmann::json textbook_view(const LaddersRecord& record, const std::string& page);
 
 }  // namespace umbra

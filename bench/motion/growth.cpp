@@ -4,9 +4,9 @@
 
 #include "umbra/bench/motion/growth_page.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -44,11 +44,11 @@ Json measure_growth(const GrowthCommand& command) {
     Json record = {{"schema", kResultsSchema},
                    {"version", version()},
                    {"command", command.command},
-                   {"machine", machine_json(command.threads)},
+                   {"machine", to_record(machine_record(command.threads))},
                    {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
                    {"growth", Json::array()},
                    {"failed", Json::array()}};
-    if (command.options.turns.most.is_set()) record["budget"] = budget_json(command.options.turns.most);
+    if (const auto budget = budget_record(command.options.turns.most)) record["budget"] = to_record(*budget);
     for (const GrowthFamily* family : families) {
         const auto fail = [&](const std::string& method, const std::string& message) {
             record["failed"].push_back({{"family", family->name}, {"method", method}, {"message", message}});

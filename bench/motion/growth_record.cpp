@@ -47,7 +47,7 @@ Json series_json(const GrowthRun& run, const GrowthSeries& series) {
     for (const GrowthPoint& point : series.points)
         j["points"].push_back({{"x", point.x},
                                {"text", point.times.choice.text()},
-                               {"times", turn_times_json(point.times)},
+                               {"times", to_record(turn_times_record(point.times))},
                                {"memory_bytes", point.times.memory_bytes},
                                {"noise_bar", number(point.noise_bar)}});
     for (const Quantity quantity : kQuantities) {

@@ -4,9 +4,9 @@
 
 #include "umbra/bench/motion/motion_page.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/describe.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -36,7 +36,7 @@ Json measure_motion(const std::vector<std::filesystem::path>& files, const Motio
     Json record = {{"schema", kResultsSchema},
                    {"version", version()},
                    {"command", command.command},
-                   {"machine", machine_json(command.threads)},
+                   {"machine", to_record(machine_record(command.threads))},
                    {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
                    {"frames", command.options.frames},
                    {"arc_degrees", kArc},
@@ -44,7 +44,7 @@ Json measure_motion(const std::vector<std::filesystem::path>& files, const Motio
                    {"max_rmse", command.max_rmse},
                    {"motion", Json::array()},
                    {"failed", Json::array()}};
-    if (command.options.still.most.is_set()) record["budget"] = budget_json(command.options.still.most);
+    if (const auto budget = budget_record(command.options.still.most)) record["budget"] = to_record(*budget);
     const auto fail = [&](const std::string& scene, const std::string& method, const std::string& message) {
         record["failed"].push_back({{"scene", scene}, {"method", method}, {"message", message}});
     };

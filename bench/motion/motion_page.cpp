@@ -82,8 +82,10 @@ json triangle_view(const Json& scene, double max_rmse, const std::string& captio
     return {{"caption", caption}, {"any", !regions.empty()}, {"regions", std::move(regions)}};
 }
 
-json winner_view(const Json& winner) {
-    if (winner.is_null()) return {{"none", true}, {"method", ""}, {"ms", ""}, {"ties", ""}, {"next", ""}};
+json winner_view(const Json& winner, bool ranked) {
+    if (winner.is_null() || !ranked)
+        return {
+            {"none", winner.is_null() ? "none" : "not ranked"}, {"method", ""}, {"ms", ""}, {"ties", ""}, {"next", ""}};
     std::string ties, next;
     for (const Json& tie : winner["ties"]) ties += (ties.empty() ? "" : ", ") + text(tie);
     if (ties.empty() && !winner["runner_up"].is_null())
@@ -136,7 +138,7 @@ json method_view(const Json& method) {
 std::string noise_in_words(const Json& noise_bar) {
     if (noise_bar.is_null()) return "an unknown bar";
     const std::string bar = percent(value(noise_bar)) + " %";
-    return !is_too_noisy(noise_bar.get<double>()) ? bar : bar + " (too much to draw which method is fastest where)";
+    return is_ranked(noise_bar) ? bar : bar + " (too much to say which method is fastest where)";
 }
 
 json scene_view(const Json& record, const Json& scene, std::size_t number) {
@@ -145,9 +147,11 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
         movements.push_back(
             {{"name", m["movement"]},
              {"what", m.contains("cannot") ? "This scene cannot have it: " + text(m["cannot"]) : text(m["what"])}});
+    const bool ranked = is_ranked(scene["noise_bar"]);
     for (const Json& method : scene["methods"]) methods.push_back(method_view(method));
     for (const Json& row : scene["winners"])
-        winners.push_back({{"mix", row["mix"]}, {"cells", {winner_view(row["complete"]), winner_view(row["within"])}}});
+        winners.push_back({{"mix", row["mix"]},
+                           {"cells", {winner_view(row["complete"], ranked), winner_view(row["within"], ranked)}}});
     for (const Json& pair : scene["break_even"])
         pairs.push_back(
             {{"method", pair["method"]},
@@ -161,11 +165,10 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
                                           pair["rounds"][1].is_null() ? "never" : count(value(pair["rounds"][1])))}});
     const double max_rmse = record["max_rmse"].get<double>();
     json triangles        = json::array();
-    const bool quiet      = !scene["noise_bar"].is_null() && !is_too_noisy(scene["noise_bar"].get<double>());
     for (const auto& [bound, caption] :
          {std::pair{1e300, std::string("of all that answer every point")},
           {max_rmse, fmt::format("with an RMSE of at most {:g} in every frame", max_rmse)}})
-        if (json triangle = triangle_view(scene, bound, caption); quiet && triangle["any"].get<bool>())
+        if (json triangle = triangle_view(scene, bound, caption); ranked && triangle["any"].get<bool>())
             triangles.push_back(std::move(triangle));
     std::string lights;
     for (const Json& light : scene["lights"]) lights += (lights.empty() ? "" : ", ") + text(light["name"]);

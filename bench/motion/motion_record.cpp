@@ -56,12 +56,12 @@ Json method_motion_json(const SceneMotion& motion, const MethodMotion& method) {
     Json j                 = {{"name", still.choice.info->name},
                               {"title", still.choice.info->title},
                               {"text", still.choice.text()},
-                              {"serves", service_json(still.service)},
+                              {"serves", to_record(service_record(still.service))},
                               {"incremental", false}};  // no method has an update that is less than its phase
     if (method.failed) j["failed"] = *method.failed;
     if (!still.service || still.build.empty()) return j;
     j["memory_bytes"] = still.memory_bytes;
-    j["at_rest"]      = turn_times_json(still);
+    j["at_rest"]      = to_record(turn_times_record(still));
     for (const Movement movement : kMovements)
         if (!method.of(movement).empty())
             j["movements"][std::string(to_string(movement))] = method_movement_json(motion, method, movement);

@@ -16,14 +16,15 @@ std::string number_text(const Json& value, int digits = 2) {
 }
 
 std::string noise_text(const Json& noise_bar) {
-    if (noise_bar.is_null()) return "without a control no two times differ";
+    if (noise_bar.is_null()) return "not ranked: without a control no two times differ";
     const double bar = noise_bar.get<double>();
-    return fmt::format("times that differ by less than {:.0f} % are equal{}", std::ceil(100 * bar),
-                       is_too_noisy(bar) ? "; run it again when the machine is less busy" : "");
+    return fmt::format("{}times that differ by less than {:.0f} % are equal{}", is_too_noisy(bar) ? "not ranked: " : "",
+                       std::ceil(100 * bar), is_too_noisy(bar) ? "; run it again when the machine is less busy" : "");
 }
 
-std::string winner_text(const Json& winner) {
+std::string winner_text(const Json& winner, bool ranked) {
     if (winner.is_null()) return "none";
+    if (!ranked) return "not ranked";
     std::string text = fmt::format("{} {} ms", winner["method"].get<std::string>(), number_text(winner["ms"]));
     for (const Json& tie : winner["ties"]) text += " = " + tie.get<std::string>();
     if (winner["ties"].empty() && !winner["runner_up"].is_null())
@@ -82,9 +83,10 @@ std::string motion_table(const Json& record) {
             "  fastest by median of those that answer every point; the same with an RMSE of at most {:g} in every "
             "frame; {}\n",
             record["max_rmse"].get<double>(), noise_text(scene["noise_bar"]));
+        const bool ranked = is_ranked(scene["noise_bar"]);
         for (const Json& row : scene["winners"])
-            text += fmt::format("  {:28} {:60} | {}\n", row["mix"].get<std::string>(), winner_text(row["complete"]),
-                                winner_text(row["within"]));
+            text += fmt::format("  {:28} {:60} | {}\n", row["mix"].get<std::string>(),
+                                winner_text(row["complete"], ranked), winner_text(row["within"], ranked));
         for (const Json& pair : scene["break_even"])
             text += fmt::format(
                 "  {} pays off over {} from {} on{}\n", pair["method"].get<std::string>(),

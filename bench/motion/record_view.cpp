@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
+
+bool is_ranked(const Json& noise_bar) { return !noise_bar.is_null() && !is_too_noisy(noise_bar.get<double>()); }
 
 std::string coverage_text(const Json& ratio) {
     const double coverage = ratio.value("coverage", 0.0);

@@ -14,6 +14,9 @@ namespace umbra {
     return number.is_null() ? std::nullopt : std::optional(number.get<double>());
 }
 
+/// Whether noise lets times be ranked; it does not where the bar is not known.
+[[nodiscard]] bool is_ranked(const Json& noise_bar);
+
 /// "97.9 %": the probability with which a ratio's interval holds it; "-" where it has none.
 [[nodiscard]] std::string coverage_text(const Json& ratio);
 

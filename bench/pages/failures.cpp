@@ -7,33 +7,28 @@
 namespace umbra {
 namespace {
 
-std::string line(const std::string& who, const Field& failure) {
+std::string line(const std::string& who, const FailureRecord& failure, std::optional<double> rung = {}) {
     std::string where;
-    if (const auto rung = failure["rung"].number()) where += fmt::format(" at {:g}", *rung);
-    if (const std::string light = failure["light"].text(); !light.empty()) where += " at light " + light;
-    return fmt::format("{} failed{}: {}", who, where, failure["message"].text());
+    if (rung) where += fmt::format(" at {:g}", *rung);
+    if (failure.light && !failure.light->empty()) where += " at light " + *failure.light;
+    return fmt::format("{} failed{}: {}", who, where, failure.message);
 }
 
 }  // namespace
 
-bool failed(const Field& method) { return method["failed"].present(); }
-
-std::vector<std::string> scene_failures(const Field& root) {
+std::vector<std::string> scene_failures(const Results& results) {
     std::vector<std::string> lines;
-    if (const Field failure = root["reference"]["failed"]; failure.present())
-        lines.push_back(line(fmt::format("The reference {}", failure["method"].text()), failure));
-    const std::vector<Field> methods = root["methods"].items();
-    for (const Field& method : methods)
-        if (failed(method)) lines.push_back(line(method_label(method, methods), method["failed"]));
+    if (const auto& failed = results.reference.failed)
+        lines.push_back(line(fmt::format("The reference {}", failed->method), failed->failure));
+    for (const MethodRecord& method : results.methods)
+        if (method.failed) lines.push_back(line(method_label(method, results.methods), *method.failed));
     return lines;
 }
 
-std::vector<std::string> listed_failures(const Field& root) {
+std::vector<std::string> listed_failures(const std::vector<ListedFailureRecord>& failed) {
     std::vector<std::string> lines;
-    for (const Field& failure : root["failed"].items()) {
-        const std::string where = failure["ladder"].text() + failure["scene"].text();
-        lines.push_back(fmt::format("{}: {}", where, line(failure["method"].text(), failure)));
-    }
+    for (const ListedFailureRecord& f : failed)
+        lines.push_back(fmt::format("{}{}: {}", f.ladder, f.scene, line(f.method, f.failure, f.rung)));
     return lines;
 }
 

@@ -1,20 +1,17 @@
-// What failed during a run, read from results.json, in words for a page.
+// What failed during a run, in words for a page.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/run/results.h"
 
 namespace umbra {
 
-/// The method threw or broke its contract; it has no results.
-[[nodiscard]] bool failed(const Field& method);
-
 /// A line for the reference and for each method of a compared scene that failed: "METHOD failed at light L: message".
-[[nodiscard]] std::vector<std::string> scene_failures(const Field& root);
+[[nodiscard]] std::vector<std::string> scene_failures(const Results& results);
 
 /// A line for each entry of `failed` of ladders or of a bias study, which names what failed by ladder or scene.
-[[nodiscard]] std::vector<std::string> listed_failures(const Field& root);
+[[nodiscard]] std::vector<std::string> listed_failures(const std::vector<ListedFailureRecord>& failed);
 
 }  // namespace umbra

@@ -4,20 +4,22 @@
 #include <array>
 #include <string_view>
 
+#include "umbra/bench/run/describe.h"
+
 namespace umbra {
 
 struct MeshFault {
-    std::string_view key;        ///< the member of an object's facts
+    std::uint64_t ObjectRecord::*count;
     std::string_view one, many;  ///< for people
 };
 
 inline constexpr std::array kMeshFaults = {
-    MeshFault{"boundary_edges", "boundary edge", "boundary edges"},
-    MeshFault{"nonmanifold_edges", "non-manifold edge", "non-manifold edges"},
-    MeshFault{"misoriented_edges", "inconsistently oriented edge", "inconsistently oriented edges"},
-    MeshFault{"nonmanifold_vertices", "non-manifold vertex", "non-manifold vertices"},
-    MeshFault{"degenerate_triangles", "degenerate triangle", "degenerate triangles"},
-    MeshFault{"duplicate_triangles", "duplicate triangle", "duplicate triangles"},
+    MeshFault{&ObjectRecord::boundary_edges, "boundary edge", "boundary edges"},
+    MeshFault{&ObjectRecord::nonmanifold_edges, "non-manifold edge", "non-manifold edges"},
+    MeshFault{&ObjectRecord::misoriented_edges, "inconsistently oriented edge", "inconsistently oriented edges"},
+    MeshFault{&ObjectRecord::nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices"},
+    MeshFault{&ObjectRecord::degenerate_triangles, "degenerate triangle", "degenerate triangles"},
+    MeshFault{&ObjectRecord::duplicate_triangles, "duplicate triangle", "duplicate triangles"},
 };
 
 }  // namespace umbra

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/error_rings.h"
@@ -17,27 +18,24 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 SceneFiles::SceneFiles(const ScenePage& scene, StagedFiles& staged) : scene_(scene), staged_(staged) {
-    for (const char* side : {"width", "height"}) {
-        const Field pixels = scene.root["size"][side];
-        if (!pixels.present()) continue;
-        if (const double n = *pixels.number(); n < 1 || n > 1e6) pixels.refuse("1 to 1000000 pixels");
-        size_[side] = fmt::format("{:.0f}", *pixels.number());
-    }
+    const SizeRecord& size = scene.results.size;
+    if (size.width) size_["width"] = std::to_string(*size.width);
+    if (size.height) size_["height"] = std::to_string(*size.height);
 }
 
-std::string SceneFiles::link(const Field& file, const fs::path& from) const {
-    const fs::path name = file.required_text();
+std::string SceneFiles::link(const FileName& file, const fs::path& from) const {
+    const fs::path name = file.name;
     const fs::path path = scene_.data / name;
     if (name.is_absolute() || *path.lexically_normal().lexically_relative(scene_.data).begin() == "..")
-        file.refuse("a file in the same folder");
-    if (!is_file(path)) file.refuse("an existing file");
+        file.at.refuse("a file in the same folder");
+    if (!is_file(path)) file.at.refuse("an existing file");
     if (scene_.page != scene_.data) staged_.copy(path, (scene_.page / name).lexically_normal());
     return url((scene_.page / name).lexically_normal().lexically_relative(from));
 }
 
-json SceneFiles::figure(const Field& file, const std::string& who, const std::string& what, const std::string& alt,
+json SceneFiles::figure(const FileName& file, const std::string& who, const std::string& what, const std::string& alt,
                         const fs::path& from) const {
-    if (!file.present()) return false;
+    if (!file) return false;
     json view    = size_;
     view["src"]  = link(file, from.empty() ? scene_.page : from);
     view["who"]  = who;
@@ -46,20 +44,20 @@ json SceneFiles::figure(const Field& file, const std::string& who, const std::st
     return view;
 }
 
-Image SceneFiles::picture(const Field& file) const {
+Image SceneFiles::picture(const FileName& file) const {
     (void)link(file, scene_.page);  // refuses a file that lies elsewhere
-    return read_image(scene_.data / file.text()).image;
+    return read_image(scene_.data / file.name).image;
 }
 
-json SceneFiles::legend(const Field& classes) const {
+json SceneFiles::legend(const FileName& classes) const {
     json all = json::array();
     for (const ErrorColour* entry : classes_on(picture(classes)))
         all.push_back({{"name", std::string(entry->name)}, {"colour", std::string(entry->srgb)}});
     return all;
 }
 
-json SceneFiles::rings(const Field& classes) const {
-    if (!classes.present()) return false;
+json SceneFiles::rings(const FileName& classes) const {
+    if (!classes) return false;
     const Image drawn      = picture(classes);
     const ErrorRings found = error_rings(drawn);
     if (found.rings.empty()) return false;
@@ -79,73 +77,65 @@ json SceneFiles::rings(const Field& classes) const {
             {"shapes", std::move(shapes)}};
 }
 
-json SceneFiles::exr(const Field& files) const {
-    const Field file = files["exr"];
-    if (!file.present() || !is_file(scene_.data / file.required_text())) return false;
+json SceneFiles::exr(const std::optional<FilesRecord>& files) const {
+    if (!files || !files->exr || !is_file(scene_.data / files->exr.name)) return false;
     if (!scene_.with_exr && scene_.page != scene_.data) return false;
-    return link(file, scene_.page);
+    return link(files->exr, scene_.page);
 }
 
-bool serves(const Field& method) {
-    const Field how        = method["serves"]["how"];
-    const std::string word = how.required_text();
-    if (word != "exactly" && word != "to_rounding" && word != "approximately" && word != "not")
-        how.refuse("\"exactly\", \"to_rounding\", \"approximately\" or \"not\"");
-    return word != "not";
+bool serves(const MethodRecord& method) { return method.serves.how != "not"; }
+
+const LightFilesRecord* files_of(const std::optional<FilesRecord>& files, const std::string& light) {
+    return files ? files->lights.find(light) : nullptr;
 }
 
-std::string setting_text(const Field& method) {
-    if (std::string text = method["text"].text(); !text.empty()) return text;
-    const std::string id = method["id"].text();
-    return id.empty() ? method["name"].required_text() : id;
+FileName picture_of(const std::optional<FilesRecord>& files) { return files ? files->png : FileName{}; }
+
+std::string setting_text(const MethodRecord& method) {
+    return !method.text.empty() ? method.text : !method.id.empty() ? method.id : method.name;
 }
 
-bool same_setting(const Field& a, const Field& b) {
+bool same_setting(const MethodRecord& a, const MethodRecord& b) {
     if (setting_text(a) != setting_text(b)) return false;
-    const std::vector<std::pair<std::string, Field>> parameters = a["parameters"].members();
-    return std::all_of(parameters.begin(), parameters.end(), [&](const auto& parameter) {
-        const Field other = b["parameters"][parameter.first];
-        return !other.present() || other.scalar() == parameter.second.scalar();
+    return std::ranges::all_of(a.parameters, [&](const auto& parameter) {
+        const Scalar* other = b.parameters.find(parameter.first);
+        return other == nullptr || text_of(*other) == text_of(parameter.second);
     });
 }
 
-std::optional<Field> find_setting(const std::vector<Field>& methods, const Field& setting) {
-    const auto found =
-        std::find_if(methods.begin(), methods.end(), [&](const Field& m) { return same_setting(m, setting); });
-    return found == methods.end() ? std::nullopt : std::optional(*found);
+const MethodRecord* find_setting(const std::vector<MethodRecord>& methods, const MethodRecord& setting) {
+    const auto found = std::ranges::find_if(methods, [&](const MethodRecord& m) { return same_setting(m, setting); });
+    return found == methods.end() ? nullptr : &*found;
 }
 
-std::string method_label(const Field& method, const std::vector<Field>& methods) {
-    const std::string name = method["name"].required_text(), title = method["title"].text(),
-                      text = method["text"].text();
-    const auto runs =
-        std::count_if(methods.begin(), methods.end(), [&](const Field& m) { return m["name"].text() == name; });
-    const std::string shown = title.empty() ? in_words(name) : title;
-    const auto colon        = text.find(':');
-    std::string settings    = colon != std::string::npos ? text.substr(colon + 1) : "";
+std::string method_label(const MethodRecord& method, const std::vector<MethodRecord>& methods) {
+    const auto runs         = std::ranges::count(methods, method.name, &MethodRecord::name);
+    const std::string shown = method.title.empty() ? in_words(method.name) : method.title;
+    const auto colon        = method.text.find(':');
+    std::string settings    = colon != std::string::npos ? method.text.substr(colon + 1) : "";
     // Records of two versions of the program may write other settings as one text.
-    for (const auto& [name_of, value] : method["parameters"].members())
-        if (std::any_of(methods.begin(), methods.end(), [&, &of = name_of, &here = value](const Field& m) {
-                return setting_text(m) == setting_text(method) && m["parameters"][of].present() &&
-                       m["parameters"][of].scalar() != here.scalar();
+    for (const auto& [name, value] : method.parameters)
+        if (std::ranges::any_of(methods, [&, &of = name, &here = value](const MethodRecord& m) {
+                const Scalar* there = m.parameters.find(of);
+                return setting_text(m) == setting_text(method) && there != nullptr && text_of(*there) != text_of(here);
             }))
-            settings += fmt::format("{}{}={}", settings.empty() ? "" : ",", name_of, value.scalar());
+            settings += fmt::format("{}{}={}", settings.empty() ? "" : ",", name, text_of(value));
     return runs > 1 && !settings.empty() ? fmt::format("{} ({})", shown, settings) : shown;
 }
 
-std::vector<Field> settings_of(const std::vector<ScenePage>& scenes) {
-    std::vector<Field> settings;
+std::vector<MethodRecord> settings_of(const std::vector<ScenePage>& scenes) {
+    std::vector<MethodRecord> settings;
     for (const ScenePage& scene : scenes)
-        for (const Field& method : scene.root["methods"].items())
-            if (!find_setting(settings, method)) settings.push_back(method);
-    const auto answers_on = [&](const Field& setting) {
-        return std::count_if(scenes.begin(), scenes.end(), [&](const ScenePage& scene) {
-            const std::optional<Field> method = find_setting(scene.root["methods"].items(), setting);
-            return method && serves(*method);
+        for (const MethodRecord& method : scene.results.methods)
+            if (find_setting(settings, method) == nullptr) settings.push_back(method);
+    const auto answers_on = [&](const MethodRecord& setting) {
+        return std::ranges::count_if(scenes, [&](const ScenePage& scene) {
+            const MethodRecord* method = find_setting(scene.results.methods, setting);
+            return method != nullptr && serves(*method);
         });
     };
-    std::vector<std::pair<std::ptrdiff_t, Field>> ranked;
-    for (const Field& setting : settings) ranked.emplace_back(answers_on(setting), setting);
+    std::vector<std::pair<std::ptrdiff_t, MethodRecord>> ranked;
+    for (const MethodRecord& setting : settings) ranked.emplace_back(answers_on(setting), setting);
     std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::transform(ranked.begin(), ranked.end(), settings.begin(), [](const auto& r) { return r.second; });
     return settings;
@@ -156,27 +146,45 @@ std::optional<double> sum(std::optional<double> a, std::optional<double> b) {
     if (!a || !b) return std::nullopt;
     return *a + *b;
 }
+
+std::optional<double> median_of(const std::optional<TimingRecord>& timing) {
+    return timing ? known(timing->median) : std::nullopt;
+}
 }  // namespace
 
-Totals totals(const Field& method) {
+std::optional<double> wrong_points(const ErrorRecord& error, std::string_view group, std::string_view member) {
+    const auto in   = [&](const WrongRecord& wrong) { return member == "interior" ? wrong.interior : wrong.edge; };
+    const bool both = member == "interior" || member == "edge";
+    std::optional<std::uint64_t> n;
+    if (group == "false_shadow" && error.false_shadow) {
+        if (both || member == "acne") n = both ? in(*error.false_shadow) : error.false_shadow->acne;
+    } else if (group == "false_light" && error.false_light) {
+        if (both) n = in(*error.false_light);
+        if (member == "detachment") n = error.false_light->detachment;
+        if (member == "leak") n = error.false_light->leak;
+    }
+    return n ? std::optional(static_cast<double>(*n)) : std::nullopt;
+}
+
+Totals totals(const MethodRecord& method) {
     Totals t;
     double absolute = 0;
-    for (const Field& error : method["errors"].items()) {
+    for (const ErrorRecord& error : method.errors) {
         for (const std::string& group : error_groups()) {
-            t.interior += error[group]["interior"].number().value_or(0);
-            t.edge += error[group]["edge"].number().value_or(0);
+            t.interior += wrong_points(error, group, "interior").value_or(0);
+            t.edge += wrong_points(error, group, "edge").value_or(0);
         }
-        const auto mae = error["mae"].number();
-        const double n = error["points"].number().value_or(mae ? 1 : 0);
+        const double n = error.points ? static_cast<double>(*error.points) : error.mae ? 1 : 0;
         t.points += n;
-        absolute += mae.value_or(0) * n;
+        absolute += error.mae.value_or(0) * n;
     }
     if (t.points > 0) t.mae = absolute / t.points;
-    const Field times     = method["times"];
-    const auto visibility = times["visibility_ms"]["median"].number();
-    t.camera_ms = times["look_ms"].present() ? sum(visibility, times["look_ms"]["median"].number()) : visibility;
-    t.light_ms  = sum(visibility, times["aim_ms"]["median"].number());
-    t.object_ms = sum(sum(t.camera_ms, times["aim_ms"]["median"].number()), times["build_ms"]["median"].number());
+    if (!method.times) return t;
+    const TimesRecord& times = method.times->phases;
+    const auto visibility    = median_of(times.visibility_ms);
+    t.camera_ms              = times.look_ms ? sum(visibility, median_of(times.look_ms)) : visibility;
+    t.light_ms               = sum(visibility, median_of(times.aim_ms));
+    t.object_ms              = sum(sum(t.camera_ms, median_of(times.aim_ms)), median_of(times.build_ms));
     return t;
 }
 
@@ -188,19 +196,18 @@ std::vector<std::string> error_groups() {
     return groups;
 }
 
-std::optional<Field> worst_method(const Field& root) {
-    std::optional<Field> worst;
-    double most = -1;
-    for (const Field& method : root["methods"].items()) {
-        if (!serves(method) || is_reference(root, method) || !method["files"]["png"].present()) continue;
-        if (const double wrong = totals(method).interior; wrong > most) worst = method, most = wrong;
+const MethodRecord* worst_method(const Results& results) {
+    const MethodRecord* worst = nullptr;
+    double most               = -1;
+    for (const MethodRecord& method : results.methods) {
+        if (!serves(method) || is_reference(results, method) || !picture_of(method.files)) continue;
+        if (const double wrong = totals(method).interior; wrong > most) worst = &method, most = wrong;
     }
     return worst;
 }
 
-bool is_reference(const Field& root, const Field& method) {
-    const std::string text = method["text"].text();
-    return !text.empty() && text == root["reference"]["text"].text();
+bool is_reference(const Results& results, const MethodRecord& method) {
+    return !method.text.empty() && method.text == results.reference.text;
 }
 
 json class_legend() {
@@ -212,12 +219,12 @@ json class_legend() {
     return all;
 }
 
-json slider_view(const SceneFiles& files, const std::optional<Field>& method, const fs::path& from) {
-    const ScenePage& scene = files.scene();
-    const Field reference  = scene.root["reference"]["files"]["png"];
-    if (!method || !reference.present()) return false;
-    const std::string label = method_label(*method, scene.root["methods"].items());
-    json left               = files.figure((*method)["files"]["png"], label, "picture",
+json slider_view(const SceneFiles& files, const MethodRecord* method, const fs::path& from) {
+    const ScenePage& scene   = files.scene();
+    const FileName reference = picture_of(scene.results.reference.files);
+    if (method == nullptr || !reference) return false;
+    const std::string label = method_label(*method, scene.results.methods);
+    json left               = files.figure(picture_of(method->files), label, "picture",
                                            fmt::format("{}: shadows by {}", scene.title, label), from);
     json right =
         files.figure(reference, "Reference", "picture", fmt::format("{}: shadows by the reference", scene.title), from);
@@ -227,30 +234,27 @@ json slider_view(const SceneFiles& files, const std::optional<Field>& method, co
     return view;
 }
 
-json run_view(const Field& root) {
-    const Field machine = root["machine"];
+json run_view(const HeadRecord& head, const MachineRecord& machine) {
     std::vector<std::string> parts;
-    if (const auto cpu = machine["cpu"].text(); !cpu.empty()) parts.push_back(cpu);
-    if (const auto n = machine["cores"].number()) parts.push_back(counted(*n, "core"));
-    if (const auto n = machine["threads"].number()) parts.push_back(counted(*n, "thread") + " used");
-    if (const auto n = machine["memory_bytes"].number(); n && *n > 0)
-        parts.push_back(fmt::format("{:.0f} GiB", *n / (1024.0 * 1024 * 1024)));
-    if (const auto s = machine["system"].text(); !s.empty()) parts.push_back(s);
-    if (const auto s = machine["compiler"].text(); !s.empty()) parts.push_back(s);
-    const std::string command = without_folders(root["command"].text());
+    if (!machine.cpu.empty()) parts.push_back(machine.cpu);
+    if (machine.cores > 0) parts.push_back(counted(double(machine.cores), "core"));
+    if (machine.threads > 0) parts.push_back(counted(double(machine.threads), "thread") + " used");
+    if (machine.memory_bytes > 0)
+        parts.push_back(fmt::format("{:.0f} GiB", double(machine.memory_bytes) / (1024.0 * 1024 * 1024)));
+    if (!machine.system.empty()) parts.push_back(machine.system);
+    if (!machine.compiler.empty()) parts.push_back(machine.compiler);
+    const std::string command = without_folders(head.command);
     return {{"has_commands", !command.empty()},
             {"commands", json::array({command})},
             {"machine", fmt::format("{}", fmt::join(parts, ", "))},
-            {"version", root["version"].text()}};
+            {"version", head.version}};
 }
 
-json reference_view(const Field& root) {
-    const Field reference   = root["reference"];
-    const std::string title = reference["title"].text();
-    return {{"title", title.empty() ? in_words(reference["name"].text()) : title},
-            {"text", reference["text"].text()},
-            {"exact", reference["exact"].flag()},
-            {"note", reference["note"].text()}};
+json reference_view(const ReferenceRecord& reference) {
+    return {{"title", reference.title.empty() ? in_words(reference.name) : reference.title},
+            {"text", reference.text},
+            {"exact", reference.exact},
+            {"note", reference.note}};
 }
 
 }  // namespace umbra

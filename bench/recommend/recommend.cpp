@@ -18,7 +18,7 @@
 namespace umbra {
 namespace {
 
-constexpr double kUnknown      = std::numeric_limits<double>::infinity();
+constexpr double kInfinite     = std::numeric_limits<double>::infinity();
 constexpr double kTooExpensive = 5;  ///< one run each: more than a busy machine makes of equal settings
 
 std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
@@ -138,7 +138,7 @@ public:
             time_in_turns_with_one_another(who);
             const auto cheapest     = std::ranges::min_element(who, {}, [&](std::size_t k) {
                 const Candidate& c = result_.candidates[k];
-                return c.within(options_.limits) ? c.cost.value_or(kUnknown) : kUnknown;
+                return c.within(options_.limits) ? c.cost.value_or(kInfinite) : kInfinite;
             });
             const Candidate& answer = result_.candidates[*cheapest];
             const std::size_t timed = who.size();
@@ -293,8 +293,8 @@ bool Candidate::within(std::span<const Limit> limits) const { return worst_ratio
 double Candidate::worst_ratio(std::span<const Limit> limits) const {
     double worst = 0;
     for (std::size_t k = 0; k < limits.size(); ++k) {
-        if (!bounds[k]) return kUnknown;
-        if (*bounds[k] > 0) worst = std::max(worst, limits[k].most > 0 ? *bounds[k] / limits[k].most : kUnknown);
+        if (!bounds[k]) return kInfinite;
+        if (*bounds[k] > 0) worst = std::max(worst, limits[k].most > 0 ? *bounds[k] / limits[k].most : kInfinite);
     }
     return worst;
 }
@@ -376,7 +376,7 @@ std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendO
     const auto rank = [&](std::size_t k) {
         const Candidate& c = r.candidates[k];
         const bool within  = c.unfit.empty() && c.within(options.limits);
-        const double cost  = c.cost.value_or(kUnknown);
+        const double cost  = c.cost.value_or(kInfinite);
         return std::tuple(!c.unfit.empty(), !c.cost, !within, within ? cost : c.worst_ratio(options.limits), cost);
     };
     for (std::size_t k = 0; k < r.candidates.size(); ++k) {

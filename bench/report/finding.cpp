@@ -14,25 +14,35 @@ namespace umbra {
 namespace {
 
 struct Compared {
-    Field method;
+    const MethodRecord* method;
     std::string label;
     double wrong = 0;  ///< interior points, over all lights
     bool partial = false;
 };
 
 /// A count of one object of the `errors` entries, over all lights.
-double sum_of(const Field& method, std::string_view group, std::string_view member) {
+double sum_of(const MethodRecord& method, std::string_view group, std::string_view member) {
     double sum = 0;
-    for (const Field& error : method["errors"].items()) sum += error[group][member].number().value_or(0);
+    for (const ErrorRecord& error : method.errors) sum += wrong_points(error, group, member).value_or(0);
+    return sum;
+}
+
+/// Wrong points of either kind, over all lights.
+double sum_of(const MethodRecord& method, DirectionRecord ErrorRecord::*object, std::string_view group) {
+    double sum = 0;
+    for (const ErrorRecord& error : method.errors) {
+        const DirectionRecord& wrong = error.*object;
+        sum += static_cast<double>(group == "false_shadow" ? wrong.false_shadow : wrong.false_light);
+    }
     return sum;
 }
 
 /// The classes of a method's wrong interior points: "6 acne, 3 other false shadow".
-std::string classes_in_words(const Field& method) {
+std::string classes_in_words(const MethodRecord& method) {
     std::vector<std::string> parts;
     for (const std::string& group : error_groups()) {
-        double rest = sum_of(method, group, "interior") - sum_of(method, "penumbra_error", group) -
-                      sum_of(method, "noise_error", group);
+        double rest = sum_of(method, group, "interior") - sum_of(method, &ErrorRecord::penumbra_error, group) -
+                      sum_of(method, &ErrorRecord::noise_error, group);
         bool any = false;
         for (const ErrorColour& entry : kErrorPalette) {
             if (entry.group != group || entry.member.empty()) continue;
@@ -44,7 +54,7 @@ std::string classes_in_words(const Field& method) {
         if (rest > 0) parts.push_back(fmt::format("{}{} {}", count(rest), any ? " other" : "", in_words(group)));
     }
     for (const auto& [object, name] :
-         {std::pair{"penumbra_error", "in penumbrae"}, std::pair{"noise_error", "by noise"}}) {
+         {std::pair{&ErrorRecord::penumbra_error, "in penumbrae"}, std::pair{&ErrorRecord::noise_error, "by noise"}}) {
         double n = 0;
         for (const std::string& group : error_groups()) n += sum_of(method, object, group);
         if (n > 0) parts.push_back(fmt::format("{} {}", count(n), name));
@@ -61,21 +71,19 @@ std::string right_in_words(const std::vector<Compared>& right) {
 
 }  // namespace
 
-std::string finding(const Field& root) {
-    const std::vector<Field> methods = root["methods"].items();
+std::string finding(const Results& results) {
+    const std::vector<MethodRecord>& methods = results.methods;
     std::vector<Compared> wrong, right;
     bool any = false;
-    for (const Field& method : methods) {
-        if (!serves(method) || is_reference(root, method) || method["errors"].items().empty()) continue;
+    for (const MethodRecord& method : methods) {
+        if (!serves(method) || is_reference(results, method) || method.errors.empty()) continue;
         any = true;
         if (totals(method).points == 0) continue;
-        Compared c{method, method_label(method, methods), totals(method).interior,
-                   method["coverage"].number().value_or(1) < 1};
+        Compared c{&method, method_label(method, methods), totals(method).interior, method.coverage.value_or(1) < 1};
         (c.wrong > 0 ? wrong : right).push_back(std::move(c));
     }
     if (wrong.empty() && right.empty()) return any ? "No point is judged: no lit surface is in view." : "";
-    const std::string reference =
-        fmt::format("the {} reference", root["reference"]["exact"].flag() ? "exact" : "inexact");
+    const std::string reference = fmt::format("the {} reference", results.reference.exact ? "exact" : "inexact");
     if (wrong.empty()) {
         const bool partial = std::any_of(right.begin(), right.end(), [](const Compared& c) { return c.partial; });
         return fmt::format("{}: no wrong interior point against {}{}.",
@@ -87,9 +95,9 @@ std::string finding(const Field& root) {
 
     std::stable_sort(wrong.begin(), wrong.end(),
                      [](const Compared& a, const Compared& b) { return a.wrong > b.wrong; });
-    std::string text            = fmt::format("{}: {} of {} compared with {} ({})", wrong[0].label,
-                                              counted(wrong[0].wrong, "wrong interior point"),
-                                              count(totals(wrong[0].method).points), reference, classes_in_words(wrong[0].method));
+    std::string text = fmt::format(
+        "{}: {} of {} compared with {} ({})", wrong[0].label, counted(wrong[0].wrong, "wrong interior point"),
+        count(totals(*wrong[0].method).points), reference, classes_in_words(*wrong[0].method));
     constexpr std::size_t named = 4;  // more names than that are a table
     for (std::size_t i = 1; i < wrong.size(); ++i) {
         if (wrong.size() > named && i + 1 >= named) {

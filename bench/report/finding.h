@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/run/results.h"
 
 namespace umbra {
 
 /// Which methods have wrong interior points, the most first, and which have none: "Shadow z-buffer: 9 wrong interior
 /// points of 684 compared with the exact reference (6 acne, 3 other false shadow); all 3 other methods: none." Empty
 /// where no method was compared.
-[[nodiscard]] std::string finding(const Field& root);
+[[nodiscard]] std::string finding(const Results& results);
 
 }  // namespace umbra

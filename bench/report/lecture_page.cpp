@@ -31,7 +31,7 @@ const SceneFiles* page_of(const LectureSources& sources, std::string_view study,
 
 json pictures_of(const LectureShow* show, const SceneFiles& files, const fs::path& out, Language language) {
     json pictures  = json::array();
-    const auto add = [&](const Field& file, const std::string& caption) {
+    const auto add = [&](const FileName& file, const std::string& caption) {
         json picture = files.figure(file, "", "", caption.empty() ? files.scene().title : caption, out);
         if (!picture.is_object()) return;
         picture["caption"] = caption.empty() ? json(false) : json(caption);
@@ -39,9 +39,9 @@ json pictures_of(const LectureShow* show, const SceneFiles& files, const fs::pat
     };
     if (show != nullptr)
         for (const LectureValue& value : show->pictures)
-            add(value_at(files.scene().root, value.path), lecture_name(value.name, language));
+            add(from_record<FileName>(value_at(files.scene().root, value.path)), lecture_name(value.name, language));
     else
-        add(files.scene().root["reference"]["files"]["png"], "");
+        add(picture_of(files.scene().results.reference.files), "");
     return pictures;
 }
 
@@ -63,7 +63,7 @@ json row_view(const LectureRow& row, const LectureSources& sources, const fs::pa
             if (const std::string figures = figure_in_words(figure, files->scene().root, language); !figures.empty())
                 measured.push_back({{"text", figures}, {"lang", std::string(language.code)}});
     if (show == nullptr || show->study.empty())
-        if (const std::string found = finding(files->scene().root); !found.empty())
+        if (const std::string found = finding(files->scene().results); !found.empty())
             measured.push_back({{"text", found}, {"lang", "en"}});
     view["shown"] = {{"href", url((files->scene().page / "index.html").lexically_relative(out))},
                      {"scene", files->scene().title},

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/report/lecture_texts.h"
-#include "umbra/bench/run/results_file.h"
 
 namespace umbra {
 

@@ -58,14 +58,17 @@ std::vector<fs::path> results_files(const fs::path& dir) {
 
 /// A results.json of a compared scene, and its place; nothing where it is of another command.
 std::optional<ScenePage> read_scene(const Field& root, const fs::path& file) {
-    ScenePage scene{.root = root, .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
     for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth"})
-        if (scene.root[other].present()) return std::nullopt;
-    scene.name      = scene.root["scene"]["name"].required_text();
-    scene.title     = scene.root["scene"]["title"].text();
-    scene.triangles = scene.root["facts"]["triangles"].number().value_or(0);
-    if (!scene.root["methods"].present()) scene.root["methods"].refuse("an array");
-    if (scene.title.empty()) scene.title = in_words(scene.name);
+        if (root[other].present()) return std::nullopt;
+    if (!root["methods"].present()) root["methods"].refuse("an array");
+    ScenePage scene{.root    = root,
+                    .results = from_record<Results>(root),
+                    .data    = fs::canonical(file.parent_path()),
+                    .page    = {},
+                    .name    = root["scene"]["name"].required_text(),
+                    .title   = {}};
+    scene.title     = scene.results.scene.title.empty() ? in_words(scene.name) : scene.results.scene.title;
+    scene.triangles = static_cast<double>(scene.results.facts.triangles);
     return scene;
 }
 
@@ -159,18 +162,18 @@ json ladder_sections(const std::vector<LadderFolder>& folders, const fs::path& o
             for (const auto& entry : fs::recursive_directory_iterator(folder.data))
                 if (entry.is_regular_file() && !is_hidden_name_of_ours(entry.path()))
                     staged.copy(entry.path(), folder.page / entry.path().lexically_relative(folder.data));
-        const Field root         = read_results(folder.data / "results.json");
-        const std::string page   = url((folder.page / "index.html").lexically_relative(out));
-        const std::string number = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
-        write_ladder_page(root, folder.page, url((out / "index.html").lexically_relative(folder.page)), staged);
+        const LaddersRecord record = read_ladders(folder.data / "results.json");
+        const std::string page     = url((folder.page / "index.html").lexically_relative(out));
+        const std::string number   = sections.empty() ? "" : fmt::format("-{}", sections.size() + 1);
+        write_ladder_page(record, folder.page, url((out / "index.html").lexically_relative(folder.page)), staged);
         sections.push_back({{"page", page},
                             {"number", number},
                             {"which", folders.size() > 1 ? fmt::format(" {}", sections.size() + 1) : ""},
-                            {"run", folders.size() > 1 ? run_view(root) : json(false)},
-                            {"table", ladder_table_view(root, page)},
-                            {"textbook", textbook_view(root, page)},
-                            {"showcase", ladder_showcase_view(root, page)},
-                            {"count", counted(double(root["ladders"].items().size()), "ladder")}});
+                            {"run", folders.size() > 1 ? run_view(record.head, record.machine) : json(false)},
+                            {"table", ladder_table_view(record, page)},
+                            {"textbook", textbook_view(record, page)},
+                            {"showcase", ladder_showcase_view(record, page)},
+                            {"count", counted(double(record.ladders.size()), "ladder")}});
     }
     return sections;
 }
@@ -223,15 +226,15 @@ void add_failures(json& index, const std::vector<std::string>& scenes_failed, co
                   const std::vector<LadderFolder>& ladders) {
     json failures = scenes_failed;
     for (const ScenePage& scene : scenes)
-        for (std::string& message : scene_failures(scene.root)) failures.push_back(scene.title + ": " + message);
+        for (std::string& message : scene_failures(scene.results)) failures.push_back(scene.title + ": " + message);
     for (const LadderFolder& folder : ladders)
-        for (std::string& message : listed_failures(read_results(folder.data / "results.json")))
+        for (std::string& message : listed_failures(read_ladders(folder.data / "results.json").failed))
             failures.push_back(std::move(message));
     index["has_failures"] = !failures.empty();
     index["failures"]     = std::move(failures);
 }
 
-std::string scene_page(const SceneFiles& files, const std::vector<Field>& settings, const json& previous,
+std::string scene_page(const SceneFiles& files, const std::vector<MethodRecord>& settings, const json& previous,
                        const json& next, const std::string& root, const std::string& title) {
     json view        = scene_view(files, settings);
     view["previous"] = previous;
@@ -272,7 +275,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     for (ScenePage& scene : found.scenes) scene.with_exr = options.with_exr;
     StagedFiles staged;
     for (StudyPage& study : found.studies) take_study(study, root, staged);
-    const std::vector<Field> settings = settings_of(scenes);
+    const std::vector<MethodRecord> settings = settings_of(scenes);
 
     std::vector<SceneFiles> files;
     files.reserve(scenes.size());

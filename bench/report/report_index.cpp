@@ -19,19 +19,19 @@ using nlohmann::json;
 namespace {
 
 /// One cell of the summary: a setting on a scene.
-json cell_view(const ScenePage& scene, const Field& setting, const std::string& href) {
-    const std::optional<Field> method = find_setting(scene.root["methods"].items(), setting);
-    json view = {{"served", false}, {"unserved", false}, {"failed", false}, {"absent", !method}};
-    if (!method) return view;
+json cell_view(const ScenePage& scene, const MethodRecord& setting, const std::string& href) {
+    const MethodRecord* method = find_setting(scene.results.methods, setting);
+    json view = {{"served", false}, {"unserved", false}, {"failed", false}, {"absent", method == nullptr}};
+    if (method == nullptr) return view;
     if (!serves(*method)) {
-        view[failed(*method) ? "failed" : "unserved"] =
-            json{{"why", (*method)["serves"]["why"].text()}, {"href", href + "#not-served"}};
+        view[method->failed ? "failed" : "unserved"] =
+            json{{"why", method->serves.why}, {"href", href + "#not-served"}};
         return view;
     }
     const Totals t      = totals(*method);
-    const auto coverage = (*method)["coverage"].number();
+    const auto coverage = method->coverage;
     view["served"]      = json{{"coverage", percent(coverage)},
-                          {"itself", is_reference(scene.root, *method)},
+                          {"itself", is_reference(scene.results, *method)},
                           {"partial", coverage && *coverage < 1},
                           {"interior", t.points > 0 ? count(t.interior) : "not judged"},
                           {"wrong", t.interior > 0},
@@ -46,29 +46,28 @@ json cell_view(const ScenePage& scene, const Field& setting, const std::string& 
 }
 
 /// The noise bar of a scene's times of a full rebuild; infinite of too few rounds, nothing in records of older versions.
-std::optional<double> noise_of(const Field& root) {
-    if (!root["turns"].present()) return std::nullopt;
-    return root["turns"]["noise_bar"].number().value_or(noise_bar({}));
+std::optional<double> noise_of(const Results& results) {
+    if (!results.turns) return std::nullopt;
+    return results.turns->noise_bar.value_or(noise_bar({}));
 }
 
 /// The class picture of the light under which a method has the most wrong interior points; false where there is none.
-json front_classes(const SceneFiles& files, const Field& method, const std::string& label, const fs::path& out) {
-    std::optional<Field> worst;
+json front_classes(const SceneFiles& files, const MethodRecord& method, const std::string& label, const fs::path& out) {
+    std::string light;
+    FileName picture;
     double most = -1;
-    for (const Field& error : method["errors"].items()) {
+    for (const ErrorRecord& error : method.errors) {
         double wrong = 0;
-        for (const std::string& group : error_groups()) wrong += error[group]["interior"].number().value_or(0);
-        const std::string light = error["light"].required_text();
-        if (wrong > most && method["files"]["lights"][light]["classes"].present()) worst = error, most = wrong;
+        for (const std::string& group : error_groups()) wrong += wrong_points(error, group, "interior").value_or(0);
+        const LightFilesRecord* of = files_of(method.files, error.light);
+        if (wrong > most && of != nullptr && of->classes) light = error.light, picture = of->classes, most = wrong;
     }
-    if (!worst) return false;
-    const std::string light = (*worst)["light"].text();
-    const Field picture     = method["files"]["lights"][light]["classes"];
-    json view               = files.figure(picture, label, "errors of " + light,
-                                           fmt::format("Classes of the wrong points of {} by {}", light, label), out);
-    view["caption"]         = fmt::format("Wrong points of {}, light “{}”. Right points are grey.", label, light);
-    view["rings"]           = files.rings(picture);
-    view["legend"]          = files.legend(picture);
+    if (!picture) return false;
+    json view       = files.figure(picture, label, "errors of " + light,
+                                   fmt::format("Classes of the wrong points of {} by {}", light, label), out);
+    view["caption"] = fmt::format("Wrong points of {}, light “{}”. Right points are grey.", label, light);
+    view["rings"]   = files.rings(picture);
+    view["legend"]  = files.legend(picture);
     return view;
 }
 
@@ -78,18 +77,18 @@ json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
     std::optional<std::size_t> shown;
     double most = -1;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
-        const auto method = worst_method(scenes[i].root);
-        if (!method || !scenes[i].root["reference"]["files"]["png"].present()) continue;
+        const MethodRecord* method = worst_method(scenes[i].results);
+        if (method == nullptr || !picture_of(scenes[i].results.reference.files)) continue;
         if (const double wrong = totals(*method).interior; wrong > most) shown = i, most = wrong;
     }
     if (!shown) return false;
     const ScenePage& scene = scenes[*shown];
-    const auto method      = worst_method(scene.root);
+    const auto* method     = worst_method(scene.results);
     json view              = slider_view(files[*shown], method, out);
     view["href"]           = url((scene.page / "index.html").lexically_relative(out));
     view["title"]          = scene.title;
-    view["finding"]        = finding(scene.root);
-    view["classes"] = front_classes(files[*shown], *method, method_label(*method, scene.root["methods"].items()), out);
+    view["finding"]        = finding(scene.results);
+    view["classes"]        = front_classes(files[*shown], *method, method_label(*method, scene.results.methods), out);
     return view;
 }
 
@@ -98,14 +97,14 @@ json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
 json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
                 const std::string& title) {
     json cards = json::array(), columns = json::array(), rows = json::array(), runs = json::array(),
-         references                   = json::array();
-    const std::vector<Field> settings = settings_of(scenes);
+         references                          = json::array();
+    const std::vector<MethodRecord> settings = settings_of(scenes);
 
-    for (const Field& setting : settings)
+    for (const MethodRecord& setting : settings)
         columns.push_back({{"label", method_label(setting, settings)},
                            {"anchor", fmt::format("method-{}", columns.size() + 1)},
-                           {"paper", setting["paper"].text()},
-                           {"summary", setting["summary"].text()},
+                           {"paper", setting.paper},
+                           {"summary", setting.summary},
                            {"name", setting_text(setting)}});
     // Scenes that one machine and version compared share an entry, which lists their commands.
     const auto add_run = [](json& list, json view) {
@@ -131,28 +130,27 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
         const ScenePage& scene = scenes[i];
         const std::string href = url((scene.page / "index.html").lexically_relative(out));
         std::vector<std::string> lights;
-        for (const Field& light : scene.root["lights"].items())
-            lights.push_back(
-                fmt::format("{}, {}", kind_in_words(light["kind"].text()), place_in_words(light["place"].text())));
+        for (const LightRecord& light : scene.results.lights)
+            lights.push_back(fmt::format("{}, {}", kind_in_words(light.kind), place_in_words(light.place)));
         std::sort(lights.begin(), lights.end());
         lights.erase(std::unique(lights.begin(), lights.end()), lights.end());
         json card         = {{"href", href},
                              {"title", scene.title},
-                             {"shows", scene.root["scene"]["shows"].text()},
+                             {"shows", scene.results.scene.shows},
                              {"lights", fmt::format("{}", fmt::join(lights, "; "))},
                              {"triangles", count(scene.triangles)}};
-        card["thumbnail"] = files[i].figure(scene.root["reference"]["files"]["png"], "Reference", "picture", "", out);
-        const auto noise  = noise_of(scene.root);
+        card["thumbnail"] = files[i].figure(picture_of(scene.results.reference.files), "Reference", "picture", "", out);
+        const auto noise  = noise_of(scene.results);
         json cells        = json::array();
-        for (const Field& setting : settings) cells.push_back(cell_view(scene, setting, href));
+        for (const MethodRecord& setting : settings) cells.push_back(cell_view(scene, setting, href));
         rows.push_back({{"title", scene.title},
                         {"href", href},
                         {"noise", noise ? fmt::format("{}", *noise) : ""},
                         {"loud", noise && is_too_noisy(*noise)},
                         {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
-        add_run(runs, run_view(scene.root));
-        add_reference(references, reference_view(scene.root));
+        add_run(runs, run_view(scene.results.head, scene.results.machine));
+        add_reference(references, reference_view(scene.results.reference));
     }
     return {{"title", title},
             {"legend", class_legend()},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cctype>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -18,31 +19,39 @@ namespace {
 
 using nlohmann::json;
 
-json timing(const Field& time) {
-    const auto median = time["median"].number(), min = time["min"].number(), max = time["max"].number();
-    json view = {{"median", milliseconds(median)}, {"range", false}};
-    if (median && min && max && *min != *max)
-        view["range"] = fmt::format("{}–{}", milliseconds(min), milliseconds(max));
+EdgeRecord edge_record(const std::optional<DisplacementRecord>& edges) {
+    if (!edges) return {};
+    return {known(edges->mean),
+            known(edges->p95),
+            known(edges->max),
+            static_cast<double>(edges->pieces),
+            static_cast<double>(edges->unmatched),
+            std::isnan(edges->reach) ? 0 : edges->reach};
+}
+
+json timing(const std::optional<TimingRecord>& time) {
+    if (!time) return {{"median", kNone}, {"range", false}};
+    json view = {{"median", milliseconds(time->median)}, {"range", false}};
+    if (time->min != time->max) view["range"] = fmt::format("{}–{}", milliseconds(time->min), milliseconds(time->max));
     return view;
 }
 
 /// Rows by light: `row` of every `errors` entry, that is of each method that was compared, in the methods' order.
-json rows_by_light(const Field& root, const std::vector<Field>& methods,
-                   const std::function<json(const Field& method, const Field& error)>& row) {
+json rows_by_light(const Results& results,
+                   const std::function<json(const MethodRecord& method, const ErrorRecord& error)>& row) {
     json groups = json::array();
-    for (const Field& light : root["lights"].items()) {
-        const std::string name = light["name"].required_text();
-        json rows              = json::array();
-        for (const Field& method : methods) {
-            if (is_reference(root, method)) continue;
-            for (const Field& error : method["errors"].items()) {
-                if (error["light"].required_text() != name) continue;
+    for (const LightRecord& light : results.lights) {
+        json rows = json::array();
+        for (const MethodRecord& method : results.methods) {
+            if (is_reference(results, method)) continue;
+            for (const ErrorRecord& error : method.errors) {
+                if (error.light != light.name) continue;
                 json view     = row(method, error);
-                view["label"] = method_label(method, methods);
+                view["label"] = method_label(method, results.methods);
                 rows.push_back(std::move(view));
             }
         }
-        if (!rows.empty()) groups.push_back({{"light", name}, {"rows", std::move(rows)}});
+        if (!rows.empty()) groups.push_back({{"light", light.name}, {"rows", std::move(rows)}});
     }
     return groups;
 }
@@ -60,11 +69,11 @@ std::string heading(std::string_view key) {
 }
 
 /// The counts that any method has, interior and edge before the special classes.
-std::vector<Column> counted_columns(const std::vector<Field>& methods) {
+std::vector<Column> counted_columns(const std::vector<MethodRecord>& methods) {
     const auto is_counted = [&](std::string_view group, std::string_view member) {
-        for (const Field& method : methods)
-            for (const Field& error : method["errors"].items())
-                if (error[group][member].present()) return true;
+        for (const MethodRecord& method : methods)
+            for (const ErrorRecord& error : method.errors)
+                if (wrong_points(error, group, member)) return true;
         return false;
     };
     std::vector<Column> columns;
@@ -100,31 +109,31 @@ json column_groups(const std::vector<Column>& columns) {
 
 }  // namespace
 
-json error_view(const Field& root, const std::vector<Field>& methods) {
-    const std::vector<Column> columns = counted_columns(methods);
+json error_view(const Results& results) {
+    const std::vector<Column> columns = counted_columns(results.methods);
     bool unshadowed                   = false;  // some object receives no shadows
-    json groups                       = rows_by_light(root, methods, [&](const Field& method, const Field& e) {
-        unshadowed  = unshadowed || e["unshadowed"].present();
+    json groups                       = rows_by_light(results, [&](const MethodRecord& method, const ErrorRecord& e) {
+        unshadowed  = unshadowed || e.unshadowed > 0;
         json counts = json::array();
         for (const Column& column : columns) {
-            const auto n = e[column.group][column.member].number();
+            const auto n = wrong_points(e, column.group, column.member);
             counts.push_back({{"n", count(n)}, {"wrong", column.member == "interior" && n && *n > 0}});
         }
-        return json{{"coverage", percent(method["coverage"].number())},
-                    {"points", count(e["points"].number())},
-                    {"undefined", count(e["undefined"].number())},
-                    {"on_boundary", count(e["on_boundary"].number())},
-                    {"not_judged", count(e["not_judged"].number())},
-                    {"away", count(e["away"].number())},
-                    {"unshadowed", count(e["unshadowed"].number().value_or(0))},
-                    {"lit", count(e["lit"].number())},
-                    {"umbra", count(e["umbra"].number())},
-                    {"penumbra", count(e["penumbra"].number())},
+        return json{{"coverage", percent(method.coverage)},
+                    {"points", count(e.points)},
+                    {"undefined", count(e.undefined)},
+                    {"on_boundary", count(e.on_boundary)},
+                    {"not_judged", count(e.not_judged)},
+                    {"away", count(e.away)},
+                    {"unshadowed", count(e.unshadowed)},
+                    {"lit", count(e.lit)},
+                    {"umbra", count(e.umbra)},
+                    {"penumbra", count(e.penumbra)},
                     {"counts", std::move(counts)},
-                    {"mae", score(e["mae"].number())},
-                    {"rmse", score(e["rmse"].number())},
-                    {"max", score(e["max"].number())},
-                    {"bias", score(e["bias"].number())}};
+                    {"mae", score(e.mae)},
+                    {"rmse", score(e.rmse)},
+                    {"max", score(e.max)},
+                    {"bias", score(e.bias)}};
     });
     return {{"groups", std::move(groups)},
             {"any_unshadowed", unshadowed},
@@ -138,95 +147,88 @@ std::string edge_figure(const std::optional<EdgeFigure>& figure) {
     return (figure->at_least ? "≥ " : "") + score(figure->value);
 }
 
-json cause_view(const Field& root, const std::vector<Field>& methods) {
-    return {{"groups", rows_by_light(root, methods, [](const Field& method, const Field& e) {
-                 const Field edges = e["edge_displacement_px"], width = e["penumbra_width_px"], noise = e["noise"],
-                             interior = e["interior"], terminator = e["terminator"];
-                 const EdgeRecord off{edges["mean"].number(),
-                                      edges["p95"].number(),
-                                      edges["max"].number(),
-                                      edges["pieces"].number().value_or(0),
-                                      edges["unmatched"].number().value_or(0),
-                                      edges["reach"].number().value_or(0)};
-                 return json{{"coverage", percent(method["coverage"].number())},
-                             {"wrong_lit", count(interior["lit"].number())},
-                             {"wrong_penumbra", count(interior["penumbra"].number())},
-                             {"wrong_umbra", count(interior["umbra"].number())},
-                             {"terminator_facet", count(terminator["facet_away"].number())},
-                             {"terminator_normal", count(terminator["normal_away"].number())},
-                             {"terminator_wrong", count(terminator["wrong"].number())},
+json cause_view(const Results& results) {
+    return {{"groups", rows_by_light(results, [](const MethodRecord& method, const ErrorRecord& e) {
+                 const EdgeRecord off = edge_record(e.edge_displacement_px);
+                 const auto width     = e.penumbra_width_px.value_or(PenumbraRecord{});
+                 const auto noise     = e.noise.value_or(NoiseRecord{});
+                 return json{{"coverage", percent(method.coverage)},
+                             {"wrong_lit", count(e.interior.lit)},
+                             {"wrong_penumbra", count(e.interior.penumbra)},
+                             {"wrong_umbra", count(e.interior.umbra)},
+                             {"terminator_facet", count(e.terminator.facet_away)},
+                             {"terminator_normal", count(e.terminator.normal_away)},
+                             {"terminator_wrong", count(e.terminator.wrong)},
                              {"off_mean", edge_figure(off.whole_mean())},
                              {"off_p95", edge_figure(off.whole_p95())},
                              {"off_max", edge_figure(off.whole_max())},
-                             {"off_lost", count(edges["unmatched"].number())},
-                             {"width", score(width["method"].number())},
-                             {"width_reference", score(width["reference"].number())},
-                             {"noise", score(noise["noise_rmse"].number())},
-                             {"noise_bias", score(noise["bias_rmse"].number())},
-                             {"bracket", score(e["bracket"]["max_half_width"].number())}};
+                             {"off_lost", e.edge_displacement_px ? count(e.edge_displacement_px->unmatched) : kNone},
+                             {"width", score(known(width.method))},
+                             {"width_reference", score(known(width.reference))},
+                             {"noise", score(known(noise.noise_rmse))},
+                             {"noise_bias", score(known(noise.bias_rmse))},
+                             {"bracket", score(e.bracket ? known(e.bracket->max_half_width) : std::nullopt)}};
              })}};
 }
 
-json time_view(const Field& root, const std::vector<Field>& methods) {
+json time_view(const Results& results) {
     json rows = json::array(), by_light = json::array(), shared = json::array();
-    for (const Field& method : methods) {
+    for (const MethodRecord& method : results.methods) {
         if (!serves(method)) continue;
-        const Totals t    = totals(method);
-        const Field times = method["times"];
-        rows.push_back({{"label", method_label(method, methods)},
-                        {"coverage", percent(method["coverage"].number())},
-                        {"build", timing(times["build_ms"])},
-                        {"aim", timing(times["aim_ms"])},
-                        {"look", timing(times["look_ms"])},
-                        {"visibility", timing(times["visibility_ms"])},
+        const Totals t          = totals(method);
+        const std::string label = method_label(method, results.methods);
+        const TimesRecord times = method.times ? method.times->phases : TimesRecord{};
+        rows.push_back({{"label", label},
+                        {"coverage", percent(method.coverage)},
+                        {"build", timing(times.build_ms)},
+                        {"aim", timing(times.aim_ms)},
+                        {"look", timing(times.look_ms)},
+                        {"visibility", timing(times.visibility_ms)},
                         {"object", milliseconds(t.object_ms)},
                         {"light", milliseconds(t.light_ms)},
                         {"camera", milliseconds(t.camera_ms)},
-                        {"memory", mebibytes(method["memory_bytes"].number())}});
-        for (const Field& light : method["light_times"].items())
-            by_light.push_back({{"label", method_label(method, methods)},
-                                {"light", light["light"].required_text()},
-                                {"aim", timing(light["aim_ms"])},
-                                {"visibility", timing(light["visibility_ms"])}});
+                        {"memory", mebibytes(method.memory_bytes)}});
+        for (const LightTimesRecord& light : method.light_times)
+            by_light.push_back({{"label", label},
+                                {"light", light.light},
+                                {"aim", timing(light.aim_ms)},
+                                {"visibility", timing(light.visibility_ms)}});
     }
     for (const auto& [key, name] : {std::pair{"load_ms", "reading the scene"},
                                     {"facts_ms", "analysing the scene"},
                                     {"rays_build_ms", "building the ray tracer's tree"},
                                     {"gbuffer_ms", "tracing the camera rays"},
                                     {"shade_ms", "shading"}})
-        if (const auto ms = root["times"][key].number()) shared.push_back({{"name", name}, {"ms", score(ms)}});
-    const bool several = root["lights"].items().size() > 1 && !by_light.empty();
+        if (const double* ms = results.times.find(key)) shared.push_back({{"name", name}, {"ms", score(known(*ms))}});
+    const bool several = results.lights.size() > 1 && !by_light.empty();
     return {{"rows", std::move(rows)},
-            {"ratios", time_ratio_view(root, methods)},
+            {"ratios", time_ratio_view(results)},
             {"several_lights", several},
             {"by_light", std::move(by_light)},
             {"shared", std::move(shared)}};
 }
 
-json fact_view(const Field& root) {
-    const Field facts = root["facts"];
-    json requirements = json::array(), not_required = json::array(), objects = json::array();
-    for (const Field& f : facts["requires"].items()) requirements.push_back(f.required_text());
-    for (const Field& f : facts["not_required"].items()) not_required.push_back(f.required_text());
-    for (const Field& o : facts["objects"].items()) {
+json fact_view(const FactsRecord& facts) {
+    json objects = json::array();
+    for (const ObjectRecord& o : facts.objects) {
         json faults = json::array();
         for (const MeshFault& fault : kMeshFaults)
-            if (const auto n = o[fault.key].number(); n && *n > 0)
-                faults.push_back(fmt::format("{} {}", count(n), *n == 1 ? fault.one : fault.many));
-        const bool closed = o["closed"].flag(), outward = o["outward"].flag(), planar = o["planar"].flag();
-        objects.push_back({{"name", o["name"].text()},
-                           {"triangles", count(o["triangles"].number())},
-                           {"vertices", count(o["vertices"].number())},
-                           {"components", count(o["components"].number())},
-                           {"shape", fmt::format("{}{}", closed ? (outward ? "closed" : "closed, inside out") : "open",
-                                                 planar ? ", planar" : "")},
-                           {"area", score(o["area"].number())},
-                           {"volume", closed ? score(o["volume"].number()) : kNone},
-                           {"faults", std::move(faults)}});
+            if (const std::uint64_t n = o.*fault.count; n > 0)
+                faults.push_back(fmt::format("{} {}", count(n), n == 1 ? fault.one : fault.many));
+        objects.push_back(
+            {{"name", o.name},
+             {"triangles", count(o.triangles)},
+             {"vertices", count(o.vertices)},
+             {"components", count(o.components)},
+             {"shape", fmt::format("{}{}", o.closed ? (o.outward ? "closed" : "closed, inside out") : "open",
+                                   o.planar ? ", planar" : "")},
+             {"area", score(known(o.area))},
+             {"volume", o.closed ? score(known(o.volume)) : kNone},
+             {"faults", std::move(faults)}});
     }
-    return {{"triangles", count(facts["triangles"].number())},
-            {"requires", std::move(requirements)},
-            {"not_required", std::move(not_required)},
+    return {{"triangles", count(facts.triangles)},
+            {"requires", facts.required},
+            {"not_required", facts.not_required},
             {"has_objects", !objects.empty()},
             {"objects", std::move(objects)}};
 }

@@ -19,6 +19,7 @@ std::optional<StudyPage> read_study(const Field& root, const fs::path& file) {
                                         .page  = {},
                                         .name  = root["scene"]["name"].required_text(),
                                         .title = root["scene"]["title"].text()}};
+            study.scene.results.size = from_record<SizeRecord>(root["size"]);
             if (study.scene.title.empty()) study.scene.title = in_words(study.scene.name);
             return study;
         }

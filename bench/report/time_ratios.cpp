@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
@@ -26,20 +26,18 @@ struct Movements {
 };
 constexpr std::array<const char*, 3> kMovements{"object", "light", "camera"};
 
-Samples samples(const Field& phase) {
-    Samples all;
-    for (const Field& ms : phase["samples"].items())
-        all.push_back(ms.number().value_or(std::numeric_limits<double>::quiet_NaN()));
-    return all;
+const Samples& samples(const std::optional<TimingRecord>& phase) {
+    static const Samples none;
+    return phase ? phase->samples : none;
 }
 
-Movements movements(const Field& times) {
-    const Samples build = samples(times["build_ms"]), aim = samples(times["aim_ms"]),
-                  visibility = samples(times["visibility_ms"]);
-    Samples look             = samples(times["look_ms"]);
-    if (!times["look_ms"].present()) look.assign(visibility.size(), 0);  // records of older versions
+Movements movements(const TurnTimesRecord& times) {
+    const Samples &build = samples(times.phases.build_ms), &aim = samples(times.phases.aim_ms),
+                  &visibility = samples(times.phases.visibility_ms);
+    Samples look              = samples(times.phases.look_ms);
+    if (!times.phases.look_ms) look.assign(visibility.size(), 0);  // records of older versions
     Movements m;
-    m.paired = times["order"].items().size() > 1;
+    m.paired = times.order.size() > 1;
     for (std::size_t r = 0; r < std::min({build.size(), aim.size(), look.size(), visibility.size()}); ++r) {
         m.ms[0].push_back(build[r] + aim[r] + look[r] + visibility[r]);
         m.ms[1].push_back(aim[r] + visibility[r]);
@@ -68,20 +66,21 @@ std::string bar_in_words(double bar) { return std::isfinite(bar) ? fmt::format("
 
 }  // namespace
 
-json time_ratio_view(const Field& root, const std::vector<Field>& methods) {
-    const Field control = root["turns"]["control"];
+json time_ratio_view(const Results& results) {
+    const auto control = results.turns ? results.turns->control : std::nullopt;
     std::vector<Row> rows;
     std::array<Ratio, 3> same{};
-    for (const Field& method : methods) {
-        Row row{method_label(method, methods), movements(method["times"])};
-        if (!serves(method) || row.times.ms[0].empty()) continue;
-        if (control.present() && method["text"].text() == control["text"].text()) {
-            const Movements again = movements(control["again"]);
+    for (const MethodRecord& method : results.methods) {
+        if (!serves(method) || !method.times) continue;
+        Row row{method_label(method, results.methods), movements(*method.times)};
+        if (row.times.ms[0].empty()) continue;
+        if (control && method.text == control->text) {
+            const Movements again = movements(control->again);
             for (std::size_t m = 0; m < same.size(); ++m) same[m] = paired_ratio(again.ms[m], row.times.ms[m]);
         }
         rows.push_back(std::move(row));
     }
-    if (!root["turns"].present() || rows.empty()) return false;
+    if (!results.turns || rows.empty()) return false;
 
     json table = json::array(), bars = json::array();
     for (const Row& row : rows) table.push_back({{"label", row.label}});
@@ -93,10 +92,8 @@ json time_ratio_view(const Field& root, const std::vector<Field>& methods) {
             table[k][kMovements[m]] = &rows[k] == &*fastest ? "fastest" : against(rows[k], *fastest, m, bar);
         bars.push_back({{"movement", kMovements[m]}, {"bar", bar_in_words(bar)}});
     }
-    Samples calibration;
-    for (const Field& ms : root["turns"]["calibration_ms"].items())
-        if (const auto value = ms.number()) calibration.push_back(*value);
-    json view = {{"rows", std::move(table)}, {"bars", std::move(bars)}, {"calibrated", false}};
+    const Samples& calibration = results.turns->calibration_ms;
+    json view                  = {{"rows", std::move(table)}, {"bars", std::move(bars)}, {"calibrated", false}};
     if (!calibration.empty()) {
         const auto [least, largest] = std::minmax_element(calibration.begin(), calibration.end());
         view["calibrated"]          = {{"median", milliseconds(median(calibration))},

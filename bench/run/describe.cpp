@@ -4,7 +4,6 @@
 #include <sched.h>
 #include <sys/sysinfo.h>
 
-#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
@@ -39,15 +38,11 @@ std::string_view place_word(LightPlace place) {
     return "";
 }
 
-Json vector_json(dvec3 v) { return {number(v.x), number(v.y), number(v.z)}; }
+std::vector<double> vector_record(dvec3 v) { return {v.x, v.y, v.z}; }
 
 }  // namespace
 
 std::string_view version() { return UMBRA_VERSION; }
-
-std::string json_text(const Json& record) { return record.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 double load_average() {
     double minute = 0;
@@ -61,122 +56,119 @@ int usable_processors() {
                                                        : static_cast<int>(std::thread::hardware_concurrency());
 }
 
-Json budget_json(const Budget& budget) {
-    return {{"seconds", number(budget.seconds)}, {"memory_bytes", number(budget.bytes)}};
+HeadRecord head_record(std::string command) { return {kResultsSchema, std::string(version()), std::move(command)}; }
+
+std::optional<BudgetRecord> budget_record(const Budget& budget) {
+    if (!budget.is_set()) return {};
+    return BudgetRecord{budget.seconds, budget.bytes};
 }
 
-Json machine_json(int threads) {
+MachineRecord machine_record(int threads) {
     struct sysinfo info {};
     sysinfo(&info);
-    return {{"cpu", value_of("/proc/cpuinfo", "model name", ':')},
-            {"cores", std::thread::hardware_concurrency()},
-            {"threads", threads},
-            {"memory_bytes", static_cast<std::uint64_t>(info.totalram) * info.mem_unit},
-            {"system", value_of("/etc/os-release", "PRETTY_NAME", '=')},
-            {"compiler", UMBRA_COMPILER}};
+    return {value_of("/proc/cpuinfo", "model name", ':'),
+            std::thread::hardware_concurrency(),
+            static_cast<std::uint64_t>(threads),
+            static_cast<std::uint64_t>(info.totalram) * info.mem_unit,
+            value_of("/etc/os-release", "PRETTY_NAME", '='),
+            UMBRA_COMPILER};
 }
 
-Json scene_json(const Scene& scene) {
-    Json record = {{"name", scene.name},
-                   {"title", scene.title},
-                   {"shows", scene.shows},
-                   {"source", scene.source},
-                   {"warnings", scene.warnings}};
-    if (scene.origin != dvec3(0)) record["origin"] = vector_json(scene.origin);
+SceneRecord scene_record(const Scene& scene) {
+    return {scene.name,     scene.title,
+            scene.shows,    scene.source,
+            scene.warnings, scene.origin == dvec3(0) ? std::vector<double>() : vector_record(scene.origin)};
+}
+
+FactsRecord facts_record(const SceneFacts& facts) {
+    FactsRecord record{.triangles         = facts.triangles,
+                       .extent            = {vector_record(dvec3(facts.box.min)), vector_record(dvec3(facts.box.max))},
+                       .planar_area_share = facts.planar_area_share,
+                       .eye_inside_closed_object = facts.eye_inside_closed_object,
+                       .required                 = requires_list(facts),
+                       .not_required             = not_required_list(facts)};
+    for (const ObjectFacts& o : facts.objects) {
+        ObjectRecord object{.name                 = o.name,
+                            .triangles            = o.triangles,
+                            .vertices             = o.vertices,
+                            .boundary_edges       = o.boundary_edges,
+                            .nonmanifold_edges    = o.nonmanifold_edges,
+                            .misoriented_edges    = o.misoriented_edges,
+                            .nonmanifold_vertices = o.nonmanifold_vertices,
+                            .degenerate_triangles = o.degenerate_triangles,
+                            .duplicate_triangles  = o.duplicate_triangles,
+                            .components           = o.components,
+                            .closed               = o.closed,
+                            .outward              = o.outward,
+                            .planar               = o.planar,
+                            .area                 = o.area,
+                            .volume               = o.volume};
+        if (!o.switches.casts_shadows) object.casts_shadows = false;
+        if (!o.switches.receives_shadows) object.receives_shadows = false;
+        if (!o.switches.seen_by_camera) object.seen_by_camera = false;
+        record.objects.push_back(std::move(object));
+    }
+    for (const PlanarReceiver& p : facts.planes)
+        record.planes.push_back({vector_record(p.normal), p.offset, p.area, p.triangles.size()});
+    for (const UncomputedTerm& t : facts.uncomputed) record.not_computed.push_back({std::string(t.term), t.materials});
     return record;
 }
 
-Json facts_json(const SceneFacts& facts) {
-    Json objects = Json::array();
-    for (const ObjectFacts& o : facts.objects) {
-        objects.push_back({{"name", o.name},
-                           {"triangles", o.triangles},
-                           {"vertices", o.vertices},
-                           {"boundary_edges", o.boundary_edges},
-                           {"nonmanifold_edges", o.nonmanifold_edges},
-                           {"misoriented_edges", o.misoriented_edges},
-                           {"nonmanifold_vertices", o.nonmanifold_vertices},
-                           {"degenerate_triangles", o.degenerate_triangles},
-                           {"duplicate_triangles", o.duplicate_triangles},
-                           {"components", o.components},
-                           {"closed", o.closed},
-                           {"outward", o.outward},
-                           {"planar", o.planar},
-                           {"area", number(o.area)},
-                           {"volume", number(o.volume)}});
-        for (const ObjectSwitch& each : kObjectSwitches)
-            if (!(o.switches.*each.is_on)) objects.back()[std::string(each.key)] = false;
-    }
-    Json planes = Json::array();
-    for (const PlanarReceiver& p : facts.planes)
-        planes.push_back({{"normal", vector_json(p.normal)},
-                          {"offset", number(p.offset)},
-                          {"area", number(p.area)},
-                          {"triangles", p.triangles.size()}});
-    Json uncomputed = Json::array();
-    for (const UncomputedTerm& t : facts.uncomputed)
-        uncomputed.push_back({{"term", t.term}, {"materials", t.materials}});
-    return {{"triangles", facts.triangles},
-            {"extent", {{"min", vector_json(dvec3(facts.box.min))}, {"max", vector_json(dvec3(facts.box.max))}}},
-            {"objects", objects},
-            {"planes", planes},
-            {"planar_area_share", number(facts.planar_area_share)},
-            {"eye_inside_closed_object", facts.eye_inside_closed_object},
-            {"not_computed", uncomputed},
-            {"requires", requires_list(facts)},
-            {"not_required", not_required_list(facts)}};
-}
-
-Json lights_json(const SceneFacts& facts) {
-    Json lights = Json::array();
+std::vector<LightRecord> light_records(const SceneFacts& facts) {
+    std::vector<LightRecord> lights;
     for (const LightFacts& l : facts.lights)
-        lights.push_back({{"name", l.name}, {"kind", to_string(l.kind)}, {"place", place_word(l.place)}});
+        lights.push_back({l.name, std::string(to_string(l.kind)), std::string(place_word(l.place))});
     return lights;
 }
 
-Json setting_json(const Parameter& p, double value) {
+Scalar setting_scalar(const Parameter& p, double value) {
     switch (p.type) {
         case Parameter::Type::integer: return static_cast<std::int64_t>(value);
         case Parameter::Type::real: return value;
         case Parameter::Type::boolean: return value != 0;
-        case Parameter::Type::choice: return p.text(value);
-        case Parameter::Type::text: return p.fallback_text;
+        case Parameter::Type::choice: return std::string(p.text(value));
+        case Parameter::Type::text: return std::string(p.fallback_text);
     }
     return {};
 }
 
-Json method_json(const MethodInfo& info) {
-    Json parameters = Json::array(), presets = Json::array();
+MethodInfoRecord method_info_record(const MethodInfo& info) {
+    MethodInfoRecord record{.name         = std::string(info.name),
+                            .title        = std::string(info.title),
+                            .paper        = std::string(info.paper),
+                            .summary      = std::string(info.summary),
+                            .measures     = std::string(to_string(info.make()->measures())),
+                            .reference    = info.reference,
+                            .by_default   = info.by_default,
+                            .needs_raster = info.needs_raster,
+                            .noise        = !info.seed.empty()};
     for (const Parameter& p : info.parameters) {
-        Json entry = {{"name", p.name}, {"type", to_string(p.type)},   {"default", setting_json(p, p.fallback)},
-                      {"unit", p.unit}, {"phase", to_string(p.phase)}, {"doc", p.doc}};
-        if (p.type == Parameter::Type::integer || p.type == Parameter::Type::real) {
-            entry["min"] = p.min;
-            entry["max"] = p.max;
-        }
-        if (p.type == Parameter::Type::choice) entry["choices"] = p.choices;
-        if (!p.sweep.empty()) entry["sweep"] = p.sweep;
-        parameters.push_back(std::move(entry));
+        ParameterRecord entry{.name     = std::string(p.name),
+                              .type     = std::string(to_string(p.type)),
+                              .fallback = setting_scalar(p, p.fallback),
+                              .unit     = std::string(p.unit),
+                              .phase    = std::string(to_string(p.phase)),
+                              .doc      = std::string(p.doc)};
+        if (p.type == Parameter::Type::integer || p.type == Parameter::Type::real) entry.min = p.min, entry.max = p.max;
+        if (p.type == Parameter::Type::choice) entry.choices = p.choices;
+        entry.sweep = p.sweep;
+        record.parameters.push_back(std::move(entry));
     }
     for (const Preset& p : info.presets)
-        presets.push_back({{"name", p.name}, {"settings", p.settings}, {"doc", p.doc}});
-    return {{"name", info.name},
-            {"title", info.title},
-            {"paper", info.paper},
-            {"summary", info.summary},
-            {"measures", to_string(info.make()->measures())},
-            {"reference", info.reference},
-            {"by_default", info.by_default},
-            {"needs_raster", info.needs_raster},
-            {"noise", !info.seed.empty()},
-            {"parameters", parameters},
-            {"presets", presets}};
+        record.presets.push_back({std::string(p.name), std::string(p.settings), std::string(p.doc)});
+    return record;
 }
 
-Json service_json(const Service& service) { return {{"how", to_string(service.how)}, {"why", service.why}}; }
-
-Json timing_json(const Timing& t) {
-    return {{"median", number(t.median)}, {"min", number(t.min)}, {"max", number(t.max)}, {"runs", t.runs}};
+Members<Scalar> parameter_records(const Settings& settings) {
+    Members<Scalar> values;
+    for (const Parameter& p : settings.parameters())
+        values.emplace_back(p.name, p.type == Parameter::Type::text ? Scalar(std::string(settings.text(p)))
+                                                                    : setting_scalar(p, settings.value(p.name)));
+    return values;
 }
+
+ServiceRecord service_record(const Service& service) { return {std::string(to_string(service.how)), service.why}; }
+
+TimingRecord timing_record(const Timing& t) { return {t.median, t.min, t.max, static_cast<std::uint64_t>(t.runs), {}}; }
 
 }  // namespace umbra

@@ -75,12 +75,12 @@ struct Stage {
 
 /// Skips the benchmark, and says so, where a picture differs from itself or not from another one.
 bool figures_mean_something(benchmark::State& state, const Stage& s) {
-    const Json same   = image_figures(s.other->planes, s.of_other, s.of_other).figures;
-    const Json others = image_figures(s.one->planes, s.of_one, s.of_other).figures;
-    for (const char* figure : {"rmse", "flip", "flip_hdr"})
-        if (same.at(figure) != 0 || !(others.at(figure) > 0)) {
-            state.SkipWithError(fmt::format("{} of a picture and itself is {}, of two pictures {}", figure,
-                                            same.at(figure).dump(), others.at(figure).dump())
+    const ImageRecord same   = image_figures(s.other->planes, s.of_other, s.of_other).figures;
+    const ImageRecord others = image_figures(s.one->planes, s.of_one, s.of_other).figures;
+    for (const auto figure : {&ImageRecord::rmse, &ImageRecord::flip, &ImageRecord::flip_hdr})
+        if (same.*figure != 0 || !(others.*figure > 0)) {
+            state.SkipWithError(fmt::format("a figure of a picture and itself is {}, of two pictures {}",
+                                            (same.*figure).value_or(NAN), (others.*figure).value_or(NAN))
                                     .c_str());
             return false;
         }

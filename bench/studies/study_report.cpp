@@ -7,7 +7,6 @@
 #include <regex>
 
 #include "report_assets.h"
-#include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/pages/chart_parts.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_text.h"

@@ -7,9 +7,11 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/out/staged_folder.h"
 #include "umbra/bench/run/describe.h"
 
 namespace umbra {
@@ -87,9 +89,30 @@ void write_study_page(const StudyReport& report, const Json& record, const std::
 void write_study_files(const StudyReport& report, Json& record, const std::filesystem::path& folder,
                        StagedFiles& staged);
 
+/// A record that a study writes: `csv`, its last member, names the files of the tables.
+template <class Record>
+concept StudyRecord = requires(Record& record) {
+    record.head.command;
+    record.csv.emplace_back("");
+};
+
 /// Writes the folder `out` whole or not at all: `make` writes pictures into the folder that it is given and returns the
 /// record, `report` says what is shown of it. Returns the record. Throws InputError, and what the two throw.
 Json write_study(const std::filesystem::path& out, const std::function<Json(const std::filesystem::path& folder)>& make,
                  const std::function<StudyReport(const Json& record)>& report);
+template <class Make, class Report>
+requires StudyRecord<std::invoke_result_t<Make, const std::filesystem::path&>>
+auto write_study(const std::filesystem::path& out, const Make& make, const Report& report) {
+    StagedFolder folder(out);
+    auto record             = make(folder.folder());
+    const StudyReport shown = report(record);
+    for (const StudyTable& table : shown.tables) record.csv.push_back(table.name + ".csv");
+    Json json = to_record(record);
+    StagedFiles files;
+    write_study_files(shown, json, folder.folder(), files);
+    files.commit();
+    folder.commit();
+    return record;
+}
 
 }  // namespace umbra

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "umbra/bench/compare/record.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/outcome.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/bench/sweep/truth_file.h"
 #include "umbra/bench/sweep/views.h"
@@ -106,7 +106,7 @@ const Rendered& CellView::rendered(const Truth& truth) {
 }
 
 Json CellView::reference() {
-    Json record = reference_json(truths().main(), prepared().scene);
+    Json record = to_record(reference_record(truths().main(), prepared().scene));
     record.erase("times");
     return record;
 }
@@ -145,23 +145,22 @@ Json CellView::compute(const MethodChoice& choice) {
         return against->ran.run;
     };
     trial.then = [&](const Outcome& found) {
-        cell = served_json(id, p, found, against->reference.choice.text());
-        cell.erase("times");
-        cell.erase("light_times");
-        cell["image"] =
+        MethodRecord served = served_record(id, p, found, against->reference.choice.text());
+        served.image =
             image_figures(found.run.planes, render_planes(scene, p.points, found.run.planes), rendered(*against))
                 .figures;
-        const auto covered = found.run.coverage(p.points);
-        cell["undefined"]  = covered ? Json(1 - *covered) : Json();
+        cell = to_record(served);
+        cell.erase("light_times");
+        cell["undefined"] = served.coverage ? Json(1 - *served.coverage) : Json();
     };
     const Outcome found = outcome(choice, scene, p.facts, p.points, trial);
     const auto whole    = [](const std::optional<Failure>& failed) { return !failed || !failed->cut; };
     is_whole_           = whole(found.failed) && (against == nullptr || whole(against->failed));
     if (found.failed) {
         work_.reset();
-        cell = failed_json(id, choice, scene, *found.failed);
+        cell = to_record(failed_record(id, choice, scene, *found.failed));
     } else if (!found.run.service) {
-        cell = unserved_json(id, choice, found.run.service);
+        cell = to_record(unserved_record(id, choice, found.run.service));
     }
     cell["view"] = view_;
     cell["key"]  = key(choice);

@@ -212,9 +212,9 @@ bool is_at_least(const Metric& metric, const Json& cell) {
     });
 }
 
-Json metrics_json() {
-    Json all = Json::array();
-    for (const Metric& m : kMetrics) all.push_back({{"name", m.name}, {"unit", m.unit}, {"doc", m.doc}});
+std::vector<MetricRecord> metric_records() {
+    std::vector<MetricRecord> all;
+    for (const Metric& m : kMetrics) all.push_back({std::string(m.name), std::string(m.unit), std::string(m.doc)});
     return all;
 }
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "umbra/bench/run/describe.h"
 
@@ -49,8 +50,17 @@ struct Counted {
 /// Points compared in a cell, of all lights.
 [[nodiscard]] std::uint64_t points_compared(const Json& cell);
 
-/// Name, unit and sentence of each, for records and `umbra list`.
-[[nodiscard]] Json metrics_json();
+/// A metric as records and `umbra list` name it.
+struct MetricRecord {
+    std::string name{}, unit{}, doc{};
+};
+template <class Fields>
+void describe(Fields& of, Is<MetricRecord>) {
+    of("name", &MetricRecord::name, "");
+    of("unit", &MetricRecord::unit, "empty for pure numbers");
+    of("doc", &MetricRecord::doc, "");
+}
+[[nodiscard]] std::vector<MetricRecord> metric_records();
 
 /// What is typed for a limit: "rmse=0.01".
 struct LimitText {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <new>
 
-#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
@@ -51,9 +51,8 @@ Json SceneLab::reference() {
 }
 
 std::string SceneLab::machine_key(const std::string& kind, const MethodChoice& choice) {
-    const Json machine = machine_json(thread_count());
-    return combined_key({kind, machine.at("cpu").get<std::string>(), fmt::format("{}", thread_count()),
-                         machine.at("compiler").get<std::string>(), view(0).key(choice)});
+    const MachineRecord machine = machine_record(thread_count());
+    return combined_key({kind, machine.cpu, fmt::format("{}", thread_count()), machine.compiler, view(0).key(choice)});
 }
 
 std::optional<Json> SceneLab::measured(const std::string& key) const {
@@ -127,7 +126,7 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
         for (const double ms : turns.calibration) all.turns["calibration_ms"].push_back(number(ms));
         was_cut = std::ranges::any_of(turns.settings, &TurnTimes::cut);
         for (const TurnTimes& t : turns.settings)
-            all.settings.push_back(!t.build.empty() && t.failed.empty() ? turn_times_json(t) : Json());
+            all.settings.push_back(!t.build.empty() && t.failed.empty() ? to_record(turn_times_record(t)) : Json());
         return all;
     };
     TimedTogether all = together();

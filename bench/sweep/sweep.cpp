@@ -8,8 +8,8 @@
 
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/bench/run/steps.h"
 #include "umbra/bench/sweep/cell_store.h"
 #include "umbra/bench/sweep/grid.h"
@@ -75,25 +75,28 @@ void write_plan(const SweepPlan& plan, const fs::path& out) {
 
 /// A setting that failed, in words.
 std::string failure_of(const Scene& scene, const Json& cell) {
-    return failure_in_words(scene.name, cell.at("text"), cell.at("failed"));
+    const Json& failed = cell.at("failed");
+    FailureRecord failure{.message = failed.at("message"), .cut = failed.contains("cut")};
+    if (failed.at("light").is_string()) failure.light = failed.at("light");
+    return failure_in_words(scene.name, cell.at("text"), failure);
 }
 
-Json scene_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
+Json swept_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
                   const Json& turns) {
     const bool own = options.plan.size.width == 0;
     Json record    = {{"schema", kResultsSchema},
                       {"version", version()},
                       {"command", options.command},
-                      {"machine", machine_json(options.threads)},
-                      {"scene", scene_json(lab.scene())},
-                      {"facts", facts_json(lab.facts())},
+                      {"machine", to_record(machine_record(options.threads))},
+                      {"scene", to_record(scene_record(lab.scene()))},
+                      {"facts", to_record(facts_record(lab.facts()))},
                       {"size",
                        {{"width", own ? lab.scene().width : options.plan.size.width},
                         {"height", own ? lab.scene().height : options.plan.size.height}}},
-                      {"lights", lights_json(lab.facts())},
+                      {"lights", to_record(light_records(lab.facts()))},
                       {"reference", lab.reference()},
                       {"sweep", sweep_json(swept, options.plan.views, options.workload, turns)}};
-    if (options.plan.budget.is_set()) record["budget"] = budget_json(options.plan.budget);
+    if (const auto budget = budget_record(options.plan.budget)) record["budget"] = to_record(*budget);
     return record;
 }
 
@@ -232,7 +235,7 @@ SweepDone sweep(const SweepOptions& options) {
             for (std::size_t t = 0; t < timed.size(); ++t) swept[timed[t]].times = std::move(times.settings[t]);
             turns = std::move(times.turns);
         }
-        done.records.push_back(scene_record(lab, options, swept, turns));
+        done.records.push_back(swept_record(lab, options, swept, turns));
     }
     return done;
 }

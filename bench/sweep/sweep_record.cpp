@@ -74,7 +74,7 @@ std::optional<double> cost_of(const Json& times, const Workload& workload) {
 
 Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload, const Json& turns) {
     Json record = {{"views", views},
-                   {"metrics", metrics_json()},
+                   {"metrics", to_record(metric_records())},
                    {"turns", turns},
                    {"workload", {{"camera", workload.camera}, {"light", workload.light}, {"object", workload.object}}},
                    {"settings", Json::array()},
@@ -99,8 +99,10 @@ Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Work
 
 std::string front_in_words(const Json& record) {
     const Json &sweep = record["sweep"], &turns = sweep["turns"];
-    const double bar =
-        turns.is_object() && turns["noise_bar"].is_number() ? turns["noise_bar"].get<double>() : 0;  // 0: not known
+    // Without times nothing is ranked by them; of too few rounds nobody knows how far they vary.
+    const double bar       = !turns.is_object()               ? 0
+                             : turns["noise_bar"].is_number() ? turns["noise_bar"].get<double>()
+                                                              : noise_bar({});
     const std::string what = record["scene"]["name"].get<std::string>() +
                              ": cost of a frame, S_j error (rmse), its upper bound; ",
                       vary = fmt::format("{:.0f} %", std::ceil(100 * bar));
@@ -112,10 +114,12 @@ std::string front_in_words(const Json& record) {
     } else {
         for (const Json& text : sweep["fronts"]["rmse"]) texts.push_back(text);
     }
-    std::string words = what + (is_too_noisy(bar) ? "not ranked, as times vary by " + vary + ":\n"
-                                : bar > 0 ? "settings that no other beats in both, costs that differ by less than " +
-                                                vary + " are not told apart:\n"
-                                          : "settings that no other beats in both:\n");
+    std::string words =
+        what + (is_too_noisy(bar) ? (std::isfinite(bar) ? "not ranked, as times vary by " + vary + ":\n"
+                                                        : "not ranked, as times are of fewer than six rounds:\n")
+                : bar > 0         ? "settings that no other beats in both, costs that differ by less than " + vary +
+                                " are not told apart:\n"
+                          : "settings that no other beats in both:\n");
     for (const std::string& text : texts) {
         const Json& s =
             *std::ranges::find(sweep["settings"], text, [](const Json& of) { return of["text"].get<std::string>(); });

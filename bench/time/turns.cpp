@@ -261,11 +261,9 @@ private:
     double share_ = 0;  ///< of the budget, of one setting
 };
 
-Json samples_json(const std::vector<double>& samples) {
-    Json record = timing_json(timing_of(samples));
-    Json& list  = record["samples"];
-    list        = Json::array();
-    for (const double ms : samples) list.push_back(number(ms));
+TimingRecord samples_record(const std::vector<double>& samples) {
+    TimingRecord record = timing_record(timing_of(samples));
+    record.samples      = samples;
     return record;
 }
 
@@ -299,17 +297,11 @@ Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice>
     return turns;
 }
 
-Json turn_times_json(const TurnTimes& times) {
-    return {{"build_ms", samples_json(times.build)},
-            {"aim_ms", samples_json(times.aim)},
-            {"look_ms", samples_json(times.look)},
-            {"visibility_ms", samples_json(times.visibility)},
-            {"cold",
-             {{"build_ms", number(times.cold.build)},
-              {"aim_ms", number(sum(times.cold.aim))},
-              {"look_ms", number(times.cold.look)},
-              {"visibility_ms", number(sum(times.cold.visibility))}}},
-            {"order", times.order}};
+TurnTimesRecord turn_times_record(const TurnTimes& times) {
+    return {{samples_record(times.build), samples_record(times.aim), samples_record(times.look),
+             samples_record(times.visibility)},
+            {times.cold.build, sum(times.cold.aim), times.cold.look, sum(times.cold.visibility)},
+            {times.order.begin(), times.order.end()}};
 }
 
 }  // namespace umbra

@@ -91,6 +91,6 @@ struct Turns {
 
 /// `times` of a setting in results.json: median, least, largest, number and samples of each phase, the cold run, and
 /// its position in each round. Throws std::logic_error where it has no samples: it does not serve, or failed.
-[[nodiscard]] Json turn_times_json(const TurnTimes& times);
+[[nodiscard]] TurnTimesRecord turn_times_record(const TurnTimes& times);
 
 }  // namespace umbra

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 namespace {
@@ -126,8 +127,12 @@ SweptSetting read_setting(const SweptScene& scene, const Field& field) {
 }  // namespace
 
 SweptScene read_swept_scene(const std::filesystem::path& file) {
-    SweptScene scene{.root = read_results(file), .file = file, .name = {}, .title = {}};
-    const Field& root = scene.root;
+    const Field root = read_results(file);
+    SweptScene scene{.head    = from_record<HeadRecord>(root),
+                     .machine = from_record<MachineRecord>(root["machine"]),
+                     .file    = file,
+                     .name    = {},
+                     .title   = {}};
     const Field sweep = root["sweep"];
     if (!sweep.present()) sweep.refuse("an object, as umbra sweep writes it");
     scene.name  = root["scene"]["name"].required_text();
@@ -136,6 +141,7 @@ SweptScene read_swept_scene(const std::filesystem::path& file) {
     scene.triangles = root["facts"]["triangles"].number().value_or(0);
     scene.views     = int(std::clamp(sweep["views"].number().value_or(1), 1.0, 1e6));
     scene.noise_bar = not_negative_if_there(sweep["turns"]["noise_bar"]);
+    if (sweep["turns"].present() && !scene.noise_bar) scene.noise_bar = noise_bar({});  // of too few rounds
     if (const Field w = sweep["workload"]; w.present()) {
         scene.workload = {not_negative(w["camera"]), not_negative(w["light"]), not_negative(w["object"])};
         if (!(scene.workload.camera + scene.workload.light + scene.workload.object > 0))

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/run/describe.h"
 #include "umbra/bench/time/workload.h"
 
 namespace umbra {
@@ -45,7 +45,8 @@ struct SweptSetting {
 };
 
 struct SweptScene {
-    Field root;
+    HeadRecord head;
+    MachineRecord machine;
     std::filesystem::path file;  ///< the results.json
     std::string name, title;
     double triangles = 0;

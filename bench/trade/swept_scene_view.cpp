@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
@@ -134,7 +135,9 @@ json swept_scene_view(const SweptScene& scene, const std::vector<SweptMethod>& m
             {"views", counted(scene.views, "view")},
             {"settings", counted(double(scene.settings.size()), "setting")},
             {"workload", workload_in_words(scene.workload)},
-            {"noise_bar", scene.noise_bar ? fmt::format("{:.0f}", std::ceil(100 * *scene.noise_bar)) : ""},
+            {"noise_bar", scene.noise_bar && std::isfinite(*scene.noise_bar)
+                              ? fmt::format("{:.0f}", std::ceil(100 * *scene.noise_bar))
+                              : ""},
             {"loud", is_loud(scene)},
             {"legend", legend_of(scene, methods)},
             {"plots", std::move(plots)},

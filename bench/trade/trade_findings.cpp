@@ -66,8 +66,10 @@ std::vector<std::size_t> front_of(const SweptScene& scene, std::size_t metric) {
 
 std::string staircase_in_words(const SweptScene& scene, std::size_t metric) {
     if (is_loud(scene))
-        return fmt::format("Not ranked: times vary by more than {} %, too much to say which setting is the cheapest.",
-                           percent(kMostNoise));
+        return fmt::format(
+            "Not ranked: times vary by more than {} %, or are of fewer than six rounds: too much to say which setting is "
+            "the cheapest.",
+            percent(kMostNoise));
     const std::vector<std::size_t> front = front_of(scene, metric);
     if (front.empty()) return "No setting was both timed and compared.";
     const auto error = [&](std::size_t i) { return scene.settings[i].errors[metric]->worst; };

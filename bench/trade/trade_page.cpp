@@ -45,7 +45,7 @@ json failures_of(const std::vector<SweptScene>& scenes) {
 json runs_of(const std::vector<SweptScene>& scenes) {
     json runs = json::array();
     for (const SweptScene& scene : scenes) {
-        json run   = run_view(scene.root);
+        json run   = run_view(scene.head, scene.machine);
         bool known = false;
         for (json& other : runs) {
             if (other["machine"] != run["machine"] || other["version"] != run["version"]) continue;

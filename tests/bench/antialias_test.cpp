@@ -68,7 +68,7 @@ TEST(Antialias, SmoothsEdgesAndLeavesWhatIsMeasured) {
     for (int k = 0; k < 2; ++k) {
         options.out           = folder.path() / (k == 0 ? "plain" : "smooth");
         options.pixel_samples = k == 0 ? 1 : 16;
-        records[k]            = without_times(compare_scene(scene, options));
+        records[k]            = without_times(to_record(compare_scene(scene, options)));
         pictures[k]           = read_image(options.out / "board" / "ray_traced.png").image;
     }
     EXPECT_EQ(records[0], records[1]);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "umbra/shadows/method.h"
+#include "umbra/tests/support/json_schema.h"
 #include "umbra/tests/support/program.h"
 #include "umbra/tests/support/temporary_folder.h"
 
@@ -427,6 +428,16 @@ TEST_F(Cli, ListNamesEveryMethodWithItsParameters) {
     for (std::string line; std::getline(canonical, line);)
         if (!line.empty() && line[0] != '#') scenes.push_back(line.substr(0, line.find('.')));
     EXPECT_EQ(record["scenes"].get<std::vector<std::string>>(), scenes);
+}
+
+// The schema that is printed fits what the command writes, and another record's does not.
+TEST_F(Cli, ListPrintsTheSchemasOfRecords) {
+    ASSERT_EQ(umbra("compare " + kScene + " --size 16x9 --methods ray_traced -o " + file("schemas")).exit_code, 0);
+    std::ifstream in(file("schemas/results.json"));
+    const std::string compared{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_TRUE(umbra::fits(umbra("list --schema results").output, compared));
+    EXPECT_FALSE(umbra::fits(umbra("list --schema ladders").output, compared));
+    EXPECT_EQ(umbra("list --schema colours").exit_code, 64);
 }
 
 TEST_F(Cli, ListShowsOneEntryInFull) {

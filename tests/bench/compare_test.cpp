@@ -2,10 +2,6 @@
 #include "umbra/bench/compare/compare.h"
 
 #include <gtest/gtest.h>
-#include <rapidjson/document.h>
-#include <rapidjson/error/en.h>
-#include <rapidjson/schema.h>
-#include <rapidjson/stringbuffer.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +11,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
+#include "umbra/tests/support/json_schema.h"
 
 namespace umbra {
 namespace {
@@ -30,19 +27,7 @@ std::string text_of(const fs::path& file) {
 
 void write(const fs::path& file, std::string_view text) { std::ofstream(file, std::ios::binary) << text; }
 
-void expect_valid(const Json& json) {
-    rapidjson::Document document, record;
-    document.Parse(text_of(UMBRA_SCHEMA).c_str());
-    ASSERT_FALSE(document.HasParseError());
-    const rapidjson::SchemaDocument schema(document);
-    record.Parse(json.dump().c_str());
-    ASSERT_FALSE(record.HasParseError());
-    rapidjson::SchemaValidator valid(schema);
-    rapidjson::StringBuffer where;
-    const bool accepted = record.Accept(valid);
-    valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
-    EXPECT_TRUE(accepted) << "at " << where.GetString() << ": " << (accepted ? "" : valid.GetInvalidSchemaKeyword());
-}
+void expect_valid(const Json& json) { EXPECT_TRUE(fits(results_schema().dump(), json.dump())); }
 
 class Compare : public testing::Test {
 protected:
@@ -110,22 +95,10 @@ TEST_F(Compare, RecordFollowsItsSchemaAndNamesFilesThatExist) {
     ASSERT_TRUE(done.failed.empty()) << done.failed[0];
     ASSERT_EQ(done.names, std::vector<std::string>{"lamp_over_box"});
 
-    rapidjson::Document schema_document;
-    schema_document.Parse(text_of(UMBRA_SCHEMA).c_str());
-    ASSERT_FALSE(schema_document.HasParseError());
-    const rapidjson::SchemaDocument schema(schema_document);
-
     for (const fs::path& file : {options_.out / "lamp_over_box/results.json", options_.out / "results.json"}) {
         const std::string text = text_of(file);
-        rapidjson::Document record;
-        record.Parse(text.c_str());
-        ASSERT_FALSE(record.HasParseError()) << file;
-        rapidjson::SchemaValidator valid(schema);
-        rapidjson::StringBuffer where;
-        const bool accepted = record.Accept(valid);
-        valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
-        EXPECT_TRUE(accepted) << file << " at " << where.GetString() << ": "
-                              << (accepted ? "" : valid.GetInvalidSchemaKeyword());
+        EXPECT_TRUE(fits(results_schema().dump(), text)) << file;
+        EXPECT_EQ(record_text(from_record<Results>(read_results(file))), text) << "what is read and written again";
 
         const Json json    = Json::parse(text);
         std::size_t served = 0;
@@ -153,7 +126,7 @@ TEST_F(Compare, PointsThatReceiveNoShadowsAreCountedApart) {
                     {"name": "box", "type": "box", "size": [1, 1, 1], "transform": [{"translate": [0, 1, 0]}]}]
     })");
     options_.methods  = {"ray_traced", "shadow_zbuffer"};
-    const Json record = compare_scene(scene, options_);
+    const Json record = to_record(compare_scene(scene, options_));
     expect_valid(record);
     EXPECT_EQ(record["facts"]["objects"][0]["receives_shadows"], false);
     EXPECT_FALSE(record["facts"]["objects"][1].contains("receives_shadows"));
@@ -172,10 +145,10 @@ TEST_F(Compare, PointsThatReceiveNoShadowsAreCountedApart) {
 
 TEST_F(Compare, AReferenceTooDearJudgesAStratifiedSample) {
     options_.methods = {"ray_traced", "exact"};
-    const Json whole = compare_scene(scene_, options_);
+    const Json whole = to_record(compare_scene(scene_, options_));
     EXPECT_TRUE(whole["reference"]["judged"].is_null());
     options_.points   = 300;
-    const Json sample = compare_scene(scene_, options_), again = compare_scene(scene_, options_);
+    const Json sample = to_record(compare_scene(scene_, options_)), again = to_record(compare_scene(scene_, options_));
 
     const Json& judged = sample["reference"]["judged"];
     EXPECT_NEAR(judged["points"], 300.0, 100);
@@ -291,17 +264,9 @@ TEST_F(Compare, AFarSceneRecordsWhatItsNumbersAreRelativeTo) {
 }
 
 TEST_F(Compare, SchemaRefusesWhatItShould) {
-    rapidjson::Document schema_document;
-    schema_document.Parse(text_of(UMBRA_SCHEMA).c_str());
-    const rapidjson::SchemaDocument schema(schema_document);
     options_.methods   = {"ray_traced"};
-    Json good          = compare_scene(scene_, options_);
-    const auto accepts = [&](const Json& record) {
-        rapidjson::Document document;
-        document.Parse(record.dump().c_str());
-        rapidjson::SchemaValidator valid(schema);
-        return document.Accept(valid);
-    };
+    Json good          = to_record(compare_scene(scene_, options_));
+    const auto accepts = [](const Json& record) -> bool { return fits(results_schema().dump(), record.dump()); };
     EXPECT_TRUE(accepts(good));
     for (const char* pointer :
          {"/methods/0/errors/0/false_light/interior", "/methods/0/coverage", "/reference/exact", "/schema"}) {

@@ -370,7 +370,7 @@ TEST_F(Wall, RecordTellsItsFiguresApart) {
     one.penumbra_width = PenumbraWidth{.method = 36, .reference = 37};
     one.noise          = Noise{.runs = 38, .rms = 39, .bias = 40};
     const Outcome outcome{run, std::vector<Explained>(3, one)};
-    const json found    = json::parse(served_json("planted", prepared, outcome, "truth").dump())["errors"][1];
+    const json found = json::parse(to_record(served_record("planted", prepared, outcome, "truth")).dump())["errors"][1];
     const json expected = json::parse(R"({"light": "top", "points": 1, "undefined": 2, "away": 3, "on_boundary": 4,
         "not_judged": 5, "lit": 6, "umbra": 7, "penumbra": 8, "false_shadow": {"interior": 9, "edge": 10, "acne": 20},
         "false_light": {"interior": 11, "edge": 12, "detachment": 21, "leak": 22},
@@ -546,7 +546,7 @@ TEST(Times, MedianLeastAndLargest) {
     EXPECT_GE(timing.max, 600);
     EXPECT_LE(timing.min, timing.median);
     EXPECT_LT(timing.median, 0.25 * (timing.min + timing.median + timing.max));
-    const Json text = timing_json({2, 1, 5, 3});
+    const Json text = to_record(timing_record({2, 1, 5, 3}));
     EXPECT_EQ(text, (Json{{"median", 2.0}, {"min", 1.0}, {"max", 5.0}, {"runs", 3}}));
 }
 

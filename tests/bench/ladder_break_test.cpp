@@ -4,11 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/tests/support/temporary_folder.h"
@@ -86,8 +83,8 @@ protected:
     }
 
     /// The colour at each pixel, R G B from 0 to 255.
-    [[nodiscard]] std::vector<std::array<int, 3>> picture(const char* key) const {
-        const Image image = read_image(folder_.path() / "breaks" / written_[key].get<std::string>()).image;
+    [[nodiscard]] std::vector<std::array<int, 3>> picture(const std::string& file) const {
+        const Image image = read_image(folder_.path() / "breaks" / file).image;
         EXPECT_EQ(image.pixels(), 20 * kWidth);
         std::vector<std::array<int, 3>> pixels;
         for (std::size_t i = 0; i < image.pixels(); ++i)
@@ -97,20 +94,21 @@ protected:
         return pixels;
     }
     TemporaryFolder folder_;
-    Json written_;
+    BreakRecord written_;
 };
 
 TEST_F(LadderBreak, ShowsTheLightWithTheMostWrongPoints) {
-    EXPECT_EQ(written_["light"], "sun");
-    EXPECT_EQ(written_["points"], 2 * kRows * kWidth);
-    EXPECT_EQ(written_["interior"], 30);
-    EXPECT_EQ(written_["triangles"], 14);
-    EXPECT_EQ(written_["triangles_before"], 14);
+    EXPECT_EQ(written_.light, "sun");
+    EXPECT_EQ(written_.points, 2 * kRows * kWidth);
+    EXPECT_EQ(written_.interior, 30u);
+    EXPECT_EQ(written_.triangles, 14u);
+    EXPECT_EQ(written_.triangles_before, 14u);
 }
 
 TEST_F(LadderBreak, PicturesShowTheMethodTheTruthAndTheClasses) {
-    const auto method = picture("visibility"), reference = picture("truth"), classes = picture("classes");
-    const auto grey = [](float s) { return s > 0.5f ? std::array{255, 255, 255} : std::array{0, 0, 0}; };
+    const auto method = picture(written_.visibility), reference = picture(written_.truth),
+               classes = picture(written_.classes);
+    const auto grey    = [](float s) { return s > 0.5f ? std::array{255, 255, 255} : std::array{0, 0, 0}; };
     for (std::size_t y = 0; y < kRows; ++y)
         for (std::size_t x = 0; x < kWidth; ++x) {
             const std::size_t i = kWidth * y + x;
@@ -123,10 +121,9 @@ TEST_F(LadderBreak, PicturesShowTheMethodTheTruthAndTheClasses) {
 }
 
 TEST_F(LadderBreak, PageCallsEachPictureWhatItIs) {
-    Json ladder                   = ladder_json(climb_ladder(kLadder, {MethodChoice(kPlanted)}));
-    ladder["methods"][0]["break"] = written_;
-    const Json record             = {{"schema", kResultsSchema}, {"breaking_share", 0.005}, {"ladders", {ladder}}};
-    (void)folder_.write("results.json", record.dump());
+    LadderRecord ladder          = ladder_record(climb_ladder(kLadder, {MethodChoice(kPlanted)}));
+    ladder.methods.front().shown = written_;
+    (void)folder_.write("results.json", to_record(LaddersRecord{.breaking_share = 0.005, .ladders = {ladder}}).dump());
     write_ladder_page(folder_.path());
     std::ifstream in(folder_.path() / "index.html");
     const std::string page(std::istreambuf_iterator<char>(in), {});

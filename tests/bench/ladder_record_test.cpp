@@ -7,8 +7,9 @@
 #include "umbra/bench/ladders/ladder_cells.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/run/results_file.h"
+#include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
+#include "umbra/tests/support/json_schema.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -38,7 +39,7 @@ LadderRun run_by_hand() {
 }
 
 TEST(LadderRecord, EachFigureHasItsPlace) {
-    const Json ladder = ladder_json(run_by_hand());
+    const Json ladder = to_record(ladder_record(run_by_hand()));
     EXPECT_EQ(ladder["rungs"][0]["surface_points"], 10);
     EXPECT_EQ(ladder["rungs"][0]["lit"], 11);
     EXPECT_EQ(ladder["rungs"][0]["umbra"], 12);
@@ -56,14 +57,81 @@ TEST(LadderRecord, EachFigureHasItsPlace) {
     EXPECT_EQ(method["kind"], "leak");
 }
 
-TEST(LadderRecord, WordsAndTableNameTheRung) {
-    const Json ladder = ladder_json(run_by_hand());
-    EXPECT_EQ(climb_in_words(ladder["methods"][0], ladder), "2 leak");
-    EXPECT_EQ(climb_in_words(ladder["methods"][1], ladder), "not served");
+/// A rung without a wrong point has null as its kind; one without figures has none.
+TEST(LadderRecord, FiguresAreThereWhereTheMethodRan) {
+    LadderRun run                 = run_by_hand();
+    run.rungs[0].outcomes[0].kind = "";
+    const LadderRecord record     = ladder_record(run);
+    const Json ladder             = to_record(record);
+    const Json right = ladder["methods"][0]["rungs"][0], none = ladder["methods"][1]["rungs"][0];
+    EXPECT_TRUE(right.contains("kind"));
+    EXPECT_TRUE(right["kind"].is_null());
+    EXPECT_EQ(none, (Json{{"serves", {{"how", "not"}, {"why", "it cannot"}}}}));
+    EXPECT_EQ(record.methods[1].rungs[0].points, std::nullopt);
+}
+
+/// What `read_ladders` says of a record with this ladder.
+std::string message_of(const Json& ladder) {
     const TemporaryFolder folder;
-    const Json record = {{"schema", kResultsSchema}, {"breaking_share", 0.005}, {"ladders", {ladder}}};
-    const Field root  = read_results(folder.write("results.json", record.dump()));
-    const auto table  = ladder_table_view(root, "page");
+    try {
+        (void)read_ladders(
+            folder.write("results.json", Json{{"schema", kResultsSchema}, {"ladders", Json::array({ladder})}}.dump()));
+    } catch (const InputError& error) {
+        const std::string message = error.what();
+        return message.substr(message.find(':') + 1);
+    }
+    return "read";
+}
+
+TEST(LadderRecord, IsReadAsItWasWritten) {
+    LaddersRecord record{.breaking_share = 0.005, .ladders = {ladder_record(run_by_hand())}};
+    record.ladders[0].methods[0].first_rung_ms.emplace();
+    record.ladders[0].methods[0].shown =
+        BreakRecord{"a.json", "a.S.png", "a.truth.png", "a.classes.png", "sun", 40, 20, 5, 14, 720, 30};
+    record.failed.push_back({.ladder = "needles", .method = "ray_traced", .failure = {.message = "out of range"}});
+    const std::string text = to_record(record).dump();
+    const TemporaryFolder folder;
+    EXPECT_EQ(to_record(read_ladders(folder.write("results.json", text))).dump(), text);
+    EXPECT_TRUE(fits(ladders_schema().dump(), text));
+    EXPECT_EQ(text.find("\"rung\":"), std::string::npos) << "the whole ladder failed";
+}
+
+TEST(LadderRecord, BrokenOnesAreRefusedWithTheirPlace) {
+    const Json good = to_record(ladder_record(run_by_hand()));
+    EXPECT_EQ(message_of(good), "read");
+    const auto changed = [&](const char* pointer, const Json& value) {
+        Json bad                         = good;
+        bad[Json::json_pointer(pointer)] = value;
+        return message_of(bad);
+    };
+    EXPECT_EQ(changed("/methods/0/breaks_at", 7),
+              "/ladders/0/methods/0/breaks_at: found 7, expected the value of a rung");
+    EXPECT_EQ(changed("/methods/1/not_served_from", 0.5),
+              "/ladders/0/methods/1/not_served_from: found 0.5, expected the value of a rung");
+    EXPECT_EQ(changed("/methods/0/text", ""), "/ladders/0/methods/0/text: found \"\", expected a non-empty string");
+    EXPECT_EQ(changed("/rungs/1/value", nullptr), "/ladders/0/rungs/1/value: found nothing, expected a value");
+    EXPECT_EQ(changed("/rungs/1/lit", "12"), "/ladders/0/rungs/1/lit: found \"12\", expected a number");
+}
+
+/// Without presets, judged rungs and times, which earlier versions did not write.
+TEST(LadderRecord, OfEarlierVersionsIsShown) {
+    Json ladder = to_record(ladder_record(run_by_hand()));
+    for (Json& method : ladder["methods"])
+        for (const char* key : {"preset", "judged_rungs", "least_coverage"}) method.erase(key);
+    ladder["methods"][0]["breaks_at"] = nullptr;
+    const TemporaryFolder folder;
+    const LaddersRecord record = read_ladders(
+        folder.write("results.json", Json{{"schema", kResultsSchema}, {"ladders", Json::array({ladder})}}.dump()));
+    const auto cells = ladder_table_view(record, "page")["rows"][0]["cells"];
+    EXPECT_EQ(cells[0]["words"], "holds");
+    EXPECT_EQ(cells[0]["note"], "") << "nothing is said of what is not known";
+}
+
+TEST(LadderRecord, WordsAndTableNameTheRung) {
+    const LadderRecord ladder = ladder_record(run_by_hand());
+    EXPECT_EQ(climb_in_words(ladder.methods[0], ladder), "2 leak");
+    EXPECT_EQ(climb_in_words(ladder.methods[1], ladder), "not served");
+    const auto table = ladder_table_view({.ladders = {ladder}}, "page");
     EXPECT_EQ(table["rows"][0]["cells"][0]["words"], "2");
     EXPECT_EQ(table["rows"][0]["cells"][0]["kind"], "leak");
     EXPECT_EQ(table["rows"][0]["cells"][1]["note"], "not served");
@@ -97,29 +165,29 @@ TEST(LadderRecord, HoldsSaysOfWhat) {
         whole.can_show = {whole.points, 900, 900};
         rung.outcomes  = {part, whole};
     }
-    const Json ladder = ladder_json(run);
-    EXPECT_EQ(ladder["methods"][0]["judged_rungs"], 2);
-    EXPECT_NEAR(ladder["methods"][0]["least_coverage"].get<double>(), 0.6, 1e-12);
-    EXPECT_EQ(ladder["methods"][1]["judged_rungs"], 4);
-    EXPECT_EQ(climb_in_words(ladder["methods"][0], ladder), "holds") << "words that goldens have";
+    const LadderRecord ladder = ladder_record(run);
+    EXPECT_EQ(ladder.methods[0].judged_rungs, 2u);
+    EXPECT_NEAR(ladder.methods[0].least_coverage.value_or(0), 0.6, 1e-12);
+    EXPECT_EQ(ladder.methods[1].judged_rungs, 4u);
+    EXPECT_EQ(climb_in_words(ladder.methods[0], ladder), "holds") << "words that goldens have";
     const std::string part  = fmt::format("judged on 2 of {} rungs, answers 60 % of the points or more", all),
                       whole = fmt::format("judged on 4 of {} rungs", all);
-    const std::string text  = ladder_table(Json::array({ladder}));
+    const auto table_of     = [](const LadderRecord& one) { return ladder_table(std::span(&one, 1)); };
+    const std::string text  = table_of(ladder);
     EXPECT_NE(text.find("holds (" + part + ")"), std::string::npos) << text;
     EXPECT_NE(text.find("holds (" + whole + ")"), std::string::npos) << text;
-    const TemporaryFolder folder;
-    const Json record = {{"schema", kResultsSchema}, {"breaking_share", 0.005}, {"ladders", {ladder}}};
-    const auto cells =
-        ladder_table_view(read_results(folder.write("results.json", record.dump())), "page")["rows"][0]["cells"];
+    const auto cells = ladder_table_view({.ladders = {ladder}}, "page")["rows"][0]["cells"];
     EXPECT_EQ(cells[0]["words"], "holds");
     EXPECT_EQ(cells[0]["note"], part);
     EXPECT_EQ(cells[1]["note"], whole);
     // A rung of its own, all of whose points it answers.
     run.rungs = {run.rungs.back()};
-    EXPECT_NE(ladder_table(Json::array({ladder_json(run)})).find(fmt::format("holds (judged on 1 of {} rungs", all)),
-              std::string::npos);
-    EXPECT_EQ(left_out_in_words(8, 8, 1), "");
-    EXPECT_EQ(left_out_in_words(1, 1, 0.5), "answers 50 % of the points");
+    EXPECT_NE(table_of(ladder_record(run)).find(fmt::format("holds (judged on 1 of {} rungs", all)), std::string::npos);
+    LadderRecord one_rung;
+    one_rung.rungs.resize(1);
+    EXPECT_EQ(left_out_in_words(one_rung, {.judged_rungs = 1, .least_coverage = 1}), "");
+    EXPECT_EQ(left_out_in_words(one_rung, {.judged_rungs = 1, .least_coverage = 0.5}), "answers 50 % of the points");
+    EXPECT_EQ(left_out_in_words(one_rung, {.breaks_at = 0, .judged_rungs = 1, .least_coverage = 0.5}), "");
 }
 
 /// Two lights: the points of a rung are those of both.

@@ -1,9 +1,6 @@
 // Ladders: the rule by which a method breaks, and what every ladder promises.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <rapidjson/document.h>
-#include <rapidjson/schema.h>
-#include <rapidjson/stringbuffer.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +15,7 @@
 #include "umbra/bench/ladders/minimal_scene.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
+#include "umbra/tests/support/json_schema.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -120,15 +118,15 @@ TEST(BreakRule, ARungThatIsNotJudgedDoesNotEndTheLadder) {
     run.rungs[1].unjudged = "no shadow";
     run.rungs[1].outcomes.clear();
     EXPECT_EQ(climb(run, 0).breaks_at, 2u);
-    const Json ladder = ladder_json(run);
-    EXPECT_EQ(climb_in_words(ladder["methods"][0], ladder), "100 ");
-    EXPECT_EQ(ladder["methods"][0]["rungs"].size(), 2u);
-    EXPECT_EQ(ladder["rungs"].size(), 3u);
+    const LadderRecord ladder = ladder_record(run);
+    EXPECT_EQ(climb_in_words(ladder.methods[0], ladder), "100 ");
+    EXPECT_EQ(ladder.methods[0].rungs.size(), 2u);
+    EXPECT_EQ(ladder.rungs.size(), 3u);
     run.rungs[2] = run.rungs[1];
     EXPECT_EQ(climb(run, 0).not_judged_from, 1u);
     EXPECT_EQ(climb(run, 0).why, "no shadow");
-    const Json cut = ladder_json(run);
-    EXPECT_EQ(climb_in_words(cut["methods"][0], cut), "not judged from 10");
+    const LadderRecord cut = ladder_record(run);
+    EXPECT_EQ(climb_in_words(cut.methods[0], cut), "not judged from 10");
 }
 
 TEST(InteriorPoints, AreThoseAtWhichAConstantAnswerIsWrong) {
@@ -232,34 +230,25 @@ protected:
 };
 
 TEST_F(LadderCommand, WritesWhatItsSchemaSaysAndScenesThatBreakAgain) {
-    const Json record = climb_ladders(options_);
-    rapidjson::Document schema_document, document;
-    schema_document.Parse(text_of(UMBRA_LADDER_SCHEMA).c_str());
-    ASSERT_FALSE(schema_document.HasParseError());
-    const rapidjson::SchemaDocument schema(schema_document);
-    document.Parse(text_of(options_.out / "results.json").c_str());
-    rapidjson::SchemaValidator valid(schema);
-    rapidjson::StringBuffer where;
-    const bool accepted = document.Accept(valid);
-    valid.GetInvalidDocumentPointer().StringifyUriFragment(where);
-    EXPECT_TRUE(accepted) << where.GetString();
+    const LaddersRecord record = climb_ladders(options_);
+    EXPECT_TRUE(fits(ladders_schema().dump(), text_of(options_.out / "results.json")));
 
     int breaks = 0;
-    for (const Json& ladder : record["ladders"])
-        for (const Json& method : ladder["methods"]) {
-            EXPECT_EQ(method["rungs"].size(), ladder["rungs"].size());
-            EXPECT_EQ(method.contains("break"), !method["breaks_at"].is_null());
-            if (!method.contains("break")) continue;
+    for (const LadderRecord& ladder : record.ladders)
+        for (const ClimbRecord& method : ladder.methods) {
+            EXPECT_EQ(method.rungs.size(), ladder.rungs.size());
+            EXPECT_EQ(method.shown.has_value(), method.breaks_at.has_value());
+            if (!method.shown) continue;
             ++breaks;
-            const Json& b = method["break"];
-            for (const char* key : {"scene", "visibility", "truth", "classes"})
-                EXPECT_TRUE(fs::exists(options_.out / "breaks" / b[key])) << b[key];
-            const Scene scene = load_scene(options_.out / "breaks" / b["scene"]);
-            EXPECT_LE(scene.triangles.size(), b["triangles_before"]);
-            const RungOutcome again = outcome(*set_stage(scene), parse_method(method["text"].get<std::string>()));
-            EXPECT_TRUE(again.broken()) << b["scene"];
-            EXPECT_EQ(again.interior(), b["interior"]) << b["scene"];
-            EXPECT_EQ(again.kind, method["kind"]);
+            const BreakRecord& b = *method.shown;
+            for (const std::string& file : {b.scene, b.visibility, b.truth, b.classes})
+                EXPECT_TRUE(fs::exists(options_.out / "breaks" / file)) << file;
+            const Scene scene = load_scene(options_.out / "breaks" / b.scene);
+            EXPECT_LE(scene.triangles.size(), b.triangles_before);
+            const RungOutcome again = outcome(*set_stage(scene), parse_method(method.text));
+            EXPECT_TRUE(again.broken()) << b.scene;
+            EXPECT_EQ(again.interior(), b.interior) << b.scene;
+            EXPECT_EQ(again.kind, method.kind);
         }
     EXPECT_GE(breaks, 1);
 
@@ -268,21 +257,13 @@ TEST_F(LadderCommand, WritesWhatItsSchemaSaysAndScenesThatBreakAgain) {
     EXPECT_NE(page.find("breaks/grazing_sun.shadow_zbuffer.classes.png"), std::string::npos);
     EXPECT_EQ(page.find("{{"), std::string::npos);
     EXPECT_EQ(page.find("://"), std::string::npos) << "the page names a host";
-    EXPECT_NE(ladder_table(record["ladders"]).find("grazing_sun"), std::string::npos);
+    EXPECT_NE(ladder_table(record.ladders).find("grazing_sun"), std::string::npos);
 }
 
 TEST_F(LadderCommand, SchemaRefusesWhatItShould) {
-    options_.names  = {"tiny_scene"};
-    const Json good = climb_ladders(options_);
-    rapidjson::Document schema_document;
-    schema_document.Parse(text_of(UMBRA_LADDER_SCHEMA).c_str());
-    const rapidjson::SchemaDocument schema(schema_document);
-    const auto accepts = [&](const Json& record) {
-        rapidjson::Document document;
-        document.Parse(record.dump().c_str());
-        rapidjson::SchemaValidator valid(schema);
-        return document.Accept(valid);
-    };
+    options_.names     = {"tiny_scene"};
+    const Json good    = to_record(climb_ladders(options_));
+    const auto accepts = [schema = ladders_schema().dump()](const Json& record) { return fits(schema, record.dump()); };
     EXPECT_TRUE(accepts(good));
     Json bad                             = good;
     bad["ladders"][0]["rungs"][0]["lit"] = -1;
@@ -471,17 +452,17 @@ TEST_P(EveryLadder, BreaksWhereItIsRecordedAndNeverWhoServesExactly) {
             }
         }
 
-    const Json ladder       = ladder_json(run);
-    const Recorded recorded = read_recorded();
-    const char* recording   = std::getenv("UMBRA_RECORD_LADDERS");
+    const LadderRecord ladder = ladder_record(run);
+    const Recorded recorded   = read_recorded();
+    const char* recording     = std::getenv("UMBRA_RECORD_LADDERS");
     if (recording == nullptr) {
         ASSERT_GT(recorded.lines.size(), 100u);
     }
     std::string missing;
-    for (const Json& method : ladder["methods"]) {
-        const auto name  = method["name"].get<std::string>();
-        const auto key   = fmt::format("{} {}", GetParam()->name, name);
-        const auto found = fmt::format("{}: {}", key, climb_in_words(method, ladder));
+    for (const ClimbRecord& method : ladder.methods) {
+        const std::string& name = method.name;
+        const auto key          = fmt::format("{} {}", GetParam()->name, name);
+        const auto found        = fmt::format("{}: {}", key, climb_in_words(method, ladder));
         if (recording != nullptr)
             std::ofstream(recording, std::ios::app) << found << '\n';
         else if (!recorded.knows(name))

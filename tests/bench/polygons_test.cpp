@@ -117,7 +117,7 @@ bool holds(const Loops& loops, dvec2 at) {
 TEST(PolygonFiles, HaveTheAreasThatAreKnownByHand) {
     const TemporaryFolder folder;
     const Scene scene = sheet_over_floor();
-    const Json record = write_lit_polygons(scene, find_facts(scene), folder.path());
+    const Json record = to_record(write_lit_polygons(scene, find_facts(scene), folder.path()));
     ASSERT_EQ(record["lights"].size(), 2u);
     const struct { double hidden, low_x, high_x, low_z, high_z; } known[] = {{2, 2, 4, 1, 2}, {8, 0, 4, 1, 3}};
     for (std::size_t l = 0; l < 2; ++l) {
@@ -167,7 +167,7 @@ TEST(PolygonFiles, AreWholeWhereNoShadowIsReceivedOrCast) {
         Scene scene                                = sheet_over_floor();
         scene.objects[0].switches.receives_shadows = receives;
         scene.objects[1].switches.casts_shadows    = !receives;
-        const Json record                          = write_lit_polygons(scene, find_facts(scene), folder.path());
+        const Json record = to_record(write_lit_polygons(scene, find_facts(scene), folder.path()));
         for (const Json& light : record["lights"]) {
             EXPECT_NEAR(light["lit_area"].get<double>(), 34, 1e-12);
             EXPECT_NEAR(area(read_mesh(folder.path() / light["mesh"].get<std::string>()).at("floor")), 32, 1e-12);
@@ -178,7 +178,7 @@ TEST(PolygonFiles, AreWholeWhereNoShadowIsReceivedOrCast) {
 TEST(PolygonFiles, EscapeNames) {
     const TemporaryFolder folder;
     const Scene scene = sheet_over_floor();
-    const Json record = write_lit_polygons(scene, find_facts(scene), folder.path());
+    const Json record = to_record(write_lit_polygons(scene, find_facts(scene), folder.path()));
     std::ifstream in(folder.path() / record["lights"][1]["planes"][0]["drawing"].get<std::string>());
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     EXPECT_NE(text.find("<title>What lamp &lt;1&gt; lights in sheet</title>"), std::string::npos) << text;

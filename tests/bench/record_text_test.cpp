@@ -32,7 +32,8 @@ TEST(RecordText, ReferencesHaveTheTimesOfTheirPhases) {
     ran.run.aim        = {{10, 9, 12, 5}, {20, 18, 24, 5}};
     ran.run.look       = {4, 3, 6, 5};
     ran.run.visibility = {{1, 0.5, 2, 5}, {2, 1.5, 3, 5}};
-    const Json record  = reference_json({{.choice = parse_method("exact"), .exact = true, .note = {}}, ran}, scene);
+    const Json record =
+        to_record(reference_record({{.choice = parse_method("exact"), .exact = true, .note = {}}, ran}, scene));
     EXPECT_EQ(record["times"]["build_ms"]["median"], 100);
     EXPECT_EQ(record["times"]["build_ms"]["max"], 120);
     EXPECT_EQ(record["times"]["aim_ms"]["median"], 30);

@@ -9,8 +9,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "umbra/bench/record/field.h"
 #include "umbra/bench/report/report.h"
-#include "umbra/bench/run/results_file.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

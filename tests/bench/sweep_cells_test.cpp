@@ -378,9 +378,9 @@ TEST(CellView, HasColouredShadows) {
     const MethodRun run       = run_method(choice, p.scene, p.facts, p.points, kOnce);
     const MethodRun truth     = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt).run;
     ASSERT_TRUE(run.planes.size() == 1 && !run.planes[0].colour.empty()) << run.service.why;
-    EXPECT_EQ(cell["image"], image_figures(run.planes, render_planes(p.scene, p.points, run.planes),
-                                           render_planes(p.scene, p.points, truth.planes))
-                                 .figures);
+    EXPECT_EQ(cell["image"], to_record(image_figures(run.planes, render_planes(p.scene, p.points, run.planes),
+                                                     render_planes(p.scene, p.points, truth.planes))
+                                           .figures));
 }
 
 /// Coloured shadows, which three channels of S_j make.
@@ -571,6 +571,8 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
                                                  "than 5 % are not told apart:\n" +
                                                  one + four);
     EXPECT_EQ(words({{"noise_bar", 0.31}}), head + "not ranked, as times vary by 31 %:\n" + one + two + four);
+    EXPECT_EQ(words({{"noise_bar", nullptr}}),
+              head + "not ranked, as times are of fewer than six rounds:\n" + one + two + four);
 }
 
 /// What a sweep says of a setting is its error in the view that is hardest for it.

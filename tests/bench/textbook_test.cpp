@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <set>
 
 #include "umbra/bench/cli/ladder_command.h"
@@ -21,38 +22,35 @@ namespace {
 using other_readers::HtmlTable;
 
 /// A method on a ladder; `at` are rungs, 0: none.
-Json method(const std::string& name, bool textbook, int breaks_at, int silent_from = 0,
-            const std::vector<double>& ms = {}) {
-    const auto rung = [](int r) { return r == 0 ? Json() : Json(r); };
-    return {{"name", name},
-            {"title", "The " + name},
-            {"text", textbook ? name + ":k=v" : name},
-            {"preset", textbook ? "textbook" : "default"},
-            {"breaks_at", rung(breaks_at)},
-            {"kind", breaks_at ? Json("leak") : Json()},
-            {"silent_from", rung(silent_from)},
-            {"not_served_from", nullptr},
-            {"not_judged_from", nullptr},
-            {"why", ""},
-            {"rungs", Json::array()},
-            {"first_rung_ms", ms}};
+ClimbRecord method(const std::string& name, bool textbook, int breaks_at, int silent_from = 0,
+                   const std::vector<double>& ms = {}) {
+    const auto rung = [](int r) { return r == 0 ? std::nullopt : std::optional<double>(r); };
+    return {.name          = name,
+            .title         = "The " + name,
+            .text          = textbook ? name + ":k=v" : name,
+            .preset        = textbook ? "textbook" : "default",
+            .breaks_at     = rung(breaks_at),
+            .kind          = breaks_at ? std::optional<std::string>("leak") : std::nullopt,
+            .silent_from   = rung(silent_from),
+            .first_rung_ms = ms};
 }
 
 /// Rungs 1, 2, 3, 4.
-Json ladder(const std::string& name, const std::vector<Json>& methods) {
-    Json l = {{"name", name},           {"title", "Ladder " + name}, {"about", ""},       {"unit", "metres"},
-              {"rungs", Json::array()}, {"not_climbed", 0},          {"methods", methods}};
-    for (const int r : {1, 2, 3, 4})
-        l["rungs"].push_back({{"value", r}, {"truth", "exact"}, {"interior_lit", 100}, {"interior_shadow", 100}});
+LadderRecord ladder(const std::string& name, const std::vector<ClimbRecord>& methods) {
+    LadderRecord l{{name, "Ladder " + name, "", "metres"}, {}, 0, methods};
+    for (const double r : {1, 2, 3, 4}) {
+        Rung& rung    = l.rungs.emplace_back();
+        rung.value    = r;
+        rung.truth    = "exact";
+        rung.can_show = {200, 100, 100};
+    }
     return l;
 }
 
+LaddersRecord record(const std::vector<LadderRecord>& ladders) { return {.breaking_share = 0.005, .ladders = ladders}; }
+
 class TextbookForms : public testing::Test {
 protected:
-    Field record(const std::vector<Json>& ladders) {
-        const Json all = {{"schema", kResultsSchema}, {"breaking_share", 0.005}, {"ladders", ladders}};
-        return read_results(folder.write("results.json", all.dump()));
-    }
     TemporaryFolder folder;
 };
 
@@ -67,10 +65,9 @@ TEST_F(TextbookForms, BreakEarlierLaterAtTheSameRungOrCannotBeCompared) {
                           Case{3, 0, 3, 0, Textbook::same, 0}, Case{0, 0, 0, 0, Textbook::same, 0},
                           Case{0, 2, 0, 4, Textbook::same, 0}, Case{3, 0, 0, 3, Textbook::not_compared, 0},
                           Case{3, 0, 0, 4, Textbook::earlier, 2}, Case{0, 2, 3, 0, Textbook::not_compared, 0}}) {
-        const Field root   = record({ladder("a", {method("m", false, c.by_default, c.default_silent),
-                                                  method("m", true, c.textbook, c.textbook_silent)})});
-        const Field l      = root["ladders"].items()[0];
-        const auto methods = l["methods"].items();
+        const LadderRecord l                    = ladder("a", {method("m", false, c.by_default, c.default_silent),
+                                                               method("m", true, c.textbook, c.textbook_silent)});
+        const std::vector<ClimbRecord>& methods = l.methods;
         EXPECT_FALSE(is_textbook_twin(l, methods[0]));
         EXPECT_TRUE(is_textbook_twin(l, methods[1]));
         const TextbookClimb climb = compare_with_textbook(l, methods[1], methods[0]);
@@ -80,11 +77,13 @@ TEST_F(TextbookForms, BreakEarlierLaterAtTheSameRungOrCannotBeCompared) {
 }
 
 TEST_F(TextbookForms, TablesOfThePage) {
-    (void)record({ladder("a", {method("m", false, 0, 0, {3, 30, 3.3}), method("m", true, 2, 0, {2, 20, 2.2}),
-                               method("n", false, 1), method("n", true, 3)}),
-                  ladder("b", {method("m", false, 4, 0, {5, 5, 5}), method("m", true, 3, 0, {2, 2, 2}),
-                               method("n", false, 0), method("n", true, 0)}),
-                  ladder("c", {method("m", false, 2), method("m", true, 2)})});
+    const LaddersRecord all =
+        record({ladder("a", {method("m", false, 0, 0, {3, 30, 3.3}), method("m", true, 2, 0, {2, 20, 2.2}),
+                             method("n", false, 1), method("n", true, 3)}),
+                ladder("b", {method("m", false, 4, 0, {5, 5, 5}), method("m", true, 3, 0, {2, 2, 2}),
+                             method("n", false, 0), method("n", true, 0)}),
+                ladder("c", {method("m", false, 2), method("m", true, 2)})});
+    (void)folder.write("results.json", to_record(all).dump());
     write_ladder_page(folder.path());
     std::ifstream in(folder.path() / "index.html");
     const std::string page{std::istreambuf_iterator<char>(in), {}};
@@ -124,16 +123,17 @@ TEST_F(TextbookForms, NothingIsShownWhereOneFormWasClimbed) {
 
 TEST_F(TextbookForms, AreClimbedAndTimedByDefault) {
     LadderOptions options;
-    options.names           = {"duplicate_faces"};
-    options.out             = folder.path() / "out";
-    options.only_by_default = true;
-    const Json record       = climb_ladders(options);
+    options.names            = {"duplicate_faces"};
+    options.out              = folder.path() / "out";
+    options.only_by_default  = true;
+    const LaddersRecord done = climb_ladders(options);
     std::size_t textbook = 0, by_default = 0;
-    for (const Json& m : record["ladders"][0]["methods"]) {
-        (m["preset"] == "textbook" ? textbook : by_default)++;
-        EXPECT_EQ(parse_method(std::string(m["name"]) + "@" + std::string(m["preset"])).text(), m["text"]);
-        EXPECT_FALSE(m["first_rung_ms"].empty()) << m["text"];
-        for (const Json& ms : m["first_rung_ms"]) EXPECT_GT(ms, 0);
+    for (const ClimbRecord& m : done.ladders[0].methods) {
+        (m.preset == "textbook" ? textbook : by_default)++;
+        EXPECT_EQ(parse_method(m.name + "@" + m.preset.value_or("")).text(), m.text);
+        const std::vector<double> times = m.first_rung_ms.value_or(std::vector<double>());
+        EXPECT_FALSE(times.empty()) << m.text;
+        for (const double ms : times) EXPECT_GT(ms, 0);
     }
     EXPECT_EQ(by_default, 4u);
     EXPECT_EQ(textbook, 4u);
@@ -142,11 +142,11 @@ TEST_F(TextbookForms, AreClimbedAndTimedByDefault) {
 /// Without the report's choice, also the methods that reports show on some scenes alone.
 TEST_F(TextbookForms, AllThatReportsShowClimb) {
     LadderOptions options;
-    options.names     = {"gap"};
-    options.out       = folder.path() / "out";
-    const Json record = climb_ladders(options);
+    options.names            = {"gap"};
+    options.out              = folder.path() / "out";
+    const LaddersRecord done = climb_ladders(options);
     std::set<std::string> climbed, shown;
-    for (const Json& m : record["ladders"][0]["methods"]) climbed.insert(m["name"].get<std::string>());
+    for (const ClimbRecord& m : done.ladders[0].methods) climbed.insert(m.name);
     for (const MethodInfo* info : methods())
         if (info->is_shown() && !info->reference) shown.emplace(info->name);
     EXPECT_EQ(climbed, shown);
@@ -155,16 +155,16 @@ TEST_F(TextbookForms, AllThatReportsShowClimb) {
 
 TEST_F(TextbookForms, OneSceneShowsWhereAFormBreaks) {
     LadderOptions options;
-    options.names     = {"sliver_occluder", "disk_near_receiver"};
-    options.methods   = {"planar_projection", "planar_projection@textbook"};
-    options.out       = folder.path() / "out";
-    const Json record = climb_ladders(options);
-    EXPECT_FALSE(record["ladders"][0]["methods"][1].contains("break"));
-    EXPECT_TRUE(record["ladders"][1]["methods"][0]["breaks_at"].is_null());
-    const Json& textbook = record["ladders"][1]["methods"][1];
-    ASSERT_TRUE(textbook.contains("break")) << textbook["breaks_at"];
-    for (const char* key : {"scene", "visibility", "truth", "classes"})
-        EXPECT_TRUE(std::filesystem::exists(options.out / "breaks" / std::string(textbook["break"][key])));
+    options.names            = {"sliver_occluder", "disk_near_receiver"};
+    options.methods          = {"planar_projection", "planar_projection@textbook"};
+    options.out              = folder.path() / "out";
+    const LaddersRecord done = climb_ladders(options);
+    EXPECT_FALSE(done.ladders[0].methods[1].shown.has_value());
+    EXPECT_FALSE(done.ladders[1].methods[0].breaks_at.has_value());
+    const std::optional<BreakRecord>& textbook = done.ladders[1].methods[1].shown;
+    ASSERT_TRUE(textbook.has_value()) << done.ladders[1].methods[1].breaks_at.value_or(0);
+    for (const std::string& file : {textbook->scene, textbook->visibility, textbook->truth, textbook->classes})
+        EXPECT_TRUE(std::filesystem::exists(options.out / "breaks" / file));
     std::ifstream in(options.out / "index.html");
     const std::string page{std::istreambuf_iterator<char>(in), {}};
     EXPECT_NE(page.find("<b>Planar projection, textbook</b> at 0.1 scene sizes above the floor: penumbra"),

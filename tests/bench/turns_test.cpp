@@ -295,7 +295,7 @@ TEST_F(TurnsTest, BudgetIsRespectedAndSaid) {
     EXPECT_TRUE(turns.settings[1].order.empty());
     EXPECT_EQ(turns.settings[2].build.size(), 3u);
     EXPECT_EQ(turns.calibration.size(), 7u);
-    EXPECT_EQ(turn_times_json(turns.settings[1])["build_ms"]["runs"], 1);
+    EXPECT_EQ(turn_times_record(turns.settings[1]).phases.build_ms->runs, 1u);
 }
 
 /// 133 ms twice (with the twin) and 833 ms make rounds of 1099 ms: two of them fit into 3000.
@@ -351,7 +351,7 @@ TEST_F(TurnsTest, FailureInTheFirstRunLeavesNoSamples) {
     EXPECT_EQ(turns.settings[0].failed, "never");
     EXPECT_TRUE(turns.settings[0].build.empty());
     EXPECT_EQ(turns.settings[1].build.size(), 7u);
-    EXPECT_THROW((void)turn_times_json(turns.settings[0]), std::logic_error);
+    EXPECT_THROW((void)turn_times_record(turns.settings[0]), std::logic_error);
 }
 
 TEST_F(TurnsTest, WhatDoesNotServeIsNotRun) {
@@ -373,7 +373,7 @@ TEST_F(TurnsTest, JsonKeepsSamplesAndOrder) {
     t.order      = {2, 0, 1};
     t.cold       = {30, {20, 40}, 10, {90}};
     EXPECT_EQ(
-        turn_times_json(t),
+        to_record(turn_times_record(t)),
         Json::parse(R"({"build_ms": {"median": 2.0, "min": 1.0, "max": 3.0, "runs": 3, "samples": [3.0, 1.0, 2.0]},
                               "aim_ms": {"median": 5.0, "min": 4.0, "max": 6.0, "runs": 3, "samples": [6.0, 4.0, 5.0]},
                               "look_ms": {"median": 1.0, "min": 0.0, "max": 2.0, "runs": 3,

@@ -952,7 +952,10 @@ def score(value):
 
 
 def noise_of(record):
-    return ((record['sweep']['turns'] or {}).get('noise_bar')) or 0.0
+    turns = record['sweep']['turns']
+    if not turns:
+        return 0.0
+    return math.inf if turns['noise_bar'] is None else turns['noise_bar']
 
 
 def in_trade(record, name):
@@ -967,7 +970,8 @@ def staircase(record, name):
     """The sentence of a scene."""
     noise, of = noise_of(record), in_trade(record, name)
     if noise > MOST_NOISE:
-        return 'Not ranked: times vary by more than 30 %, too much to say which setting is the cheapest.'
+        return ('Not ranked: times vary by more than 30 %, or are of fewer than six rounds: too much to say which setting is '
+                'the cheapest.')
     steps = sorted((x for x in of if not any(c <= x[1] and e <= x[2] and (c < x[1] or e < x[2]) for _, c, e, _ in of)),
                    key=lambda x: x[1])
     if not steps:

@@ -13,8 +13,9 @@ struct BrdfLine {
 };
 
 int brdf(const BrdfLine& line, const Common& common) {
-    const Json record = measure_materials(load_scene(scene_file(line.scene, common.up)), line.steps, common.command);
-    print_record(line.as_json, common, record, [&] { return study_text(brdf_report(record)); });
+    const BrdfRecord record =
+        measure_materials(load_scene(scene_file(line.scene, common.up)), line.steps, common.command);
+    print_record(line.as_json, common, to_record(record), [&] { return study_text(brdf_report(record)); });
     return kDone;
 }
 

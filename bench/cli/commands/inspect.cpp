@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -21,84 +22,115 @@ struct SilhouetteOptions {
     std::uint64_t seed       = 1;
 };
 
-std::string join(const Json& list) {
-    std::string text;
-    for (const Json& item : list) text += (text.empty() ? "" : ", ") + item.get<std::string>();
-    return text.empty() ? "nothing" : text;
+struct ServedRecord {
+    std::string name{};
+    ServiceRecord serves{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ServedRecord>) {
+    of("name", &ServedRecord::name, "");
+    of("serves", &ServedRecord::serves, "");
+}
+
+struct SilhouetteRecord {
+    std::string object{};
+    double mean = kUnknown, standard_error = kUnknown;
+    std::uint64_t directions = 0;
+};
+template <class Fields>
+void describe(Fields& of, Is<SilhouetteRecord>) {
+    of("object", &SilhouetteRecord::object, "");
+    of("mean", &SilhouetteRecord::mean, "edges");
+    of("standard_error", &SilhouetteRecord::standard_error, "");
+    of("directions", &SilhouetteRecord::directions, "");
+}
+
+struct InspectRecord {
+    int schema = kResultsSchema;
+    std::string version{};
+    SceneRecord scene{};
+    FactsRecord facts{};
+    std::vector<LightRecord> lights{};
+    std::vector<ServedRecord> methods{};
+    std::vector<SilhouetteRecord> silhouettes{};
+};
+template <class Fields>
+void describe(Fields& of, Is<InspectRecord>) {
+    of("schema", &InspectRecord::schema, "");
+    of("version", &InspectRecord::version, "");
+    of("scene", &InspectRecord::scene, "");
+    of("facts", &InspectRecord::facts, "");
+    of("lights", &InspectRecord::lights, "");
+    of("methods", &InspectRecord::methods, "");
+    of.may("silhouettes", &InspectRecord::silhouettes, "over random light directions, where they were asked for");
+}
+
+std::string joined(const std::vector<std::string>& list) {
+    return list.empty() ? "nothing" : fmt::format("{}", fmt::join(list, ", "));
 }
 
 /// The faults of an object's mesh, or that it has none.
-std::string mesh_state(const Json& o) {
-    if (o["closed"]) return o["outward"] ? "closed, oriented outwards" : "closed, oriented inwards";
+std::string mesh_state(const ObjectRecord& o) {
+    if (o.closed) return o.outward ? "closed, oriented outwards" : "closed, oriented inwards";
     std::string text;
     for (const MeshFault& fault : kMeshFaults)
-        if (const auto n = o[std::string(fault.key)].get<std::uint64_t>(); n != 0)
+        if (const std::uint64_t n = o.*fault.count; n != 0)
             text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, n == 1 ? fault.one : fault.many);
     return "not closed: " + text;
 }
 
 /// ", casts_shadows is false" for each switch that is off.
-std::string what_is_off(const Json& o) {
+std::string what_is_off(const ObjectRecord& o) {
     std::string text;
-    for (const ObjectSwitch& each : kObjectSwitches)
-        if (o.contains(std::string(each.key))) text += fmt::format(", {} is false", each.key);
+    if (o.casts_shadows) text += ", casts_shadows is false";
+    if (o.receives_shadows) text += ", receives_shadows is false";
+    if (o.seen_by_camera) text += ", seen_by_camera is false";
     return text;
 }
 
-/// {schema, scene, facts, lights, methods: [{name, serves}], silhouettes?}
-Json inspect_json(const Scene& scene, const SceneFacts& facts, const SilhouetteOptions& silhouettes) {
-    Json record = {{"schema", kResultsSchema},   {"version", version()},         {"scene", scene_json(scene)},
-                   {"facts", facts_json(facts)}, {"lights", lights_json(facts)}, {"methods", Json::array()}};
+InspectRecord inspect_record(const Scene& scene, const SceneFacts& facts, const SilhouetteOptions& silhouettes) {
+    InspectRecord record{.version = std::string(version()),
+                         .scene   = scene_record(scene),
+                         .facts   = facts_record(facts),
+                         .lights  = light_records(facts)};
     for (const MethodInfo* info : methods())
-        record["methods"].push_back({{"name", info->name}, {"serves", service_json(verdict(*info->make(), facts))}});
-    if (silhouettes.directions > 0) {
-        record["silhouettes"] = Json::array();
+        record.methods.push_back({std::string(info->name), service_record(verdict(*info->make(), facts))});
+    if (silhouettes.directions > 0)
         for (const SilhouetteStatistics& s : silhouette_statistics(scene, silhouettes.directions, silhouettes.seed))
-            record["silhouettes"].push_back({{"object", s.object},
-                                             {"mean", number(s.mean)},
-                                             {"standard_error", number(s.standard_error)},
-                                             {"directions", s.directions}});
-    }
+            record.silhouettes.push_back({s.object, s.mean, s.standard_error, s.directions});
     return record;
 }
 
 /// The same for people.
-std::string inspect_text(const Json& record) {
-    const Json& scene = record["scene"];
-    const Json& facts = record["facts"];
-    std::string text  = fmt::format("{}\n", scene["title"].get<std::string>());
-    if (!scene["shows"].get<std::string>().empty()) text += fmt::format("  {}\n", scene["shows"].get<std::string>());
-    text +=
-        fmt::format("\nRequires:      {}\nDoes not need: {}\n", join(facts["requires"]), join(facts["not_required"]));
+std::string inspect_text(const InspectRecord& record) {
+    const SceneRecord& scene = record.scene;
+    const FactsRecord& facts = record.facts;
+    std::string text         = fmt::format("{}\n", scene.title);
+    if (!scene.shows.empty()) text += fmt::format("  {}\n", scene.shows);
+    text += fmt::format("\nRequires:      {}\nDoes not need: {}\n", joined(facts.required), joined(facts.not_required));
 
     text += "\nLights\n";
-    for (const Json& l : record["lights"])
-        text += fmt::format("  {}: {}, {}\n", l["name"].get<std::string>(), l["kind"].get<std::string>(),
-                            l["place"].get<std::string>());
+    for (const LightRecord& l : record.lights) text += fmt::format("  {}: {}, {}\n", l.name, l.kind, l.place);
 
-    text += fmt::format("\nObjects ({} triangles)\n", facts["triangles"].get<std::uint64_t>());
-    for (const Json& o : facts["objects"])
-        text += fmt::format("  {}: {} triangles, {}{}{}\n", o["name"].get<std::string>(),
-                            o["triangles"].get<std::uint64_t>(), mesh_state(o), o["planar"] ? ", planar" : "",
-                            what_is_off(o));
-    if (scene.contains("origin"))
-        text += fmt::format("\nOrigin: ({}, {}, {}) of the file; all numbers are relative to it\n",
-                            scene["origin"][0].get<double>(), scene["origin"][1].get<double>(),
-                            scene["origin"][2].get<double>());
-    text += fmt::format("\nPlanar receivers: {}, {:.1f} % of the area\n", facts["planes"].size(),
-                        100 * facts["planar_area_share"].get<double>());
+    text += fmt::format("\nObjects ({} triangles)\n", facts.triangles);
+    for (const ObjectRecord& o : facts.objects)
+        text += fmt::format("  {}: {} triangles, {}{}{}\n", o.name, o.triangles, mesh_state(o),
+                            o.planar ? ", planar" : "", what_is_off(o));
+    if (!scene.origin.empty())
+        text +=
+            fmt::format("\nOrigin: ({}) of the file; all numbers are relative to it\n", fmt::join(scene.origin, ", "));
+    text += fmt::format("\nPlanar receivers: {}, {:.1f} % of the area\n", facts.planes.size(),
+                        100 * facts.planar_area_share);
 
     text += "\nMethods\n";
-    for (const Json& m : record["methods"])
-        text += fmt::format("  {:<18} {:<14} {}\n", m["name"].get<std::string>(), m["serves"]["how"].get<std::string>(),
-                            m["serves"]["why"].get<std::string>());
-    if (record.contains("silhouettes")) {
+    for (const ServedRecord& m : record.methods)
+        text += fmt::format("  {:<18} {:<14} {}\n", m.name, m.serves.how, m.serves.why);
+    if (!record.silhouettes.empty()) {
         text += "\nSilhouette edges over random light directions\n";
-        for (const Json& s : record["silhouettes"])
-            text += fmt::format("  {}: {:.3f} +- {:.3f}\n", s["object"].get<std::string>(), s["mean"].get<double>(),
-                                s["standard_error"].get<double>());
+        for (const SilhouetteRecord& s : record.silhouettes)
+            text += fmt::format("  {}: {:.3f} +- {:.3f}\n", s.object, s.mean, s.standard_error);
     }
-    for (const Json& w : scene["warnings"]) text += fmt::format("warning: {}\n", w.get<std::string>());
+    for (const std::string& w : scene.warnings) text += fmt::format("warning: {}\n", w);
     return text;
 }
 
@@ -111,8 +143,8 @@ struct InspectLine {
 int inspect(const InspectLine& line, const Common& common) {
     const PreparedScene prepared =
         prepare_scene(scene_file(line.scene, common.up), {});  // with what only the picture shows
-    const Json record = inspect_json(prepared.scene, prepared.facts, line.silhouettes);
-    print_out("{}", line.as_json ? json_text(record) : without_controls(inspect_text(record)) + "\n");
+    const InspectRecord record = inspect_record(prepared.scene, prepared.facts, line.silhouettes);
+    print_out("{}", line.as_json ? json_text(to_record(record)) : without_controls(inspect_text(record)) + "\n");
     return kDone;
 }
 

@@ -13,9 +13,9 @@ struct LadderLine {
 
 int ladder(LadderLine line, const Common& common) {
     return_ladders(line.options.methods, line.options.names);
-    const Json record = climb_on_terminal(line.options, common);
-    print_record(line.as_json, common, record, [&] { return ladder_table(record["ladders"]); });
-    return record["failed"].empty() ? kDone : kInternal;
+    const LaddersRecord record = climb_on_terminal(line.options, common);
+    print_record(line.as_json, common, to_record(record), [&] { return ladder_table(record.ladders); });
+    return record.failed.empty() ? kDone : kInternal;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/ladders/ladder_record.h"
+#include "umbra/bench/run/results.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
@@ -17,84 +18,91 @@ namespace umbra {
 namespace {
 
 struct ListLine {
-    std::string name;
+    std::string name, schema;
     bool as_json = false;
 };
 
-std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+struct ListRecord {
+    int schema = kResultsSchema;
+    std::string version{};
+    std::vector<MethodInfoRecord> methods{};
+    std::vector<std::string> scenes{};
+    std::vector<MetricRecord> metrics{};
+    std::vector<LadderInfoRecord> ladders{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ListRecord>) {
+    of("schema", &ListRecord::schema, "");
+    of("version", &ListRecord::version, "");
+    of("methods", &ListRecord::methods, "");
+    of("scenes", &ListRecord::scenes, "");
+    of("metrics", &ListRecord::metrics, "");
+    of("ladders", &ListRecord::ladders, "");
+}
 
-void print_method(const Json& m) {
-    print_out("{} - {} ({})\n  {}\n", text(m["name"]), text(m["title"]), text(m["paper"]), text(m["summary"]));
-    for (const Json& p : m["parameters"]) {
-        const std::string range = p.contains("choices") ? text(p["choices"])
-                                  : p.contains("min")
-                                      ? fmt::format("{} to {}", p["min"].get<double>(), p["max"].get<double>())
-                                      : "true or false";
-        const std::string unit  = text(p["unit"]);
-        print_out("    {}={}  ({}{}{})  {}\n", text(p["name"]), text(p["default"]), range, unit.empty() ? "" : " ",
-                  unit, text(p["doc"]));
+void print(const MethodInfoRecord& m) {
+    print_out("{} - {} ({})\n  {}\n", m.name, m.title, m.paper, m.summary);
+    for (const ParameterRecord& p : m.parameters) {
+        const std::string range = !p.choices.empty() ? p.choices
+                                  : p.min            ? fmt::format("{} to {}", *p.min, *p.max)
+                                                     : "true or false";
+        print_out("    {}={}  ({}{}{})  {}\n", p.name, text_of(p.fallback), range, p.unit.empty() ? "" : " ", p.unit,
+                  p.doc);
     }
-    for (const Json& p : m["presets"])
-        print_out("    @{}  ({})  {}\n", text(p["name"]), text(p["settings"]), text(p["doc"]));
+    for (const PresetRecord& p : m.presets) print_out("    @{}  ({})  {}\n", p.name, p.settings, p.doc);
 }
 
-void print_ladder(const Json& l) {
-    const std::string unit = text(l["unit"]);
-    print_out("{} - {}\n  {}\n  {} rungs: {}{}\n", text(l["name"]), text(l["title"]), text(l["about"]),
-              l["rungs"].size(), fmt::join(l["rungs"].get<std::vector<double>>(), ", "),
-              unit.empty() ? "" : " " + unit);
+void print(const LadderInfoRecord& l) {
+    print_out("{} - {}\n  {}\n  {} rungs: {}{}\n", l.name, l.title, l.about, l.rungs.size(), fmt::join(l.rungs, ", "),
+              l.unit.empty() ? "" : " " + l.unit);
 }
 
-void print_scene(const Json& s) {
-    print_out("{} - {}\n  {}\n  {}\n", text(s["name"]), text(s["title"]), text(s["shows"]), text(s["source"]));
+void print(const SceneRecord& s) { print_out("{} - {}\n  {}\n  {}\n", s.name, s.title, s.shows, s.source); }
+
+void print(const std::vector<MetricRecord>& all) {
+    for (const MetricRecord& m : all)
+        print_out("{:<28}{}{}\n", m.name, m.doc, m.unit.empty() ? "" : fmt::format(" ({})", m.unit));
 }
 
-std::vector<std::string> metric_names() {
+template <class Names>
+std::vector<std::string> names_of(const Names& entries) {
     std::vector<std::string> names;
-    for (const Metric& m : metrics()) names.emplace_back(m.name);
+    for (const auto& entry : entries) names.emplace_back(entry.name);
     return names;
 }
 
-void print_metrics(const Json& all) {
-    for (const Json& m : all)
-        print_out("{:<28}{}{}\n", text(m["name"]), text(m["doc"]),
-                  text(m["unit"]).empty() ? "" : fmt::format(" ({})", text(m["unit"])));
-}
-
 int list_all(bool as_json) {
-    Json record = {{"schema", kResultsSchema}, {"version", version()},      {"methods", Json::array()},
-                   {"scenes", Json::array()},  {"metrics", metrics_json()}, {"ladders", Json::array()}};
-    for (const MethodInfo* info : methods()) record["methods"].push_back(method_json(*info));
-    for (const std::string& scene : canonical_names()) record["scenes"].push_back(scene);
-    for (const Ladder* ladder : ladders()) record["ladders"].push_back(ladder_info_json(*ladder));
+    ListRecord record{.version = std::string(version()), .scenes = canonical_names(), .metrics = metric_records()};
+    for (const MethodInfo* info : methods()) record.methods.push_back(method_info_record(*info));
+    for (const Ladder* ladder : ladders()) record.ladders.push_back(ladder_info(*ladder));
     if (as_json) {
-        print_out("{}", json_text(record));
+        print_out("{}", json_text(to_record(record)));
         return kDone;
     }
-    for (const Json& m : record["methods"]) print_method(m);
-    print_out("\nScenes: {}\nMetrics: {}\nLadders: {}\n", fmt::join(canonical_names(), " "),
-              fmt::join(metric_names(), " "), fmt::join(ladder_names(), " "));
+    for (const MethodInfoRecord& m : record.methods) print(m);
+    print_out("\nScenes: {}\nMetrics: {}\nLadders: {}\n", fmt::join(record.scenes, " "),
+              fmt::join(names_of(record.metrics), " "), fmt::join(ladder_names(), " "));
     return kDone;
 }
 
 /// One entry in full. Throws UsageError where nothing has that name.
 int list_one(const std::string& name, bool as_json) {
     const auto is_it = [&](const auto* entry) { return entry->name == name; };
-    const auto show  = [&](const char* kind, const Json& entry, void (*print)(const Json&)) {
+    const auto show  = [&](const char* kind, const auto& entry) {
         if (as_json)
-            print_out("{}", json_text({{kind, entry}}));
+            print_out("{}", json_text({{kind, to_record(entry)}}));
         else
             print(entry);
         return kDone;
     };
-    if (name == "metrics") return show("metrics", metrics_json(), print_metrics);
+    if (name == "metrics") return show("metrics", metric_records());
     if (const auto m = std::find_if(methods().begin(), methods().end(), is_it); m != methods().end())
-        return show("method", method_json(**m), print_method);
+        return show("method", method_info_record(**m));
     if (const auto l = std::find_if(ladders().begin(), ladders().end(), is_it); l != ladders().end())
-        return show("ladder", ladder_info_json(**l), print_ladder);
+        return show("ladder", ladder_info(**l));
     std::vector<std::string> known = canonical_names();
     if (std::find(known.begin(), known.end(), name) != known.end())
-        return show("scene", scene_json(load_scene(scene_file(name))), print_scene);
+        return show("scene", scene_record(load_scene(scene_file(name))));
 
     for (const auto& names : {method_names(), ladder_names()}) known.insert(known.end(), names.begin(), names.end());
     throw UsageError(
@@ -102,6 +110,10 @@ int list_one(const std::string& name, bool as_json) {
 }
 
 int list(const ListLine& line) {
+    if (!line.schema.empty()) {
+        print_out("{}", json_text(line.schema == "ladders" ? ladders_schema() : results_schema()));
+        return kDone;
+    }
     return line.name.empty() ? list_all(line.as_json) : list_one(line.name, line.as_json);
 }
 
@@ -112,6 +124,9 @@ Action list_command(CLI::App& app, const Common& /*common*/) {
     app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full, or metrics")
         ->type_name("");
     app.add_flag("--json", line->as_json, "Print JSON");
+    app.add_option("--schema", line->schema, "Print the JSON Schema of results.json as compare or ladder writes it")
+        ->check(CLI::IsMember({"results", "ladders"}))
+        ->type_name("results|ladders");
     return [line] { return list(*line); };
 }
 

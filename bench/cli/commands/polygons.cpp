@@ -22,10 +22,10 @@ int polygons(const PolygonsLine& line, const Common& common) {
         return kNo;
     }
     StagedFolder staged(line.out);
-    const Json record = write_lit_polygons(prepared.scene, prepared.facts, staged.folder());
-    write_text(staged.folder() / "results.json", json_text(record));
+    const LitPolygonsRecord record = write_lit_polygons(prepared.scene, prepared.facts, staged.folder());
+    write_text(staged.folder() / "results.json", json_text(to_record(record)));
     staged.commit();
-    print_record(line.as_json, common, record, [&] { return lit_polygons_text(record); });
+    print_record(line.as_json, common, to_record(record), [&] { return lit_polygons_text(record); });
     return kDone;
 }
 

@@ -19,13 +19,13 @@ int radiosity(const RadiosityLine& line, const Common& common) {
     ExchangeOptions options      = line.options;
     options.command              = common.command;
     const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size);
-    const Json record            = on_terminal(common, [&](const auto& progress) {
+    const ExchangeRecord record  = on_terminal(common, [&](const auto& progress) {
         options.progress = progress;
         return write_study(
-                       line.out, [&](const std::filesystem::path& folder) { return exchange_light(prepared, options, folder); },
-                       exchange_report);
+             line.out, [&](const std::filesystem::path& folder) { return exchange_light(prepared, options, folder); },
+             exchange_report);
     });
-    print_record(line.as_json, common, record, [&] {
+    print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(exchange_report(record)), (line.out / "index.html").string());
     });
     return kDone;

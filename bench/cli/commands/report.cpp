@@ -129,7 +129,7 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     ladders.out             = out / "ladders";
     ladders.only_by_default = true;
     ladders.budget          = budget;
-    const bool climbed      = climb_on_terminal(ladders, common)["failed"].empty();
+    const bool climbed      = climb_on_terminal(ladders, common).failed.empty();
     SweepOptions sweep      = canonical_sweep(out / "trade");
     sweep.plan.budget       = budget;
     std::vector<fs::path> also{ladders.out};

@@ -31,13 +31,13 @@ int shading(const ShadingLine& line, const Common& common) {
             print_error("{} does not serve this scene: {}\n", options.method->text(), service.why);
             return kNo;
         }
-    const Json record = write_study(
+    const ShadingRecord record = write_study(
         line.out, [&](const std::filesystem::path& folder) { return compare_shading(prepared, options, folder); },
         shading_report);
-    print_record(line.as_json, common, record, [&] {
+    print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(shading_report(record)), (line.out / "index.html").string());
     });
-    return record.contains("choice") && record["choice"]["model"].is_null() ? kNo : kDone;
+    return record.choice && !record.choice->model ? kNo : kDone;
 }
 
 }  // namespace

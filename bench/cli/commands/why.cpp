@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
@@ -21,32 +22,121 @@ struct WhyLine {
     bool as_json = false;
 };
 
-Json triangle_json(const Scene& scene, TriangleId t) {
-    if (t == kNoTriangle) return nullptr;
-    return {{"triangle", t}, {"object", scene.objects[scene.triangle_object[t]].name}};
+struct TriangleRecord {
+    TriangleId triangle = kNoTriangle;
+    std::string object{};
+};
+template <class Fields>
+void describe(Fields& of, Is<TriangleRecord>) {
+    of("triangle", &TriangleRecord::triangle, "");
+    of("object", &TriangleRecord::object, "");
 }
 
-Json reason_json(const Scene& scene, const Reason& reason) {
-    Json evidence = Json::array();
+struct EvidenceRecord {
+    std::string name{};
+    Scalar value{};
+    std::string unit{};
+};
+template <class Fields>
+void describe(Fields& of, Is<EvidenceRecord>) {
+    of("name", &EvidenceRecord::name, "");
+    of("value", &EvidenceRecord::value, "");
+    of.may("unit", &EvidenceRecord::unit, "");
+}
+
+/// A method's answer and its reason.
+struct AnswerRecord {
+    std::string method{}, not_served{}, failed{};
+    std::optional<float> visibility{};
+    std::string verdict{};
+    std::optional<TriangleRecord> blocker{};
+    std::optional<double> at{};
+    std::vector<double> towards{};
+    std::optional<double> margin{};
+    std::string unit{};
+    std::vector<EvidenceRecord> evidence{};
+    bool answered = false;
+};
+template <class Fields>
+void describe(Fields& of, Is<AnswerRecord>) {
+    of("method", &AnswerRecord::method, "");
+    of.may("not_served", &AnswerRecord::not_served, "why it does not serve the scene");
+    of.may("visibility", &AnswerRecord::visibility, "S");
+    of.where(&AnswerRecord::answered, "verdict", &AnswerRecord::verdict, "");
+    of.where(&AnswerRecord::answered, "blocker", &AnswerRecord::blocker, "the triangle that blocks");
+    of.where(&AnswerRecord::answered, "at", &AnswerRecord::at, "where it does, from 0 at the point to 1 at the light");
+    of.where(&AnswerRecord::answered, "towards", &AnswerRecord::towards, "the place that the segment goes to");
+    of.where(&AnswerRecord::answered, "margin", &AnswerRecord::margin, "how far the answer is from being another");
+    of.where(&AnswerRecord::answered, "unit", &AnswerRecord::unit, "of the margin");
+    of.where(&AnswerRecord::answered, "evidence", &AnswerRecord::evidence, "");
+    of.may("failed", &AnswerRecord::failed, "the message of what it threw");
+}
+
+struct WhyLightRecord {
+    std::string light{};
+    bool away = false, unshadowed = false;
+    std::vector<AnswerRecord> methods{};
+};
+template <class Fields>
+void describe(Fields& of, Is<WhyLightRecord>) {
+    of("light", &WhyLightRecord::light, "");
+    of("methods", &WhyLightRecord::methods, "");
+    of.may("away", &WhyLightRecord::away, "the light is behind the surface");
+    of.may("unshadowed", &WhyLightRecord::unshadowed, "the object receives no shadows");
+}
+
+struct PointRecord {
+    TriangleRecord on{};
+    float u = 0, v = 0;
+    std::vector<float> position{};
+    std::vector<double> origin{};
+};
+template <class Fields>
+void describe(Fields& of, Is<PointRecord>) {
+    of.all(&PointRecord::on);
+    of("u", &PointRecord::u, "");
+    of("v", &PointRecord::v, "");
+    of("position", &PointRecord::position, "");
+    of.may("origin", &PointRecord::origin, "where (0, 0, 0) is in the numbers of the scene file");
+}
+
+struct WhyRecord {
+    std::string scene{};
+    std::vector<int> pixel{};
+    PointRecord point{};
+    std::vector<WhyLightRecord> lights{};
+};
+template <class Fields>
+void describe(Fields& of, Is<WhyRecord>) {
+    of("scene", &WhyRecord::scene, "");
+    of("pixel", &WhyRecord::pixel, "column and row, from 0 at the top left");
+    of("point", &WhyRecord::point, "");
+    of("lights", &WhyRecord::lights, "");
+}
+
+TriangleRecord triangle_record(const Scene& scene, TriangleId t) {
+    return {t, scene.objects[scene.triangle_object[t]].name};
+}
+
+void add_reason(AnswerRecord& record, const Scene& scene, const Reason& reason) {
+    record.answered = true;
+    record.verdict  = to_string(reason.verdict);
+    if (reason.blocker != kNoTriangle) record.blocker = triangle_record(scene, reason.blocker);
+    if (reason.at) record.at = *reason.at;
+    record.towards = {reason.towards.x, reason.towards.y, reason.towards.z};
+    if (std::isfinite(reason.margin)) record.margin = reason.margin;
+    record.unit = reason.unit;
     for (const Evidence& e : reason.evidence) {
-        Json entry = {{"name", e.name}};
-        std::visit([&](const auto& value) { entry["value"] = value; }, e.value);
-        if (!e.unit.empty()) entry["unit"] = e.unit;
-        evidence.push_back(entry);
+        EvidenceRecord entry{.name = std::string(e.name), .unit = std::string(e.unit)};
+        std::visit([&](const auto& value) { entry.value = value; }, e.value);
+        record.evidence.push_back(std::move(entry));
     }
-    return {{"verdict", to_string(reason.verdict)},
-            {"blocker", triangle_json(scene, reason.blocker)},
-            {"at", reason.at ? Json(*reason.at) : Json()},
-            {"towards", {reason.towards.x, reason.towards.y, reason.towards.z}},
-            {"margin", number(reason.margin)},
-            {"unit", reason.unit},
-            {"evidence", evidence}};
 }
 
 /// One method's answer and its reason at pixel i.
-Json answer_json(MethodAtWork& work, const PointBatch& picture, std::size_t i, LightId light) {
+AnswerRecord answer_record(MethodAtWork& work, const PointBatch& picture, std::size_t i, LightId light) {
     const Scene& scene = work.built().scene;
-    Json entry         = {{"method", work.choice().text()}};
+    AnswerRecord record{.method = work.choice().text()};
     try {
         const bool whole = work.choice().info->needs_raster;
         const auto which = static_cast<std::uint32_t>(i);
@@ -58,48 +148,43 @@ Json answer_json(MethodAtWork& work, const PointBatch& picture, std::size_t i, L
         VisibilityPlane plane(asked.size(), work.built().facts.has_coloured_filters);
         work.visibility(light, plane.out());
         const Given given{plane.s[k], plane.answer[k]};
-        if (plane.defined(k)) entry["visibility"] = given.s;
-        entry.update(reason_json(scene, work.method().explain(work.aimed(light), work.looked(), k, given)));
+        if (plane.defined(k)) record.visibility = given.s;
+        add_reason(record, scene, work.method().explain(work.aimed(light), work.looked(), k, given));
         work.forget_look();
     } catch (...) {
-        entry["failed"] = current_message();
+        record.failed = current_message();
     }
-    return entry;
+    return record;
 }
 
-std::string sentence(const Json& a) {
-    if (a.contains("failed")) return a["failed"];
-    if (a.contains("not_served")) return "does not serve this scene: " + a["not_served"].get<std::string>();
-    std::string text = a["verdict"];
-    if (a.contains("visibility")) text += fmt::format(", S {:.4g}", a["visibility"].get<float>());
-    if (!a["blocker"].is_null()) {
-        text += fmt::format("; triangle {} of {} blocks", a["blocker"]["triangle"].get<TriangleId>(),
-                            a["blocker"]["object"].get<std::string>());
-        if (!a["at"].is_null()) text += fmt::format(" at {:.4g} of the way to the light", a["at"].get<double>());
+std::string sentence(const AnswerRecord& a) {
+    if (!a.failed.empty()) return a.failed;
+    if (!a.not_served.empty()) return "does not serve this scene: " + a.not_served;
+    std::string text = a.verdict;
+    if (a.visibility) text += fmt::format(", S {:.4g}", *a.visibility);
+    if (a.blocker) {
+        text += fmt::format("; triangle {} of {} blocks", a.blocker->triangle, a.blocker->object);
+        if (a.at) text += fmt::format(" at {:.4g} of the way to the light", *a.at);
     }
-    if (!a["margin"].is_null())
-        text += fmt::format("; margin {:.4g} {}", a["margin"].get<double>(), a["unit"].get<std::string>());
-    for (const Json& e : a["evidence"])
-        text += fmt::format(
-            "; {}: {}{}{}", e["name"].get<std::string>(),
-            e["value"].is_string() ? e["value"].get<std::string>() : fmt::format("{:.6g}", e["value"].get<double>()),
-            e.contains("unit") ? " " : "", e.value("unit", ""));
+    if (a.margin) text += fmt::format("; margin {:.4g} {}", *a.margin, a.unit);
+    for (const EvidenceRecord& e : a.evidence) {
+        const double* number = std::get_if<double>(&e.value);
+        text += fmt::format("; {}: {}{}{}", e.name, number ? fmt::format("{:.6g}", *number) : text_of(e.value),
+                            e.unit.empty() ? "" : " ", e.unit);
+    }
     return text;
 }
 
-std::string text_of(const Json& record) {
-    const Json& point = record["point"];
-    std::string text  = fmt::format("{}: pixel {}, {}: triangle {} of {}, position {:.6g} {:.6g} {:.6g}\n",
-                                    record["scene"].get<std::string>(), record["pixel"][0].get<int>(),
-                                    record["pixel"][1].get<int>(), point["triangle"].get<TriangleId>(),
-                                    point["object"].get<std::string>(), point["position"][0].get<double>(),
-                                    point["position"][1].get<double>(), point["position"][2].get<double>());
-    for (const Json& light : record["lights"]) {
-        text += fmt::format("light {}\n", light["light"].get<std::string>());
-        if (light.contains("away")) text += "  The light is behind the surface: S is 0 for every method.\n";
-        if (light.contains("unshadowed")) text += "  The object receives no shadows: S is 1 for every method.\n";
-        for (const Json& a : light["methods"])
-            text += fmt::format("  {:24} {}\n", a["method"].get<std::string>(), sentence(a));
+std::string text_of(const WhyRecord& record) {
+    const PointRecord& point = record.point;
+    std::string text = fmt::format("{}: pixel {}, {}: triangle {} of {}, position {:.6g} {:.6g} {:.6g}\n", record.scene,
+                                   record.pixel[0], record.pixel[1], point.on.triangle, point.on.object,
+                                   point.position[0], point.position[1], point.position[2]);
+    for (const WhyLightRecord& light : record.lights) {
+        text += fmt::format("light {}\n", light.light);
+        if (light.away) text += "  The light is behind the surface: S is 0 for every method.\n";
+        if (light.unshadowed) text += "  The object receives no shadows: S is 1 for every method.\n";
+        for (const AnswerRecord& a : light.methods) text += fmt::format("  {:24} {}\n", a.method, sentence(a));
     }
     return text;
 }
@@ -123,32 +208,30 @@ int why(const WhyLine& line, const Common& common) {
     const std::vector<MethodChoice> choices = chosen_methods(line.methods, {}, {&file, 1});
 
     const vec3 p = points.position(i);
-    Json record  = {
-         {"scene", scene.name}, {"pixel", {line.x, line.y}}, {"point", triangle_json(scene, points.triangle[i])}};
-    record["point"]["u"]        = points.u[i];
-    record["point"]["v"]        = points.v[i];
-    record["point"]["position"] = {p.x, p.y, p.z};
-    if (const dvec3 o = scene.origin; o != dvec3(0)) record["point"]["origin"] = {o.x, o.y, o.z};
-    record["lights"] = Json::array();
-    for (const Light& light : scene.lights)
-        if (line.light.empty() || light.name == line.light)
-            record["lights"].push_back({{"light", light.name}, {"methods", Json::array()}});
+    WhyRecord record{.scene = scene.name,
+                     .pixel = {line.x, line.y},
+                     .point = {triangle_record(scene, points.triangle[i]), points.u[i], points.v[i], {p.x, p.y, p.z}}};
+    if (const dvec3 o = scene.origin; o != dvec3(0)) record.point.origin = {o.x, o.y, o.z};
+    std::vector<LightId> lights;
+    for (LightId light = 0; light < scene.lights.size(); ++light)
+        if (line.light.empty() || scene.lights[light].name == line.light) {
+            lights.push_back(light);
+            record.lights.push_back({.light = scene.lights[light].name});
+        }
     for (const MethodChoice& choice : choices) {
         MethodAtWork work(choice, scene, prepared.facts);
         const Service service = work.service();
-        for (Json& entry : record["lights"]) {
-            const auto light =
-                static_cast<LightId>(std::ranges::find(scene.lights, entry["light"].get<std::string>(), &Light::name) -
-                                     scene.lights.begin());
-            if (!points.asks(light, i))
-                entry[points.faces(light, i) ? "unshadowed" : "away"] = true;
+        for (std::size_t k = 0; k < lights.size(); ++k) {
+            WhyLightRecord& entry = record.lights[k];
+            if (!points.asks(lights[k], i))
+                (points.faces(lights[k], i) ? entry.unshadowed : entry.away) = true;
             else if (!service)
-                entry["methods"].push_back({{"method", choice.text()}, {"not_served", service.why}});
+                entry.methods.push_back({.method = choice.text(), .not_served = service.why});
             else
-                entry["methods"].push_back(answer_json(work, points, i, light));
+                entry.methods.push_back(answer_record(work, points, i, lights[k]));
         }
     }
-    print_out("{}", line.as_json ? json_text(record) : without_controls(text_of(record)));
+    print_out("{}", line.as_json ? json_text(to_record(record)) : without_controls(text_of(record)));
     return kDone;
 }
 

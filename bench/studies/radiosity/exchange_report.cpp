@@ -6,8 +6,8 @@
 
 namespace umbra {
 
-StudyReport exchange_report(const Json& record) {
-    const std::string title = record["scene"]["title"].get<std::string>();
+StudyReport exchange_report(const ExchangeRecord& record) {
+    const std::string& title = record.scene.title;
     std::vector<StudyPicture> light{
         {"direct.png", "The scene, lit by its lights alone",
          "Direct: what lights send. Every patch has the value of its centre."},
@@ -17,28 +17,27 @@ StudyReport exchange_report(const Json& record) {
         {"patches.png", "The scene, each patch in a colour of its own", "The patches."},
         {"form_factors.png", "The scene, brighter where the form factor to one patch is larger",
          "Form factors to the patch that sent first (orange): white 1, black 10⁻⁶ or hidden."}};
-    for (const Json& entry : record["elements"])
-        light.push_back({entry["picture"], "The scene, each element in a colour of its own",
+    for (const LightElementsRecord& entry : record.elements)
+        light.push_back({entry.picture, "The scene, each element in a colour of its own",
                          fmt::format("Elements of S_j of `{}` in the method `radiosity`: patches are cut where S_j "
                                      "changes; the darker, the less of the light arrives.",
-                                     entry["light"].get<std::string>())});
+                                     entry.light)});
     StudyTable convergence{.name    = "unshot",
                            .caption = "Share of the power that was not sent yet",
                            .columns = {{"step", "step", kCount}, {"unshot", "unshot", kSignificant}},
                            .rows    = Json::array(),
                            .shown   = Shown::in_file};
-    for (const Json& unshot : record["unshot"])
-        convergence.rows.push_back({{"step", convergence.rows.size()}, {"unshot", unshot}});
-    return {.title     = "Radiosity: " + title,
-            .page      = assets::radiosity_html,
-            .tables    = {std::move(convergence)},
-            .pictures  = {{"light", std::move(light)}},
-            .curves    = {{"steps", "fraction of the power unshot", "Convergence: what was not sent yet.",
-                           record["unshot"].get<std::vector<double>>()}},
+    for (const double unshot : record.unshot)
+        convergence.rows.push_back({{"step", convergence.rows.size()}, {"unshot", number(unshot)}});
+    return {.title    = "Radiosity: " + title,
+            .page     = assets::radiosity_html,
+            .tables   = {std::move(convergence)},
+            .pictures = {{"light", std::move(light)}},
+            .curves = {{"steps", "fraction of the power unshot", "Convergence: what was not sent yet.", record.unshot}},
             .sentences = {{fmt::format("{} patches, {} steps, {:.3g} % of the power unshot",
-                                       count(record["patches"].get<double>()), count(record["steps"].get<double>()),
-                                       100 * record["unshot"].back().get<double>())}},
-            .words = {{"title", title}, {"arrived", fmt::format("{:.1f} %", 100 * record["arrived"].get<double>())}}};
+                                       count(static_cast<double>(record.patches)),
+                                       count(static_cast<double>(record.steps)), 100 * record.unshot.back())}},
+            .words     = {{"title", title}, {"arrived", fmt::format("{:.1f} %", 100 * record.arrived)}}};
 }
 
 }  // namespace umbra

@@ -54,7 +54,8 @@ void write_light(const PreparedScene& prepared, const Exchange& exchange, const 
 }
 
 /// The elements of S_j of each light, as bright as it is.
-Json write_elements(const PreparedScene& prepared, const ExchangeOptions& options, const fs::path& folder) {
+std::vector<LightElementsRecord> write_elements(const PreparedScene& prepared, const ExchangeOptions& options,
+                                                const fs::path& folder) {
     const Scene& scene       = prepared.scene;
     const PointBatch& points = prepared.points;
     MethodChoice choice(find_method("radiosity"));
@@ -62,7 +63,7 @@ Json write_elements(const PreparedScene& prepared, const ExchangeOptions& option
     choice.settings.set("samples", options.light_samples);
     MethodAtWork radiosity(choice, scene, prepared.facts);
     radiosity.look(points);
-    Json written = Json::array();
+    std::vector<LightElementsRecord> written;
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         VisibilityPlane plane(points.size());
         radiosity.visibility(light, plane.out());
@@ -72,33 +73,30 @@ Json write_elements(const PreparedScene& prepared, const ExchangeOptions& option
                         const auto [patch, leaf] = elements.element(points, i);
                         return (0.25f + 0.75f * plane.s[i]) * colour_of(std::uint64_t{patch} << 32 | leaf);
                     }));
-        written.push_back({{"light", scene.lights[light].name}, {"picture", file}});
+        written.push_back({scene.lights[light].name, file});
     }
     return written;
 }
 
 }  // namespace
 
-Json exchange_light(const PreparedScene& prepared, const ExchangeOptions& options, const fs::path& folder) {
+ExchangeRecord exchange_light(const PreparedScene& prepared, const ExchangeOptions& options, const fs::path& folder) {
     const PointBatch& points = prepared.points;
-    Json record              = {{"schema", kResultsSchema},
-                                {"version", version()},
-                                {"command", options.command},
-                                {"scene", scene_json(prepared.scene)}};
+    ExchangeRecord record{.head = head_record(options.command), .scene = scene_record(prepared.scene)};
     Exchange exchange(prepared.scene, {options.size, options.light_samples});
-    record["patch_size"] = options.size, record["patches"] = exchange.patches();
-    record["unshot"]       = {number(exchange.unshot())};
+    record.patch_size = options.size, record.patches = exchange.patches();
+    record.unshot          = {exchange.unshot()};
     Exchange::SideId first = 0;
     int steps              = 0;
     while (steps < options.steps && exchange.unshot() > options.until) {
         const Exchange::SideId from = exchange.shoot();
         if (steps == 0) first = from;
-        record["unshot"].push_back(number(exchange.unshot()));
+        record.unshot.push_back(exchange.unshot());
         if (++steps % 16 == 0 && options.progress)
             options.progress(
                 fmt::format("{} of at most {} steps, {:.1f} % unshot", steps, options.steps, 100 * exchange.unshot()));
     }
-    record["steps"] = steps, record["arrived"] = number(exchange.arrived());
+    record.steps = static_cast<std::uint64_t>(steps), record.arrived = exchange.arrived();
     write_light(prepared, exchange, folder);
     write_image(folder / "patches.png",
                 picture(points, kNoSurface, [&](std::size_t i) { return colour_of(exchange.side_at(points, i)); }));
@@ -108,8 +106,8 @@ Json exchange_light(const PreparedScene& prepared, const ExchangeOptions& option
                     const double factor = exchange.form_factor(here, first);
                     return vec3(factor > kLeast ? static_cast<float>(1 - std::log10(factor) / std::log10(kLeast)) : 0);
                 }));
-    record["pictures"] = {"direct.png", "indirect.png", "both.png", "patches.png", "form_factors.png"};
-    record["elements"] = write_elements(prepared, options, folder);
+    record.pictures = {"direct.png", "indirect.png", "both.png", "patches.png", "form_factors.png"};
+    record.elements = write_elements(prepared, options, folder);
     return record;
 }
 

@@ -2,9 +2,11 @@
 // never part of a comparison, in which S_j alone differs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
@@ -21,15 +23,50 @@ struct ExchangeOptions {
     std::function<void(const std::string&)> progress{};
 };
 
+/// A picture of the elements of `radiosity`'s S_j of a light.
+struct LightElementsRecord {
+    std::string light{}, picture{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LightElementsRecord>) {
+    of("light", &LightElementsRecord::light, "");
+    of("picture", &LightElementsRecord::picture, "");
+}
+
+struct ExchangeRecord {
+    HeadRecord head{};
+    SceneRecord scene{};
+    double patch_size     = kUnknown;
+    std::uint64_t patches = 0;
+    std::vector<double> unshot{};
+    std::uint64_t steps = 0;
+    double arrived      = kUnknown;
+    std::vector<std::string> pictures{};
+    std::vector<LightElementsRecord> elements{};
+    std::vector<std::string> csv{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ExchangeRecord>) {
+    of.all(&ExchangeRecord::head);
+    of("scene", &ExchangeRecord::scene, "");
+    of("patch_size", &ExchangeRecord::patch_size, "longest edge, scene diagonals");
+    of("patches", &ExchangeRecord::patches, "");
+    of("unshot", &ExchangeRecord::unshot, "share of the power, before the first step and after each");
+    of("steps", &ExchangeRecord::steps, "");
+    of("arrived", &ExchangeRecord::arrived, "share of what was sent");
+    of("pictures", &ExchangeRecord::pictures, "");
+    of("elements", &ExchangeRecord::elements, "");
+    of("csv", &ExchangeRecord::csv, "");
+}
+
 /// Solves and writes into `folder`: direct.png, the diffuse light from the lights;
 /// indirect.png, what surfaces add; both.png; patches.png, in which every patch has a colour of its own, and
 /// elements_K.png, the elements of `radiosity`'s S_j of the K-th light; form_factors.png, from each patch to the first
-/// that sent, on a logarithmic scale. Returns {schema, version, command, scene, patch_size, patches, steps, unshot:
-/// [share after each step], arrived, ...}. Throws InputError.
-[[nodiscard]] Json exchange_light(const PreparedScene& prepared, const ExchangeOptions& options,
-                                  const std::filesystem::path& folder);
+/// that sent, on a logarithmic scale. Throws InputError.
+[[nodiscard]] ExchangeRecord exchange_light(const PreparedScene& prepared, const ExchangeOptions& options,
+                                            const std::filesystem::path& folder);
 
-/// Pictures, and how fast power was sent, of the record of exchange_light.
-[[nodiscard]] StudyReport exchange_report(const Json& record);
+/// Pictures, and how fast power was sent.
+[[nodiscard]] StudyReport exchange_report(const ExchangeRecord& record);
 
 }  // namespace umbra

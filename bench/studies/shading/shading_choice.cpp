@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <optional>
 
 #include "umbra/bench/statistics/pareto.h"
 #include "umbra/bench/statistics/statistics.h"
@@ -15,18 +15,20 @@
 namespace umbra {
 namespace {
 
-/// Null, as infinity is written, is beyond every limit.
-double worst(const Json& model, std::string_view metric) {
-    const Json& error = model["worst"][std::string(metric)];
-    return error.is_null() ? std::numeric_limits<double>::infinity() : error.get<double>();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+
+/// What is not finite is beyond every limit.
+double worst(const ShadingModelRecord& model, std::string_view metric) {
+    const double error = metric == "rmse"   ? model.worst.rmse
+                         : metric == "flip" ? model.worst.flip
+                                            : model.worst.perceived;
+    return std::isfinite(error) ? error : kInfinite;
 }
 
-std::vector<double> times(const Json& model) { return model["times_ms"].get<std::vector<double>>(); }
-double cost(const Json& model) { return median(times(model)); }
-std::string name(const Json& model) { return model["name"].get<std::string>(); }
+double cost(const ShadingModelRecord& model) { return median(model.times_ms); }
 
 /// The largest error over its limit; above 1 where a limit is exceeded.
-double worst_ratio(const Json& model, std::span<const ShadingLimit> limits) {
+double worst_ratio(const ShadingModelRecord& model, std::span<const ShadingLimit> limits) {
     double largest = 0;
     for (const ShadingLimit& limit : limits) {
         const double error = worst(model, limit.metric);
@@ -36,20 +38,14 @@ double worst_ratio(const Json& model, std::span<const ShadingLimit> limits) {
     return largest;
 }
 
-Json ratio_json(const Json& model, const Ratio& ratio) {
-    return {{"model", name(model)},
-            {"ratio", number(ratio.median)},
-            {"low", ratio.has_interval() ? number(ratio.interval.low) : Json()},
-            {"high", number(ratio.interval.high)},
-            {"rounds", ratio.pairs},
-            {"coverage", ratio.coverage}};
+ShadingRatioRecord ratio_record(const ShadingModelRecord& model, const Ratio& ratio) {
+    return {model.name,          ratio.median, ratio.has_interval() ? ratio.interval.low : kUnknown,
+            ratio.interval.high, ratio.pairs,  ratio.coverage};
 }
 
-std::string in_words(const Json& ratio) {
-    if (ratio["low"].is_null())
-        return fmt::format("{:.2f} ({} rounds)", ratio["ratio"].get<double>(), ratio["rounds"].get<int>());
-    return fmt::format("{:.2f} ({:.2f} to {:.2f}, {:.1f} %)", ratio["ratio"].get<double>(), ratio["low"].get<double>(),
-                       ratio["high"].get<double>(), 100 * ratio["coverage"].get<double>());
+std::string in_words(const ShadingRatioRecord& ratio) {
+    if (!std::isfinite(ratio.low)) return fmt::format("{:.2f} ({} rounds)", ratio.ratio, ratio.rounds);
+    return fmt::format("{:.2f} ({:.2f} to {:.2f}, {:.1f} %)", ratio.ratio, ratio.low, ratio.high, 100 * ratio.coverage);
 }
 
 }  // namespace
@@ -60,82 +56,68 @@ ShadingLimit parse_shading_limit(const std::string& text) {
     const LimitText limit = parse_limit_text(text, expected);
     const auto metric     = std::ranges::find(kShadingErrors, limit.metric);
     if (metric == kShadingErrors.end()) throw UsageError(fmt::format("--max {}: expected {}", text, expected));
-    return {*metric, limit.most};
+    return {std::string(*metric), limit.most};
 }
 
-Json shading_front(const Json& record) {
+std::vector<std::string> shading_front(const std::vector<ShadingModelRecord>& models) {
     std::vector<CostError> points;
-    for (const Json& model : record["models"]) points.push_back({cost(model), worst(model, "rmse")});
-    Json front = Json::array();
-    for (const std::size_t k : pareto_front(points)) front.push_back(name(record["models"][k]));
+    for (const ShadingModelRecord& model : models) points.push_back({cost(model), worst(model, "rmse")});
+    std::vector<std::string> front;
+    for (const std::size_t k : pareto_front(points)) front.push_back(models[k].name);
     return front;
 }
 
-Json choose_shading(const Json& record, std::span<const ShadingLimit> limits) {
-    Json choice = {{"limits", Json::array()}, {"model", nullptr},     {"ms", nullptr},     {"of_phong", nullptr},
-                   {"tied", Json::array()},   {"runner_up", nullptr}, {"nearest", nullptr}};
-    for (const ShadingLimit& limit : limits)
-        choice["limits"].push_back({{"metric", limit.metric}, {"most", number(limit.most)}});
-    std::vector<const Json*> within, all;
-    for (const Json& model : record["models"]) {
-        all.push_back(&model);
+ShadingChoiceRecord choose_shading(const ShadingRecord& record, std::span<const ShadingLimit> limits) {
+    ShadingChoiceRecord choice{.limits = {limits.begin(), limits.end()}};
+    std::vector<const ShadingModelRecord*> within;
+    for (const ShadingModelRecord& model : record.models)
         if (worst_ratio(model, limits) <= 1) within.push_back(&model);
-    }
     if (within.empty()) {
-        const Json& nearest =
-            **std::ranges::min_element(all, {}, [&](const Json* m) { return worst_ratio(*m, limits); });
-        choice["nearest"] = {{"model", name(nearest)}, {"factor", number(worst_ratio(nearest, limits))}};
+        const ShadingModelRecord& nearest = *std::ranges::min_element(
+            record.models, {}, [&](const ShadingModelRecord& m) { return worst_ratio(m, limits); });
+        choice.nearest = {nearest.name, worst_ratio(nearest, limits)};
         return choice;
     }
-    std::ranges::stable_sort(within, {}, [](const Json* m) { return cost(*m); });
-    const Json& chosen = *within.front();
-    const double noise_bar =
-        record["noise_bar"].is_null() ? std::numeric_limits<double>::infinity() : record["noise_bar"].get<double>();
-    choice["model"] = name(chosen);
-    choice["ms"]    = number(cost(chosen));
-    for (const Json* model : all)
-        if (name(*model) == "phong")
-            choice["of_phong"] = ratio_json(*model, paired_ratio(times(chosen), times(*model)));
+    std::ranges::stable_sort(within, {}, [](const ShadingModelRecord* m) { return cost(*m); });
+    const ShadingModelRecord& chosen = *within.front();
+    const double noise_bar           = std::isfinite(record.noise_bar) ? record.noise_bar : kInfinite;
+    choice.model                     = chosen.name;
+    choice.ms                        = cost(chosen);
+    for (const ShadingModelRecord& model : record.models)
+        if (model.name == "phong") choice.of_phong = ratio_record(model, paired_ratio(chosen.times_ms, model.times_ms));
     for (std::size_t k = 1; k < within.size(); ++k) {
-        const Ratio ratio = paired_ratio(times(*within[k]), times(chosen));
+        const Ratio ratio = paired_ratio(within[k]->times_ms, chosen.times_ms);
         if (!differs(ratio, noise_bar))
-            choice["tied"].push_back(name(*within[k]));
-        else if (choice["runner_up"].is_null())
-            choice["runner_up"] = ratio_json(*within[k], ratio);
+            choice.tied.push_back(within[k]->name);
+        else if (!choice.runner_up)
+            choice.runner_up = ratio_record(*within[k], ratio);
     }
     return choice;
 }
 
-std::vector<std::string> shading_findings(const Json& record) {
-    std::vector<std::string> findings;
-    std::vector<std::string> front = record["front"].get<std::vector<std::string>>();
-    findings.push_back(
-        fmt::format("No other model is both faster and closer to phong (RMSE) than: {}.", fmt::join(front, ", ")));
-    if (!record.contains("choice")) return findings;
-    const Json& choice = record["choice"];
+std::vector<std::string> shading_findings(const ShadingRecord& record) {
+    std::vector<std::string> findings{fmt::format("No other model is both faster and closer to phong (RMSE) than: {}.",
+                                                  fmt::join(record.front, ", "))};
+    if (!record.choice) return findings;
+    const ShadingChoiceRecord& choice = *record.choice;
     std::vector<std::string> limits;
-    for (const Json& limit : choice["limits"])
-        limits.push_back(
-            fmt::format("{} at most {:g}", limit["metric"].get<std::string>(), limit["most"].get<double>()));
-    const int views          = record["views"].get<int>();
-    const std::string within = fmt::format("With {} in {}", fmt::join(limits, " and "),
-                                           views == 1 ? "this view" : fmt::format("each of {} views", views));
-    if (choice["model"].is_null()) {
-        const Json& factor = choice["nearest"]["factor"];
-        findings.push_back(
-            fmt::format("{}: none. Nearest: {}{}.", within, choice["nearest"]["model"].get<std::string>(),
-                        factor.is_null() ? "" : fmt::format(", {:.3g} times a limit", factor.get<double>())));
+    for (const ShadingLimit& limit : choice.limits)
+        limits.push_back(fmt::format("{} at most {:g}", limit.metric, limit.most));
+    const std::string within =
+        fmt::format("With {} in {}", fmt::join(limits, " and "),
+                    record.views == 1 ? "this view" : fmt::format("each of {} views", record.views));
+    if (choice.nearest) {
+        const double factor = choice.nearest->factor;
+        findings.push_back(fmt::format("{}: none. Nearest: {}{}.", within, choice.nearest->model,
+                                       std::isfinite(factor) ? fmt::format(", {:.3g} times a limit", factor) : ""));
         return findings;
     }
-    std::string found =
-        fmt::format("{}, the cheapest is {}: {:.2f} ms, {} of phong's time.", within,
-                    choice["model"].get<std::string>(), choice["ms"].get<double>(), in_words(choice["of_phong"]));
-    if (!choice["tied"].empty())
-        found += fmt::format(" As cheap, as far as the noise of times lets one see: {}.",
-                             fmt::join(choice["tied"].get<std::vector<std::string>>(), ", "));
-    if (!choice["runner_up"].is_null())
-        found += fmt::format(" Next: {}, {} times as long.", choice["runner_up"]["model"].get<std::string>(),
-                             in_words(choice["runner_up"]));
+    std::string found = fmt::format("{}, the cheapest is {}: {:.2f} ms, {} of phong's time.", within,
+                                    choice.model.value(), choice.ms.value(), in_words(choice.of_phong.value()));
+    if (!choice.tied.empty())
+        found += fmt::format(" As cheap, as far as the noise of times lets one see: {}.", fmt::join(choice.tied, ", "));
+    if (choice.runner_up)
+        found += fmt::format(" Next: {}, {} times as long.", choice.runner_up->model, in_words(*choice.runner_up));
     findings.push_back(std::move(found));
     return findings;
 }

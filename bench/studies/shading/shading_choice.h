@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,25 +19,162 @@ inline constexpr std::array<std::string_view, 3> kShadingErrors{"rmse", "flip", 
 
 /// An error must not exceed `most` in any view.
 struct ShadingLimit {
-    std::string_view metric;  ///< of kShadingErrors
+    std::string metric{};  ///< of kShadingErrors
     double most = 0;
 };
+template <class Fields>
+void describe(Fields& of, Is<ShadingLimit>) {
+    of("metric", &ShadingLimit::metric, "");
+    of("most", &ShadingLimit::most, "");
+}
 /// "METRIC=E", E at least 0. Throws UsageError.
 [[nodiscard]] ShadingLimit parse_shading_limit(const std::string& text);
 
+/// Of a model, from `phong`.
+struct ShadingErrorsRecord {
+    double rmse      = kUnknown;
+    double flip      = kUnknown;
+    double perceived = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<ShadingErrorsRecord>) {
+    of("rmse", &ShadingErrorsRecord::rmse, "");
+    of("flip", &ShadingErrorsRecord::flip, "");
+    of("perceived", &ShadingErrorsRecord::perceived, "");
+}
+
+struct ShadingModelRecord {
+    std::string name{};
+    std::uint64_t evaluations = 0;
+    std::uint64_t asked       = 0;
+    double ms                 = kUnknown;
+    std::vector<double> times_ms{};
+    double rmse = kUnknown;
+    ShadingErrorsRecord worst{};
+    double flip      = kUnknown;
+    double perceived = kUnknown;
+    double highlight = kUnknown;
+    double kink      = kUnknown;
+    std::string picture{};
+    std::string difference{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ShadingModelRecord>) {
+    of("name", &ShadingModelRecord::name, "");
+    of("evaluations", &ShadingModelRecord::evaluations, "of the sum");
+    of("asked", &ShadingModelRecord::asked, "S_j");
+    of("ms", &ShadingModelRecord::ms, "the median of the rounds, aim and visibility included");
+    of("times_ms", &ShadingModelRecord::times_ms, "of all rounds");
+    of("rmse", &ShadingModelRecord::rmse, "from `phong`, as the next ones");
+    of("worst", &ShadingModelRecord::worst, "the largest errors over all views");
+    of("flip", &ShadingModelRecord::flip, "");
+    of("perceived", &ShadingModelRecord::perceived,
+       "root mean square, inside of objects, of the luminance plus the size of its change along the row");
+    of("highlight", &ShadingModelRecord::highlight, "the largest value in the picture over that of `phong`");
+    of("kink", &ShadingModelRecord::kink,
+       "Mach bands: the root mean square of second differences along rows, inside of objects, of the diffuse light "
+       "without shadows, over that of `phong`");
+    of("picture", &ShadingModelRecord::picture, "");
+    of("difference", &ShadingModelRecord::difference, "");
+}
+
+/// A paired ratio of times, and its interval.
+struct ShadingRatioRecord {
+    std::string model{};
+    double ratio    = kUnknown;
+    double low      = kUnknown;
+    double high     = kUnknown;
+    int rounds      = 0;
+    double coverage = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<ShadingRatioRecord>) {
+    of("model", &ShadingRatioRecord::model, "");
+    of("ratio", &ShadingRatioRecord::ratio, "");
+    of("low", &ShadingRatioRecord::low, "null: too few rounds");
+    of("high", &ShadingRatioRecord::high, "");
+    of("rounds", &ShadingRatioRecord::rounds, "");
+    of("coverage", &ShadingRatioRecord::coverage, "");
+}
+
+struct NearestShadingRecord {
+    std::string model{};
+    double factor = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<NearestShadingRecord>) {
+    of("model", &NearestShadingRecord::model, "");
+    of("factor", &NearestShadingRecord::factor, "its largest error over its limit");
+}
+
+struct ShadingChoiceRecord {
+    std::vector<ShadingLimit> limits{};
+    std::optional<std::string> model{};
+    std::optional<double> ms{};
+    std::optional<ShadingRatioRecord> of_phong{};
+    std::vector<std::string> tied{};
+    std::optional<ShadingRatioRecord> runner_up{};
+    std::optional<NearestShadingRecord> nearest{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ShadingChoiceRecord>) {
+    of("limits", &ShadingChoiceRecord::limits, "");
+    of("model", &ShadingChoiceRecord::model,
+       "with the least median time of those whose worst errors are within the limits");
+    of("ms", &ShadingChoiceRecord::ms, "");
+    of("of_phong", &ShadingChoiceRecord::of_phong, "");
+    of("tied", &ShadingChoiceRecord::tied, "within the limits, and as cheap as far as noise lets one see");
+    of("runner_up", &ShadingChoiceRecord::runner_up, "the cheapest other one within the limits that is not tied");
+    of("nearest", &ShadingChoiceRecord::nearest,
+       "where none is within the limits: its largest error over its limit is least");
+}
+
+struct ShadingStageRecord {
+    std::string name{};
+    std::string about{};
+    std::string picture{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ShadingStageRecord>) {
+    of("name", &ShadingStageRecord::name, "");
+    of("about", &ShadingStageRecord::about, "");
+    of("picture", &ShadingStageRecord::picture, "");
+}
+
+struct ShadingRecord {
+    HeadRecord head{};
+    SceneRecord scene{};
+    std::optional<std::string> method{};
+    int views        = 0;
+    double noise_bar = kUnknown;
+    std::vector<ShadingModelRecord> models{};
+    std::vector<std::string> front{};
+    std::optional<ShadingChoiceRecord> choice{};
+    std::vector<ShadingStageRecord> stages{};
+    std::vector<std::string> csv{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ShadingRecord>) {
+    of.all(&ShadingRecord::head);
+    of("scene", &ShadingRecord::scene, "");
+    of("method", &ShadingRecord::method, "of the shadows");
+    of("views", &ShadingRecord::views, "");
+    of("noise_bar", &ShadingRecord::noise_bar,
+       "how far from 1 the ratio of the time of `phong` to that of the same again may lie");
+    of("models", &ShadingRecord::models, "");
+    of("front", &ShadingRecord::front, "no other model is both faster and closer");
+    of.may("choice", &ShadingRecord::choice, "");
+    of("stages", &ShadingRecord::stages, "");
+    of("csv", &ShadingRecord::csv, "");
+}
+
 /// Names of models by ascending time: no other has at most the median of `times_ms` and at most the `worst.rmse`, and
-/// less of one. Of record["models"].
-[[nodiscard]] Json shading_front(const Json& record);
+/// less of one.
+[[nodiscard]] std::vector<std::string> shading_front(const std::vector<ShadingModelRecord>& models);
 
-/// {limits: [{metric, most}], model, ms, of_phong, tied: [MODEL], runner_up, nearest}: the model with the least median
-/// time whose worst errors of all views are within the limits, and that median; `of_phong` and `runner_up`, the
-/// cheapest other one within the limits that is not tied: {model, ratio, low, high, rounds, coverage}, a paired ratio
-/// of times with its interval (null: none); `tied`: within the limits, and as cheap as far as noise lets one see
-/// (record["noise_bar"]). Where none is within, `model` is null and `nearest` is {model, factor}: the one whose largest
-/// error over its limit is least.
-[[nodiscard]] Json choose_shading(const Json& record, std::span<const ShadingLimit> limits);
+[[nodiscard]] ShadingChoiceRecord choose_shading(const ShadingRecord& record, std::span<const ShadingLimit> limits);
 
-/// Sentences on record["front"] and, where it is there, record["choice"].
-[[nodiscard]] std::vector<std::string> shading_findings(const Json& record);
+/// Sentences on the front and, where there is one, the choice.
+[[nodiscard]] std::vector<std::string> shading_findings(const ShadingRecord& record);
 
 }  // namespace umbra

@@ -31,8 +31,8 @@ std::string about(const std::string& model) {
 
 }  // namespace
 
-StudyReport shading_report(const Json& record) {
-    const std::string title = record["scene"]["title"].get<std::string>();
+StudyReport shading_report(const ShadingRecord& record) {
+    const std::string& title = record.scene.title;
     StudyReport report{.title  = "Shading: " + title,
                        .page   = assets::shading_html,
                        .tables = {{"models",
@@ -46,19 +46,14 @@ StudyReport shading_report(const Json& record) {
                                     {"perceived", "perceived", decimals(5)},
                                     {"highlight", "highlight", decimals(3)},
                                     {"kink", "kinks", decimals(2)}},
-                                   record["models"]}}};
-    for (const Json& stage : record["stages"])
-        report.pictures["stages"].push_back(
-            {stage["picture"], "The scene, stage " + stage["name"].get<std::string>(), stage["about"]});
+                                   to_record(record.models)}}};
+    for (const ShadingStageRecord& stage : record.stages)
+        report.pictures["stages"].push_back({stage.picture, "The scene, stage " + stage.name, stage.about});
     for (std::string& finding : shading_findings(record)) report.sentences.push_back({std::move(finding)});
-    report.words = {{"title", title},
-                    {"method", record["method"].is_null() ? Json("none") : record["method"]},
-                    {"models", Json::array()}};
-    for (const Json& m : record["models"])
-        report.words["models"].push_back({{"name", m["name"]},
-                                          {"about", about(m["name"].get<std::string>())},
-                                          {"picture", m["picture"]},
-                                          {"difference", m["difference"]}});
+    report.words = {{"title", title}, {"method", record.method.value_or("none")}, {"models", Json::array()}};
+    for (const ShadingModelRecord& m : record.models)
+        report.words["models"].push_back(
+            {{"name", m.name}, {"about", about(m.name)}, {"picture", m.picture}, {"difference", m.difference}});
     return report;
 }
 

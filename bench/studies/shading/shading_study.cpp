@@ -156,21 +156,18 @@ std::vector<std::array<double, kShadingErrors.size()>> worst_errors(const Prepar
 
 }  // namespace
 
-Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options, const fs::path& folder) {
+ShadingRecord compare_shading(const PreparedScene& prepared, const ShadingOptions& options, const fs::path& folder) {
     AskedMethod shadows(prepared.scene, prepared.facts, options.method);
     const std::vector<Measured> measured = measure(prepared, options, shadows);
     const Measured &phong = measured[index_of(ShadingModel::phong)], &again = measured.back();
     const double brightest = highlight(phong.shaded.linear, prepared.points),
                  smooth    = kink(ShadingModel::phong, prepared);
     const auto worst       = worst_errors(prepared, measured, options);
-    Json record            = {{"schema", kResultsSchema},
-                              {"version", version()},
-                              {"command", options.command},
-                              {"scene", scene_json(prepared.scene)},
-                              {"method", options.method ? Json(options.method->text()) : Json()},
-                              {"views", options.views},
-                              {"noise_bar", number(noise_bar(paired_ratio(again.times_ms, phong.times_ms)))},
-                              {"models", Json::array()}};
+    ShadingRecord record{.head      = head_record(options.command),
+                         .scene     = scene_record(prepared.scene),
+                         .views     = options.views,
+                         .noise_bar = noise_bar(paired_ratio(again.times_ms, phong.times_ms))};
+    if (options.method) record.method = options.method->text();
     for (std::size_t k = 0; k < kShadingModels.size(); ++k) {
         const ShadingModel model = kShadingModels[k];
         const Measured& here     = measured[k];
@@ -179,28 +176,26 @@ Json compare_shading(const PreparedScene& prepared, const ShadingOptions& option
         write_image(folder / difference, difference_of(here.shown, phong.shown));
         const Image& linear = here.shaded.linear;
         const auto found    = errors(prepared, phong, here);
-        Json entry          = {{"name", name},
-                               {"evaluations", here.shaded.evaluations},
-                               {"asked", here.asked},
-                               {"ms", number(median(here.times_ms))},
-                               {"times_ms", here.times_ms}};
-        for (std::size_t e = 0; e < kShadingErrors.size(); ++e) {
-            entry[std::string(kShadingErrors[e])]          = number(found[e]);
-            entry["worst"][std::string(kShadingErrors[e])] = number(worst[k][e]);
-        }
-        entry["highlight"]  = number(ratio(highlight(linear, prepared.points), brightest));
-        entry["kink"]       = number(ratio(kink(model, prepared), smooth));
-        entry["picture"]    = picture;
-        entry["difference"] = difference;
-        record["models"].push_back(std::move(entry));
+        record.models.push_back({.name        = name,
+                                 .evaluations = here.shaded.evaluations,
+                                 .asked       = here.asked,
+                                 .ms          = median(here.times_ms),
+                                 .times_ms    = here.times_ms,
+                                 .rmse        = found[0],
+                                 .worst       = {worst[k][0], worst[k][1], worst[k][2]},
+                                 .flip        = found[1],
+                                 .perceived   = found[2],
+                                 .highlight   = ratio(highlight(linear, prepared.points), brightest),
+                                 .kink        = ratio(kink(model, prepared), smooth),
+                                 .picture     = picture,
+                                 .difference  = difference});
     }
-    record["front"] = shading_front(record);
-    if (!options.limits.empty()) record["choice"] = choose_shading(record, options.limits);
-    record["stages"] = Json::array();
+    record.front = shading_front(record.models);
+    if (!options.limits.empty()) record.choice = choose_shading(record, options.limits);
     for (const Stage& stage : draw_stages(prepared, [&](const PointBatch& points) { return shadows(points); })) {
-        const std::string picture = fmt::format("stage_{}_{}.png", record["stages"].size() + 1, stage.name);
+        const std::string picture = fmt::format("stage_{}_{}.png", record.stages.size() + 1, stage.name);
         write_image(folder / picture, stage.picture);
-        record["stages"].push_back({{"name", stage.name}, {"about", stage.about}, {"picture", picture}});
+        record.stages.push_back({std::string(stage.name), std::string(stage.about), picture});
     }
     return record;
 }

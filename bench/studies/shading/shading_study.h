@@ -23,18 +23,11 @@ struct ShadingOptions {
 };
 
 /// The method must serve the scene. Writes into `folder`, of each model, MODEL.png and MODEL_difference.png, the
-/// difference from `phong`. Returns {schema, version, command, scene, method, models: [{name, evaluations, asked, ms,
-/// times_ms, rmse, flip, perceived, worst, highlight, kink, picture, difference}]}: of the sum; of S_j; the median of
-/// the rounds, aim and visibility included, and all of them; two image errors against `phong`; the root mean square
-/// difference from `phong`, inside of objects, of the luminance plus the size of its change along the row; the largest
-/// of these three over all views; the largest value in the picture over that of `phong`; the root mean square of second
-/// differences along rows, inside of objects, of the diffuse light without shadows, over that of `phong`: Mach bands.
-/// `noise_bar`: how far from 1 the ratio of `phong`'s time to that of the same again may lie. `front` and, with limits,
-/// `choice`: shading_choice.h. `stages`: [{name, about, picture}], as draw_stages has them. Throws InputError.
-[[nodiscard]] Json compare_shading(const PreparedScene& prepared, const ShadingOptions& options,
-                                   const std::filesystem::path& folder);
+/// difference from `phong`, and stages as draw_stages has them. Throws InputError.
+[[nodiscard]] ShadingRecord compare_shading(const PreparedScene& prepared, const ShadingOptions& options,
+                                            const std::filesystem::path& folder);
 
-/// Every model beside its difference from Phong shading, and what was found, of the record of compare_shading.
-[[nodiscard]] StudyReport shading_report(const Json& record);
+/// Every model beside its difference from Phong shading, and what was found.
+[[nodiscard]] StudyReport shading_report(const ShadingRecord& record);
 
 }  // namespace umbra

@@ -406,30 +406,29 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
     Json single = single_json(study, raster, shown, folder);
     if (options.bodies) study.say("tracing: formula");
     Json formula = formula_json(study, raster, shown, folder);
-    return {{"schema", kResultsSchema},
-            {"version", version()},
-            {"command", options.command},
-            {"scene", scene_json(prepared.scene)},
-            {"method", options.method ? Json(options.method->text()) : Json()},
-            {"depth", options.depth},
-            {"least_weight", number(options.least_weight)},
-            {"pixel_samples", options.pixel_samples},
-            {"pixel_places", to_string(options.places)},
-            {"glossy", options.glossy},
-            {"picture", "whitted.png"},
-            {"rays_picture", "rays.png"},
-            {"most_rays_a_pixel", number(most_rays)},
-            {"undefined", raster.light.undefined},
-            {"depths", depths_json(study, raster, folder)},
-            {"build_ms", {{"tree_of_boxes", number(rays_ms)}, {"method", number(method_ms)}}},
-            {"total_ms", number(raster.ms())},
-            {"phases", phases_json(raster)},
-            {"ways", std::move(ways)},
-            {"search", std::move(search)},
-            {"blind", std::move(blind)},
-            {"screen_door", std::move(door)},
-            {"single", std::move(single)},
-            {"formula", std::move(formula)}};
+    Json record  = to_record(head_record(options.command));
+    record.update({{"scene", to_record(scene_record(prepared.scene))},
+                   {"method", options.method ? Json(options.method->text()) : Json()},
+                   {"depth", options.depth},
+                   {"least_weight", number(options.least_weight)},
+                   {"pixel_samples", options.pixel_samples},
+                   {"pixel_places", to_string(options.places)},
+                   {"glossy", options.glossy},
+                   {"picture", "whitted.png"},
+                   {"rays_picture", "rays.png"},
+                   {"most_rays_a_pixel", number(most_rays)},
+                   {"undefined", raster.light.undefined},
+                   {"depths", depths_json(study, raster, folder)},
+                   {"build_ms", {{"tree_of_boxes", number(rays_ms)}, {"method", number(method_ms)}}},
+                   {"total_ms", number(raster.ms())},
+                   {"phases", phases_json(raster)},
+                   {"ways", std::move(ways)},
+                   {"search", std::move(search)},
+                   {"blind", std::move(blind)},
+                   {"screen_door", std::move(door)},
+                   {"single", std::move(single)},
+                   {"formula", std::move(formula)}});
+    return record;
 }
 
 }  // namespace umbra

@@ -5,8 +5,6 @@
 
 #include <sstream>
 
-#include <nlohmann/json.hpp>
-
 namespace umbra {
 namespace {
 
@@ -22,22 +20,22 @@ Scene two_materials() {
 
 /// 2.9: the closed form of docs/photometry.md for 89 degrees.
 TEST(BrdfTable, LambertIsPhysicalAndTheSumsHighlightIsNot) {
-    const Json record = measure_materials(two_materials(), 64, "umbra brdf two");
-    ASSERT_EQ(record["materials"].size(), 2u);
-    const Json& matt = record["materials"][0];
-    EXPECT_EQ(matt["name"], "matt");
-    for (const Json& form : matt["forms"]) {
-        EXPECT_NEAR(form["energy"].get<double>(), 0.75, 1e-3) << form["form"];
-        EXPECT_NEAR(form["without_cosine"].get<double>(), 1.5, 1e-3);
-        EXPECT_LT(form["reciprocity"].get<double>(), 1e-9);
+    const BrdfRecord record = measure_materials(two_materials(), 64, "umbra brdf two");
+    ASSERT_EQ(record.materials.size(), 2u);
+    const MaterialFormsRecord& matt = record.materials[0];
+    EXPECT_EQ(matt.name, "matt");
+    for (const BrdfFormRecord& form : matt.forms) {
+        EXPECT_NEAR(form.figures.energy, 0.75, 1e-3) << form.form;
+        EXPECT_NEAR(form.figures.without_cosine, 1.5, 1e-3);
+        EXPECT_LT(form.figures.reciprocity, 1e-9);
     }
-    const Json &sum = record["materials"][1]["forms"][0], &with_cosine = record["materials"][1]["forms"][1];
-    EXPECT_EQ(sum["form"], "sum");
-    EXPECT_NEAR(sum["energy"].get<double>(), 2.9, 0.1);
-    EXPECT_GT(sum["reciprocity"].get<double>(), 0.1);
-    EXPECT_EQ(with_cosine["form"], "with_cosine");
-    EXPECT_NEAR(with_cosine["energy"].get<double>(), 1, 5e-3);
-    EXPECT_LT(with_cosine["reciprocity"].get<double>(), 1e-9);
+    const BrdfFormRecord &sum = record.materials[1].forms[0], &with_cosine = record.materials[1].forms[1];
+    EXPECT_EQ(sum.form, "sum");
+    EXPECT_NEAR(sum.figures.energy, 2.9, 0.1);
+    EXPECT_GT(sum.figures.reciprocity, 0.1);
+    EXPECT_EQ(with_cosine.form, "with_cosine");
+    EXPECT_NEAR(with_cosine.figures.energy, 1, 5e-3);
+    EXPECT_LT(with_cosine.figures.reciprocity, 1e-9);
 }
 
 TEST(BrdfTable, SaysWhatEachFormBreaks) {

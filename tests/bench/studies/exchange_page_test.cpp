@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "umbra/bench/pages/report_text.h"
@@ -42,13 +41,12 @@ TEST(LightExchange, PicturesOfAGlowingRoomAreEven) {
     const TemporaryFolder folder;
     ExchangeOptions options;
     options.size = 0.15, options.steps = 100'000, options.until = 1e-4;
-    const Json record = exchange_light(glowing_room(), options, folder.path());
-    EXPECT_EQ(record["unshot"].size(), record["steps"].get<std::size_t>() + 1);
-    EXPECT_EQ(record["unshot"][0].get<double>(), 1);
-    EXPECT_LE(record["unshot"].back().get<double>(), 1e-4);
-    for (std::size_t k = 1; k < record["unshot"].size(); ++k)
-        ASSERT_LT(record["unshot"][k].get<double>(), record["unshot"][k - 1].get<double>() + 1e-12);
-    EXPECT_NEAR(record["arrived"].get<double>(), 1, 0.02);
+    const ExchangeRecord record = exchange_light(glowing_room(), options, folder.path());
+    EXPECT_EQ(record.unshot.size(), record.steps + 1);
+    EXPECT_EQ(record.unshot[0], 1);
+    EXPECT_LE(record.unshot.back(), 1e-4);
+    for (std::size_t k = 1; k < record.unshot.size(); ++k) ASSERT_LT(record.unshot[k], record.unshot[k - 1] + 1e-12);
+    EXPECT_NEAR(record.arrived, 1, 0.02);
     for (const auto& [name, light] : {std::pair{"direct.png", 0.2f}, {"indirect.png", 0.2f}, {"both.png", 0.4f}}) {
         const Image picture = read_image(folder.path() / name).image;
         for (const float value : picture.data) ASSERT_NEAR(value, srgb_from_linear(light), 1.5 / 255) << name;
@@ -68,17 +66,14 @@ TEST(LightExchange, PicturesOfAGlowingRoomAreEven) {
 
 TEST(LightExchange, PageShowsTheRecord) {
     const TemporaryFolder folder;
-    Json record = {{"schema", 1},
-                   {"version", "1"},
-                   {"command", "umbra radiosity"},
-                   {"scene", {{"title", "T"}}},
-                   {"patches", 1234},
-                   {"steps", 2},
-                   {"unshot", {1.0, 0.1, 0.01}},
-                   {"arrived", 0.625},
-                   {"elements", {{{"light", "lamp"}, {"picture", "elements_1.png"}}}}};
+    ExchangeRecord record{.head    = {kResultsSchema, "1", "umbra radiosity"},
+                          .patches = 1234,
+                          .unshot  = {1.0, 0.1, 0.01},
+                          .steps   = 2,
+                          .arrived = 0.625};
+    record.scene.title = "T", record.elements = {{"lamp", "elements_1.png"}};
     StagedFiles staged;
-    write_study_page(exchange_report(record), record, folder.path(), staged);
+    write_study_page(exchange_report(record), to_record(record), folder.path(), staged);
     staged.commit();
     const std::string page = text_of(folder.path() / "index.html");
     EXPECT_NE(page.find(count(1234) + " patches, 2 steps, 1 % of the power unshot"), std::string::npos) << page;
@@ -88,9 +83,9 @@ TEST(LightExchange, PageShowsTheRecord) {
     EXPECT_NE(page.find("d=\"M64.0 14.0L247.0 132.0L430.0 250.0\""), std::string::npos)
         << page.substr(page.find("class=\"line\""), 200);
 
-    record["unshot"] = {1.0, 0.9996};
+    record.unshot = {1.0, 0.9996};
     StagedFiles again;
-    write_study_page(exchange_report(record), record, folder.path(), again);
+    write_study_page(exchange_report(record), to_record(record), folder.path(), again);
     again.commit();
     EXPECT_NE(text_of(folder.path() / "index.html").find("2 steps, 100 % of the power unshot"), std::string::npos);
 }

@@ -56,8 +56,9 @@ TEST(ShadingStudy, KinksAreBendsAndNotSlopes) {
     scene.camera.projection = Projection::orthographic, scene.camera.height = 4;
     scene.width = scene.height = 64;
     ShadingOptions options;
-    options.runs      = 1;
-    const Json record = compare_shading(prepare_scene(std::move(scene), "triangle", {}), options, folder.path());
+    options.runs = 1;
+    const Json record =
+        to_record(compare_shading(prepare_scene(std::move(scene), "triangle", {}), options, folder.path()));
     EXPECT_LT(model(record, "gouraud")["kink"].get<double>(), 0.01);
     EXPECT_EQ(model(record, "phong")["kink"].get<double>(), 1);
     EXPECT_EQ(model(record, "flat")["kink"].get<double>(), 0);
@@ -76,8 +77,9 @@ TEST(ShadingStudy, PerceivedDifferenceOfTwoColoursIsTheirs) {
     scene.camera.projection = Projection::orthographic, scene.camera.height = 4;
     scene.width = scene.height = 32;
     ShadingOptions options;
-    options.runs      = 1;
-    const Json record = compare_shading(prepare_scene(std::move(scene), "floor", {}), options, folder.path());
+    options.runs = 1;
+    const Json record =
+        to_record(compare_shading(prepare_scene(std::move(scene), "floor", {}), options, folder.path()));
     EXPECT_NEAR(model(record, "constant")["perceived"].get<double>(), 0.8 * 0.5, 1e-5);
     EXPECT_NEAR(model(record, "flat")["perceived"].get<double>(), 0, 1e-6);
 }
@@ -96,8 +98,9 @@ TEST(ShadingStudy, FinerFacesComeCloserForTheEyeToo) {
         scene.camera.eye = {0, 0, 4};
         scene.width = scene.height = 96;
         ShadingOptions options;
-        options.runs      = 1;
-        const Json record = compare_shading(prepare_scene(std::move(scene), "ball", {}), options, folder.path());
+        options.runs = 1;
+        const Json record =
+            to_record(compare_shading(prepare_scene(std::move(scene), "ball", {}), options, folder.path()));
         return std::pair{model(record, name)["perceived"].get<double>(), model(record, name)["rmse"].get<double>()};
     };
     const auto coarse = perceived(8, "flat"), fine = perceived(32, "flat"), finest = perceived(96, "flat");
@@ -114,7 +117,7 @@ TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
     ShadingOptions options;
     options.method    = parse_method("exact");
     options.runs      = 1;
-    const Json record = compare_shading(prepared, options, folder.path());
+    const Json record = to_record(compare_shading(prepared, options, folder.path()));
     const auto at     = [&](const char* name, const char* figure) { return model(record, name)[figure].get<double>(); };
     ASSERT_EQ(record["models"].size(), 10u);
     const auto surfaces = static_cast<double>(
@@ -161,31 +164,32 @@ TEST(ShadingStudy, SaysWhatCheaperModelsCost) {
 
 TEST(ShadingStudy, TableAndPageShowTheRecord) {
     const TemporaryFolder folder;
-    Json record = {
-        {"schema", 1},       {"version", "1"},          {"command", "umbra shading"}, {"scene", {{"title", "T"}}},
-        {"method", "exact"}, {"models", Json::array()}, {"front", {"flat", "phong"}}};
-    record["stages"].push_back({{"name", "ambient"}, {"about", "One value"}, {"picture", "stage_3_ambient.png"}});
-    record["models"].push_back({{"name", "flat"},
-                                {"evaluations", 1234},
-                                {"asked", 567},
-                                {"ms", 8.25},
-                                {"rmse", 0.0625},
-                                {"flip", 0.1875},
-                                {"perceived", 0.125},
-                                {"highlight", 0.75},
-                                {"kink", 2.5},
-                                {"picture", "flat.png"},
-                                {"difference", "flat_difference.png"}});
-    const auto text = [&] { return study_text(shading_report(record)); };
+    ShadingRecord record{.head   = {kResultsSchema, "1", "umbra shading"},
+                         .method = "exact",
+                         .models = {{.name        = "flat",
+                                     .evaluations = 1234,
+                                     .asked       = 567,
+                                     .ms          = 8.25,
+                                     .rmse        = 0.0625,
+                                     .flip        = 0.1875,
+                                     .perceived   = 0.125,
+                                     .highlight   = 0.75,
+                                     .kink        = 2.5,
+                                     .picture     = "flat.png",
+                                     .difference  = "flat_difference.png"}},
+                         .front  = {"flat", "phong"},
+                         .stages = {{"ambient", "One value", "stage_3_ambient.png"}}};
+    record.scene.title = "T";
+    const auto text    = [&] { return study_text(shading_report(record)); };
     EXPECT_EQ(text(),
               "model  sums  S_j asked  time, ms     RMSE     FLIP  perceived  highlight  kinks\n"
               "flat   1234        567      8.25  0.06250  0.18750    0.12500      0.750   2.50\n"
               "No other model is both faster and closer to phong (RMSE) than: flat, phong.\n");
-    record["models"][0]["highlight"] = nullptr;
+    record.models[0].highlight = kUnknown;
     EXPECT_NE(text().find("0.12500          -   2.50"), std::string::npos) << text();
-    record["models"][0]["highlight"] = 0.75;
+    record.models[0].highlight = 0.75;
     StagedFiles staged;
-    write_study_page(shading_report(record), record, folder.path(), staged);
+    write_study_page(shading_report(record), to_record(record), folder.path(), staged);
     staged.commit();
     std::ifstream in(folder.path() / "index.html");
     const std::string page{std::istreambuf_iterator<char>(in), {}};
@@ -201,55 +205,54 @@ TEST(ShadingStudy, TableAndPageShowTheRecord) {
 
 /// Times of six rounds, and errors: constant is fast and wrong, flat and gouraud take the same time within noise,
 /// differences is slower than phong.
-Json known_times() {
-    Json record    = {{"views", 3}, {"noise_bar", 0.05}, {"models", Json::array()}};
+ShadingRecord known_times() {
+    ShadingRecord record{.views = 3, .noise_bar = 0.05};
     const auto add = [&](const char* name, double ms, double rmse, double flip) {
-        Json times = Json::array();
-        for (int round = 0; round < 6; ++round) times.push_back(ms * (1 + 0.1 * round));
-        record["models"].push_back({{"name", name},
-                                    {"times_ms", times},
-                                    {"worst", {{"rmse", rmse}, {"flip", flip}, {"perceived", 2 * rmse}}}});
+        ShadingModelRecord& model = record.models.emplace_back();
+        model.name                = name;
+        for (int round = 0; round < 6; ++round) model.times_ms.push_back(ms * (1 + 0.1 * round));
+        model.worst = {rmse, flip, 2 * rmse};
     };
     add("constant", 1, 0.5, 0.5), add("flat", 2, 0.1, 0.02), add("gouraud", 2.04, 0.05, 0.04);
     add("phong", 8, 0, 0), add("differences", 10, 0.01, 0.01);
-    record["front"] = shading_front(record);
+    record.front = shading_front(record.models);
     return record;
 }
 
 TEST(ShadingChoice, IsTheCheapestWithinLimits) {
-    Json record      = known_times();
-    const auto under = [&](std::vector<std::string> limits) {
+    ShadingRecord record = known_times();
+    const auto under     = [&](std::vector<std::string> limits) {
         std::vector<ShadingLimit> parsed;
         for (const std::string& limit : limits) parsed.push_back(parse_shading_limit(limit));
         return choose_shading(record, parsed);
     };
-    EXPECT_EQ(record["front"], (Json{"constant", "flat", "gouraud", "phong"}));
-    const Json choice = under({"rmse=0.1"});
-    EXPECT_EQ(choice["model"], "flat");
-    EXPECT_NEAR(choice["ms"].get<double>(), 2.5, 1e-12);
-    EXPECT_EQ(choice["tied"], Json{"gouraud"});
-    EXPECT_EQ(choice["runner_up"]["model"], "phong");
-    EXPECT_NEAR(choice["runner_up"]["ratio"].get<double>(), 4, 1e-12);
-    EXPECT_NEAR(choice["of_phong"]["ratio"].get<double>(), 0.25, 1e-12);
-    EXPECT_EQ(under({"rmse=0.09"})["model"], "gouraud");
-    EXPECT_EQ(under({"rmse=1", "flip=0.03"})["model"], "flat");
-    EXPECT_EQ(under({"rmse=0.09", "flip=0.03"})["model"], "phong");
-    EXPECT_EQ(under({"perceived=0.1"})["model"], "gouraud");
-    EXPECT_EQ(under({"perceived=0.099"})["model"], "phong");
-    EXPECT_EQ(under({"flip=0"})["model"], "phong");
+    EXPECT_EQ(record.front, (std::vector<std::string>{"constant", "flat", "gouraud", "phong"}));
+    const ShadingChoiceRecord choice = under({"rmse=0.1"});
+    EXPECT_EQ(choice.model, "flat");
+    EXPECT_NEAR(choice.ms.value(), 2.5, 1e-12);
+    EXPECT_EQ(choice.tied, std::vector<std::string>{"gouraud"});
+    EXPECT_EQ(choice.runner_up.value().model, "phong");
+    EXPECT_NEAR(choice.runner_up.value().ratio, 4, 1e-12);
+    EXPECT_NEAR(choice.of_phong.value().ratio, 0.25, 1e-12);
+    EXPECT_EQ(under({"rmse=0.09"}).model, "gouraud");
+    EXPECT_EQ(under({"rmse=1", "flip=0.03"}).model, "flat");
+    EXPECT_EQ(under({"rmse=0.09", "flip=0.03"}).model, "phong");
+    EXPECT_EQ(under({"perceived=0.1"}).model, "gouraud");
+    EXPECT_EQ(under({"perceived=0.099"}).model, "phong");
+    EXPECT_EQ(under({"flip=0"}).model, "phong");
 
-    record["choice"] = choice;
+    record.choice = choice;
     EXPECT_EQ(shading_findings(record).back(),
               "With rmse at most 0.1 in each of 3 views, the cheapest is flat: 2.50 ms, 0.25 (0.25 to 0.25, 96.9 %) of "
               "phong's time. As cheap, as far as the noise of times lets one see: gouraud. Next: phong, 4.00 (4.00 to "
               "4.00, 96.9 %) times as long.");
 
-    record["models"].erase(3);
-    const Json none = under({"rmse=0.005"});
-    EXPECT_TRUE(none["model"].is_null());
-    EXPECT_EQ(none["nearest"]["model"], "differences");
-    EXPECT_NEAR(none["nearest"]["factor"].get<double>(), 2, 1e-12);
-    record["choice"] = none;
+    record.models.erase(record.models.begin() + 3);
+    const ShadingChoiceRecord none = under({"rmse=0.005"});
+    EXPECT_TRUE(!none.model.has_value());
+    EXPECT_EQ(none.nearest.value().model, "differences");
+    EXPECT_NEAR(none.nearest.value().factor, 2, 1e-12);
+    record.choice = none;
     EXPECT_EQ(shading_findings(record).back(),
               "With rmse at most 0.005 in each of 3 views: none. Nearest: differences, 2 times a limit.");
     for (const char* wrong : {"rmse", "kink=1", "rmse=-1", "rmse=1x", "=1", "rmse="})
@@ -261,11 +264,11 @@ TEST(ShadingChoice, LimitsHoldInEveryView) {
     ShadingOptions options;
     options.runs = 2, options.views = 3;
     options.limits    = {parse_shading_limit("rmse=0")};
-    const Json record = compare_shading(shiny_ball(), options, folder.path());
+    const Json record = to_record(compare_shading(shiny_ball(), options, folder.path()));
     EXPECT_EQ(record["choice"]["model"], "phong");
     EXPECT_EQ(record["choice"]["limits"], (Json{{{"metric", "rmse"}, {"most", 0.0}}}));
     options.runs = options.views = 1;
-    const Json once              = compare_shading(shiny_ball(), options, folder.path());
+    const Json once              = to_record(compare_shading(shiny_ball(), options, folder.path()));
     bool larger                  = false;
     for (const Json& m : record["models"]) {
         EXPECT_EQ(m["times_ms"].size(), 2u);

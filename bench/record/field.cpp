@@ -1,4 +1,4 @@
-#include "umbra/bench/run/results_file.h"
+#include "umbra/bench/record/field.h"
 
 #include <fmt/format.h>
 
@@ -11,11 +11,9 @@
 
 namespace umbra {
 
-using nlohmann::json;
-
 struct Field::Document {
     std::string file;
-    json root;
+    Json root;
 };
 
 void Field::refuse(std::string_view expected) const {
@@ -28,15 +26,22 @@ void Field::refuse(std::string_view expected) const {
 
 Field Field::operator[](std::string_view key) const {
     if (value_ && !value_->is_object()) refuse("an object");
-    const json* member = nullptr;
+    const Json* member = nullptr;
     if (value_) {
         const auto it = value_->find(key);
         if (it != value_->end() && !it->is_null()) member = &*it;
     }
-    return {document_, member, pointer_ + (json::json_pointer() / std::string(key)).to_string()};
+    return {document_, member, pointer_ + (nlohmann::json::json_pointer() / std::string(key)).to_string()};
+}
+
+bool Field::has(std::string_view key) const {
+    return value_ && value_->is_object() && value_->contains(std::string(key));
 }
 
 bool Field::is_array() const { return value_ != nullptr && value_->is_array(); }
+bool Field::is_object() const { return value_ != nullptr && value_->is_object(); }
+
+Json Field::json() const { return value_ ? *value_ : Json(); }
 
 std::string Field::text() const {
     if (!value_) return {};
@@ -53,6 +58,15 @@ std::string Field::required_text() const {
 std::string Field::scalar() const {
     if (value_ && value_->is_structured()) refuse("a string, a number, true or false");
     return !value_ ? "" : value_->is_string() ? value_->get<std::string>() : value_->dump();
+}
+
+std::variant<bool, std::int64_t, double, std::string> Field::scalar_value() const {
+    if (!value_) return std::string();
+    if (value_->is_string()) return value_->get<std::string>();
+    if (value_->is_boolean()) return value_->get<bool>();
+    if (value_->is_number_integer()) return value_->get<std::int64_t>();
+    if (value_->is_number()) return value_->get<double>();
+    refuse("a string, a number, true or false");
 }
 
 std::optional<double> Field::number() const {
@@ -91,14 +105,14 @@ Field read_results(const std::filesystem::path& file) {
     auto document  = std::make_shared<Field::Document>();
     document->file = file.string();
     try {
-        document->root = json::parse(bytes);
-    } catch (const json::parse_error& error) {
+        document->root = Json::parse(bytes);
+    } catch (const nlohmann::json::parse_error& error) {
         const auto end  = bytes.begin() + std::ptrdiff_t(std::clamp<std::size_t>(error.byte, 1, bytes.size() + 1) - 1);
         const auto line = 1 + std::count(bytes.begin(), end, '\n');
         const auto newline = std::find(std::make_reverse_iterator(end), bytes.rend(), '\n').base();
         throw InputError(fmt::format("{}:{}:{}: not JSON, or cut off here; expected a complete results.json",
                                      file.string(), line, 1 + (end - newline)));
-    } catch (const json::exception&) {  // a number beyond double
+    } catch (const nlohmann::json::exception&) {  // a number beyond double
         throw InputError(
             fmt::format("{}: a number is out of range, expected numbers that a double can hold", file.string()));
     }

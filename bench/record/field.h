@@ -1,14 +1,16 @@
-// results.json, read with care: what is there must have the right type, what is not there is absent.
+// A JSON file, read with care: what is there must have the right type, what is not there is absent.
 #pragma once
 
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
+
+#include "umbra/bench/record/json.h"
 
 namespace umbra {
 
@@ -19,11 +21,15 @@ public:
     Field() = default;                                           ///< absent
     [[nodiscard]] Field operator[](std::string_view key) const;  ///< absent where this is absent
     [[nodiscard]] bool present() const { return value_ != nullptr; }
+    [[nodiscard]] bool has(std::string_view key) const;  ///< it has a member of that name, which may be null
     [[nodiscard]] bool is_array() const;
+    [[nodiscard]] bool is_object() const;
 
     [[nodiscard]] std::string text() const;           ///< empty where absent
     [[nodiscard]] std::string required_text() const;  ///< neither absent nor empty
     [[nodiscard]] std::string scalar() const;         ///< a string as it is, a number or a boolean as JSON writes it
+    [[nodiscard]] std::variant<bool, std::int64_t, double, std::string> scalar_value() const;  ///< "" where absent
+    [[nodiscard]] Json json() const;  ///< whatever it is; null where absent
     [[nodiscard]] std::optional<double> number() const;
     [[nodiscard]] bool flag() const;                 ///< false where absent
     [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent
@@ -35,11 +41,11 @@ public:
 private:
     friend Field read_results(const std::filesystem::path& file);
     struct Document;
-    Field(std::shared_ptr<const Document> document, const nlohmann::json* value, std::string pointer)
+    Field(std::shared_ptr<const Document> document, const Json* value, std::string pointer)
         : document_(std::move(document)), value_(value), pointer_(std::move(pointer)) {}
 
     std::shared_ptr<const Document> document_;
-    const nlohmann::json* value_ = nullptr;
+    const Json* value_ = nullptr;
     std::string pointer_;
 };
 

@@ -1,0 +1,48 @@
+#include "umbra/bench/record/record.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace umbra {
+
+std::string text_of(const Scalar& value) {
+    const Json json = record_parts::write(value);
+    return json.is_string() ? json.get<std::string>() : json.dump();
+}
+
+namespace record_parts {
+
+void refuse_unless(const Allowed& allowed, const Field& field) {
+    if (!field.present()) return;
+    if (!allowed.words.empty() && std::ranges::find(allowed.words, field.text()) == allowed.words.end())
+        field.refuse(fmt::format("\"{}\"", fmt::join(allowed.words, "\" or \"")));
+    if (allowed.least && *field.number() < *allowed.least) field.refuse(fmt::format("at least {}", *allowed.least));
+    if (allowed.most && *field.number() > *allowed.most) field.refuse(fmt::format("at most {}", *allowed.most));
+    if (allowed.only && field.flag() != *allowed.only) field.refuse(*allowed.only ? "true" : "false");
+    if (allowed.items && field.items().size() != *allowed.items) field.refuse(fmt::format("{} items", *allowed.items));
+}
+
+Json or_null(Json schema) {
+    if (!schema.contains("type")) return schema.empty() ? schema : Json{{"anyOf", {{{"type", "null"}}, schema}}};
+    Json& type = schema["type"];
+    if (type.is_string()) type = Json::array({type});
+    if (std::ranges::find(type, Json("null")) == type.end()) type.push_back("null");
+    return schema;
+}
+
+Json rooted(std::string_view title, Json root, Definitions definitions) {
+    // A root with a name stands among the definitions, like any part.
+    if (root.contains("$ref")) {
+        const std::string name = root["$ref"].get<std::string>().substr(std::string_view("#/definitions/").size());
+        root                   = definitions.named[name];
+        definitions.named.erase(name);
+    }
+    Json json = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", title}};
+    for (auto& [key, value] : root.items()) json[key] = value;
+    if (!definitions.named.empty()) json["definitions"] = std::move(definitions.named);
+    return json;
+}
+
+}  // namespace record_parts
+}  // namespace umbra

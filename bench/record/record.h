@@ -1,0 +1,447 @@
+// A record is a struct whose members are named once: that one list writes it, reads it and describes it (JSON Schema).
+//
+//     struct Timing {
+//         double median = kUnknown;
+//         std::uint64_t runs = 0;
+//         std::vector<double> samples;
+//     };
+//     template <class Fields>
+//     void describe(Fields& of, Is<Timing>) {
+//         of.name("timing", "milliseconds");
+//         of("median", &Timing::median, "of all runs but the cold one");
+//         of("runs", &Timing::runs, "");
+//         of.may("samples", &Timing::samples, "in the order of the rounds");
+//     }
+//
+// of(...) is always written; of.must(...) must also be there when it is read, and not be empty; of.may(...) is written
+// where it holds something, of.where(&T::flag, ...) where the flag is set; of.all(...) writes the members of a part as if
+// they were the record's own.
+//
+// Types of members, and what JSON has for them:
+//
+//     double               a number; null where it is not finite, and then NaN is read
+//     bool, integers, std::string, Json (anything)
+//     Scalar               true, false, a number or a text
+//     FileName             a text
+//     std::optional<T>     null where there is none
+//     std::vector<T>       an array
+//     Members<T>           an object with keys of its own, in their order
+//     a record             an object
+//
+// What JSON lacks, or has as null, is read as T{}: records of earlier versions have fewer members. A member of the wrong
+// type throws InputError with the file and the position as a JSON pointer.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "umbra/bench/record/field.h"
+#include "umbra/bench/record/json.h"
+
+namespace umbra {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Nothing where the value is not known.
+[[nodiscard]] inline std::optional<double> known(double value) {
+    return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+using Scalar = std::variant<bool, std::int64_t, double, std::string>;
+[[nodiscard]] std::string text_of(const Scalar& value);  ///< a text as it is, the others as JSON writes them
+
+/// A file that a record names, relative to the record's folder, and its place in the file that it was read from, for
+/// errors.
+struct FileName {
+    std::string name{};
+    Field at{};
+    [[nodiscard]] explicit operator bool() const { return !name.empty(); }
+};
+
+/// An object whose keys are data: names of lights, of parameters.
+template <class T>
+struct Members : std::vector<std::pair<std::string, T>> {
+    using std::vector<std::pair<std::string, T>>::vector;
+    /// Null where there is none.
+    [[nodiscard]] const T* find(std::string_view key) const {
+        for (const auto& [name, value] : *this)
+            if (name == key) return &value;
+        return nullptr;
+    }
+    T& operator()(std::string_view key) {
+        for (auto& [name, value] : *this)
+            if (name == key) return value;
+        return this->emplace_back(key, T{}).second;
+    }
+};
+
+/// Selects `describe` of a type.
+template <class T>
+struct Is {};
+
+/// What a member may hold, beyond its type; anything by default.
+struct Allowed {
+    std::vector<std::string_view> words{};  ///< one of these
+    std::optional<double> least{}, most{};
+    std::optional<bool> only{};          ///< of true and false
+    std::optional<std::size_t> items{};  ///< so many
+};
+[[nodiscard]] inline Allowed only(bool value) { return {.only = value}; }
+inline const Allowed kThreeNumbers{.items = 3};
+[[nodiscard]] inline Allowed at_least(double least) { return {.least = least}; }
+[[nodiscard]] inline Allowed one_of(std::initializer_list<std::string_view> words) { return {.words = words}; }
+
+namespace record_parts {
+
+/// Does nothing: for asking whether a type has a description.
+struct Nothing {
+    void name(std::string_view, std::string_view) {}
+    template <class M>
+    void operator()(std::string_view, M, std::string_view, const Allowed& = {}) {}
+    template <class M>
+    void may(std::string_view, M, std::string_view, const Allowed& = {}) {}
+    template <class M>
+    void must(std::string_view, M, std::string_view, const Allowed& = {}) {}
+    template <class F, class M>
+    void where(F, std::string_view, M, std::string_view, const Allowed& = {}) {}
+    template <class M>
+    void all(M) {}
+};
+
+template <class T>
+concept Record = requires(Nothing& of) {
+    describe(of, Is<T>{});
+};
+
+template <class T>
+struct Part {
+    static constexpr bool optional = false, array = false, members = false;
+};
+template <class T>
+struct Part<std::optional<T>> {
+    using Of                       = T;
+    static constexpr bool optional = true, array = false, members = false;
+};
+template <class T>
+struct Part<std::vector<T>> {
+    using Of                       = T;
+    static constexpr bool optional = false, array = true, members = false;
+};
+template <class T>
+struct Part<Members<T>> {
+    using Of                       = T;
+    static constexpr bool optional = false, array = false, members = true;
+};
+
+template <class T>
+bool is_nothing(const T& value) {
+    if constexpr (Part<T>::optional)
+        return !value.has_value();
+    else if constexpr (Part<T>::array || Part<T>::members || std::is_same_v<T, std::string>)
+        return value.empty();
+    else if constexpr (std::is_same_v<T, FileName>)
+        return value.name.empty();
+    else if constexpr (std::is_same_v<T, Json>)
+        return value.is_null();
+    else if constexpr (std::is_floating_point_v<T>)
+        return value != value;
+    else if constexpr (std::is_arithmetic_v<T>)
+        return value == T{};
+    else
+        return false;
+}
+
+template <class T>
+Json write(const T& value);
+
+/// Writes the members of a record.
+template <class T>
+class Writer {
+public:
+    Writer(const T& record, Json& json) : record_(record), json_(json) {}
+    void name(std::string_view, std::string_view) {}
+    template <class V, class C>
+    void operator()(std::string_view key, V C::*member, std::string_view, const Allowed& = {}) {
+        json_[std::string(key)] = write(record_.*member);
+    }
+    template <class V, class C>
+    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
+        (*this)(key, member, about);
+    }
+    template <class V, class C>
+    void may(std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
+        if (!is_nothing(record_.*member)) (*this)(key, member, about);
+    }
+    template <class V, class C>
+    void where(bool C::*flag, std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
+        if (record_.*flag) (*this)(key, member, about);
+    }
+    template <class V, class C>
+    void all(V C::*part) {
+        Writer<V> writer(record_.*part, json_);
+        describe(writer, Is<V>{});
+    }
+
+private:
+    const T& record_;
+    Json& json_;
+};
+
+template <class T>
+Json write(const T& value) {
+    if constexpr (std::is_floating_point_v<T>) {
+        return number(value);
+    } else if constexpr (std::is_same_v<T, FileName>) {
+        return value.name;
+    } else if constexpr (std::is_same_v<T, Scalar>) {
+        return std::visit([](const auto& v) { return write(v); }, value);
+    } else if constexpr (Part<T>::optional) {
+        return value ? write(*value) : Json();
+    } else if constexpr (Part<T>::array) {
+        Json all = Json::array();
+        for (const auto& each : value) all.push_back(write<typename Part<T>::Of>(each));
+        return all;
+    } else if constexpr (Part<T>::members) {
+        Json all = Json::object();
+        for (const auto& [key, each] : value) all[key] = write(each);
+        return all;
+    } else if constexpr (Record<T>) {
+        Json json = Json::object();
+        Writer<T> writer(value, json);
+        describe(writer, Is<T>{});
+        return json;
+    } else {
+        return Json(value);
+    }
+}
+
+template <class T>
+void read(const Field& field, T& value);
+
+void refuse_unless(const Allowed& allowed, const Field& field);
+
+/// Reads the members of a record.
+template <class T>
+class Reader {
+public:
+    Reader(const Field& field, T& record) : field_(field), record_(record) {}
+    void name(std::string_view, std::string_view) {}
+    template <class V, class C>
+    void operator()(std::string_view key, V C::*member, std::string_view, const Allowed& allowed = {}) {
+        const Field field = field_[key];
+        refuse_unless(allowed, field);
+        read(field, record_.*member);
+    }
+    template <class V, class C>
+    void may(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
+        (*this)(key, member, about, allowed);
+    }
+    template <class V, class C>
+    void where(bool C::*flag, std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
+        (*this)(key, member, about, allowed);
+        if (field_.has(key)) record_.*flag = true;
+    }
+    template <class V, class C>
+    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
+        (*this)(key, member, about, allowed);
+        if (!field_[key].present() || is_empty_text(record_.*member))
+            field_[key].refuse(std::is_same_v<V, std::string> ? "a non-empty string" : "a value");
+    }
+    template <class V, class C>
+    void all(V C::*part) {
+        Reader<V> reader(field_, record_.*part);
+        describe(reader, Is<V>{});
+    }
+
+private:
+    template <class V>
+    static bool is_empty_text(const V& value) {
+        if constexpr (std::is_same_v<V, std::string>) return value.empty();
+        return false;
+    }
+
+    const Field& field_;
+    T& record_;
+};
+
+template <class T>
+void read(const Field& field, T& value) {
+    if (!field.present()) {
+        if constexpr (std::is_floating_point_v<T>)
+            value = kUnknown;
+        else
+            value = T{};
+        return;
+    }
+    if constexpr (std::is_same_v<T, Json>) {
+        value = field.json();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        value = field.text();
+    } else if constexpr (std::is_same_v<T, FileName>) {
+        value = {field.text(), field};
+    } else if constexpr (std::is_same_v<T, bool>) {
+        value = field.flag();
+    } else if constexpr (std::is_same_v<T, Scalar>) {
+        value = field.scalar_value();
+    } else if constexpr (std::is_floating_point_v<T>) {
+        value = T(*field.number());
+    } else if constexpr (std::is_integral_v<T>) {
+        const double number = *field.number();
+        if (number != std::floor(number) || number < double(std::numeric_limits<T>::lowest()) ||
+            number > double(std::numeric_limits<T>::max()))
+            field.refuse(std::is_unsigned_v<T> ? "a whole number, 0 or more" : "a whole number");
+        value = T(number);
+    } else if constexpr (Part<T>::optional) {
+        read(field, value.emplace());
+    } else if constexpr (Part<T>::array) {
+        value.clear();
+        for (const Field& item : field.items()) {
+            typename Part<T>::Of each{};
+            read(item, each);
+            value.push_back(std::move(each));
+        }
+    } else if constexpr (Part<T>::members) {
+        value.clear();
+        for (const auto& [key, item] : field.members())
+            read(item, value.emplace_back(key, typename Part<T>::Of{}).second);
+    } else {
+        static_assert(Record<T>, "a member of a record has a type of the list above");
+        if (!field.is_object()) field.refuse("an object");
+        Reader<T> reader(field, value);
+        describe(reader, Is<T>{});
+    }
+}
+
+/// The definitions of a schema: of each record that has a name, once.
+struct Definitions {
+    Json named = Json::object();
+    std::set<std::string, std::less<>> begun;
+};
+
+template <class T>
+Json schema(Definitions& definitions);
+
+/// Gathers the schema of a record.
+template <class T>
+class Describer {
+public:
+    Describer(Json& json, Definitions& definitions) : json_(json), definitions_(definitions) {}
+    void name(std::string_view name, std::string_view about) {
+        name_ = name;
+        if (!about.empty()) json_["description"] = about;
+    }
+    template <class V, class C>
+    void operator()(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
+        json_["required"].push_back(key);
+        may(key, member, about, allowed);
+    }
+    template <class V, class C>
+    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
+        (*this)(key, member, about, allowed);
+        if constexpr (std::is_same_v<V, std::string>) json_["properties"][std::string(key)]["minLength"] = 1;
+    }
+    template <class V, class C>
+    void may(std::string_view key, V C::*, std::string_view about, const Allowed& allowed = {}) {
+        Json& property = json_["properties"][std::string(key)] = schema<V>(definitions_);
+        if (!about.empty()) property["description"] = about;
+        for (const std::string_view word : allowed.words) property["enum"].push_back(word);
+        if (!allowed.words.empty() && Part<V>::optional) property["enum"].push_back(nullptr);
+        if (allowed.least) property["minimum"] = *allowed.least;
+        if (allowed.most) property["maximum"] = *allowed.most;
+        if (allowed.only) property["enum"] = Json::array({*allowed.only});
+        if (allowed.items) property["minItems"] = property["maxItems"] = *allowed.items;
+    }
+    template <class V, class C>
+    void where(bool C::*, std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
+        may(key, member, about, allowed);
+    }
+    template <class V, class C>
+    void all(V C::*) {
+        Describer<V> part(json_, definitions_);
+        describe(part, Is<V>{});
+    }
+    [[nodiscard]] const std::string& given_name() const { return name_; }
+
+private:
+    Json& json_;
+    Definitions& definitions_;
+    std::string name_;
+};
+
+[[nodiscard]] Json or_null(Json schema);
+
+template <class T>
+Json schema(Definitions& definitions) {
+    if constexpr (std::is_same_v<T, Json>) {
+        return Json::object();
+    } else if constexpr (std::is_same_v<T, std::string> || std::is_same_v<T, FileName>) {
+        return {{"type", "string"}};
+    } else if constexpr (std::is_same_v<T, bool>) {
+        return {{"type", "boolean"}};
+    } else if constexpr (std::is_same_v<T, Scalar>) {
+        return {{"type", {"boolean", "number", "string", "null"}}};
+    } else if constexpr (std::is_floating_point_v<T>) {
+        return {{"type", {"number", "null"}}};
+    } else if constexpr (std::is_integral_v<T>) {
+        Json json = {{"type", "integer"}};
+        if (std::is_unsigned_v<T>) json["minimum"] = 0;
+        return json;
+    } else if constexpr (Part<T>::optional) {
+        return or_null(schema<typename Part<T>::Of>(definitions));
+    } else if constexpr (Part<T>::array) {
+        return {{"type", "array"}, {"items", schema<typename Part<T>::Of>(definitions)}};
+    } else if constexpr (Part<T>::members) {
+        return {{"type", "object"}, {"additionalProperties", schema<typename Part<T>::Of>(definitions)}};
+    } else {
+        static_assert(Record<T>, "a member of a record has a type of the list above");
+        Json json = {{"type", "object"}, {"required", Json::array()}, {"properties", Json::object()}};
+        Describer<T> describer(json, definitions);
+        describe(describer, Is<T>{});
+        json["additionalProperties"] = false;
+        if (json["required"].empty()) json.erase("required");
+        if (describer.given_name().empty()) return json;
+        if (definitions.begun.insert(describer.given_name()).second) definitions.named[describer.given_name()] = json;
+        return {{"$ref", "#/definitions/" + describer.given_name()}};
+    }
+}
+
+/// The root of a schema out of its parts.
+[[nodiscard]] Json rooted(std::string_view title, Json root, Definitions definitions);
+
+}  // namespace record_parts
+
+/// The record as JSON, its members in the order of its description.
+template <class T>
+[[nodiscard]] Json to_record(const T& value) {
+    return record_parts::write(value);
+}
+
+/// Throws InputError: "FILE:/POINTER: found WHAT, expected WHAT".
+template <class T>
+[[nodiscard]] T from_record(const Field& field) {
+    T value{};
+    record_parts::read(field, value);
+    return value;
+}
+
+/// JSON Schema, draft 4, of records of this type.
+template <class T>
+[[nodiscard]] Json schema_of(std::string_view title) {
+    record_parts::Definitions definitions;
+    Json root = record_parts::schema<T>(definitions);
+    return record_parts::rooted(title, std::move(root), std::move(definitions));
+}
+
+}  // namespace umbra
