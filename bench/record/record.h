@@ -156,7 +156,7 @@ bool is_nothing(const T& value) {
     else if constexpr (std::is_same_v<T, Json>)
         return value.is_null();
     else if constexpr (std::is_floating_point_v<T>)
-        return value != value;
+        return std::isnan(value);
     else if constexpr (std::is_arithmetic_v<T>)
         return value == T{};
     else

@@ -1198,8 +1198,8 @@ def motion_page(page, record, tally):
                 where, of = f'{page}: {row[0][0]}, {which}', w[which]
                 texts = [t for t, _ in row[x:x + 4]]
                 x += 4
-                if of is None:
-                    tally.text(kind, where, texts[0], 'none')
+                if of is None or scene['noise_bar'] is None or scene['noise_bar'] > MOST_NOISE:
+                    tally.text(kind, where, texts[0], 'none' if of is None else 'not ranked')
                     continue
                 tally.text(kind, where, texts[0], of['method'])
                 tally.shown(kind, where, texts[1], of['ms'], 'ms')
