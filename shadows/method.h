@@ -10,8 +10,10 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
+#include "umbra/core/base/parallel.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/facts.h"
@@ -38,8 +40,8 @@ struct Service {
     explicit operator bool() const { return how != How::not_at_all; }
 };
 
-/// What a phase of a method made. It is const from then on and may be used from any thread; it is moved nowhere, so
-/// that others may refer to it. All that a phase was given must outlive what it made, but the Method need not.
+/// The result of a phase: const, for any thread, at one address, so that others may refer to it. The arguments of the
+/// phase must outlive it; the Method need not.
 class Value {
 public:
     Value()                        = default;
@@ -53,8 +55,7 @@ public:
     [[nodiscard]] virtual std::size_t device_bytes() const { return 0; }
 };
 
-/// What `build` made: what depends on geometry alone. Methods derive from this class where they need to keep anything,
-/// and from the next two.
+/// The result of `build`, which depends on geometry alone. Methods derive from this and the next two to keep anything.
 class Built : public Value {
 public:
     Built(const Scene& of, const SceneFacts& its_facts) : scene(of), facts(its_facts) {}
@@ -62,7 +63,7 @@ public:
     const SceneFacts& facts;
 };
 
-/// What `aim` made: what depends on geometry and on one light.
+/// The result of `aim`, which depends on geometry and on one light.
 class Aimed : public Value {
 public:
     Aimed(const Built& from, LightId at) : built(from), light(at) {}
@@ -72,7 +73,7 @@ public:
     const LightId light;
 };
 
-/// What `look` made: what depends on geometry and on the surface points, and serves all lights.
+/// The result of `look`, which depends on geometry and on the surface points, and serves all lights.
 class Looked : public Value {
 public:
     explicit Looked(const PointBatch& at) : points(at) {}
@@ -88,22 +89,20 @@ template <class Own>
 
 class Method;
 
-/// What a method says of a scene (Method::serves); `not_at_all` where occluders let a part of the light through and the
-/// method does not compute that (Method::multiplies); at best `approximately` where the outline of a surface is not
-/// computed (SceneFacts::has_cutouts).
+/// Method::serves, but `not_at_all` where occluders let a part of the light through and the method does not compute
+/// that (Method::multiplies), and at best `approximately` where outlines are not computed (SceneFacts::has_cutouts).
 [[nodiscard]] Service verdict(const Method& method, const SceneFacts& facts);
 
-/// One method with one set of parameters, which never change. Its phases are functions: each makes a value from what it
-/// is given, and keeps nothing. All members may be called from any thread; a method does its own parallelism
+/// One method with one set of parameters, which never change. Its phases are functions: each makes a value from its
+/// arguments and keeps nothing. All members may be called from any thread; a method does its own parallelism
 /// (core/base/parallel.h), and its results do not depend on the number of threads.
 ///
 ///     build(scene) ----> Built --+--> aim(light) ----> Aimed  --+--> visibility, blame, explain
 ///                                +--> look(points) --> Looked --+
 ///
 /// The phases are timed apart. An object that moved repeats all; a light repeats its own aim and visibility; the camera
-/// repeats look, once for all lights, and visibility. Each phase does its own work, so that its time is what the
-/// movement costs. A value also serves other settings of the method, if these differ only in parameters of later phases
-/// (first_changed_phase).
+/// repeats look, once for all lights, and visibility. Each phase does its own work, so that its time is that of the
+/// movement. A value also serves settings that differ only in parameters of later phases (first_changed_phase).
 ///
 /// Errors. Every phase may throw MethodError, where the method failed, and std::bad_alloc; the constructor, `build` and
 /// `aim` also UsageError where the parameters cannot be had for this scene: the message says what to change.
@@ -114,34 +113,31 @@ public:
     Method(const Method&)            = delete;
     Method& operator=(const Method&) = delete;
 
-    /// From the scene's facts alone, as if no triangle let a part of the light through: callers ask `verdict`, which
-    /// knows of those. The phases are called only where that is not `not_at_all`.
+    /// From the scene's facts alone, as if no triangle let a part of the light through: callers ask `verdict`. The
+    /// phases are called only where that is not `not_at_all`.
     [[nodiscard]] virtual Service serves(const SceneFacts& facts) const = 0;
 
-    /// Whether S_j is multiplied by Scene::lets_through of what lies between the point and the light. Every method
+    /// Whether S_j is multiplied by Scene::lets_through of the triangles between the point and the light. Every method
     /// leaves triangles out that do not block (Scene::blocks).
     [[nodiscard]] virtual bool multiplies() const { return false; }
 
     /// Which fraction it answers. A method is compared with the truth of the same measure.
     [[nodiscard]] virtual Measure measures() const { return Measure::area; }
 
-    /// Called before each `build`, outside the clock: for what must be there and is not the method's own work, as
-    /// starting a program, or writing the scene to a file for it.
+    /// Called before each `build`, outside the clock: for preparations that are not the method's own work, as starting
+    /// a program, or writing the scene to a file for it.
     virtual void warm_up(const Scene& /*scene*/, const SceneFacts& /*facts*/) const {}
 
-    /// What depends on geometry alone.
     [[nodiscard]] virtual std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const {
         return std::make_unique<Built>(scene, facts);
     }
 
-    /// What depends on one light. Repeated where that light moved.
     [[nodiscard]] virtual std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const {
         return std::make_unique<Aimed>(built, light);
     }
 
-    /// What depends on the points alone, once for all lights. Batches without a raster are served, unless
-    /// MethodInfo::needs_raster. The lights may have moved since `build`; the batch's `facing` is up to date in
-    /// `visibility`, and may change between this call and that.
+    /// Batches without a raster are served, unless MethodInfo::needs_raster. The lights may have moved since `build`;
+    /// the batch's `facing` is up to date in `visibility`, and may change between this call and that.
     [[nodiscard]] virtual std::unique_ptr<const Looked> look(const Built& /*built*/, const PointBatch& points) const {
         return std::make_unique<Looked>(points);
     }
@@ -158,17 +154,54 @@ public:
         std::fill(blockers.begin(), blockers.end(), kNoTriangle);
     }
 
-    /// Why `visibility` gave this answer at point i of what it looks at, which asks for the light; for any answer. The
-    /// default says what geometry says of the triangle that `blame` names; methods add what they compared.
+    /// Why `visibility` gave this answer, whichever, at point i, which asks for the light. The default is the geometric
+    /// reason with the triangle that `blame` names; methods add the values that they compared.
     [[nodiscard]] virtual Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const;
+
+protected:
+    /// For `blame`: find(i) for the points that ask for the light, kNoTriangle for others. Parallel.
+    template <class Find>
+    static void blame_each(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers, const Find& find) {
+        parallel_ranges(blockers.size(), 64, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                blockers[i] = looked.points.asks(aimed.light, i) ? find(i) : kNoTriangle;
+        });
+    }
 };
 
-/// A method that reads its parameters from `options`, a struct of its own.
-template <class Options>
+struct NoOptions {};  ///< of a method without parameters
+
+/// A method that reads its parameters from `options`, a struct of its own, and whose phases make these types: OwnBuilt of
+/// the scene and its facts, OwnAimed of that and a light, OwnLooked of OwnBuilt and the points; each also of `options`
+/// where it takes them.
+template <class Options, class OwnBuilt = Built, class OwnAimed = Aimed, class OwnLooked = Looked>
 class MethodWith : public Method {
+public:
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        return made<OwnBuilt>(scene, facts);
+    }
+    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
+        return made<OwnAimed>(as<OwnBuilt>(built), light);
+    }
+    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
+        if constexpr (std::is_same_v<OwnLooked, Looked>)
+            return Method::look(built, points);
+        else
+            return made<OwnLooked>(as<OwnBuilt>(built), points);
+    }
+
 protected:
     explicit MethodWith(const Settings& settings) : options(settings.as<Options>()) {}
     const Options options;
+
+private:
+    template <class Made, class... From>
+    [[nodiscard]] std::unique_ptr<const Made> made(const From&... from) const {
+        if constexpr (std::is_constructible_v<Made, const From&..., const Options&>)
+            return std::make_unique<Made>(from..., options);
+        else
+            return std::make_unique<Made>(from...);
+    }
 };
 
 /// A named set of settings, typed METHOD@NAME.
@@ -178,8 +211,7 @@ struct Preset {
     std::string_view doc;       ///< one sentence
 };
 
-/// A method as the list knows it. What the rest of the program needs to know of a method is here, so that no other file
-/// has to know a name.
+/// A method as the list knows it: all that the rest of the program knows of a method, so that no other file names one.
 struct MethodInfo {
     std::string_view name;     ///< as typed: "shadow_zbuffer"
     std::string_view title;    ///< "Shadow z-buffer"
@@ -188,7 +220,7 @@ struct MethodInfo {
     std::vector<Parameter> parameters{};
     std::vector<Preset> presets{};
     bool reference  = false;    ///< its answers may serve as truth: the first such method that serves a scene
-    bool by_default = true;     ///< it runs where nobody says which methods; false for what is too slow for that
+    bool by_default = true;     ///< it runs where no methods are named; false where it is too slow
     bool shown      = false;    ///< where it is not by default: reports show it on the scenes that name it
                                 ///< (scenes/canonical.txt), and on ladders
     bool needs_raster = false;  ///< it serves only batches that have a raster
@@ -217,12 +249,11 @@ struct MethodChoice {
     Settings settings;
 
     explicit MethodChoice(const MethodInfo& method) : info(&method), settings(method.parameters) {}  ///< all defaults
-    [[nodiscard]] std::string text() const;  ///< "NAME" or "NAME:k=v,..." with what differs from the defaults
+    [[nodiscard]] std::string text() const;  ///< "NAME" or "NAME:k=v,..." without defaults
     [[nodiscard]] std::unique_ptr<const Method> make() const { return info->make(settings); }
 };
 
-/// "NAME", "NAME@PRESET", "NAME:k=v,k=v" or "NAME@PRESET:k=v": the method and its settings. Throws UsageError: what was
-/// found, what is expected.
+/// "NAME", "NAME@PRESET", "NAME:k=v,k=v" or "NAME@PRESET:k=v": the method and its settings. Throws UsageError.
 [[nodiscard]] MethodChoice parse_method(std::string_view text);
 
 /// T is the method's class, which is made of its settings.

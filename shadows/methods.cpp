@@ -1,4 +1,4 @@
-// The list of methods, and finding one by what is typed.
+// The list of methods, and finding one by its name as typed.
 #include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -120,13 +120,8 @@ Reason Method::explain(const Aimed& aimed, const Looked& looked, std::size_t i, 
 }
 
 std::string_view to_string(How how) {
-    switch (how) {
-        case How::not_at_all: return "not";
-        case How::approximately: return "approximately";
-        case How::to_rounding: return "to_rounding";
-        case How::exactly: return "exactly";
-    }
-    return "";
+    constexpr std::string_view kNames[]{"not", "approximately", "to_rounding", "exactly"};
+    return kNames[static_cast<std::size_t>(how)];
 }
 
 std::span<const MethodInfo* const> methods() { return known_methods().all; }

@@ -12,7 +12,7 @@
 
 namespace umbra {
 
-/// What both sides must have in common: the compiler, and the sizes of what the contract hands over.
+/// The compiler and the sizes of the contract's types, which both sides must have in common.
 struct PluginStamp {
     std::string_view compiler = __VERSION__;
     std::size_t sizes[6]      = {sizeof(MethodInfo), sizeof(Parameter),  sizeof(PointBatch),

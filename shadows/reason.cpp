@@ -77,14 +77,8 @@ double clearance(const Scene& scene, TriangleId own, dvec3 p, dvec3 q) {
 }  // namespace
 
 std::string_view to_string(PointVerdict verdict) {
-    switch (verdict) {
-        case PointVerdict::lit: return "lit";
-        case PointVerdict::penumbra: return "penumbra";
-        case PointVerdict::umbra: return "umbra";
-        case PointVerdict::on_boundary: return "on_boundary";
-        case PointVerdict::undefined: return "undefined";
-    }
-    return "";
+    constexpr std::string_view kNames[]{"lit", "penumbra", "umbra", "on_boundary", "undefined"};
+    return kNames[static_cast<std::size_t>(verdict)];
 }
 
 PointVerdict verdict_of(Given given) {

@@ -1,4 +1,4 @@
-// Why a method gave one answer: what blocks the point, where, by how much, and what the method compared to find it.
+// Why a method gave one answer: which triangle blocks the point, where, by how much, and the values that it compared.
 #pragma once
 
 #include <cstdint>

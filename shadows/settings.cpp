@@ -32,24 +32,13 @@ std::vector<std::string_view> split(std::string_view list) {
 }  // namespace
 
 std::string_view to_string(Phase phase) {
-    switch (phase) {
-        case Phase::build: return "build";
-        case Phase::aim: return "aim";
-        case Phase::look: return "look";
-        case Phase::visibility: return "visibility";
-    }
-    return "";
+    constexpr std::string_view kNames[]{"build", "aim", "look", "visibility"};
+    return kNames[static_cast<std::size_t>(phase)];
 }
 
 std::string_view to_string(Parameter::Type type) {
-    switch (type) {
-        case Parameter::Type::integer: return "integer";
-        case Parameter::Type::real: return "real";
-        case Parameter::Type::choice: return "choice";
-        case Parameter::Type::boolean: return "boolean";
-        case Parameter::Type::text: return "text";
-    }
-    return "";
+    constexpr std::string_view kNames[]{"integer", "real", "choice", "boolean", "text"};
+    return kNames[static_cast<std::size_t>(type)];
 }
 
 std::string Parameter::text(double value) const {

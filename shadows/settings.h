@@ -1,6 +1,5 @@
-// Parameters of a method: each one is a member of the method's own options struct with a name, a range, a unit and the
-// first phase that has to be repeated when it changes. Text is parsed once, when a setting is typed; methods read their
-// struct.
+// Parameters of a method: each is a member of its options struct with a name, a range, a unit and the first phase to
+// repeat when it changes. Text is parsed once, when a setting is typed; methods read their struct.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +22,8 @@ enum class Phase : std::uint8_t { build, aim, look, visibility };
 struct Parameter {
     enum class Type : std::uint8_t { integer, real, choice, boolean, text };
 
-    std::string_view name;
-    std::string_view doc;              ///< one sentence
+    std::string_view name{};
+    std::string_view doc{};            ///< one sentence
     std::string_view unit{};           ///< of a number: "texels", "rays a point"; empty for a pure number
     Phase phase = Phase::visibility;   ///< the first phase to repeat when it changes
     double min = 0, max = 0;           ///< integer, real: closed range
@@ -55,12 +54,13 @@ struct MemberOf<Value Class::*> {
 }  // namespace settings_detail
 
 /// The parameter that sets `member`, a pointer to an int, a double, a bool, an enumeration or a std::string of an
-/// options struct whose default constructor gives the defaults. `about` says all but the type, the default and the
-/// store; of a text the default, too. A text has no commas when it is typed. `Options` is a template argument so that a
-/// struct of an unnamed namespace makes the function local to its file: GCC 12 derives linkage from types alone, and
+/// options struct whose default constructor gives the defaults. `about` has the unit, the phase, the range or the
+/// choices; of a text the default, too. A text has no commas when it is typed. `Options` is a template argument so that
+/// a struct of an unnamed namespace makes the function local to its file: GCC 12 derives linkage from types alone, and
 /// `parameter<&Options::x>` of two files would become one function.
 template <auto member, class Options = typename settings_detail::MemberOf<decltype(member)>::Options>
-[[nodiscard]] Parameter parameter(Parameter about) {
+[[nodiscard]] Parameter parameter(std::string_view name, std::string_view doc, Parameter about = {}) {
+    about.name = name, about.doc = doc;
     using Type = typename settings_detail::MemberOf<decltype(member)>::Type;
     static_assert(std::is_same_v<Type, int> || std::is_same_v<Type, double> || std::is_same_v<Type, bool> ||
                   std::is_enum_v<Type> || std::is_same_v<Type, std::string>);
@@ -88,7 +88,7 @@ class Settings {
 public:
     explicit Settings(std::span<const Parameter> parameters);  ///< all defaults; `parameters` must outlive this
 
-    /// Throws UsageError naming the parameter, what was found and what is expected.
+    /// Throws UsageError naming the parameter, the value that was found and the expected one.
     void set(std::string_view name, std::string_view value);
     void set(std::string_view name, double value);  ///< for a choice the index; throws as above
 
@@ -117,7 +117,7 @@ private:
     [[nodiscard]] std::size_t index(std::string_view name) const;
     std::span<const Parameter> parameters_;
     std::vector<double> values_;      ///< one a parameter
-    std::vector<std::string> texts_;  ///< one a parameter, empty of those that are no text
+    std::vector<std::string> texts_;  ///< one a parameter, empty where it is not a text
 };
 
 /// The first phase to repeat when `from` becomes `to`, which are settings of one method; Phase::visibility where they

@@ -1,10 +1,10 @@
-// Hidden surfaces removed from the light: what the light sees of each triangle is a set of polygons, cut once for all
-// cameras; a surface point is lit if it lies in a polygon of its triangle.
+// Hidden surfaces removed from the light: the part of each triangle that the light sees is a set of polygons, cut once
+// for all cameras; a surface point is lit if it lies in a polygon of its triangle.
 //
-// Weiler and Atherton clip every polygon against all that are nearer. The polygons that are left are bounded by the
-// outlines of what is nearer alone, so only outlines are projected here, and where they divide a receiver, an
-// arrangement of them says which parts are covered. All of it is exact: vertices, barycentrics and light are the floats
-// of the scene, every sign is proven and every intersection a rational point.
+// Weiler and Atherton clip every polygon against all that are nearer. Outlines of nearer triangles alone bound the
+// polygons that are left, so only outlines are projected here, and where they divide a receiver, an arrangement of them
+// has the covered parts. All of it is exact: vertices, barycentrics and light are the floats of the scene, every sign
+// is proven and every intersection a rational point.
 //
 //     build       welds the triangles, and makes a tree of their boxes
 //     aim         finds the outlines as the light sees them, and cuts each triangle: counts the triangles over one of
@@ -55,16 +55,12 @@ std::vector<Box> boxes_of(const std::vector<ChangeEdge>& outlines, const Occlude
 /// Every triangle that the segment from a point of triangle `own` to the light crosses or touches, until visit
 /// returns false.
 template <class Visit>
-void visit_met(const WeldedTriangles& triangles, const Light& light, TriangleId own, float u, float v,
-               const Visit& visit) {
-    const Scene& scene = triangles.scene;
-    const ExactPoint point(scene, own, u, v);
-    const Segment segment(point, light);
-    triangles.tree.visit(segment.piece(), [&](TriangleId t) {
-        if (t == own || !triangles.mesh.blocks(t)) return true;
-        const auto met = segment.meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
-        return met == Segment::Meeting::none || visit(t, met);
-    });
+void visit_between(const WeldedTriangles& triangles, const Light& light, TriangleId own, float u, float v,
+                   const Visit& visit) {
+    const ExactPoint point(triangles.scene, own, u, v);
+    visit_met(
+        triangles.tree, triangles.scene, Segment(point, light),
+        [&](TriangleId t) { return t != own && triangles.mesh.blocks(t); }, visit);
 }
 
 /// Where the segment meets the receiver's plane.
@@ -134,7 +130,7 @@ std::optional<LitPolygons::Probe> LitPolygons::find_probe(TriangleId t) const {
     for (const auto& [u, v] : kPoints) {
         bool clear = true;
         int covers = 0;
-        visit_met(triangles_, source(), t, u, v, [&](TriangleId, Segment::Meeting met) {
+        visit_between(triangles_, source(), t, u, v, [&](TriangleId, Segment::Meeting met) {
             clear = met != Segment::Meeting::touches;
             covers += met == Segment::Meeting::crosses;
             return clear;
@@ -144,7 +140,6 @@ std::optional<LitPolygons::Probe> LitPolygons::find_probe(TriangleId t) const {
     return std::nullopt;
 }
 
-/// The outlines of what is over the receiver.
 void LitPolygons::add_outlines(const Receiver& receiver, Pieces& pieces) const {
     outline_tree_.visit(
         receiver.towards_light(), [](std::uint32_t, const Box&) { return true; },
@@ -157,7 +152,7 @@ void LitPolygons::add_outlines(const Receiver& receiver, Pieces& pieces) const {
         });
 }
 
-/// The lines in which triangles meet the receiver's plane: what is below does not cover it.
+/// The lines in which triangles meet the receiver's plane: their parts below it cover nothing.
 void LitPolygons::add_cuts(TriangleId own, const Receiver& receiver, Pieces& pieces) const {
     triangles_.tree.visit(
         receiver.itself(), [](std::uint32_t, const Box&) { return true; },
@@ -198,21 +193,13 @@ void LitPolygons::add_cut(TriangleId own, TriangleId t, const Receiver& receiver
 
 namespace {
 
-class AthertonWeiler final : public Method {
+class AthertonWeiler final : public MethodWith<NoOptions, WeldedTriangles, LitPolygons> {
 public:
-    explicit AthertonWeiler(const Settings&) {}  // it has no parameters
+    explicit AthertonWeiler(const Settings& settings) : MethodWith(settings) {}
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only) return {How::not_at_all, "Lit polygons have no penumbra: no area lights."};
         return {How::exactly, "Lit polygons are cut by exact arithmetic, and points are found in them by exact signs."};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<WeldedTriangles>(scene, facts);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<LitPolygons>(as<WeldedTriangles>(built), light);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -239,18 +226,15 @@ public:
     }
 
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const auto& triangles    = as<WeldedTriangles>(aimed.built);
         const PointBatch& points = looked.points;
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                blockers[i] = kNoTriangle;
-                if (!points.asks(aimed.light, i)) continue;
-                visit_met(triangles, aimed.source(), points.triangle[i], points.u[i], points.v[i],
-                          [&](TriangleId t, Segment::Meeting met) {
-                              if (met == Segment::Meeting::crosses) blockers[i] = t;
+        blame_each(aimed, looked, blockers, [&](std::size_t i) {
+            TriangleId blocker = kNoTriangle;
+            visit_between(as<WeldedTriangles>(aimed.built), aimed.source(), points.triangle[i], points.u[i],
+                          points.v[i], [&](TriangleId t, Segment::Meeting met) {
+                              if (met == Segment::Meeting::crosses) blocker = t;
                               return met != Segment::Meeting::crosses;
                           });
-            }
+            return blocker;
         });
     }
 

@@ -19,10 +19,10 @@ struct OutlinePiece;
 struct WeldedTriangles;
 }  // namespace atherton
 
-/// What atherton_weiler aims.
+/// The result of atherton_weiler's `aim`.
 class LitPolygons final : public Aimed {
 public:
-    /// What the light sees of a triangle.
+    /// The part of a triangle that the light sees.
     enum class Seen : std::uint8_t {
         unknown,  ///< it is edge-on, has no area, or every point tried in it lies on an outline
         lit,
@@ -35,10 +35,9 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const override;
 
     [[nodiscard]] Seen seen(TriangleId t) const { return seen_[t]; }
-    /// The lit polygons of a triangle that is Seen::parts, as what the next two return.
+    /// The lit polygons of a triangle that is Seen::parts; the next two are of such a triangle, too.
     [[nodiscard]] const atherton::LitPart& part(TriangleId t) const { return *parts_[t]; }
-    /// Their outlines in the triangle's barycentric coordinates, rounded: outer ones counterclockwise, holes
-    /// clockwise.
+    /// Their outlines in the triangle's barycentric coordinates, rounded: outer ones counterclockwise, holes clockwise.
     [[nodiscard]] const std::vector<std::vector<dvec2>>& lit_loops(TriangleId t) const;
     /// The same polygons cut into triangles, counterclockwise. Made at each call.
     [[nodiscard]] std::vector<std::array<dvec2, 3>> lit_triangles(TriangleId t) const;

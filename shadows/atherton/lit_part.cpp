@@ -24,9 +24,9 @@
 namespace umbra::atherton {
 namespace {
 
-using Kernel      = CGAL::Exact_predicates_exact_constructions_kernel;
-using Segments    = CGAL::Arr_segment_traits_2<Kernel>;
-using Traits      = CGAL::Arr_curve_data_traits_2<Segments, int, std::plus<int>>;  // changes of what coincides add up
+using Kernel   = CGAL::Exact_predicates_exact_constructions_kernel;
+using Segments = CGAL::Arr_segment_traits_2<Kernel>;
+using Traits   = CGAL::Arr_curve_data_traits_2<Segments, int, std::plus<int>>;  // changes of edges that coincide add up
 using Arrangement = CGAL::Arrangement_2<Traits, CGAL::Arr_face_extended_dcel<Traits, int>>;
 using Curve       = Traits::X_monotone_curve_2;
 using FaceHandle  = Arrangement::Face_handle;
@@ -105,7 +105,7 @@ bool on_border(const std::array<Rational, 2>& a, const std::array<Rational, 2>& 
     return (a[0] == 0 && b[0] == 0) || (a[1] == 0 && b[1] == 0) || (a[0] + a[1] == 1 && b[0] + b[1] == 1);
 }
 
-/// Sign of what `quick` may have wrong by `error`; `exact` decides the rest.
+/// Sign of a number near `quick`, with an error of at most `error`; `exact` decides the rest.
 template <class ExactValue>
 int sign(double quick, double error, const ExactValue& exact) {
     if (std::abs(quick) > error) return quick > 0 ? 1 : -1;

@@ -19,8 +19,8 @@ struct OutlinePiece {
 /// Cut once, then asked by any number of threads.
 class LitPart {
 public:
-    /// Of a receiver that has `covers` triangles over the point (u, v), which lies on no piece. Throws std::logic_error
-    /// where the changes contradict one another.
+    /// `covers`: triangles over the receiver's point (u, v), which lies on no piece. Throws std::logic_error where the
+    /// changes contradict one another.
     LitPart(const std::vector<OutlinePiece>& pieces, float u, float v, int covers);
 
     /// `boundary`: on an edge between lit and umbra.

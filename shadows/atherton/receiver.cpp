@@ -124,7 +124,7 @@ bool Receiver::may_cut(const Passage& a, const Passage& b) const {
            !(surely_beyond(rest_, 0, a) && surely_beyond(rest_, 0, b));
 }
 
-/// Of length 1, so that its tilt can be said; a plane of which nothing is known holds everything.
+/// The plane with a normal of length 1, which its tilt refers to; a plane of which nothing is known holds everything.
 BoxTree::Region::Plane Receiver::Form::plane(double& tilt) const {
     const double length = glm::length(normal);
     if (!(error < 1e-3 * length)) return {dvec3(0), 0};

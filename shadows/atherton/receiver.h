@@ -1,4 +1,4 @@
-// A triangle as a receiver: what lies between it and one light, projected from the light onto its plane. Nothing is
+// A triangle as a receiver: positions between it and one light, projected from the light onto its plane. Nothing is
 // rounded: numbers are CGAL's lazy ones, intervals that become rationals where an interval cannot tell.
 #pragma once
 
@@ -53,7 +53,7 @@ public:
     /// False only if no inner position of the receiver is between two passages. In double.
     [[nodiscard]] bool may_cut(const Passage& a, const Passage& b) const;
 
-    /// What is between the receiver and the light, and the receiver itself.
+    /// The space between the receiver and the light, and the receiver itself.
     [[nodiscard]] BoxTree::Region towards_light() const;
     [[nodiscard]] BoxTree::Region itself() const;
 

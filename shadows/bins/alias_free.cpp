@@ -1,12 +1,8 @@
 // Alias-free shadows: surface points binned in the light's image, every triangle against the points in its bins
-// (binned_shadows.h).
+// (binned_shadows.h, which names the papers).
 //
 //     build       the triangles that block, in groups of eight that are next to one another
 //     visibility  bins the points that ask, and tests the triangles against those in the bins that they cover
-//
-// This work is based on:
-// Timo Aila, Samuli Laine. Alias-Free Shadow Maps. 2004
-// Gregory Johnson, Juhyun Lee, Christopher Burns, William Mark. The Irregular Z-Buffer. 2005
 #include "umbra/shadows/bins/binned_shadows.h"
 #include "umbra/shadows/method.h"
 
@@ -20,18 +16,14 @@ struct Triangles final : Built {
     const BinnedShadows shadows;
 };
 
-class AliasFree final : public Method {
+class AliasFree final : public MethodWith<NoOptions, Triangles> {
 public:
-    explicit AliasFree(const Settings&) {}  // it has no parameters
+    explicit AliasFree(const Settings& settings) : MethodWith(settings) {}
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only)
             return {How::not_at_all, "A point is in a triangle's shadow or not: no area lights."};
         return {How::exactly, "Signs in floats with a proven bound, and by exact predicates where it is too wide."};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Triangles>(scene, facts);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -45,8 +37,7 @@ public:
 
 }  // namespace
 
-extern const MethodInfo alias_free;
-const MethodInfo alias_free{
+extern const MethodInfo alias_free{
     .name  = "alias_free",
     .title = "Alias-free shadows",
     .paper =

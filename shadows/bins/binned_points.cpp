@@ -1,4 +1,4 @@
-#include "umbra/shadows/bins/binned_points.h"
+#include "umbra/shadows/bins/point_bins.h"
 
 #include <algorithm>
 #include <array>
@@ -120,7 +120,7 @@ public:
     }
 
 private:
-    /// What some points have besides bins.
+    /// The results for some points besides bins.
     struct Unbinned {
         std::vector<std::uint32_t> without{};
         vec3 reach{0};
@@ -138,7 +138,7 @@ private:
         float reach[3][kLanes] = {};
         for (std::size_t k = 0; k < which.size(); k += kLanes) {
             const std::size_t count = std::min<std::size_t>(kLanes, which.size() - k);
-            // Eight of a raster are mostly of two rows, and what follows in memory is of other tiles.
+            // Eight of a raster are mostly of two rows, and the next in memory are of other tiles.
             if (k + 8 * kLanes + 2 < which.size())
                 for (const std::size_t ahead : {k + 8 * kLanes, k + 8 * kLanes + 2}) {
                     __builtin_prefetch(&points_.triangle[which[ahead]]);

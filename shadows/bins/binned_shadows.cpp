@@ -6,17 +6,13 @@
 #include <bit>
 #include <mutex>
 #include <optional>
-#include <utility>
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/render/facing.h"
-#include "umbra/core/scene/topology.h"
-#include "umbra/shadows/bins/binned_points.h"
+#include "umbra/shadows/bins/point_bins.h"
 #include "umbra/shadows/bins/shadow_planes.h"
-#include "umbra/shadows/geometry/coherent_order.h"
 #include "umbra/shadows/geometry/exact_contacts.h"
-#include "umbra/shadows/geometry/exact_segment.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 
 namespace umbra {
 namespace {
@@ -31,11 +27,6 @@ constexpr std::size_t kAhead = 4;
 
 /// Blocks that are enough for several threads.
 constexpr std::size_t kMany = 8192;
-
-/// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
-bool blocks(const Scene& scene, TriangleId t) {
-    return scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
-}
 
 }  // namespace
 
@@ -54,7 +45,7 @@ struct BinnedShadows::Group {
     }
 };
 
-/// What is found, and kept for its memory.
+/// Results of a search, kept for their memory.
 struct BinnedShadows::Search {
     PointBins::Start start{};
     std::vector<PointBins::Found> found{};
@@ -88,8 +79,8 @@ Met meet_exactly(const Scene& scene, const Light& light, TriangleId t, const Poi
     for (unsigned rest = unsure; rest != 0; rest &= rest - 1) {
         const auto lane       = static_cast<std::size_t>(std::countr_zero(rest));
         const std::uint32_t i = block.index[lane];
-        const ExactPoint point(scene, points.triangle[i], points.u[i], points.v[i]);
-        const auto meeting = Segment(point, light).meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
+        const ExactPoint point(scene, points, i);
+        const auto meeting = Segment(point, light).meeting(scene, t);
         if (meeting == Segment::Meeting::crosses) met.crossed |= 1u << lane;
         if (meeting == Segment::Meeting::touches) met.touched |= 1u << lane;
     }
@@ -108,7 +99,7 @@ unsigned lanes_on(const Block& block, TriangleId t) {
 
 BinnedShadows::BinnedShadows(const Scene& scene) : scene_(scene), casts_(scene.triangles.size()) {
     parallel_ranges(casts_.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t t = begin; t < end; ++t) casts_[t] = blocks(scene, static_cast<TriangleId>(t)) ? 1 : 0;
+        for (std::size_t t = begin; t < end; ++t) casts_[t] = occludes(scene, static_cast<TriangleId>(t)) ? 1 : 0;
     });
     if (scene.triangles.empty()) return;
     order_ = coherent_order(scene, casts_);
@@ -180,11 +171,11 @@ void BinnedShadows::each_next_to_light(Picture& picture, const PointBatch& point
         std::vector<Touch> touches;
         for (std::size_t k = begin; k < end; ++k) {
             const std::uint32_t i = picture.asking.next_to_light[k];
-            const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
+            const ExactPoint point(scene_, points, i);
             const Segment segment(point, *picture.light);
             for (TriangleId t = 0; t < casts_.size(); ++t) {
                 if (casts_[t] == 0 || t == points.triangle[i]) continue;
-                const auto m = segment.meeting(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2));
+                const auto m = segment.meeting(scene_, t);
                 if (m == Segment::Meeting::touches) touches.emplace_back(i, t);
                 if (m != Segment::Meeting::crosses) continue;
                 crossed(i, t);
@@ -195,8 +186,8 @@ void BinnedShadows::each_next_to_light(Picture& picture, const PointBatch& point
     });
 }
 
-/// Points that are touched and of which asks(i): calls met(i, t, together) with the first triangle that touches each,
-/// and with what all that do make together.
+/// Calls met(i, t, together) for the touched points with asks(i): t is the first triangle that touches point i,
+/// together the contacts of all that do.
 template <class Asks, class Met>
 void BinnedShadows::each_touched(Picture& picture, const PointBatch& points, const Asks& asks, const Met& met) const {
     std::vector<Touch>& touches = picture.touches;
@@ -209,22 +200,19 @@ void BinnedShadows::each_touched(Picture& picture, const PointBatch& points, con
     parallel_ranges(first.size(), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t f = begin; f < end; ++f) {
             const std::uint32_t i = touches[first[f]].first;
-            const ExactPoint point(scene_, points.triangle[i], points.u[i], points.v[i]);
+            const ExactPoint point(scene_, points, i);
             const Segment segment(point, *picture.light);
-            Contacts contacts(segment);
-            for (std::size_t k = first[f]; k < touches.size() && touches[k].first == i; ++k) {
-                const TriangleId t = touches[k].second;
-                contacts.add(scene_.vertex(t, 0), scene_.vertex(t, 1), scene_.vertex(t, 2), vec3(0));
-            }
-            met(i, touches[first[f]].second, contacts.together());
+            std::optional<Contacts> contacts;
+            for (std::size_t k = first[f]; k < touches.size() && touches[k].first == i; ++k)
+                add_contact(contacts, segment, scene_, touches[k].second);
+            met(i, touches[first[f]].second, contacts->together());
         }
     });
 }
 
-/// Tests every triangle against the points that may be behind it. Calls crossed(i, t) where t hides point i.
-/// `once`: points that are hidden already need not be tested again. Then triangles that face the light go first: what
-/// is behind a closed surface is hidden by them, and the others, which are behind the points that are still lit, find
-/// few.
+/// Tests every triangle against the points that may be behind it. Calls crossed(i, t) where t hides point i. `once`:
+/// hidden points are not tested again. Then triangles that face the light go first: they hide all points behind a
+/// closed surface, and the others, which are behind the points that are still lit, find few.
 template <class Crossed>
 void BinnedShadows::cast_all(Picture& picture, const PointBatch& points, const Crossed& crossed, bool once) const {
     std::vector<std::uint8_t> later(eights_.size());
@@ -263,7 +251,7 @@ BinnedShadows::Group BinnedShadows::group(std::size_t g, const Picture& picture)
     return made;
 }
 
-/// Of groups that follow one another: their searches begin together.
+/// For groups that follow one another: their searches begin together.
 template <class Crossed>
 void BinnedShadows::cast_groups(std::span<const Group> groups, Picture& picture, const PointBatch& points,
                                 const Crossed& crossed, bool once, Search& search) const {

@@ -34,8 +34,8 @@ public:
     /// points ask the light. Exact. From any number of threads.
     void visibility(const PointBatch& points, LightId light, Visibility out) const;
 
-    /// Of the triangles that a point's segment crosses, the one of the lowest number; where there is none, of those
-    /// that it touches and that block together; kNoTriangle where the point is lit.
+    /// The triangle of the lowest number that a point's segment crosses; where there is none, that of those that it
+    /// touches and that block together; kNoTriangle where the point is lit.
     void blame(const PointBatch& points, LightId light, std::span<TriangleId> blockers) const;
 
     [[nodiscard]] std::size_t memory_bytes() const {
@@ -43,7 +43,7 @@ public:
     }
 
 private:
-    using Touch = std::pair<std::uint32_t, TriangleId>;  ///< a point's number, and what its segment touches
+    using Touch = std::pair<std::uint32_t, TriangleId>;  ///< a point's number, and a triangle that its segment touches
     struct Picture;
     struct Group;
     struct Search;

@@ -19,12 +19,12 @@ constexpr double kRounding = 0x1p-53;
 constexpr double kApart = 4;
 dvec2 middle(int face) { return {kApart * face, 0}; }
 
-/// Points that are nearer to the light than this share of their coordinates have places that are off by more than
-/// kMargin / 4: positions are off by a few roundings of these coordinates.
+/// Points nearer to the light than this fraction of their coordinates have places with an error above kMargin / 4:
+/// positions have errors of a few roundings of these coordinates.
 constexpr double kNear = 2e-6;
 
-/// Triangles that come nearer to the light than this share of their size, as seen from it, are not cut: corners of the
-/// outline are off by a few roundings of that size, which must stay far below kMargin of their distance.
+/// Triangles nearer to the light than this fraction of their size, as seen from it, are not cut: corners of the outline
+/// have errors of a few roundings of that size, which must stay far below kMargin of their distance.
 constexpr double kNearTriangle = 1e-5;
 
 double size(dvec3 v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }

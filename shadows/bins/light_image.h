@@ -13,7 +13,7 @@
 
 namespace umbra::bins {
 
-/// A rectangle of the image. Of a triangle `depth` is the least of what lies in it, of points the largest.
+/// A rectangle of the image. `depth`: the least of a triangle in it, the largest of points.
 struct Extent {
     float low_u = 0, high_u = 0, low_v = 0, high_v = 0;
     float depth = 0;
@@ -25,14 +25,14 @@ struct Extent {
           high_v(static_cast<float>(high.y)),
           depth(static_cast<float>(at)) {}
 
-    /// Of triangles: what adds nothing.
+    /// For triangles: the extent that adds nothing.
     [[nodiscard]] static Extent nothing() {
         constexpr float far = std::numeric_limits<float>::max();
         Extent e;
         e.low_u = e.low_v = e.depth = far, e.high_u = e.high_v = -far;
         return e;
     }
-    /// Of triangles: becomes that around both.
+    /// For triangles: becomes the extent around both.
     void add(const Extent& e) {
         low_u = std::min(low_u, e.low_u), high_u = std::max(high_u, e.high_u);
         low_v = std::min(low_v, e.low_v), high_v = std::max(high_v, e.high_v);
@@ -74,7 +74,7 @@ public:
     /// Corners of eight triangles, [corner][axis][lane].
     using Corners = double[3][3][kLanes];
 
-    /// Eight points of triangles. Places are off by far less than what extents are larger than their triangles.
+    /// Eight points of triangles. Places have errors far below the margins of extents.
     struct Places {
         double x[kLanes], y[kLanes], z[kLanes];  ///< position, world space
         float u[kLanes], v[kLanes];              ///< those of the faces do not overlap
@@ -84,12 +84,12 @@ public:
     /// The points that have weights `u` and `v` of their triangles' second and third corners.
     void places(const Corners& corners, const float (&u)[kLanes], const float (&v)[kLanes], Places& to) const;
 
-    /// Covers all that the triangle covers of the face of a position, and a little more. Nothing where it surely covers
-    /// nothing.
+    /// Around the part of a position's face that the triangle covers, and a little more; nothing where it surely covers
+    /// none.
     [[nodiscard]] std::optional<Extent> extent(int face, const std::array<dvec3, 3>& corners) const;
 
-    /// Of the triangles that lie in one face, so far from its border that they cover nothing of any other: their
-    /// extents; the others are empty. Returns one bit for each of these triangles.
+    /// The extents of the triangles that lie in one face, so far from its border that they cover no part of another,
+    /// and one bit for each of these; the other extents are empty.
     [[nodiscard]] unsigned extents(const Corners& corners, Extents& to) const;
 
     /// Which of eight triangles are wound counterclockwise as the light sees them, and which clockwise: one bit each,

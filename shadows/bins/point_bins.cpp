@@ -218,7 +218,7 @@ PointBins::PointBins(std::size_t tiles, const std::function<void(std::size_t, Ti
 
 namespace {
 
-/// Which of eight rectangles share a part of an extent, one bit each: those of which `depths` says so.
+/// Which of eight rectangles overlap an extent and have depths(their depth): one bit each.
 template <class Depths>
 unsigned sharing(const Extents& all, const Extent& one, const Depths& depths) {
     unsigned bits = 0;

@@ -1,10 +1,6 @@
-// Surface points in bins of eight that are next to one another, and a tree over the bins by where they are in a light's
-// image: what a triangle may hide is found in it. Points come in tiles, in which they are sorted: where the points of a
-// tile are next to one another, as pixels are, all of them need not be.
-//
-// This work is based on:
-// Timo Aila, Samuli Laine. Alias-Free Shadow Maps. 2004
-// Gregory Johnson, Juhyun Lee, Christopher Burns, William Mark. The Irregular Z-Buffer. 2005
+// Surface points in bins of eight that are next to one another, and a tree over the bins by their places in a light's
+// image, in which the points that a triangle may hide are found. Points come in tiles and are sorted within them: where
+// the points of a tile are next to one another, as pixels are, no other order is needed.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +12,7 @@
 
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/raw_vector.h"
+#include "umbra/core/render/points.h"
 #include "umbra/shadows/bins/light_image.h"
 
 namespace umbra::bins {
@@ -37,7 +34,7 @@ public:
     }
 
 private:
-    /// What is smaller has no order that matters, and a scale that may not be finite.
+    /// Smaller sides have no order that matters, and a scale that may not be finite.
     static float scale(float side) { return side > 1e-30f ? 65535 / side : 0; }
 
     float low_u_, low_v_, scale_u_, scale_v_;
@@ -60,7 +57,7 @@ class PointBins {
 public:
     static constexpr std::size_t kTile = 4096;  ///< points
 
-    /// A place rounded to float. Rounding keeps an order, so that what lies in an extent lies in the rounded extent.
+    /// A place rounded to float. Rounding keeps an order: places in an extent lie in the rounded extent.
     struct Entry {
         float x, y, z;  ///< less the centre
         float u, v, depth;
@@ -126,7 +123,7 @@ public:
     };
 
     PointBins() = default;
-    /// Bins the points of tiles 0 to `tiles` - 1. `points` adds those of a tile to what it gets, which is empty; it is
+    /// Bins the points of tiles 0 to `tiles` - 1. `points` adds those of a tile to its argument, which is empty; it is
     /// called once for each, from any thread.
     PointBins(std::size_t tiles, const std::function<void(std::size_t tile, Tile& to)>& points);
 
@@ -156,7 +153,7 @@ public:
     struct Found {
         std::uint32_t block, triangles;
     };
-    /// Where searches for what is near some place begin: at nodes of the tree that are next to it.
+    /// The nodes at which searches for points near some place begin.
     class Start {
         friend class PointBins;
         std::size_t level = 0;
@@ -166,8 +163,8 @@ public:
     /// Where searches in the extent of triangles, or in parts of it, begin.
     void start(const Extent& around, Start& to) const;
 
-    /// Appends what is behind those of eight triangles whose bits are in `which`. A block may come more than once, each
-    /// time for other triangles.
+    /// Appends the blocks behind those of eight triangles whose bits are in `which`. A block may come more than once,
+    /// each time for other triangles.
     void find(const Extents& triangles, unsigned which, const Start& start, std::vector<Found>& to) const;
     void find(const Extents& triangles, unsigned which, std::vector<Found>& to) const;
 
@@ -175,7 +172,6 @@ private:
     static constexpr std::size_t kFaces      = 6;
     static constexpr std::size_t kTileBlocks = kTile / kLanes + 64;  ///< a few more than full ones
 
-    class Sorter;
     class Filler;
     template <class BoxOf>
     void add_levels(std::size_t count, const BoxOf& box_of);
@@ -193,5 +189,18 @@ private:
     RawVector<std::uint32_t> order_;          ///< blocks, those next to one another in the light's image together
     std::vector<RawVector<Extents>> levels_;  ///< boxes of eight blocks of order_, of eight of these, up to one
 };
+
+/// The points of a batch that ask a light.
+struct BinnedPoints {
+    PointBins bins{};
+    std::vector<std::uint32_t> next_to_light{};  ///< points without a place in the image
+    dvec3 reach{0};                              ///< the largest magnitude of each coordinate, less the centre
+    bool sorted = false;                         ///< all of them, not those of each tile alone
+};
+
+/// Tiles of a raster are binned as they are, unless they overlap in the light's image as leaves of a tree do; then, and
+/// without a raster, points are sorted first. `centre`: subtracted from positions in bins.
+[[nodiscard]] BinnedPoints bin_points(const Scene& scene, const PointBatch& points, LightId light,
+                                      const LightImage& image, dvec3 centre);
 
 }  // namespace umbra::bins

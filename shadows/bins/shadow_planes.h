@@ -1,5 +1,5 @@
-// The shadows of eight triangles as four planes each, in floats with a bound on what rounding does: a point is in a
-// shadow, is outside, or the bound cannot tell.
+// The shadows of eight triangles as four planes each, in floats with a bound on their rounding: a point is in a shadow,
+// is outside, or the bound cannot tell.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace umbra::bins {
 /// above 1 is inside, below -1 outside.
 class ShadowPlanes {
 public:
-    /// Of triangles with these corners, less the bins' centre. `turn`: +1 where a triangle's winding faces away from
+    /// `corners`: of the triangles, less the bins' centre. `turn`: +1 where a triangle's winding faces away from
     /// the light, -1 where it faces the light; 0 where its plane holds the light, so that it hides nothing and may be
     /// touched: a lane outside is away from that plane, and none is inside. `travel`: how light travels to the corners,
     /// any length. `reach`: the largest magnitude of each coordinate of the points that are asked.

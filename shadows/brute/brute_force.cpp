@@ -1,7 +1,6 @@
-// Brute force: every surface point against every triangle. No tree, no map, no cleverness: the cost is points times
-// triangles, which is what every other method saves. Short enough to be copied as the start of a new method. Points
-// where the sign of a number in double may be due to rounding are decided by the exact segment
-// (geometry/exact_sight.h), which a method that claims to_rounding can ask wherever it is in doubt.
+// Brute force: every surface point against every triangle, in points times triangles steps. Short enough to be copied
+// as the start of a new method. Points where rounding may have made the sign of a number are decided by the exact
+// segment (geometry/exact_sight.h), which a method that claims to_rounding can ask wherever it is in doubt.
 //
 // This work is based on:
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
@@ -28,19 +27,12 @@ struct Options {
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::samples>({.name        = "samples",
-                                  .doc         = "Segments from a point to an area light; other lights take one.",
-                                  .unit        = "segments a point",
-                                  .phase       = Phase::visibility,
-                                  .min         = 1,
-                                  .max         = 4096,
-                                  .sweep       = "4|16|64",
-                                  .area_lights = true}),
-    parameter<&Options::max_triangles>({.name  = "max_triangles",
-                                        .doc   = "Scenes of more triangles are not served: a picture would take hours.",
-                                        .phase = Phase::build,
-                                        .min   = 1,
-                                        .max   = 50000000}),
+    parameter<&Options::samples>(
+        "samples", "Segments from a point to an area light; other lights take one.",
+        {.unit = "segments a point", .min = 1, .max = 4096, .sweep = "4|16|64", .area_lights = true}),
+    parameter<&Options::max_triangles>("max_triangles",
+                                       "Scenes of more triangles are not served: a picture would take hours.",
+                                       {.phase = Phase::build, .min = 1, .max = 50000000}),
 };
 
 /// A sign, -1 or 1; open where rounding may have made it.
@@ -49,15 +41,15 @@ struct Sign {
     bool is_open;
 };
 
-/// Of a product of factors that are known up to some roundings of `size`; `magnitude`: of the product without one of
-/// the factors, which is `size` at most.
+/// Sign of a product of factors that are known up to some roundings of `size`; `magnitude`: that of the product without
+/// one of the factors, which is `size` at most.
 Sign sign_of(double value, double magnitude, double size) {
     return {value > 0 ? 1 : -1, !(std::abs(value) > 0x1p-46 * size * magnitude)};
 }
 
 /// On which side the ray p + t d passes the edge from a to b. Both triangles of a shared edge compute the same number.
-/// Where that is 0, the side is that of a ray turned by a little, the same for all edges: a ray through an edge inside a
-/// surface meets one of its triangles, not none or two.
+/// Where that is 0, the side is that of a ray turned by a little, the same for all edges: a ray through an edge inside
+/// a surface meets one of its triangles, not none or two.
 Sign side_of_edge(dvec3 p, dvec3 d, dvec3 a, dvec3 b, double size) {
     const bool swapped = std::tie(b.x, b.y, b.z) < std::tie(a.x, a.y, a.z);
     if (swapped) std::swap(a, b);
@@ -74,8 +66,8 @@ struct Crossing {
     bool is_open;  ///< rounding may have made it one, or none
 };
 
-/// Of the segment p + t d, 0 < t < 1, or the ray to infinity, with the inside of the triangle. No number is larger than
-/// `size`.
+/// Whether the segment p + t d, 0 < t < 1, or the ray to infinity crosses the inside of the triangle. No number is
+/// larger than `size`.
 Crossing crossing(dvec3 p, dvec3 d, bool infinite, dvec3 a, dvec3 b, dvec3 c, double size) {
     const dvec3 n     = glm::cross(b - a, c - a);
     const double area = sum_of_magnitudes(b - a) * sum_of_magnitudes(c - a);
@@ -92,7 +84,10 @@ Crossing crossing(dvec3 p, dvec3 d, bool infinite, dvec3 a, dvec3 b, dvec3 c, do
 
 /// Triangles that take any of the light that meets them.
 struct Occluders final : Built {
-    Occluders(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), sight(of) {}
+    Occluders(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), sight(of) {
+        for (TriangleId t = 0; t < scene.triangles.size(); ++t)
+            if (scene.lets_through(t) != vec3(1)) triangles.push_back(t);
+    }
     [[nodiscard]] std::size_t memory_bytes() const override {
         return triangles.size() * sizeof(TriangleId) + sight.memory_bytes();
     }
@@ -100,7 +95,7 @@ struct Occluders final : Built {
     const ExactSight sight;  ///< for points that rounding leaves open
 };
 
-class BruteForce final : public MethodWith<Options> {
+class BruteForce final : public MethodWith<Options, Occluders> {
 public:
     explicit BruteForce(const Settings& settings) : MethodWith(settings) {}
 
@@ -114,13 +109,6 @@ public:
     }
 
     [[nodiscard]] bool multiplies() const override { return true; }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        auto occluders = std::make_unique<Occluders>(scene, facts);
-        for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-            if (scene.lets_through(t) != vec3(1)) occluders->triangles.push_back(t);
-        return occluders;
-    }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
         const PointBatch& points = looked.points;
@@ -146,15 +134,11 @@ public:
     }
 
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const PointBatch& points = looked.points;
-        const int samples        = samples_of(aimed.source());
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                blockers[i] = kNoTriangle;
-                if (!points.asks(aimed.light, i)) continue;
-                for (int k = 0; k < samples && blockers[i] == kNoTriangle; ++k)
-                    blockers[i] = first_blocker(aimed, segment(aimed, points, i, k));
-            }
+        blame_each(aimed, looked, blockers, [&](std::size_t i) {
+            TriangleId blocker = kNoTriangle;
+            for (int k = 0; k < samples_of(aimed.source()) && blocker == kNoTriangle; ++k)
+                blocker = first_blocker(aimed, segment(aimed, looked.points, i, k));
+            return blocker;
         });
     }
 
@@ -198,12 +182,7 @@ private:
         return s;
     }
 
-    static double size_of(const Scene& scene, TriangleId t) {
-        return sum_of_magnitudes(dvec3(scene.vertex(t, 0))) + sum_of_magnitudes(dvec3(scene.vertex(t, 1))) +
-               sum_of_magnitudes(dvec3(scene.vertex(t, 2)));
-    }
-
-    /// With triangle t. What lies in the plane of the point's own triangle, a copy of it, say, hides nothing.
+    /// With triangle t. A triangle in the plane of the point's own, a copy of it, say, hides nothing.
     [[nodiscard]] static Crossing meeting(const Scene& scene, TriangleId t, const Segment& s) {
         if (t == s.own) return {false, false};
         const Crossing found = crossing(s.p, s.d, s.infinite, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),
@@ -238,8 +217,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo brute_force;
-const MethodInfo brute_force{
+extern const MethodInfo brute_force{
     .name  = "brute_force",
     .title = "Brute force",
     .paper = "Arthur Appel, Some Techniques for Shading Machine Renderings of Solids, 1968",

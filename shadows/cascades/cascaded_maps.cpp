@@ -1,21 +1,16 @@
 // Cascaded shadow maps: the view of the camera is split by depth, and each part has a shadow map of its own, so that
 // texels are small where pixels are.
 //
-//   build       what casts (BuiltCasters)
-//   aim         what casts, as the light sees it, and the window that holds it; other lights than directional ones:
+//   build       the casters (BuiltCasters)
+//   aim         the casters as the light sees them, and the window that holds them; other lights than directional ones:
 //               one map or a cube, drawn (LightViews)
-//   look        the camera; where depths of what is visible are split and the points have no picture, one is traced
-//               (SeenPicture)
+//   look        the camera; where visible depths are split and the points have no picture, one is traced (SeenPicture)
 //   visibility  splits the depths that the camera sees, fits a window to each part, draws the maps that some point
 //               needs, and compares each point with the map of its part
 // No map of a camera is kept from one call to the next: a camera that moves draws all maps again, and the times say so.
 //
-// This work is based on:
+// This work is based on the papers in cascades.h, and on:
 // Lance Williams. Casting Curved Shadows on Curved Surfaces. 1978
-// Wolfgang Engel. Cascaded Shadow Maps. 2006
-// Fan Zhang, Hanqiu Sun, Leilei Xu, Lee Kit Lun. Parallel-Split Shadow Maps for Large-Scale Virtual Environments. 2006
-// Michal Valient. Stable Rendering of Cascaded Shadow Maps. 2008 (stable)
-// Andrew Lauritzen, Marco Salvi, Aaron Lefohn. Sample Distribution Shadow Maps. 2011 (depth_range=visible)
 #include "umbra/shadows/cascades/cascaded_maps.h"
 
 #include <algorithm>
@@ -34,55 +29,39 @@ namespace {
 using Options = CascadedMapsOptions;
 
 const std::vector<Parameter> kCascadeParameters{
-    parameter<&Options::cascades>({.name  = "cascades",
-                                   .doc   = "Parts that the view of a directional light's points is split into; each "
-                                            "has a map.",
-                                   .unit  = "maps",
-                                   .phase = Phase::aim,  // whose memory counts them
-                                   .min   = 1,
-                                   .max   = 8}),
+    parameter<&Options::cascades, Options>(
+        "cascades", "Parts that the view of a directional light's points is split into; each has a map.",
+        {.unit = "maps", .phase = Phase::aim, .min = 1, .max = 8}),  // aim counts their memory
     resolution_parameter<Options>("Texels along each side of a map; of other lights, too: a cube has six.",
                                   "256|512|1024|2048|4096"),
-    parameter<&Options::splits>({.name  = "splits",
-                                 .doc   = "Depths at which parts meet. uniform: of equal depth; logarithmic: each part "
-                                          "ends at the same multiple of its beginning; practical: between the two.",
-                                 .phase = Phase::visibility,
-                                 .choices = "uniform|logarithmic|practical"}),
-    parameter<&Options::lambda>({.name  = "lambda",
-                                 .doc   = "splits=practical: the logarithmic depth's weight; the rest is the uniform "
-                                          "one's.",
-                                 .phase = Phase::visibility,
-                                 .min   = 0,
-                                 .max   = 1}),
+    parameter<&Options::splits, Options>(
+        "splits",
+        "Depths at which parts meet. uniform: of equal depth; logarithmic: each part ends at the same "
+        "multiple of its beginning; practical: between the two.",
+        {.choices = "uniform|logarithmic|practical"}),
+    parameter<&Options::lambda, Options>(
+        "lambda", "splits=practical: the logarithmic depth's weight; the rest is the uniform one's.",
+        {.min = 0, .max = 1}),
     parameter<&Options::depth_range>(
-        {.name    = "depth_range",
-         .doc     = "Depths that are split. scene: of all geometry within the view, seen or hidden; visible: of the "
-                    "points that the picture shows, to which the windows are fitted, too. Without a picture, visible "
-                    "traces one.",
-         .phase   = Phase::look,
-         .choices = "scene|visible"}),
-    parameter<&Options::window>(
-        {.name    = "window",
-         .doc     = "What a map covers. frustum: the part of the view, as far as something casts there; receivers: "
-                    "what lies in that part, and depths are split of what may be shaded alone. Not of stable windows.",
-         .phase   = Phase::visibility,
-         .choices = "receivers|frustum"}),
-    parameter<&Options::stable>({.name = "stable",
-                                 .doc =
-                                     "A map covers the sphere around its part of the view and moves in whole texels, "
-                                     "so that shadow edges stand still while the camera moves.",
-                                 .phase = Phase::visibility}),
-    parameter<&Options::blend>({.name = "blend",
-                                .doc  = "How much of a part's end fades into the next part; 0: each point has one map.",
-                                .unit = "depths of the part",
-                                .phase = Phase::visibility,
-                                .min   = 0,
-                                .max   = 1}),
-    parameter<&Options::filter>({.name    = "filter",
-                                 .doc     = "nearest: one comparison; pcf: the mean of several around the point.",
-                                 .phase   = Phase::aim,
-                                 .choices = "nearest|pcf",
-                                 .sweep   = "nearest|pcf"}),
+        "depth_range",
+        "Depths that are split. scene: of all geometry within the view, seen or hidden; visible: of the "
+        "points that the picture shows, to which the windows are fitted, too. Without a picture, "
+        "visible traces one.",
+        {.phase = Phase::look, .choices = "scene|visible"}),
+    parameter<&Options::window, Options>(
+        "window",
+        "What a map covers. frustum: the part of the view, as far as something casts there; receivers: what "
+        "lies in that part, and depths are split of what may be shaded alone. Not of stable windows.",
+        {.choices = "receivers|frustum"}),
+    parameter<&Options::stable, Options>(
+        "stable",
+        "A map covers the sphere around its part of the view and moves in whole texels, so that shadow edges "
+        "stand still while the camera moves."),
+    parameter<&Options::blend, Options>("blend",
+                                        "How much of a part's end fades into the next part; 0: each point has one map.",
+                                        {.unit = "depths of the part", .min = 0, .max = 1}),
+    parameter<&Options::filter>("filter", "nearest: one comparison; pcf: the mean of several around the point.",
+                                {.phase = Phase::aim, .choices = "nearest|pcf", .sweep = "nearest|pcf"}),
     radius_parameter<Options>("pcf: compares (2 radius + 1)^2 texels, which are wider in farther parts.", 16),
     bilinear_parameter<Options>(),
     bias_parameter<Options>(),
@@ -93,7 +72,7 @@ const std::vector<Parameter> kCascadeParameters{
 
 bool is_sun(const Light& light) { return light.kind == LightKind::directional; }
 
-/// What `aim` makes for a directional light; for others it makes LightViews.
+/// The result of `aim` for a directional light; for others it is LightViews.
 struct Sun final : Aimed {
     /// `bytes` are those of the cascades' maps, which `visibility` holds while it runs.
     Sun(const Built& from, LightId at, std::size_t bytes)
@@ -105,7 +84,7 @@ struct Sun final : Aimed {
     [[nodiscard]] std::size_t memory_bytes() const override { return window ? maps_bytes : 0; }
 
     const SelectedCasters casters;
-    std::optional<LightFrame> window;  ///< of all that casts, where something does
+    std::optional<LightFrame> window;  ///< of all casters, where there are some
     const std::size_t maps_bytes;
 };
 
@@ -168,20 +147,11 @@ std::optional<Cascades> CascadedMaps::fit(const Aimed& aimed, const Looked& look
         const auto sides = window_sides(*window, view);
         planes.assign(sides.begin(), sides.end());
     }
-    // Where the eye is too far away for rays, what is in view serves as well as what is seen.
+    // Where the eye is too far away for rays, the scene in view stands for the visible points.
     const PointBatch* const shown = options.depth_range == DepthRange::visible ? seen.shown() : nullptr;
     const auto receivers          = shown != nullptr ? receivers_of(scene, *shown, aimed.light, view, planes)
                                                      : receivers_in_view(scene, view, planes);
-    return fit_cascades({.cascades   = options.cascades,
-                         .splits     = options.splits,
-                         .lambda     = options.lambda,
-                         .window     = options.window,
-                         .stable     = options.stable,
-                         .blend      = options.blend,
-                         .resolution = options.resolution,
-                         .border     = room_.border,
-                         .headroom   = room_.headroom},
-                        *window, view, *receivers);
+    return fit_cascades({options, options.resolution, room_}, *window, view, *receivers);
 }
 
 /// Maps of one light, and which of them answer a point.
@@ -191,7 +161,7 @@ struct CascadedMaps::Lookups {
     std::vector<std::optional<MapView>> drawn{};  ///< the maps of `cascades`, the whole's last: those that are asked
 
     using Asked = FoundReceiver;  ///< its view is an index of `views` or of `drawn`
-    /// At most two maps, the second's share of the answer among them. None: nothing shades the point.
+    /// At most two maps, and the second one's weight in the answer. None: nothing shades the point.
     struct Answer {
         std::optional<Asked> first{}, second{};
         double share = 0;
@@ -323,8 +293,7 @@ Reason CascadedMaps::explain(const Aimed& aimed, const Looked& looked, std::size
     return reason;
 }
 
-extern const MethodInfo cascaded_maps;
-const MethodInfo cascaded_maps{
+extern const MethodInfo cascaded_maps{
     .name  = "cascaded_maps",
     .title = "Cascaded shadow maps",
     .paper =

@@ -5,7 +5,6 @@
 
 #include "umbra/shadows/cascades/cascades.h"
 #include "umbra/shadows/maps/light_views.h"
-#include "umbra/shadows/maps/map_options.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -14,14 +13,8 @@ enum class DepthRange : std::uint8_t { scene, visible };
 enum class CascadeFilter : std::uint8_t { nearest, pcf };
 
 /// The parameters; cascaded_maps.cpp and map_options.h document each.
-struct CascadedMapsOptions : ComparingOptions {
-    int cascades           = 4;
-    Splits splits          = Splits::practical;
-    double lambda          = 0.5;
+struct CascadedMapsOptions : ComparingOptions, SplitOptions {
     DepthRange depth_range = DepthRange::scene;
-    CascadeWindow window   = CascadeWindow::receivers;
-    bool stable            = false;
-    double blend           = 0;
     CascadeFilter filter   = CascadeFilter::nearest;
 };
 
@@ -32,8 +25,8 @@ public:
     [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override;
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override;
     [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override;
-    /// Of a directional light it fits and draws the cascades first, each time: that is what a moved camera costs.
-    /// The camera is that of the batch's raster; without one the scene's, with a picture of the scene's size.
+    /// For a directional light it fits and draws the cascades first, each time, as for a moved camera. The camera is
+    /// that of the batch's raster; without one the scene's, with a picture of the scene's size.
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override;
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override;
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override;

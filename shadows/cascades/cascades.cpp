@@ -21,7 +21,7 @@ LightExtents extents_of(const LightFrame& f) {
 /// Reaches over the window's border and in front of the first depth, as the maps of other lights do (LightViews).
 void add_room(LightFrame& frame, const CascadeOptions& options, double border) {
     frame.half /= 1 - 2 * border / options.resolution;
-    const double room = options.headroom * 2 * std::max(frame.half.x, frame.half.y) / options.resolution;
+    const double room = options.room.headroom * 2 * std::max(frame.half.x, frame.half.y) / options.resolution;
     frame.near        = std::min(frame.near, frame.far) - room;
     frame.far += 0.01 * (frame.far - frame.near);
     frame.reach = kInfinity;
@@ -60,7 +60,7 @@ Cascade window_of(const CascadeOptions& options, const LightFrame& casters, Ligh
     }
     dvec2& half = cascade.frame.half;
     half        = glm::max(half, dvec2(std::max(kLeastWindow * size, kNarrowest * std::max(half.x, half.y))));
-    add_room(cascade.frame, options, options.border);
+    add_room(cascade.frame, options, options.room.border);
     const dvec2 over = kHalfTexel * cascade.texel(options.resolution);
     cascade.low -= dvec3(over, std::max(over.x, over.y));
     cascade.high += dvec3(over, std::max(over.x, over.y));
@@ -75,7 +75,7 @@ Cascade stable_window(const CascadeOptions& options, const LightFrame& casters, 
     cascade.frame      = casters;
     const dvec2 centre = dvec2(casters.light_space(sphere.centre));
     cascade.frame.half = glm::min(casters.half, dvec2(sphere.radius));
-    add_room(cascade.frame, options, options.border + 1);  // and what snapping moves it
+    add_room(cascade.frame, options, options.room.border + 1);  // and the reach of snapping
     const dvec2 texel   = cascade.texel(options.resolution);
     const dvec2 snapped = glm::floor((centre - cascade.frame.half) / texel) * texel + cascade.frame.half;
     for (int axis = 0; axis < 2; ++axis) {
@@ -136,7 +136,7 @@ Cascades fit_cascades(const CascadeOptions& options, const LightFrame& casters, 
                       const Receivers& receivers) {
     Cascades all{.parts = {}, .whole = {}, .splits = {}, .view = view, .blend = options.blend};
     all.whole.frame = casters;
-    add_room(all.whole.frame, options, options.border);
+    add_room(all.whole.frame, options, options.room.border);
 
     MinMax range = receivers.depths();
     if (!(range.max > 0)) return all;

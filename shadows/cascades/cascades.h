@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "umbra/shadows/cascades/receivers.h"
+#include "umbra/shadows/maps/map_options.h"
 
 namespace umbra {
 
@@ -26,28 +27,30 @@ enum class Splits : std::uint8_t {
 /// 0 < near <= far, m >= 1; `lambda` is in [0, 1] and of use to `practical` alone.
 [[nodiscard]] std::vector<double> split_depths(Splits splits, double lambda, double near, double far, int m);
 
-/// What a cascade's window is fitted to.
+/// The contents of a cascade's window.
 enum class CascadeWindow : std::uint8_t {
-    receivers,  ///< what of the scene lies in the part of the view and may be shaded
+    receivers,  ///< the surfaces in the part of the view that may be shaded
     frustum     ///< the part of the view, whatever is in it
 };
 
-struct CascadeOptions {
+struct SplitOptions {
     int cascades         = 4;  ///< > 0
     Splits splits        = Splits::practical;
     double lambda        = 0.5;
     CascadeWindow window = CascadeWindow::receivers;
     bool stable          = false;  ///< windows hold the sphere about the part of the view, and move in whole texels
     double blend         = 0;      ///< of a cascade's depth: how much of its end is answered by the next one, too
-    int resolution       = 2048;   ///< texels a side of a map
-    double border        = 2;      ///< texels by which a map reaches over its window
-    double headroom      = 64;     ///< widths of a texel by which a bias may move points towards the light
+};
+
+struct CascadeOptions : SplitOptions {
+    int resolution = 2048;  ///< texels a side of a map
+    MapMargins room{};
 };
 
 /// One map's window, and where it answers.
 struct Cascade {
     LightFrame frame{};     ///< reaches without end; border and headroom included
-    dvec3 low{-kInfinity};  ///< bounds of what it answers, light space of `frame`; infinite where nothing casts beyond
+    dvec3 low{-kInfinity};  ///< bounds of its answers, light space of `frame`; infinite where no caster is beyond
     dvec3 high{kInfinity};
     bool casts = true;  ///< else nothing in it is shaded, and no map is needed
     /// Along x and y, world units.
@@ -55,8 +58,8 @@ struct Cascade {
     [[nodiscard]] bool answers(dvec3 p) const;
 };
 
-/// What bounds the points that can be shaded, as `planes` of receivers_in_view: the window of all that casts, in its
-/// own roll.
+/// The sides of the window of all casters, in its own roll, as `planes` of receivers_in_view: they bound the points
+/// that can be shaded.
 [[nodiscard]] std::array<dvec4, 4> window_sides(const LightFrame& casters, const View& view);
 
 /// The windows of one light for one camera.
@@ -77,9 +80,9 @@ struct Cascades {
     [[nodiscard]] Choice choose(dvec3 p) const;
 };
 
-/// Fits cascades to what `receivers` says the camera sees. `casters` is the light's view of all that casts, as
-/// fit_to_scene makes it; all windows have its roll, in which the floors and walls of most scenes lie along the texels:
-/// then also light that grazes them finds contacts where they are.
+/// Fits cascades to `receivers`. `casters` is the light's view of all casters, as fit_to_scene makes it; all windows
+/// have its roll, in which the floors and walls of most scenes lie along the texels: then light that grazes them, too,
+/// finds contacts where they are.
 ///
 /// The splits go from the least to the greatest depth; of a nearest depth below 1/10000 of the farthest, only the
 /// splits take notice as if it were that. `stable` rounds both to quarters of octaves, outwards, so that they stay

@@ -68,8 +68,7 @@ void add_point(LightExtents& to, const LightFrame& light, dvec3 p) {
 
 double distance(const dvec4& plane, dvec3 v) { return glm::dot(dvec3(plane), v) + plane.w; }
 
-/// A triangle, or what is left of one: corners relative to the eye, cut by at most 11 planes. Cuts do not depend on which
-/// corner comes first.
+/// A triangle cut by at most 11 planes: corners relative to the eye. Cuts do not depend on which corner comes first.
 using ClippedTriangle = ClippedPolygon<dvec3, 16>;
 
 void cut_by(ClippedTriangle& part, const dvec4& plane) {

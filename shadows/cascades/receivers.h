@@ -1,4 +1,4 @@
-// What a camera sees between two depths, and what of a scene lies there: cascades are fitted to it.
+// The surfaces that a camera sees between two depths: cascades are fitted to them.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ public:
     /// is nowhere negative.
     [[nodiscard]] std::array<dvec4, 5> sides() const;
 
-    /// Of the part from one depth to another, world space.
+    /// Corners of the part from one depth to another, world space.
     [[nodiscard]] std::array<dvec3, 8> corners(double from, double to) const;
 
     struct Sphere {
@@ -55,7 +55,7 @@ public:
     virtual ~Receivers() = default;
     /// From the least to the greatest depth; empty where there is nothing.
     [[nodiscard]] virtual MinMax depths() const = 0;
-    /// One entry a slice, of what lies in it.
+    /// One entry a slice.
     [[nodiscard]] virtual std::vector<LightExtents> extents(std::span<const DepthSlice> slices,
                                                             const LightFrame& light) const = 0;
 };

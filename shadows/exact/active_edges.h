@@ -15,9 +15,22 @@
 #include <utility>
 #include <vector>
 
-#include "umbra/shadows/exact/edge_lanes.h"
+#include "umbra/core/base/lanes.h"
 
 namespace umbra::exact_visibility {
+
+// Steps of the sweep for all edges of a row in double, several at a time. Lists are filled up to a multiple of kLanes.
+
+/// Edges by their lower and upper ends.
+struct EdgeLists {
+    const double *low_x, *low_y, *width, *height, *high_x, *high_y;
+};
+/// x[k] becomes x of edge k at y, for k < n, exact at its upper end. The lower end lies below y; `height` is not 0.
+void edges_at(const EdgeLists& edges, std::size_t n, double y, double* x);
+/// The least of n values, n > 0.
+[[nodiscard]] double least_of(const double* values, std::size_t n);
+/// Appends those of n that end at `y` or below.
+void ends_at(const double* high_y, std::size_t n, double y, std::vector<std::uint32_t>& ended);
 
 template <class T>
 struct PlanePoint {
@@ -38,7 +51,7 @@ struct SweptEdge {
     }
 };
 
-/// What is left of an edge.
+/// The layers and the light to the left of an edge.
 struct LeftOfEdge {
     int layers;
     bool inside;  ///< the light
@@ -53,7 +66,7 @@ template <class T>
 class ActiveEdges {
 public:
     using Edge = SweptEdge<T>;
-    using Slot = std::uint32_t;  ///< below size(); what an edge's values are found by
+    using Slot = std::uint32_t;  ///< below size(): the index of an edge's values
 
     void clear();
     [[nodiscard]] std::size_t size() const { return size_; }
@@ -71,7 +84,7 @@ public:
     /// An edge that begins in this row: in the place of one that ends where it begins, else at the far right. It must
     /// outlive the row.
     void begin(const Edge& edge);
-    /// Removes what has ended and is not continued.
+    /// Removes edges that have ended and are not continued.
     void remove_ended();
     /// The least height at which one ends; size() is not 0.
     [[nodiscard]] T next_end() const;
@@ -81,7 +94,7 @@ public:
 
     /// From left to right.
     [[nodiscard]] std::span<const Slot> order() const { return order_; }
-    /// Of order(): what is left of each, and, the last one, right of all. Of the row just above its bottom.
+    /// The left of each edge of order(), and at the end the right of all, just above the bottom of the row.
     [[nodiscard]] std::span<const LeftOfEdge> left() const { return left_; }
     /// Places in order(): edges with visible light to their left, and edges of the light.
     [[nodiscard]] std::span<const std::uint32_t> open() const { return open_; }

@@ -40,7 +40,7 @@ struct LightCorner {
     int cap = -1;
 };
 
-/// What is known of the light just within a chord.
+/// The state of the light just within a chord.
 enum class ChordState : std::uint8_t { absent, hidden, visible };
 
 /// A piece of the light between two heights; x on the left and on the right of it, below and above.
@@ -101,8 +101,8 @@ public:
     /// An edge from a to b, to whose left the plane is covered `change` times more than to its right. All edges are cut
     /// off at one line x = const left of the light: `a_cut`, `b_cut` say that the edge goes on beyond it.
     void add(Point a, Point b, int change, bool a_cut, bool b_cut) {
-        // Just right of that line, D grows by what lies to the left of an edge that comes in, and shrinks by what lies
-        // to the left of one that goes out.
+        // Just right of that line, D grows by the layers to the left of an edge that comes in, and shrinks by those to
+        // the left of one that goes out.
         if (a_cut) entries_.push_back({a.y, change});
         if (b_cut) entries_.push_back({b.y, -change});
         if (a.y < b.y)
@@ -127,11 +127,11 @@ public:
         for (const Edge& e : edges_) body(e.low, e.high);
     }
 
-    /// The area of the light where D is 0, given D at the far left of the lowest row. `chords[k]` becomes what the
-    /// light just within chord k is, and stays where the chord is not there. The second value
-    /// is the sum of the rows' heights times the edges and crossings in each: doubles are off by less than 16 roundings
-    /// of it. (An edge's x in a row is off by a few roundings. A crossing whose height is off by e leaves two edges in
-    /// the wrong order where they are that close, an area of e times their roundings.)
+    /// The area of the light where D is 0, given D at the far left of the lowest row. `chords[k]` becomes the state of
+    /// the light just within chord k, and stays where the chord is not there. The second value is the sum of the rows'
+    /// heights times the edges and crossings in each: doubles have an error below 16 roundings of it. (An edge's x in a
+    /// row has one of a few roundings. A crossing with an error e in its height leaves two edges in the wrong order
+    /// where they are that close, an area of e times their roundings.)
     /// Each uncovered part of a row goes to piece(Trapezoid), rounded.
     template <class Piece>
     [[nodiscard]] std::pair<double, double> uncovered(const Outline& light, int layers, std::span<ChordState> chords,
@@ -156,7 +156,7 @@ private:
     void keep_what_shows(LeftOfEdge left, const Keep& keep);
     template <class X, class Gap>
     T open_width(const X& x, const Gap& gap) const;
-    /// Of the row that is swept.
+    /// Bottom and top of the row that is swept.
     struct Row {
         const T &lo, &hi;
     };
@@ -167,7 +167,7 @@ private:
     template <class Add>
     double sweep(const std::vector<Edge>& edges, const Outline* light, LeftOfEdge at_left, const T& lowest,
                  const T& highest, const Add& add);
-    /// Of an edge that is part of a line, say, both ends go on.
+    /// `goes_on`: both ends do, as of an edge that is part of a line.
     template <class Shape>
     void cut_at_rim(const Edge& edge, bool goes_on = false);
     template <class Shape>
@@ -196,7 +196,7 @@ private:
     static constexpr std::size_t kManyStarts = 48;
 
     std::vector<Edge> edges_;
-    std::vector<Edge> inside_;  ///< what of them lies within the light's rim
+    std::vector<Edge> inside_;  ///< their parts within the light's rim
     std::vector<Start> starts_;
     std::vector<Entry> entries_;
     ActiveEdges<T> active_;
@@ -314,7 +314,7 @@ bool Covering<T>::find_crossings(const T& lo, const T& hi, std::size_t& all) {
     return any;
 }
 
-/// Calls keep(crossing) for those of pairs_ at which what is visible begins, ends or changes its edge. Others, under
+/// Calls keep(crossing) for those of pairs_ at which visible light begins, ends or changes its edge. Others, under
 /// occluders or beside the light, change nothing: edges go on in the order before, and D on either side of one is not 0
 /// whichever comes first. From bottom to top, so that the two are neighbours; where rounding has them in another order,
 /// all from there on are kept.
@@ -347,7 +347,7 @@ void Covering<T>::keep_what_shows(LeftOfEdge left, const Keep& keep) {
     }
 }
 
-/// What the light within a chord is, where one of the active edges is one.
+/// Marks the chords among the active edges as visible or hidden.
 template <class T>
 void Covering<T>::mark_chords(std::span<ChordState> chords) const {
     for (const std::uint32_t k : active_.of_light())
@@ -456,7 +456,7 @@ std::pair<double, double> Covering<T>::uncovered(const Outline& light, int layer
     return {area.value(), rounded};
 }
 
-/// Cuts an edge at the rim of the light: what is within goes to inside_, what is left of the light to entries_.
+/// Cuts an edge at the rim of the light: the part within goes to inside_, that left of the light to entries_.
 template <class T>
 template <class Shape>
 void Covering<T>::cut_at_rim(const Edge& edge, bool goes_on) {

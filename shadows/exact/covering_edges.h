@@ -88,7 +88,7 @@ Filtered<ClippedEdge<T>> clip_around_light(const Numerators<T>& a, const Numerat
 //
 //        b'----b         Move the ends of an edge from where they belong, a and b, to where they came to lie, a' and
 //       /     /          b'. The number of layers over a point changes only while an edge passes over it, so the area
-//      /     /           is wrong by no more than what all edges pass over. An edge whose ends move by at most delta
+//      /     /           is wrong by at most that under moving edges. An edge whose ends move by at most delta
 //     a'----a            in x and in y passes over less than 3 delta length + 8 delta^2. (Ends that are cut off around
 //                        the light move along their edge, too, but out there.)
 

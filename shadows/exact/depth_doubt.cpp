@@ -38,7 +38,7 @@ struct Disk {
     }
 
     enum class Place : std::uint8_t { before, in_doubt, beyond };
-    /// Of a point at d from p.
+    /// The place of a point at d from p.
     [[nodiscard]] Place place(const Entries& d) const {
         const double w   = glm::dot(d.value, to_centre.value) / squared;
         const double off = 2 * doubt + 4 * (d.error + (std::abs(w) + 1) * to_centre.error) / distance +

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kStep = 2 * kPi / DiskCaps::kChords;  ///< radians
 
-/// Radians and radii: far above the rounding of what touch() computes, far below a cap's height of 3e-4.
+/// Radians and radii: far above the rounding in touch(), far below a cap's height of 3e-4.
 constexpr double kSlack = 1e-6;
 
 }  // namespace

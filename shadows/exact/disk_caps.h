@@ -28,10 +28,10 @@ public:
     /// Leaves open the caps that the segment from (x0, y0) to (x1, y1) may touch.
     void touch(double x0, double y0, double x1, double y1);
 
-    /// What the sweep finds of the light just within each chord; `absent` where it does not meet the chord.
+    /// The light just within each chord, for the sweep to write; `absent` where it does not meet the chord.
     [[nodiscard]] std::span<ChordState> within_chords() { return state_; }
 
-    /// Of one cap, in a unit disk.
+    /// The area of one cap, in a unit disk.
     [[nodiscard]] static double cap_area();
     [[nodiscard]] bool is_open(int k) const { return open_[static_cast<std::size_t>(k)] != 0; }
     /// Visible in whole.
@@ -42,7 +42,7 @@ public:
     struct Area {
         double visible, open;
     };
-    /// Adds the caps to what is visible of the polygon.
+    /// Adds the caps to the visible area of the polygon.
     [[nodiscard]] Area with_caps(double polygon) const;
 
     /// Its corners, anticlockwise, inside the unit circle.

@@ -1,8 +1,6 @@
-#include "umbra/shadows/exact/edge_lanes.h"
-
-#include <algorithm>
-
+// The steps of the sweep in lanes (active_edges.h).
 #include "umbra/core/base/lanes.h"
+#include "umbra/shadows/exact/active_edges.h"
 
 namespace umbra::exact_visibility {
 namespace {

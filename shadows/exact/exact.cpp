@@ -2,8 +2,8 @@
 // all triangles against binned points (binned_shadows.h) with the same answers; of area lights by the part of the light
 // that no triangle covers as seen from there (exact_area.h).
 //
-//     build       what each triangle takes of the light, a tree of boxes, triangles in groups for the bins; where there
-//                 are area lights, the welded triangles and the edges that may be silhouette edges
+//     build       a tree of boxes, triangles in groups for the bins, which triangles take light; where there are area
+//                 lights, the welded triangles and the edges that may be silhouette edges
 //     aim         on which side of an area light's plane each vertex lies, and which triangles may pass through it
 //     visibility  the segment of each point in the tree, all triangles against the points in bins, or the sweep over
 //                 the silhouette edges before an area light
@@ -24,7 +24,6 @@
 #include "umbra/shadows/bins/binned_shadows.h"
 #include "umbra/shadows/exact/exact_area.h"
 #include "umbra/shadows/geometry/exact_contacts.h"
-#include "umbra/shadows/geometry/exact_segment.h"
 #include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/shadows/method.h"
 
@@ -43,32 +42,26 @@ struct Options {
 
 const std::vector<Parameter> kParameters{
     parameter<&Options::hard_lights>(
-        {.name  = "hard_lights",
-         .doc   = "Lights without an area, with the same answers. segments: from each point to the light, in a tree of "
-                  "boxes; bins: points in the light's image, every triangle against those behind it; auto: bins where "
-                  "there are at least half as many points as triangles.",
-         .phase = Phase::visibility,
-         .choices = "auto|segments|bins"}),
+        "hard_lights",
+        "Lights without an area, with the same answers. segments: from each point to the light, in a "
+        "tree of boxes; bins: points in the light's image, every triangle against those behind it; "
+        "auto: bins where there are at least half as many points as triangles.",
+        {.choices = "auto|segments|bins"}),
     parameter<&Options::arithmetic>(
-        {.name = "arithmetic",
-         .doc = "Area lights. filtered: floating point with a proven bound, and rationals where the bound is too wide; "
-                "rational: rationals throughout, for a few points.",
-         .phase       = Phase::build,
-         .choices     = "filtered|rational",
-         .area_lights = true}),
+        "arithmetic",
+        "Area lights. filtered: floating point with a proven bound, and rationals where the bound is too "
+        "wide; rational: rationals throughout, for a few points.",
+        {.phase = Phase::build, .choices = "filtered|rational", .area_lights = true}),
     parameter<&Options::measure>(
-        {.name        = "measure",
-         .doc         = "Which fraction of an area light S_j is. area: visible area over the light's area; irradiance: "
-                        "irradiance that arrives over irradiance without occluders, as radiosity and most renderers have it.",
-         .phase       = Phase::build,
-         .choices     = "area|irradiance",
-         .area_lights = true}),
+        "measure",
+        "Which fraction of an area light S_j is. area: visible area over the light's area; irradiance: "
+        "irradiance that arrives over irradiance without occluders, as radiosity and most renderers have it.",
+        {.phase = Phase::build, .choices = "area|irradiance", .area_lights = true}),
 };
 
-/// What a triangle takes of the light that meets it.
+/// The part of light that a triangle takes; one without an area has no inside to cross and bounds no shadow.
 enum class Takes : std::uint8_t { all, part, nothing };
 
-/// A triangle without area is no surface: it has no inside to cross and bounds no shadow.
 Takes taken_by(const Scene& scene, TriangleId t) {
     const vec3 passes = scene.lets_through(t);
     if (passes == vec3(1) || is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
@@ -109,7 +102,7 @@ public:
     [[nodiscard]] Segment::Meeting first_meeting(const Segment& segment, TriangleId own, TriangleId& last) const {
         using Meeting   = Segment::Meeting;
         const auto with = [&](TriangleId t) {
-            return t == own || takes_[t] != Takes::all ? Meeting::none : meeting(segment, t);
+            return t == own || takes_[t] != Takes::all ? Meeting::none : segment.meeting(scene, t);
         };
         if (last != kNoTriangle && with(last) == Meeting::crosses) return Meeting::crosses;
         Meeting met = Meeting::none;
@@ -122,16 +115,15 @@ public:
         return met;
     }
 
-    /// What arrives past all triangles, though the segment crosses none that blocks.
+    /// The light that arrives past all triangles, though the segment crosses none that blocks.
     [[nodiscard]] Contacts::Together passed(const Segment& segment, TriangleId own) const {
         dvec3 fraction(1);
         std::optional<Contacts> touched;
-        tree_.visit(segment.piece(), [&](TriangleId t) {
-            if (t == own || takes_[t] == Takes::nothing) return true;
-            const auto m = meeting(segment, t);
-            if (m == Segment::Meeting::crosses) fraction *= dvec3(scene.lets_through(t));
-            if (m == Segment::Meeting::touches) add(t, segment, touched);
-            return true;
+        visit_taking(segment, own, [&](TriangleId t, Segment::Meeting met) {
+            if (met == Segment::Meeting::crosses)
+                fraction *= dvec3(scene.lets_through(t));
+            else
+                add_contact(touched, segment, scene, t);
         });
         if (!touched) return {vec3(fraction), true};
         const Contacts::Together together = touched->together();
@@ -141,18 +133,13 @@ public:
     /// How many triangles that take light the segment crosses, and touches.
     [[nodiscard]] std::array<std::size_t, 2> count_met(const Segment& segment, TriangleId own) const {
         std::array<std::size_t, 2> count{};
-        tree_.visit(segment.piece(), [&](TriangleId t) {
-            if (t == own || takes_[t] == Takes::nothing) return true;
-            const auto met = meeting(segment, t);
-            count[0] += met == Segment::Meeting::crosses;
-            count[1] += met == Segment::Meeting::touches;
-            return true;
-        });
+        visit_taking(segment, own,
+                     [&](TriangleId, Segment::Meeting met) { ++count[met == Segment::Meeting::crosses ? 0 : 1]; });
         return count;
     }
 
-    /// What is crossed is decided exactly, and which of that is nearest in double. Where nothing is, the nearest of the
-    /// triangles that take light together though each is only touched.
+    /// Which triangles are crossed is decided exactly, and which of these is nearest in double. Where none is, the
+    /// nearest of the triangles that take light together though each is only touched.
     [[nodiscard]] TriangleId nearest_blocker(const Segment& segment, TriangleId own) const {
         struct Nearest {
             double distance     = std::numeric_limits<double>::infinity();
@@ -160,18 +147,14 @@ public:
         } crossed, touching;
         const BoxTree::Piece piece = segment.piece();
         std::optional<Contacts> touched;
-        tree_.visit(piece, [&](TriangleId t) {
-            if (t == own || takes_[t] == Takes::nothing) return true;
-            const auto m = meeting(segment, t);
-            if (m == Segment::Meeting::none) return true;
-            if (m == Segment::Meeting::touches) add(t, segment, touched);
-            Nearest& nearest = m == Segment::Meeting::crosses ? crossed : touching;
-            const dvec3 x(scene.vertex(t, 0)), y(scene.vertex(t, 1)), z(scene.vertex(t, 2));
+        visit_taking(segment, own, [&](TriangleId t, Segment::Meeting met) {
+            if (met == Segment::Meeting::touches) add_contact(touched, segment, scene, t);
+            Nearest& nearest      = met == Segment::Meeting::crosses ? crossed : touching;
+            const auto [x, y, z]  = corners_of(scene, t);
             const dvec3 n         = glm::cross(y - x, z - x);
             const double distance = std::abs(glm::dot(n, x - piece.from) / glm::dot(n, piece.direction));
             if (distance < nearest.distance || (distance == nearest.distance && t < nearest.triangle))
                 nearest = {distance, t};
-            return true;
         });
         if (crossed.triangle != kNoTriangle || !touched || touched->together().passed == vec3(1))
             return crossed.triangle;
@@ -179,12 +162,13 @@ public:
     }
 
 private:
-    [[nodiscard]] Segment::Meeting meeting(const Segment& segment, TriangleId t) const {
-        return segment.meeting(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
-    }
-    void add(TriangleId t, const Segment& segment, std::optional<Contacts>& touched) const {
-        if (!touched) touched.emplace(segment);
-        touched->add(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2), scene.lets_through(t));
+    /// Calls visit(t, meeting) for all triangles that take light, other than `own`, that the segment crosses or
+    /// touches.
+    template <class Visit>
+    void visit_taking(const Segment& segment, TriangleId own, const Visit& visit) const {
+        visit_met(
+            tree_, scene, segment, [&](TriangleId t) { return t != own && takes_[t] != Takes::nothing; },
+            [&](TriangleId t, Segment::Meeting met) { return visit(t, met), true; });
     }
 
     const std::vector<Takes> takes_;  ///< one a triangle
@@ -211,11 +195,7 @@ Light point_of(const Light& light, const ExactPoint& p, int k) {
     return point;
 }
 
-ExactPoint exact_point(const Scene& scene, const PointBatch& points, std::size_t i) {
-    return {scene, points.triangle[i], points.u[i], points.v[i]};
-}
-
-class Exact final : public MethodWith<Options> {
+class Exact final : public MethodWith<Options, Geometry> {
 public:
     explicit Exact(const Settings& settings) : MethodWith(settings) {}
 
@@ -245,10 +225,6 @@ public:
             "cannot be told of a round light, have a proven bracket."};
     }
 
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Geometry>(scene, facts);
-    }
-
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
         if (!is_area(built.scene.lights[light].kind)) return std::make_unique<Aimed>(built, light);
         return std::make_unique<AreaLight>(as<Geometry>(built), light);
@@ -266,19 +242,16 @@ public:
     /// The nearest of the triangles that the segment to the light crosses, or at a seam touches. For an area light, the
     /// segment to one of its points, the first of a fixed list that is occluded.
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const PointBatch& points = looked.points;
-        const auto& geometry     = as<Geometry>(aimed.built);
-        const Light& light       = aimed.source();
-        const bool has_area      = is_area(light.kind);
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                blockers[i] = kNoTriangle;
-                if (!points.asks(aimed.light, i)) continue;
-                const ExactPoint point = exact_point(aimed.scene(), points, i);
-                for (int k = 0; k < (has_area ? kPoints : 1) && blockers[i] == kNoTriangle; ++k)
-                    blockers[i] = geometry.nearest_blocker(Segment(point, has_area ? point_of(light, point, k) : light),
-                                                           points.triangle[i]);
-            }
+        const auto& geometry = as<Geometry>(aimed.built);
+        const Light& light   = aimed.source();
+        const bool has_area  = is_area(light.kind);
+        blame_each(aimed, looked, blockers, [&](std::size_t i) {
+            const ExactPoint point(aimed.scene(), looked.points, i);
+            TriangleId blocker = kNoTriangle;
+            for (int k = 0; k < (has_area ? kPoints : 1) && blocker == kNoTriangle; ++k)
+                blocker = geometry.nearest_blocker(Segment(point, has_area ? point_of(light, point, k) : light),
+                                                   looked.points.triangle[i]);
+            return blocker;
         });
     }
 
@@ -288,7 +261,7 @@ public:
             add_account(as<AreaLight>(aimed), looked.points, i, reason);
             return reason;
         }
-        const ExactPoint point = exact_point(aimed.scene(), looked.points, i);
+        const ExactPoint point(aimed.scene(), looked.points, i);
         const auto [crossed, touched] =
             as<Geometry>(aimed.built).count_met(Segment(point, aimed.source()), looked.points.triangle[i]);
         reason.evidence.push_back({"triangles crossed", static_cast<double>(crossed)});
@@ -297,7 +270,7 @@ public:
     }
 
 private:
-    /// Bins know what blocks, not what lets a part through.
+    /// Bins serve triangles that block, not those that let a part through.
     [[nodiscard]] bool bins_serve(const Built& built, const PointBatch& points) const {
         if (built.facts.has_filters || options.hard_lights == HardLights::segments) return false;
         return options.hard_lights == HardLights::bins || 2 * points.size() >= built.scene.triangles.size();
@@ -307,10 +280,10 @@ private:
         const auto& geometry   = as<Geometry>(aimed.built);
         const bool has_filters = geometry.facts.has_filters;
         parallel_ranges(points.size(), 256, [&](std::size_t begin, std::size_t end) {
-            TriangleId last = kNoTriangle;  // what blocked a point often blocks its neighbour
+            TriangleId last = kNoTriangle;  // the blocker of a point often blocks its neighbour
             for (std::size_t i = begin; i < end; ++i) {
                 if (points.facing[aimed.light][i] != Facing::front) continue;
-                const ExactPoint point = exact_point(aimed.scene(), points, i);
+                const ExactPoint point(aimed.scene(), points, i);
                 const Segment segment(point, aimed.source());
                 const auto met = geometry.first_meeting(segment, points.triangle[i], last);
                 Contacts::Together seen{vec3(met == Segment::Meeting::crosses ? 0.0f : 1.0f), true};
@@ -390,8 +363,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo exact;
-const MethodInfo exact{
+extern const MethodInfo exact{
     .name  = "exact",
     .title = "Exact visibility",
     .paper =

@@ -13,34 +13,34 @@ constexpr Answer kNothingKnown{
     .visibility = 0.5f, .half_width = 0.5f, .irradiance = 0.5f, .irradiance_half_width = 0.5f};
 constexpr Answer kAllVisible{.visibility = 1, .irradiance = 1};
 
-/// Of LightPlane::rounding. Edges move by twice that: half of the distance between the light and the reach within which
-/// edges are kept. Where the plane is rougher, an edge that was left out might lie over the light.
+/// Limit of LightPlane::rounding. Edges move by twice that: half of the distance between the light and the reach within
+/// which edges are kept. Where the plane is rougher, an edge that was left out might lie over the light.
 constexpr double kRoughest = (kCutReach - 1) / 4;
 
-/// Candidates are few where every point may ask each of them: so many, or this part of all edges.
+/// Candidates are few where every point may ask each of them: kFew, or one kPart-th of all edges.
 constexpr std::size_t kFew = 64, kPart = 12;
 
-/// A value and its half width. What differs from 0 or 1 by no more than `unsure`, rounding, may be 0 or 1.
+/// A value and its half width. Numbers within `unsure`, rounding, of 0 or 1 may be 0 or 1.
 std::pair<float, float> value_of(const Bracket& bracket, double unsure) {
     const auto [low, high] = bracket;
     if (high <= unsure) return {0.0f, static_cast<float>(high)};
     if (low >= 1 - unsure) return {1.0f, static_cast<float>(1 - low)};
-    // Half an ulp of the answer belongs to what it may be off.
+    // Half an ulp of the answer belongs to its error.
     const auto half = static_cast<float>((high - low) / 2 * (1 + 0x1p-22) + 0x1p-25);
     return {static_cast<float>((low + high) / 2), half};
 }
 
-/// Of rectangles the area alone is stated, which is off by less than kTrusted.
+/// Rectangles have the area alone, with an error below kTrusted.
 Answer answer(const VisibleArea& area, bool round) {
-    const Bracket share{std::max(0.0, (area.visible - area.error) / area.whole),
-                        std::min(1.0, (area.visible + area.open + area.error) / area.whole)};
+    const Bracket visible{std::max(0.0, (area.visible - area.error) / area.whole),
+                          std::min(1.0, (area.visible + area.open + area.error) / area.whole)};
     const double unsure                 = area.error <= kTrusted ? 2 * area.error / area.whole : 0;
-    const auto [visibility, half]       = value_of(share, unsure);
+    const auto [visibility, half]       = value_of(visible, unsure);
     const auto [irradiance, light_half] = value_of(area.irradiance, kTrusted / 4);
     return {visibility, round ? half : 0, irradiance, light_half};
 }
 
-/// Of a point, and how many times as long rationals take.
+/// The steps of a point, and how many times as many rationals take.
 constexpr std::uint64_t kStepsOfPoint = 20, kRationalSteps = 300;
 
 /// In half axes: narrower gaps join what they part, and corners less far from a line lie on it.
@@ -48,10 +48,10 @@ constexpr double kNarrow = 1e-9;
 
 double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
 
-/// Outlines of what trapezoids cover together. They come row by row from bottom to top, each row from left to right.
+/// Outlines of the area under trapezoids, which come row by row from bottom to top, each row from left to right.
 ///
-///      .___________.__       A walk goes up the right side of a trapezoid (T). At its top it turns to what is last of
-///     /     N     / \  \     the trapezoids above that touch T there (N): up the right side of that one or, where it
+///      .___________.__       A walk goes up the right side of a trapezoid (T). At its top it turns to the last of the
+///     /     N     / \  \     trapezoids above that touch T there (N): up the right side of that one or, where it
 ///    /___.____.__/   \__\    lies over another one of T's row (S), too, down the left side of the first such one.
 ///     | T|    |S \           Where nothing is above, down T's own left side. Down a left side is up a right one in
 ///     |__|    |___\          the picture turned by half a turn.
@@ -111,7 +111,7 @@ private:
     std::vector<Trapezoid> in_turn_[2];
 };
 
-/// Twice the area; negative of what is gone around clockwise.
+/// Twice the area; negative where the outline goes clockwise.
 double twice_area(const std::vector<dvec2>& outline) {
     double sum = 0;
     for (std::size_t k = 0; k < outline.size(); ++k) sum += cross(outline[k], outline[(k + 1) % outline.size()]);
@@ -226,7 +226,7 @@ ExactArea::Answer ExactArea::seen(TriangleId own, float u, float v, bool partly,
     const FloatSpace space(viewpoint.point(), *plane);
     if (arithmetic_ == Arithmetic::filtered && space.orientation()) {
         const VisiblePart<FloatSpace> part(sight, space, measure_, work.in_double);
-        // What hid the whole light of the point before often hides it from this one.
+        // The triangle that hid the whole light of the point before often hides it from this one.
         if (work.blocker != kNoTriangle && work.blocker != own && part.is_hidden_by(work.blocker)) return {};
         find_silhouette(viewpoint, space, work);
         work.steps += kStepsOfPoint + work.silhouette.size() + light_.across().size();

@@ -30,12 +30,10 @@ public:
 
     struct Answer {
         float visibility = 0;  ///< visible area of the light over its area, in [0, 1]
-        float half_width = 0;  ///< of what is proven: the truth lies within visibility -+ half_width. 0.5 -+ 0.5
-                               ///< where nothing is known: a sphere light so near, or so far and small, that
-                               ///< rounding hides which part of it the point sees
-        float irradiance = 0;  ///< with Measure::irradiance: what arrives from the visible part of the light
-                               ///< over what arrives from all of it that is before the plane of the point's
-                               ///< triangle, in [0, 1]; else it means nothing
+        float half_width = 0;  ///< proven: the truth lies within visibility -+ half_width. 0.5 -+ 0.5 where nothing is
+                               ///< known: of a sphere light so near, or so far and small, that rounding hides it
+        float irradiance = 0;  ///< with Measure::irradiance: that of the visible part of the light over that of all of
+                               ///< it before the plane of the point's triangle, in [0, 1]; else undefined
         float irradiance_half_width = 0;      ///< the truth lies within irradiance -+ this
         bool edge_on                = false;  ///< the point lies in the light's plane: nothing to take a fraction of
     };
@@ -52,8 +50,8 @@ public:
                                                      ///< its rim. None where nothing is known of them
     };
 
-    /// What one thread needs for itself, from point to point. `rational_points` counts those that doubles could not
-    /// answer, `steps` what was done, in units of about 100 ns.
+    /// The memory of one thread, from point to point. `rational_points` counts those that doubles could not answer,
+    /// `steps` the work, in units of about 100 ns.
     struct Workspace {
         CoplanarTriangles coplanar;
         std::vector<SilhouetteEdge> silhouette;
@@ -72,9 +70,8 @@ public:
               Measure measure = Measure::area)
         : occluders_(among.occluders), edges_(among.edges), light_(light), arithmetic_(arithmetic), measure_(measure) {}
 
-    /// Calls see(i) for all these points of the batch, in any order; changes the order of `which`. What `seen` needs is
-    /// looked for once for points that lie together: while it runs, `seen` may be called with this workspace for i
-    /// alone.
+    /// Calls see(i) for all these points of the batch, in any order; changes the order of `which`. Points that lie
+    /// together have one search: while it runs, `seen` may be called with this workspace for i alone.
     template <class See>
     void for_all(const PointBatch& points, std::span<std::uint32_t> which, Workspace& work, const See& see) const {
         work.in_group = look_around(points, which, work);
@@ -95,9 +92,9 @@ public:
     /// The same, and how it came about. Need not be fast.
     [[nodiscard]] Account account(TriangleId own, float u, float v, bool partly, int turn) const;
 
-    /// Of a rectangle light through occluders that let a part of the light through: the visible fraction with what
-    /// passes those, per channel, where `seen` is the answer without them. Off by less than 1e-9. Nothing where that
-    /// takes more than kMostCells cells.
+    /// The visible fraction of a rectangle light through occluders that let a part of the light through, per channel,
+    /// where `seen` is the answer without them. The error is below 1e-9. Nothing where that takes more than kMostCells
+    /// cells.
     [[nodiscard]] std::optional<vec3> seen_through(TriangleId own, float u, float v, bool partly, int turn,
                                                    const Answer& seen, Workspace& work) const;
 

@@ -11,12 +11,12 @@
 namespace umbra::exact_visibility {
 namespace {
 
-/// What it takes to project a triangle, to cut a cell, and to look at one, in steps of ExactArea::Workspace.
+/// Steps of ExactArea::Workspace to project a triangle, to cut a cell, and to look at one.
 constexpr std::uint64_t kStepsOfTriangle = 150, kStepsOfCut = 100, kStepsOfLook = 2;
 
 Rational3 scaled(const Rational3& a, const Rational& by) { return {a[0] * by, a[1] * by, a[2] * by}; }
 
-/// A vector, and what doubles make of it.
+/// A vector, exact and in double.
 struct Rounded {
     Rational3 exact;
     dvec3 near{0};        ///< each off by less than two roundings
@@ -110,7 +110,7 @@ double area_of(const Cell& cell) {
     return twice / 2 / 4;  // the light is 2 x 2
 }
 
-/// Of the light's points that a triangle (a, b, c) hides from the viewpoint. The segment to (x, y) passes through it
+/// The light's points that a triangle (a, b, c) hides from the viewpoint. The segment to (x, y) passes through it
 /// where det(a, b, (x, y, 1)) and the other two have the sign of det(a, b, c), and meets it there at W = det(a, b, c)
 /// over their sum, which is before the light where it is less than the light's height.
 struct Hidden {

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "umbra/shadows/exact/light_space.h"
 #include "umbra/shadows/exact/sight.h"
@@ -15,10 +14,10 @@ namespace umbra::exact_visibility {
 /// Into more cells than that no light is cut: it would take seconds a point.
 inline constexpr std::size_t kMostCells = 4096;
 
-/// The mean over the light of the product, per channel, of what the triangles `between` leave of it (lets_through), and
-/// 0 where the plane of the point's triangle hides it if `sight.partly`. Off by less than 1e-9. Nothing where more than
+/// The mean over the light of the product, per channel, of lets_through of the triangles `between`, and 0 where the
+/// plane of the point's triangle hides it if `sight.partly`. The error is below 1e-9. Nothing where more than
 /// kMostCells cells are needed. The orientation of `space` is not 0; degenerate triangles and the point's own are not
-/// in `between`. Adds to `steps` what was done, in those of ExactArea::Workspace.
+/// in `between`. Adds its work to `steps`, in those of ExactArea::Workspace.
 [[nodiscard]] std::optional<dvec3> light_through_filters(const Sight& sight, const RationalSpace& space,
                                                          std::span<const TriangleId> between, std::uint64_t& steps);
 

@@ -54,7 +54,7 @@ std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoi
     const double d = glm::length(to.value), off = 2 * to.error + 16 * kUnit * (d + r);
     if (d + off < r) return std::nullopt;
     TangentDisk disk;
-    // What follows is of first order in off.
+    // The rest is of first order in off.
     if (!(d - 4 * off > r) || !tangent_disk(p.from_corner().value, centre.value, r, disk))
         return LightPlane{.rounding = double(kInfinity)};
     // The disk's position depends on d, from p to the sphere's centre. The error of d moves its centre, and its radius

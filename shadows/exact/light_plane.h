@@ -39,11 +39,11 @@ struct LightPlane {
     return {rational(plane.u), rational(plane.v), rational(p.corner()) + rational(plane.centre_from_corner.value)};
 }
 
-/// Of a rectangle or a disk with these half axes; `exact` must outlive the plane.
+/// The plane of a rectangle or a disk with these half axes; `exact` must outlive it.
 [[nodiscard]] LightPlane flat_light_plane(const Light& light, const DiskAxes& half, const ExactAxes& exact,
                                           const ExactPoint& p);
 
-/// Of a sphere. Nothing where p is surely within it; a plane of infinite `rounding` where rounding hides whether it is.
+/// The plane of a sphere. Nothing where p is surely within it; infinite `rounding` where rounding hides whether it is.
 [[nodiscard]] std::optional<LightPlane> sphere_light_plane(const Light& sphere, const ExactPoint& p);
 
 }  // namespace umbra::exact_visibility

@@ -1,6 +1,6 @@
 // A rectangle or disk light seen from one surface point, in coordinates in which the light is fixed: a point q is
 // q - p = X u + Y v + W (c - p), with c the light's centre and u, v its half axes. Seen from p, q lies over the point
-// (X/W, Y/W) of the light; the light is |x|, |y| <= 1 or the unit disk, and what is in front of it has 0 < W < 1.
+// (X/W, Y/W) of the light; the light is |x|, |y| <= 1 or the unit disk, and points before it have 0 < W < 1.
 //
 // X, Y and W are quotients of determinants over one denominator, det(u, v, c - p) squared apart: x, y and signs need
 // the numerators alone.
@@ -110,7 +110,7 @@ public:
     [[nodiscard]] Numerators<double> project(vec3 q) const {
         const Entries d   = p_.to(q);
         const double size = largest(d.value);
-        // Of a sum of three products: the entries' errors, and five roundings.
+        // The error of a sum of three products: the entries' errors, and five roundings.
         return {glm::dot(d.value, gx_), glm::dot(d.value, gy_), glm::dot(d.value, gw_),
                 3 * (size * g_error_ + d.error * (g_size_ + g_error_)) + 15 * kUnit * size * g_size_};
     }

@@ -8,8 +8,8 @@ namespace {
 
 constexpr float kWidest   = 1.5f;      ///< a little less than a right angle, from which on nothing can be said
 constexpr float kOpposite = 0.1f;      ///< sums of two unit vectors that are shorter have no direction to rely on
-constexpr float kWidening = 0x1p-20f;  ///< more than what rounding in float does to an angle
-constexpr double kDoubt   = 1e-5;      ///< more than what it does to the axis, the sine and the cosine, with a margin
+constexpr float kWidening = 0x1p-20f;  ///< more than the rounding of an angle in float
+constexpr double kDoubt   = 1e-5;      ///< more than that of the axis, the sine and the cosine, with a margin
 
 }  // namespace
 
@@ -34,7 +34,7 @@ bool NormalCone::one_sided(const Box& box, dvec3 p, double around) const {
     const dvec3 lo(box.min), hi(box.max);
     const dvec3 to_box  = 0.5 * (lo + hi) - p;
     const double square = glm::dot(to_box, to_box), across = std::abs(glm::dot(dvec3(axis), to_box));
-    // What follows asks for more than this, without a root.
+    // A weaker condition than the last, without a root.
     if (!(across * across > static_cast<double>(sine) * static_cast<double>(sine) * square * (1 - kDoubt)))
         return false;
     const double distance = std::sqrt(square), radius = 0.5 * glm::length(hi - lo) + around;

@@ -30,7 +30,7 @@ ReceivedLight::ReceivedLight(const Sight& sight, const Horizon<double>& horizon)
     const double off      = std::sqrt(3.0) * (centre.error / size + 10 * kUnit) + 2 * sight.plane.rounding * axis;
     const double distance = least_distance(sight.light.round());
     weight_error_         = distance > 0 ? 8 * off / distance + 32 * kUnit : double(kInfinity);
-    // Heights are off by what the horizon's are, and by the plane's rounding times the length of the normal.
+    // Heights have the error of the horizon's, and the plane's rounding times the length of the normal.
     const double height =
         horizon.error / tallest + 10 * kUnit + 2 * sight.plane.rounding * axis * size * horizon.normal / tallest;
     const double densest = (1 + 2 * kUsable) / squared(squared(distance));
@@ -38,7 +38,7 @@ ReceivedLight::ReceivedLight(const Sight& sight, const Horizon<double>& horizon)
     height_error_        = height * densest;
 }
 
-/// Of p from the light; of a disk from its circle, since its axes are perpendicular and equal.
+/// The distance of p from the light; of a disk from its circle, since its axes are perpendicular and equal.
 double ReceivedLight::least_distance(bool round) const {
     const double uu = glm::dot(u_, u_), uv = glm::dot(u_, v_), vv = glm::dot(v_, v_);
     const double uc = -glm::dot(u_, centre_), vc = -glm::dot(v_, centre_), det = uu * vv - uv * uv;
@@ -99,7 +99,7 @@ double ReceivedLight::split(const Trapezoid& t) const {
            split({y, t.high, left, right, t.high_left, t.high_right});
 }
 
-/// The weight at the cap's centre of gravity times its area, and what the second derivatives leave open:
+/// The weight at the cap's centre of gravity times its area, and the bound of its error by second derivatives:
 /// |w''| <= 8 |h'| / |d|^5 + 20 h / |d|^6. Of a cap that is not all visible, up to its most.
 Bracket ReceivedLight::cap(int k, bool visible) const {
     constexpr double kHalf = kPi / DiskCaps::kChords;  // half the angle

@@ -1,4 +1,4 @@
-// How much of what a light sends to a surface point comes from one part of the light's plane: irradiance.
+// Irradiance: how much of the light that arrives at a surface point comes from one part of the light's plane.
 //
 //            c        A point q of the light, seen from p in the direction d = q - p, adds to the irradiance at p
 //       .----+----.           cos(a) cos(b) / |d|^2 dA = (n . d) (m . d) / (|n| |m| |d|^4) dA,
@@ -71,7 +71,7 @@ private:
     mutable int splits_left_ = kSplits;
 };
 
-/// Light that is visible over all light that arrives, given by what of both is known.
+/// Visible light over all light that arrives, given by brackets of both.
 [[nodiscard]] Bracket fraction(const Bracket& visible, const Bracket& whole);
 
 }  // namespace umbra::exact_visibility

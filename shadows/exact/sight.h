@@ -1,4 +1,4 @@
-// One point and one light, and what is known of the two whatever the arithmetic.
+// One point and one light, whatever the arithmetic.
 #pragma once
 
 #include "umbra/shadows/exact/aimed_light.h"

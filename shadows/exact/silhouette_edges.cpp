@@ -2,7 +2,6 @@
 
 #include "umbra/core/base/predicates.h"
 #include "umbra/core/base/rounding.h"
-#include "umbra/shadows/exact/edge_lanes.h"
 
 namespace umbra::exact_visibility {
 namespace {

@@ -11,6 +11,7 @@
 #include <array>
 #include <vector>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/shadows/exact/light_space.h"
 #include "umbra/shadows/exact/normal_cone.h"
 #include "umbra/shadows/exact/occluders.h"
@@ -39,7 +40,7 @@ struct EdgeGroup {
                                                           ///< not two, or thin
 
     // For one point.
-    std::vector<std::int32_t> out{};                       ///< surely no silhouette edge, or not before the light
+    std::vector<std::int32_t> out{};                       ///< 1: surely not a silhouette edge before the light
     std::vector<std::uint32_t> left{};                     ///< those that may be a silhouette edge,
     std::array<std::vector<float>, 3> left_a{}, left_b{};  ///< and their ends
 };
@@ -53,9 +54,9 @@ public:
     void gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
                 std::vector<SilhouetteEdge>& found) const;
 
-    /// Candidates for several points that lie together: for the point of `viewpoint` and for all that lie at most
-    /// `around` from it in every coordinate. `region` lies between the first one and all that any of them sees of the
-    /// light and of what is cut off around it. False where there are more than `most`.
+    /// Candidates for several points that lie together: for the point of `viewpoint` and for all at most `around` from
+    /// it in every coordinate. `region`: between the first one and all that any of them sees of the light and of the
+    /// square around it. False where there are more than `most`.
     [[nodiscard]] bool gather_around(const Viewpoint& viewpoint, BoxTree::Region region, double around,
                                      std::size_t most, EdgeGroup& group) const;
     /// As `gather`, among the candidates of a group, for one of its points.
@@ -79,8 +80,8 @@ private:
     const Occluders& occluders_;
     std::vector<CandidateEdge> edges_{};
     BoxTree tree_;                   ///< of the edges
-    std::vector<NormalCone> cones_;  ///< one a node of it: the normals of the triangles there, so turned that an edge
-                                     ///< whose two triangles see the point from one side is no silhouette edge
+    std::vector<NormalCone> cones_;  ///< one a node: normals of its triangles, so turned that the two of an edge see
+                                     ///< the point from one side unless it is a silhouette edge
 };
 
 }  // namespace umbra::exact_visibility

@@ -1,7 +1,5 @@
 #include "umbra/shadows/exact/triangles_over.h"
 
-#include "umbra/shadows/exact/edge_lanes.h"
-
 namespace umbra::exact_visibility {
 namespace {
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <vector>
 
+#include "umbra/core/base/lanes.h"
 #include "umbra/shadows/exact/occluders.h"
 #include "umbra/shadows/geometry/exact_point.h"
 
@@ -15,11 +16,10 @@ public:
     /// For points at most `around` from p in every coordinate, whose place is at most that far from the one that p sees
     /// at p + `to_place`; `x` and `y` are what the light calls it. `occluders` must outlive what follows.
     void gather(const Occluders& occluders, const ExactPoint& p, dvec3 to_place, double x, double y, double around);
-    /// Nothing is known any more.
     void clear() { known_ = false; }
 
-    /// All triangles that may lie over the place, for a point that sees it at p + `to_place`, which may be `off` in
-    /// every coordinate, with p: null where that is no place that was asked for. Valid until the next call.
+    /// All triangles that may lie over the place, for a point that sees it at p + `to_place`, both with an error of at
+    /// most `off` in every coordinate; null for a place that was not gathered. Valid until the next call.
     [[nodiscard]] const std::vector<TriangleId>* pick(const ExactPoint& p, dvec3 to_place, double off, double x,
                                                       double y);
 

@@ -24,7 +24,7 @@ public:
     [[nodiscard]] TriangleId own() const { return own_; }
     [[nodiscard]] const Scene& scene() const { return scene_; }
 
-    /// Whether t is known to lie in the plane of the point's own triangle: no is no answer.
+    /// True only if t is known to lie in the plane of the point's own triangle.
     [[nodiscard]] bool surely_coplanar(TriangleId t) const;
 
     /// Sign of det(a - p, b - p, c - p) of triangle t = (a, b, c); 0 of the point's own. Exact.

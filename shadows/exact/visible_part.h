@@ -19,8 +19,8 @@
 // The signs of triangles and the count are exact. In between is a chain of edges that closes whatever the rounding of
 // its corners, since each corner is projected by itself alone.
 //
-// The area is off by what covering_edges.h and depth_doubt.h bound, and by the roundings of the sweep. Where rationals
-// would do much better, or a sign remains open, doubles cannot tell.
+// The error of the area is bounded by covering_edges.h and depth_doubt.h, and by the roundings of the sweep. Where
+// rationals would do much better, or a sign remains open, doubles cannot tell.
 //
 // This work is based on:
 // Samuli Laine et al. Soft Shadow Volumes for Ray Tracing. 2005
@@ -40,7 +40,7 @@ namespace umbra::exact_visibility {
 /// In area, of a light of 4: below 1e-9 of it, and far below half an ulp of a float.
 inline constexpr double kTrusted = 0x1p-28;
 
-/// What the sweep works with; kept from point to point for its memory.
+/// The memory of the sweep, kept from point to point.
 template <class T>
 struct PartialCovering {
     Covering<T> edges;
@@ -53,7 +53,7 @@ struct PartialCovering {
 struct VisibleArea {
     double whole   = 4;  ///< of the light
     double visible = 0;
-    double open    = 0;    ///< of what may be visible, too
+    double open    = 0;    ///< may be visible, too
     double error   = 0;    ///< by which both sums may be off
     Bracket irradiance{};  ///< where it was asked for: a fraction
 };
@@ -110,7 +110,7 @@ inline dvec2 counting_place(int k) {
 /// Whether no edge lies so close to the point that its rounding, `widest` at most, could put it on the other side.
 template <class Space>
 bool VisiblePart<Space>::is_clear(double x, double y, double widest) const {
-    const double near = 4 * widest + 0x1p-40;  // two coordinates, twice; and the rounding of what follows
+    const double near = 4 * widest + 0x1p-40;  // two coordinates, twice; and the rounding below
     bool clear        = true;
     covering_.edges.each_edge([&](const auto& low, const auto& high) {
         const double x0 = as_double(low.x), y0 = as_double(low.y), x1 = as_double(high.x), y1 = as_double(high.y);
@@ -147,7 +147,7 @@ const typename VisiblePart<Space>::Light& VisiblePart<Space>::light_before_horiz
     return covering_.cut;
 }
 
-/// What arrives from the whole polygon before the horizon; `caps` is filled.
+/// The light from the whole polygon before the horizon; `caps` is filled.
 template <class Space>
 double VisiblePart<Space>::whole_irradiance(const ReceivedLight& received, const Light& light, DiskCaps& caps) {
     std::vector<LightCorner<double>> corners;
@@ -234,7 +234,7 @@ Filtered<VisibleArea> VisiblePart<Space>::find(const std::vector<SilhouetteEdge>
     const auto [area, rows] = area_and_rows;
     result.visible          = area;
     result.error            = in_doubt + displacement.swept + 16 * kUnit * (rows + 4);
-    // What rationals are not free of. They are worth their time where they more than halve the bound.
+    // Rationals have these errors, too. They are worth their time where they more than halve the bound.
     const double of_frame = in_doubt + displacement.by_frame;
     if (std::is_same_v<T, double> && !(result.error - of_frame <= std::max(kTrusted, of_frame)))
         return unsure("the area to 1e-9");

@@ -1,9 +1,8 @@
-// A square or a disk as the sweep over the edges needs it (covering.h): what is within it of each edge, and areas up to
-// its rim, which is no polygon.
+// A square or a disk for the sweep over the edges (covering.h): the parts of edges within it, and areas up to its rim.
 //
-//            _.--"""--._          Only what lies within the light is swept (=). What lies to its left (:) says how the
-//      :   .'   /=      '.  /     number of layers changes along the rim; what lies to its right, above and below
-//      :  /    /=  light  \/      changes nothing.
+//            _.--"""--._          Only edges within the light are swept (=). Those to its left (:) change the number of
+//      :   .'   /=      '.  /     layers along the rim; those to its right, above and below change nothing.
+//      :  /    /=  light  \/
 //       : |   /=          /|
 #pragma once
 
@@ -23,9 +22,9 @@ struct PartWithin {
 /// |x| <= 1 between the heights -1 and 1.
 struct WholeSquare {
     static constexpr double area = 4;
-    /// Of what lies between x = 0 and the rim on one side, and between two heights.
+    /// The area between x = 0 and the rim on one side, and between two heights.
     [[nodiscard]] static double half_area(double low, double high) { return high - low; }
-    /// Of a segment, at any height: ends have the same side of the rim in all segments that they belong to.
+    /// For a segment at any height: ends have the same side of the rim in all segments that they belong to.
     [[nodiscard]] static PartWithin within(const PlanePoint<double>& low, const PlanePoint<double>& high) {
         const double dx   = high.x - low.x;
         const auto at     = [&](double side) { return std::clamp((side - low.x) / dx, 0.0, 1.0); };

@@ -1,26 +1,18 @@
 // Filterable shadow maps: draw depth from the light, turn it into moments that may be averaged, and bound the lit
 // fraction of a surface point by the mean moments about it.
 //
-//   build       what can block a light (shadows/maps)
+//   build       the casters (shadows/maps)
 //   aim         chooses views and draws depth as the shadow z-buffer does (shadows/maps), then turns each sample into
 //               moments and averages these over a box (moment_map.h)
 //   visibility  takes each point to the view that covers it, moves it towards the light by the bias, and asks one
-//               bilinear mean for a bound of the fraction that does not block (moments.h): what PCF finds by comparing
-//               every sample
+//               bilinear mean for a bound of the fraction that does not block (moments.h), in place of the comparisons
+//               of PCF with every sample
 // look makes nothing. filter=pcss has windows in place of the box, of any size by summed-area tables
-// (summed_moments.h): those in which it searches for what blocks an area light, and one as wide as the penumbra behind
-// that (shadows/maps/penumbra.h).
+// (summed_moments.h): those in which it searches for the blockers of an area light, and one as wide as the penumbra
+// behind these (shadows/maps/penumbra.h).
 //
-// This work is based on:
-// William Donnelly, Andrew Lauritzen. Variance Shadow Maps. 2006 (kind=vsm)
-// Thomas Annen, Tom Mertens, Hans-Peter Seidel, Eddy Flerackers, Jan Kautz. Exponential Shadow Maps. 2008 (kind=esm)
-// Marco Salvi. Rendering Filtered Shadows with Exponential Shadow Maps. ShaderX6. 2008 (kind=esm)
-// Andrew Lauritzen, Michael McCool. Layered Variance Shadow Maps. 2008 (kind=evsm2, evsm4)
-// Christoph Peters, Reinhard Klein. Moment Shadow Mapping. 2015 (kind=msm)
+// This work is based on the papers in moments.h and summed_moments.h, and on:
 // Randima Fernando. Percentage-Closer Soft Shadows. 2005 (filter=pcss)
-// Andrew Lauritzen. Summed-Area Variance Shadow Maps. GPU Gems 3. 2007 (filter=pcss)
-// Baoguang Yang, Zhao Dong, Jieqing Feng, Hans-Peter Seidel, Jan Kautz. Variance Soft Shadow Mapping. 2010
-// (filter=pcss)
 // Li Shen, Jieqing Feng, Baoguang Yang. Exponential Soft Shadow Mapping. 2013 (filter=pcss, kind=evsm2, evsm4)
 #include <algorithm>
 #include <cmath>
@@ -59,85 +51,61 @@ constexpr double kMostExponentSingle = 42, kMostExponentTwofold = 350;
 
 const std::vector<Parameter> kFilteredParameters{
     parameter<&FilteredOptions::kind>(
-        {.name = "kind",
-         .doc = "What is kept of depth. vsm: mean and mean square; esm: an exponential; evsm2: mean and mean square of "
-                "an exponential; evsm4: of two, the second of negative depth; msm: means of four powers.",
-         .phase   = Phase::aim,
-         .choices = "vsm|esm|evsm2|evsm4|msm",
-         .sweep   = "vsm|evsm4|msm"}),
+        "kind",
+        "What is kept of depth. vsm: mean and mean square; esm: an exponential; evsm2: mean and mean square of "
+        "an exponential; evsm4: of two, the second of negative depth; msm: means of four powers.",
+        {.phase = Phase::aim, .choices = "vsm|esm|evsm2|evsm4|msm", .sweep = "vsm|evsm4|msm"}),
     parameter<&FilteredOptions::filter>(
-        {.name  = "filter",
-         .doc   = "box: a mean about the point. pcss: for area lights the mean depth of what blocks in a wide window, "
-                  "and then the lit fraction of one as wide as the penumbra behind that, both from a summed-area table; "
-                  "for other lights box.",
-         .phase = Phase::aim,
-         .choices     = "box|pcss",
-         .area_lights = true}),
+        "filter",
+        "box: a mean about the point. pcss: for area lights the mean depth of what blocks in a wide window, "
+        "and then the lit fraction of one as wide as the penumbra behind that, both from a summed-area "
+        "table; for other lights box.",
+        {.phase = Phase::aim, .choices = "box|pcss", .area_lights = true}),
     search_parameter<FilteredOptions>("pcss: how far from the point windows reach, at most."),
     parameter<&FilteredOptions::parts>(
-        {.name  = "parts",
-         .doc   = "pcss: parts of a window along each side, each compared with the receiver's plane in its middle.",
-         .phase = Phase::visibility,
-         .min   = 1,
-         .max   = 16,
-         .area_lights = true}),
+        "parts", "pcss: parts of a window along each side, each compared with the receiver's plane in its middle.",
+        {.min = 1, .max = 16, .area_lights = true}),
     parameter<&FilteredOptions::searches>(
-        {.name        = "searches",
-         .doc         = "pcss: windows that are searched for what blocks, each as wide as the penumbra behind what the "
-                        "one before has found.",
-         .phase       = Phase::visibility,
-         .min         = 1,
-         .max         = 16,
-         .area_lights = true}),
+        "searches",
+        "pcss: windows that are searched for what blocks, each as wide as the penumbra behind what the one "
+        "before has found.",
+        {.min = 1, .max = 16, .area_lights = true}),
     resolution_parameter<FilteredOptions>("Texels along each side of a map; a cube has six maps.",
                                           "512|1024|2048|4096"),
     radius_parameter<FilteredOptions>("box: the mean of (2 radius + 1)^2 texels, and between them bilinear.", 64,
                                       "1|4"),
     parameter<&FilteredOptions::positive_exponent>(
-        {.name  = "positive_exponent",
-         .doc   = "esm, evsm2, evsm4: factor of depth, -1 to 1, in the exponential; taken as 42 at most where "
-                  "precision=float, so that its square is a number, and as 5 in the tables of filter=pcss.",
-         .phase = Phase::aim,
-         .min   = 0.01,
-         .max   = kMostExponentTwofold}),
+        "positive_exponent",
+        "esm, evsm2, evsm4: factor of depth, -1 to 1, in the exponential; taken as 42 at most "
+        "where precision=float, so that its square is a number, and as 5 in the tables of "
+        "filter=pcss.",
+        {.phase = Phase::aim, .min = 0.01, .max = kMostExponentTwofold}),
     parameter<&FilteredOptions::negative_exponent>(
-        {.name  = "negative_exponent",
-         .doc   = "evsm4: the same factor for the exponential of negative depth, with the same limits.",
-         .phase = Phase::aim,
-         .min   = 0.01,
-         .max   = kMostExponentTwofold}),
+        "negative_exponent", "evsm4: the same factor for the exponential of negative depth, with the same limits.",
+        {.phase = Phase::aim, .min = 0.01, .max = kMostExponentTwofold}),
     parameter<&FilteredOptions::bleed>(
-        {.name = "bleed",
-         .doc  = "Light-bleed cut: a lit fraction of the drawn texels below this is 0, what is above is stretched over "
-                 "0 to 1. Removes leaks and narrows penumbrae of the filter.",
-         .min  = 0,
-         .max  = 0.99}),
-    parameter<&FilteredOptions::min_variance>({.name = "min_variance",
-                                               .doc  = "vsm, evsm2, evsm4: no variance of depth is taken as less.",
-                                               .unit = "squares of the map's depth range",
-                                               .min  = 0,
-                                               .max  = 1}),
+        "bleed",
+        "Light-bleed cut: a lit fraction of the drawn texels below this is 0, what is above is stretched over "
+        "0 to 1. Removes leaks and narrows penumbrae of the filter.",
+        {.min = 0, .max = 0.99}),
+    parameter<&FilteredOptions::min_variance>("min_variance",
+                                              "vsm, evsm2, evsm4: no variance of depth is taken as less.",
+                                              {.unit = "squares of the map's depth range", .min = 0, .max = 1}),
     parameter<&FilteredOptions::moment_bias>(
-        {.name = "moment_bias",
-         .doc  = "msm: fraction of the moments 0, 3/8, 0, 3/8 that is mixed in, against rounding.",
-         .min  = 0,
-         .max  = 1}),
+        "moment_bias", "msm: fraction of the moments 0, 3/8, 0, 3/8 that is mixed in, against rounding.",
+        {.min = 0, .max = 1}),
     parameter<&FilteredOptions::empty>(
-        {.name    = "empty",
-         .doc     = "Texels on which nothing was drawn. far: depth of the far plane; apart: never block, and only the "
-                    "drawn fraction of the filter is bounded by moments; one more number a texel.",
-         .phase   = Phase::aim,
-         .choices = "far|apart"}),
-    parameter<&FilteredOptions::precision>({.name    = "precision",
-                                            .doc     = "Numbers that moments are kept in.",
-                                            .phase   = Phase::aim,
-                                            .choices = "float|double"}),
+        "empty",
+        "Texels on which nothing was drawn. far: depth of the far plane; apart: never block, and only the "
+        "drawn fraction of the filter is bounded by moments; one more number a texel.",
+        {.phase = Phase::aim, .choices = "far|apart"}),
+    parameter<&FilteredOptions::precision>("precision", "Numbers that moments are kept in.",
+                                           {.phase = Phase::aim, .choices = "float|double"}),
     parameter<&FilteredOptions::bias>(
-        {.name  = "bias",
-         .doc   = "Depth that is looked up. manual: the point's, less constant and slope bias; auto: less also a texel "
-                  "width and a quarter of the depth gradient, each times 2 radius + 1, at most 16 such widths.",
-         .phase = Phase::visibility,
-         .choices = "auto|manual"}),
+        "bias",
+        "Depth that is looked up. manual: the point's, less constant and slope bias; auto: less also a texel "
+        "width and a quarter of the depth gradient, each times 2 radius + 1, at most 16 such widths.",
+        {.choices = "auto|manual"}),
     constant_parameter<FilteredOptions>(),
     slope_parameter<FilteredOptions>(),
     normal_offset_parameter<FilteredOptions>(),
@@ -147,7 +115,7 @@ const std::vector<Parameter> kFilteredParameters{
 
 constexpr double kSteps = 0x1p16;  // of S_j: floats keep moments to 2^-24, and bounds are ratios of their differences
 
-/// What `aim` makes: the views of a light, and their moments.
+/// The result of `aim`: the views of a light, and their moments.
 struct FilteredViews final : LightViews {
     using LightViews::LightViews;
     /// Moments, and the depth that blame asks.
@@ -158,7 +126,7 @@ struct FilteredViews final : LightViews {
         return bytes;
     }
     std::vector<MomentMap> maps;        ///< of the views, in their order
-    std::vector<SummedMoments> tables;  ///< in their place, where what blocks an area light is searched for
+    std::vector<SummedMoments> tables;  ///< in their place, where blockers of an area light are searched
 };
 
 class FilteredMap final : public MethodWith<FilteredOptions> {
@@ -177,10 +145,10 @@ public:
         // Moments are kept beside the depth that they are made of.
         int bytes = MomentMap::bytes_per_sample(options.kind, options.empty, options.precision);
         if (finds_blockers_) bytes = std::max(bytes, SummedMoments::bytes_per_sample(options.kind, options.empty));
-        const double share = 4.0 / (4 + bytes);
-        const double reach = std::max<double>(options.radius, search_);
-        // What is nearer to the light than what the map is fitted to counts as on the near plane: a quarter of the
-        // map's side before that, so that exponentials of the two depths differ, too.
+        const double of_depth = 4.0 / (4 + bytes);
+        const double reach    = std::max<double>(options.radius, search_);
+        // Surfaces nearer to the light than the fitted ones count as on the near plane: a quarter of the map's side
+        // before those, so that exponentials of the two depths differ, too.
         const MapMargins room = margins("filtered_map", options, options.radius, reach, 0.25 * options.resolution);
         map_options_          = {.method       = "filtered_map",
                                  .resolution   = options.resolution,
@@ -188,7 +156,7 @@ public:
                                  .surround     = options.surround,
                                  .border       = room.border,
                                  .headroom     = room.headroom,
-                                 .memory_limit = share * LightViews::half_of_memory()};
+                                 .memory_limit = of_depth * LightViews::half_of_memory()};
     }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
@@ -268,27 +236,26 @@ public:
     }
 
 private:
-    /// Which samples may have darkened a point: what a window shows may lie farther away.
+    /// The samples that may have darkened a point: those of a window may be farther away.
     [[nodiscard]] Filter searched(const FilteredViews& of) const {
         return of.tables.empty() ? filter_ : Filter{static_cast<int>(std::ceil(search_)), false};
     }
 
-    /// What the automatic bias is for: the parts of a window follow the receiver's plane, however wide it is.
+    /// The filter of the automatic bias: the parts of a window follow the receiver's plane, however wide it is.
     [[nodiscard]] Filter compared(const FilteredViews& of) const { return of.tables.empty() ? filter_ : Filter{}; }
 
     /// Nearness that is added to the point's: the filter's samples have one depth to be compared with.
     [[nodiscard]] static double total_bias(const Receiver& r) { return r.bias + std::min(r.slack, r.most); }
 
-    /// The same point's nearness that what lies at an offset, in samples, is compared with: the nearer of the point
-    /// and its plane there.
+    /// The nearness to compare with at an offset from the point, in samples: the nearer of the point and its plane
+    /// there.
     [[nodiscard]] double nearness_at(const Receiver& r, dvec2 offset) const {
         if (bias_.mode == BiasMode::manual) return r.r + r.bias;
         const double plane = r.r + r.r_x * offset.x + r.r_y * offset.y;
         return plane + std::min(std::max(0.0, r.r - plane) + r.slack, r.most) + r.bias;
     }
 
-    /// As far as the empty texels, and no farther; where those are apart, what lies behind all that is drawn does so by
-    /// its distance.
+    /// As far as the empty texels, and no farther, unless those are apart.
     [[nodiscard]] double compared_depth(const MapView& view, double nearness) const {
         const double most = options.empty == EmptySamples::far ? 1 : kInfinity;
         return std::min(linear_depth(view.frame, nearness), most);
@@ -330,7 +297,7 @@ private:
                     if (part.drawn > 0) body(part, compared_depth(view, nearness_at(receiver, offset)));
                 }
         };
-        // The mean of the first window also has what blocks other points alone; the next windows are narrower.
+        // The mean of the first window also has blockers of other points alone; the next windows are narrower.
         double blocking = f.near;
         for (int k = 0; k < options.searches; ++k) {
             double sum = 0, dark = 0;
@@ -359,8 +326,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo filtered_map;
-const MethodInfo filtered_map{
+extern const MethodInfo filtered_map{
     .name  = "filtered_map",
     .title = "Filterable shadow map",
     .paper =

@@ -24,7 +24,7 @@ MomentMap::MomentMap(const MapView& view, const MomentBound& bound, int radius, 
                      MomentPrecision precision)
     : width_(view.map.width()), height_(view.map.height()), channels_(channel_count(bound.kind, empty)), empty_(empty) {
     if (empty == EmptySamples::far) std::ranges::copy(moments_of(bound, 1), of_empty_.begin());
-    // Not cleared: the tiles are filled in parallel, and what is touched first by one thread is slow to get.
+    // Not cleared: the tiles are filled in parallel, and memory that one thread touches first is slow to get.
     if (precision == MomentPrecision::twofold)
         kept_ = std::make_unique_for_overwrite<double[]>(numbers());
     else
@@ -34,8 +34,8 @@ MomentMap::MomentMap(const MapView& view, const MomentBound& bound, int radius, 
 
 template <class Number>
 void MomentMap::fill(Number* kept, const MapView& view, const MomentBound& bound, int radius) const {
-    const int side     = 2 * radius + 1;
-    const double share = 1.0 / (static_cast<double>(side) * side);
+    const int side      = 2 * radius + 1;
+    const double weight = 1.0 / (static_cast<double>(side) * side);
     const int across = (width_ + kTileWidth - 1) / kTileWidth, down = (height_ + kTileHeight - 1) / kTileHeight;
     const auto is_empty = [&](int x, int y) {
         return x < 0 || y < 0 || x >= width_ || y >= height_ || view.map.is_empty(x, y);
@@ -87,7 +87,7 @@ void MomentMap::fill(Number* kept, const MapView& view, const MomentBound& bound
                     for (std::size_t k = 0; k < pitch; ++k)
                         row[k] += rows[static_cast<std::size_t>(y - top + i) * pitch + k];
                 Number* const to = kept_row(y);
-                for (std::size_t k = 0; k < pitch; ++k) to[k] = static_cast<Number>(share * row[k]);
+                for (std::size_t k = 0; k < pitch; ++k) to[k] = static_cast<Number>(weight * row[k]);
             }
         }
     });

@@ -9,10 +9,10 @@
 
 namespace umbra {
 
-/// What means are kept in. They are computed in double.
+/// The numbers that means are kept in. They are computed in double.
 enum class MomentPrecision : std::uint8_t { single, twofold };
 
-/// What a sample counts as on which nothing was drawn.
+/// The value of a sample on which nothing was drawn.
 enum class EmptySamples : std::uint8_t {
     far,   ///< depth 1
     apart  ///< nothing: the map keeps the fraction that was drawn, and the moments of that
@@ -30,12 +30,12 @@ struct FilteredDepth {
 
 class MomentMap {
 public:
-    /// Each sample is the mean over the box of (2 radius + 1)^2 samples of the view's map about it; what lies outside
-    /// the map is empty. Parallel; the same bits for any number of threads.
+    /// Each sample is the mean over the box of (2 radius + 1)^2 samples of the view's map about it; samples outside the
+    /// map are empty. Parallel; the same bits for any number of threads.
     MomentMap(const MapView& view, const MomentBound& bound, int radius, EmptySamples empty, MomentPrecision precision);
 
     /// Bilinear between samples, at `x` to the right and `y` down in samples, 0 the map's border: the mean over a box
-    /// that moves with the position. What lies outside the map is empty.
+    /// that moves with the position. Samples outside the map are empty.
     [[nodiscard]] FilteredDepth at(double x, double y) const;
 
     [[nodiscard]] std::size_t memory_bytes() const;

@@ -87,8 +87,8 @@ double lit_bound(const MomentBound& bound, const Moments& means, double z) {
         case MomentKind::evsm2:
         case MomentKind::evsm4: break;
     }
-    // A warped depth changes by 2 c times its own size a unit of z. exp(c x) in units of that at x, which may lie
-    // beyond what is a number; exp(-d x) only becomes 0 there.
+    // A warped depth changes by 2 c times its own size a unit of z. exp(c x) in units of that at x, which may overflow;
+    // exp(-d x) only becomes 0 there.
     const double shrink = std::exp(-bound.positive * x), slope = 2 * bound.positive;
     const double by_positive =
         chebyshev(means[0] * shrink, means[1] * shrink * shrink, 1, slope * slope * bound.min_variance);

@@ -1,18 +1,18 @@
-// Bounds of the lit fraction from a few moments of depth: what can be told of P(occluder depth >= d) where a filter has
-// left only means of powers, or of exponentials, of the depths that it saw.
+// Bounds of the lit fraction, P(occluder depth >= d), from a few moments of depth: the means of powers, or of
+// exponentials, of the depths in a filter.
 //
 // Except where a floor, a bias or a cut is asked for, every bound errs to one side: a filter that keeps moments may let
 // light through that the depths themselves block (a light leak), and never blocks light that they let through.
 //
-// William Donnelly, Andrew Lauritzen. Variance Shadow Maps. 2006
-// Thomas Annen, Tom Mertens, Hans-Peter Seidel, Eddy Flerackers, Jan Kautz. Exponential Shadow Maps. 2008
-// Marco Salvi. Rendering Filtered Shadows with Exponential Shadow Maps. ShaderX6. 2008
-// Andrew Lauritzen, Michael McCool. Layered Variance Shadow Maps. 2008
-// Christoph Peters, Reinhard Klein. Moment Shadow Mapping. 2015
+// William Donnelly, Andrew Lauritzen. Variance Shadow Maps. 2006 (vsm)
+// Thomas Annen, Tom Mertens, Hans-Peter Seidel, Eddy Flerackers, Jan Kautz. Exponential Shadow Maps. 2008 (esm)
+// Marco Salvi. Rendering Filtered Shadows with Exponential Shadow Maps. ShaderX6. 2008 (esm)
+// Andrew Lauritzen, Michael McCool. Layered Variance Shadow Maps. 2008 (evsm2, evsm4)
+// Christoph Peters, Reinhard Klein. Moment Shadow Mapping. 2015 (msm)
 // Christoph Peters, Cedrick Muenstermann, Nico Wetzstein, Reinhard Klein. Improved Moment Shadow Maps for Translucent
 // Occluders, Soft Shadows and Single Scattering. 2017 (the moments that the bias moves towards)
 // Baoguang Yang, Zhao Dong, Jieqing Feng, Hans-Peter Seidel, Jan Kautz. Variance Soft Shadow Mapping. 2010 (the depth
-// of what blocks)
+// of blockers)
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 
 namespace umbra {
 
-/// What is kept of a depth z in [0, 1]. All work on x = 2 z - 1, where numbers are finer in the middle:
+/// Moments of a depth z in [0, 1]. All work on x = 2 z - 1, where numbers are finer in the middle:
 ///   vsm    x, x^2
 ///   esm    exp(c x)
 ///   evsm2  exp(c x) and its square
@@ -38,17 +38,17 @@ struct MomentBound {
     double positive = 40;     ///< c, > 0: exp(2 c) and exp(-2 c) must be numbers of the precision that they are kept in
     double negative = 5;      ///< d, likewise
     double min_variance = 0;  ///< of z, for vsm and evsm: no variance is taken as less, >= 0
-    double moment_bias  = 0;  ///< of msm: share of other moments that is mixed in, [0, 1]
+    double moment_bias  = 0;  ///< of msm: weight of other moments that are mixed in, [0, 1]
 };
 
-/// The moments of one depth, z in [0, 1]. What is asked may lie beyond.
+/// The moments of one depth, z in [0, 1] or beyond.
 [[nodiscard]] Moments moments_of(const MomentBound& bound, double z);
 
 /// An upper bound of P(depth >= z), [0, 1], from the means of moments; z in [0, 1e6].
 [[nodiscard]] double lit_bound(const MomentBound& bound, const Moments& means, double z);
 
-/// The mean depth of what lies before z, [0, z], where the fraction `lit` of all is taken to lie at z and all have this
-/// mean depth; z where nothing lies before it. [Yang and others 2010]
+/// The mean depth of the samples before z, [0, z], where the fraction `lit` of all is taken to lie at z and all have
+/// this mean depth; z where none lies before it. [Yang and others 2010]
 [[nodiscard]] double occluder_depth(double lit, double mean_depth, double z);
 
 /// Chebyshev's inequality of one side (Cantelli): the largest P(X >= value) of all distributions with this mean and

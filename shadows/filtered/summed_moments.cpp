@@ -31,7 +31,7 @@ Pieces pieces(double from, double to, int samples) {
         p.weight[p.count] = weight;
         ++p.count;
     };
-    // Samples first to last are covered in full, and what is left on either side of them in part.
+    // Samples first to last are covered in full, and those on either side of them in part.
     const int first = static_cast<int>(std::ceil(from)), last = static_cast<int>(to);
     if (first > last) {
         add(last, first, to - from);
@@ -61,7 +61,7 @@ SummedMoments::SummedMoments(const MapView& view, const MomentBound& bound, Empt
     }
     for (double& unit : unit_) unit = std::ldexp(unit, -bits_);
     if (empty == EmptySamples::far) of_empty_ = of_depth(1);
-    // Not cleared: what is touched first by one thread is slow to get.
+    // Not cleared, as in MomentMap.
     sums_ = std::make_unique_for_overwrite<std::uint64_t[]>(numbers());
     sum_rows(view);
     sum_columns();

@@ -12,9 +12,9 @@
 
 namespace umbra {
 
-/// What a window shows.
+/// The mean of a window.
 struct WindowedDepth : FilteredDepth {
-    double depth = 1;  ///< the mean of the linear depth of what was drawn
+    double depth = 1;  ///< mean linear depth of the drawn samples
 };
 
 /// Sums are 64-bit integers that wrap around: a difference of four entries is the window's sum without any rounding,
@@ -31,10 +31,10 @@ public:
     SummedMoments(const MapView& view, const MomentBound& bound, EmptySamples empty, double widest);
 
     /// Over the window from `low` to `high`, in samples, 0 the map's border; low < high. A sample counts by how much of
-    /// it the window covers. What lies outside the map is empty.
+    /// it the window covers. Samples outside the map are empty.
     [[nodiscard]] WindowedDepth mean(dvec2 low, dvec2 high) const;
 
-    /// Of the fraction: 62 less those that the number of samples of the widest window has.
+    /// Bits of the fraction: 62 less those of the number of samples of the widest window.
     [[nodiscard]] int bits() const { return bits_; }
     [[nodiscard]] std::size_t memory_bytes() const { return numbers() * sizeof(std::uint64_t); }
 

@@ -12,8 +12,8 @@
 
 namespace umbra {
 
-/// Binary tree of axis-aligned boxes, split by binned surface area. What is in a box is known to the caller: items are
-/// indices into the boxes that the tree was made of.
+/// Binary tree of axis-aligned boxes, split by binned surface area. Items are indices into the boxes that the tree was
+/// made of.
 /// [Ingo Wald, On fast Construction of SAH-based Bounding Volume Hierarchies, 2007]
 class BoxTree {
 public:
@@ -37,8 +37,8 @@ public:
         descend([&](std::uint32_t, const Node& node) { return meets(node, piece, inverse); }, visit);
     }
 
-    /// A convex region: the points q with dot(normal, q - from) + offset >= 0 for each of its planes. Of what is
-    /// meant, `from` may lie `slack` off in every coordinate, and each normal `tilt`.
+    /// A convex region: the points q with dot(normal, q - from) + offset >= 0 for each of its planes. Every coordinate
+    /// of `from` may have an error of `slack`, that of a normal one of `tilt`.
     struct Region {
         struct Plane {
             dvec3 normal{0};
@@ -72,7 +72,7 @@ public:
             [&](Item item) { return visit(item), true; });
     }
 
-    /// What `enter` may want to know: of(item) of all items in a node, joined; one a node.
+    /// of(item) of all items in a node, joined; one a node: for `enter`.
     template <class Of, class Join>
     [[nodiscard]] auto summaries(const Of& of, const Join& join) const {
         std::vector<decltype(of(Item{}))> all(nodes_.size());
@@ -95,8 +95,8 @@ private:
         std::uint32_t count = 0;  ///< 0: inner
     };
 
-    /// Calls visit(item) for the items of all leaves that enters(index, node) says yes to, and whose parents it said yes
-    /// to, until visit returns false.
+    /// Calls visit(item) for the items of all leaves that enters(index, node) says yes to, as to their parents, until
+    /// visit returns false.
     template <class Enters, class Visit>
     void descend(const Enters& enters, const Visit& visit) const {
         if (nodes_.empty()) return;
@@ -136,8 +136,8 @@ private:
         return enter <= leave + 1e-14 * std::abs(leave);
     }
 
-    /// A region's plane, and by how much what is outside may be off: weight . |q| for a corner q less `from`. What
-    /// rounding does to the sum is below 1e-14 of its terms' magnitudes; the rest of that is in the offset.
+    /// A region's plane, and the error at a corner q less `from`: weight . |q|. Rounding of the sum is below 1e-14 of
+    /// its terms' magnitudes; the rest of the error is in the offset.
     struct WidePlane {
         dvec3 normal{0}, weight{0};
         double offset = 0;
@@ -156,7 +156,7 @@ private:
         return wide;
     }
 
-    /// Of each plane, the corner that lies farthest on its inner side.
+    /// By the corner that lies farthest on each plane's inner side.
     static bool meets(const Node& node, dvec3 from, const WidePlanes& planes) {
         const dvec3 lo = dvec3(node.min) - from, hi = dvec3(node.max) - from;
         for (const WidePlane& plane : planes) {

@@ -24,7 +24,7 @@ struct ClippedPolygon {
     void add(const Vec& corner) {
         if (count < kMost) corners[count++] = corner;
     }
-    /// Keeps what has at(position) >= 0, a linear function. A segment stays one.
+    /// Keeps the positions where at(position), a linear function, is >= 0. A segment stays one.
     template <CutFrom from, class At>
     void cut(const At& at, bool is_segment = false) {
         ClippedPolygon kept;

@@ -1,23 +1,16 @@
-#include "umbra/shadows/geometry/coherent_order.h"
-
 #include <algorithm>
-#include <atomic>
 
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/base/morton.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 
 namespace umbra {
 namespace {
 
 constexpr int kIndexBits = 28, kCellBits = 12;  // of a key; scenes have 50 million triangles at most
 constexpr std::uint64_t kIndexMask = (std::uint64_t{1} << kIndexBits) - 1;
-
-Box box_of(const Scene& scene, TriangleId t) {
-    const vec3 a = scene.vertex(t, 0), b = scene.vertex(t, 1), c = scene.vertex(t, 2);
-    return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
-}
 
 double size(const Box& box) {
     const dvec3 d = dvec3(box.max) - dvec3(box.min);

@@ -4,7 +4,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/render/facing.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 
 namespace umbra {
 
@@ -19,11 +19,8 @@ vec3 normal_unless_thin(vec3 a, vec3 b, vec3 c) {
 std::vector<std::int8_t> sides_of_light(const Scene& scene, const Light& light) {
     std::vector<std::int8_t> sides(scene.triangles.size());
     parallel_ranges(sides.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto t = static_cast<TriangleId>(i);
-            const int s  = side_of_light(light, scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));
-            sides[t]     = static_cast<std::int8_t>(s);
-        }
+        for (std::size_t i = begin; i < end; ++i)
+            sides[i] = static_cast<std::int8_t>(side_of_light(scene, light, static_cast<TriangleId>(i)));
     });
     return sides;
 }

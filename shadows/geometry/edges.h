@@ -52,7 +52,7 @@ template <class Sign>
 /// opposite sides of their turned normals the signs cancel.
 [[nodiscard]] inline vec3 turned(vec3 normal, PackedUse use) { return use.forward != 0 ? normal : -normal; }
 
-/// Of unit length, rounded; 0 where the triangle is so thin that rounding might turn it.
+/// The unit normal, rounded; 0 where the triangle is so thin that rounding might turn it.
 [[nodiscard]] vec3 normal_unless_thin(vec3 a, vec3 b, vec3 c);
 
 /// side_of_light of each of the scene's triangles. Parallel.

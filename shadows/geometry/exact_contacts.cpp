@@ -38,7 +38,7 @@ bool Contacts::goes_on_within(const Across& ray, const Wedge& wedge) {
     return same_direction(ray, wedge.from) || (turn(wedge.from, ray) > 0 && turn(ray, wedge.to) > 0);
 }
 
-/// What is in both; none where that has no inside.
+/// The directions in both; none where these have no inside.
 std::optional<Contacts::Wedge> Contacts::common(const Wedge& a, const Wedge& b) {
     const auto comes_within = [](const Across& ray, const Wedge& wedge) {
         return same_direction(ray, wedge.to) || (turn(wedge.from, ray) > 0 && turn(ray, wedge.to) > 0);
@@ -50,8 +50,8 @@ std::optional<Contacts::Wedge> Contacts::common(const Wedge& a, const Wedge& b) 
 
 Contacts::Across Contacts::across(const Rational3& v) const {
     const std::size_t i = (axis_ + 1) % 3, j = (axis_ + 2) % 3;
-    const Rational share = v[axis_] / direction_[axis_];
-    return {v[i] - share * direction_[i], v[j] - share * direction_[j]};
+    const Rational along = v[axis_] / direction_[axis_];
+    return {v[i] - along * direction_[i], v[j] - along * direction_[j]};
 }
 
 /// The directions that lead from a position of a triangle into its inside. is_zero: which barycentric coordinates of

@@ -22,17 +22,17 @@ public:
     /// Refers to the segment.
     explicit Contacts(const Segment& segment);
 
-    /// A triangle that the segment touches (Segment::meeting), and what it lets through, per channel.
+    /// A triangle that the segment touches (Segment::meeting), and the fraction that it lets through, per channel.
     void add(vec3 x, vec3 y, vec3 z, vec3 passes);
 
     struct Together {
-        vec3 passed;  ///< what arrives, per channel; where the lights nearby disagree, the most of it
+        vec3 passed;  ///< the fraction that arrives, per channel; where the lights nearby disagree, the most
         bool agreed;  ///< on it all lights that are close enough agree, and the segment begins on no triangle
     };
     [[nodiscard]] Together together() const;
 
 private:
-    /// A direction across the segment: what is left of a vector where the segment's own direction counts as 0.
+    /// A direction across the segment: a vector less its part along the segment.
     struct Across {
         Rational x, y;
     };
@@ -65,5 +65,11 @@ private:
     std::vector<Cover> at_start_;  ///< touched by the surface point: they cover it as seen from within its own triangle
     bool begins_on_one_ = false, edge_on_ = false;
 };
+
+/// Adds a triangle that the segment touches; the first one makes the contacts.
+inline void add_contact(std::optional<Contacts>& contacts, const Segment& segment, const Scene& scene, TriangleId t) {
+    if (!contacts) contacts.emplace(segment);
+    contacts->add(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2), scene.lets_through(t));
+}
 
 }  // namespace umbra::exact_visibility

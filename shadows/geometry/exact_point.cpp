@@ -23,7 +23,7 @@ Filtered<int> sign_of_determinant(const Entries& p, const Entries& q, const Entr
     const double spread       = (P + p.error) * (Q + q.error) * (R + r.error);
     const double from_entries = p.error * (Q + q.error) * (R + r.error) + P * (q.error * (R + r.error) + Q * r.error);
     const double bound        = 6.01 * (from_entries + 8 * kUnit * spread);
-    // Entries may underflow where scenes are tiny: then the bound is no bound, and rationals decide.
+    // Entries may underflow where scenes are tiny: then the bound does not hold, and rationals decide.
     if (std::abs(det) > bound && bound > 1e-290) return det > 0 ? 1 : -1;
     return kUnsure;
 }

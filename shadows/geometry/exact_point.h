@@ -12,6 +12,7 @@
 #include <cmath>
 #include <optional>
 
+#include "umbra/core/render/points.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra::exact_visibility {
@@ -57,6 +58,9 @@ public:
         from_corner_error_ = 5 * kUnit * (largest(ab) + largest(ac));
         rounded_           = dvec3(a_) + from_corner_;
     }
+
+    ExactPoint(const Scene& scene, const PointBatch& points, std::size_t i)
+        : ExactPoint(scene, points.triangle[i], points.u[i], points.v[i]) {}
 
     /// x - p.
     [[nodiscard]] Entries to(vec3 x) const {

@@ -1,5 +1,4 @@
-// All decisions are signs of determinants. Nothing is rounded in what is asked: vertices, barycentrics and light are
-// the floats of the scene.
+// All decisions are signs of determinants. Vertices, barycentrics and light are the floats of the scene, unrounded.
 //
 // This work is based on:
 // Rafael Segura, Francisco Feito. Algorithms to Test Ray-Triangle Intersection. Comparative Study. 2001
@@ -93,9 +92,8 @@ Segment::Meeting Segment::meeting(vec3 x, vec3 y, vec3 z) const {
     const bool surely_left = q0 == 1 || q1 == 1 || q2 == 1, surely_right = q0 == -1 || q1 == -1 || q2 == -1;
     if (surely_left && surely_right) return Meeting::none;
 
-    // What is in or behind the plane of the point's own triangle is not counted. A copy of that triangle, or a
-    // neighbour in its plane, would cost rationals at every point: doubles cannot place the point, but the corners are
-    // floats.
+    // Triangles in or behind the plane of the point's own are not counted. A copy of that triangle, or a neighbour in
+    // its plane, would cost rationals at every point: doubles cannot place the point, but the corners are floats.
     const Filtered<int> quick = start_.quick_side(x, y, z);
     if (!quick && !rises(x, y, z)) return Meeting::none;
     const int end = end_side(x, y, z), start = quick ? *quick : start_.exact_side(x, y, z);

@@ -1,5 +1,4 @@
-// Whether surface points see a hard light, decided exactly one by one: for the few that a method's floating point leaves
-// open.
+// Whether surface points see a hard light, decided exactly one by one: for the few that floating point leaves open.
 #pragma once
 
 #include <mutex>

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -68,7 +67,7 @@ public:
 
     PointTree() = default;
     /// fill(at, begin, end) writes at[axis][i] for the points i of a leaf, or for all 16 places in it. Called from many
-    /// threads, each of which has copies of `fill` for leaves that follow one another: it may keep what it knows of the
+    /// threads, each of which has copies of `fill` for leaves that follow one another, and may keep results of the
     /// last.
     template <class Fill>
     PointTree(std::size_t points, const Fill& fill) : size(points) {
@@ -160,10 +159,10 @@ public:
     LeafPlaces(const PointBatch& points, std::span<const std::uint32_t> index, const CornersOf& corners_of)
         : points_(points), index_(index), corners_of_(corners_of) {}
 
-    /// Of a leaf with points index[begin] to index[end - 1].
+    /// For a leaf with points index[begin] to index[end - 1].
     void find(std::size_t begin, std::size_t end) {
         const std::uint32_t* const index = index_.data() + begin;
-        // What follows in memory is of other points: of blocks of 4 x 4 pixels, the first of each row.
+        // The next in memory are other points: of blocks of 4 x 4 pixels, the first of each row.
         if (begin + 5 * kLeaf < index_.size())
             for (const std::size_t ahead : {64, 66, 72, 74}) {
                 __builtin_prefetch(&points_.triangle[index[ahead]]);

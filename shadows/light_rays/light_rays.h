@@ -10,7 +10,6 @@
 
 #include "umbra/core/render/sampling.h"
 #include "umbra/core/render/tiles.h"
-#include "umbra/shadows/light_rays/near_light.h"
 #include "umbra/shadows/light_rays/sample_options.h"
 #include "umbra/shadows/light_rays/starts.h"
 #include "umbra/shadows/light_rays/target.h"
@@ -110,15 +109,15 @@ public:
         return true;
     }
 
-    /// The fraction of an area light's samples that a point sees, 1 within the light. What is behind the point's plane
-    /// is not seen. Call under FlushDenormals.
+    /// The fraction of an area light's samples that a point sees, 1 within the light. Samples behind the point's plane
+    /// are not seen. Call under FlushDenormals.
     [[nodiscard]] float visible_fraction(const Starts& starts, int lane, PointKey key) const;
 
     /// Writes S_j of a light without an area for the points of a tile that ask for it: one ray each.
     void trace_hard_light(const StartPlaces& places, const PointBatch& points, const PointTile& tile,
                           std::span<float> s) const;
 
-    /// What the ray to the light meets first; of an area light, the first ray that meets anything, in up to sixteen
+    /// The first triangle on the ray to the light; for an area light, on the first ray that meets one, in up to sixteen
     /// sets of samples. For Method::blame. Samples are keyed by the point's index in the batch.
     void blame(const StartPlaces& places, const PointBatch& points, std::span<TriangleId> blockers) const;
 

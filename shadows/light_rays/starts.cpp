@@ -22,8 +22,7 @@ vec3 integer_offset(vec3 p, vec3 n) {
     return p;
 }
 
-/// A start that was moved by float steps of a scene far from the origin can lie farther from a small scene than Embree
-/// takes numbers for: as far as it takes them is as far off the surface.
+/// Float steps far from the origin can move a start farther from a small scene than Embree's numbers reach.
 float within_reach(float x) {
     constexpr float farthest = 1e18f;
     return std::clamp(x, -farthest, farthest);

@@ -11,8 +11,7 @@ namespace umbra::rays {
 
 /// How a shadow ray keeps from hitting the surface that it starts on.
 enum class OffsetPolicy : std::uint8_t {
-    skip_triangle,   ///< starts at the point; its own triangle, by id, is no hit, nor is what lies within the point's
-                     ///< rounding
+    skip_triangle,   ///< starts at the point; hits neither its own triangle, by id, nor others within rounding
     integer_offset,  ///< moves the start along the normal by a few float steps
                      ///< [Carsten Waechter, Nikolaus Binder, A Fast and Robust Method for Avoiding Self-Intersection,
                      ///< 2019]
@@ -23,7 +22,7 @@ enum class OffsetPolicy : std::uint8_t {
 struct Starts {
     float x[8]{}, y[8]{}, z[8]{};
     float nx[8]{}, ny[8]{}, nz[8]{};
-    float height[8]{};  ///< what the ray meets before it has risen so far above the point's plane is no hit
+    float height[8]{};  ///< above the point's plane, at which the ray begins to hit triangles
     TriangleId id[8]{};
 };
 
@@ -37,7 +36,7 @@ public:
     StartPlaces(const Scene& scene, const RaySpace& space, OffsetPolicy offset, float lift)
         : scene_(&scene), space_(space), offset_(offset), lift_(lift) {}
 
-    /// Of the points first .. first + count - 1, at most eight. Lanes from `count` on stay as they were.
+    /// For the points first .. first + count - 1, at most eight. Lanes from `count` on stay as they were.
     void load(const PointBatch& points, std::size_t first, std::size_t count, Starts& starts) const;
 
 private:

@@ -1,5 +1,4 @@
-// The answers of a light's views for all points of a batch, each on its triangle in double: S_j, and which triangles
-// block.
+// The answers of a light's views for all points of a batch, each on its triangle in double: S_j, and the blockers.
 #pragma once
 
 #include <algorithm>
@@ -27,7 +26,7 @@ namespace umbra {
     return facet;
 }
 
-/// Stands on the triangle of one point after the other: neighbours are mostly on one.
+/// The triangles of one point after the other: neighbours are mostly on one.
 struct FacetOfPoint {
     const Scene& scene;
     const PointBatch& points;
@@ -90,8 +89,8 @@ void for_each_eight_facets(const Scene& scene, const PointBatch& points, LightId
 }
 
 /// Writes S_j of every point that asks for it, in parallel: 0 where the light's centre is behind the point's plane;
-/// what share(v, receivers, at, s) writes into s[k] of the covered lanes k where view v is the first that covers the
-/// point; and where none does 1, or `undefined` where nobody looked. Lane k is the point at.point(k), in world space.
+/// s[k] set by share(v, receivers, at, s) for the covered lanes k where view v is the first that covers the point; and
+/// where none does 1, or `undefined` where no view looks. Lane k is the point at.point(k), in world space.
 template <class Share>
 void look_up(const LightViews& views, const PointBatch& points, const Bias& bias, const Filter& filter, Visibility out,
              const Share& share) {
@@ -131,7 +130,7 @@ auto point_by_point(const One& one) {
     };
 }
 
-/// What `look` makes for methods that ask what the camera sees.
+/// The result of `look` for methods that use the camera's picture.
 class SeenPicture final : public Looked {
 public:
     /// `traced`: the points of a picture are asked for, which are traced where the batch has no raster.
@@ -154,9 +153,9 @@ private:
 /// The texel that the point lies in, or the nearest one of the map.
 [[nodiscard]] ivec2 texel_of(const Receiver& receiver, const MapView& view);
 
-/// Adds to a reason what the map holds in the texel that the point lies in, and what that is compared with. Depths are
-/// along the view's axis, from the light or its window. The margin becomes the difference of the two depths, where it
-/// has the answer's sign: with a filter other texels may have decided.
+/// Adds to a reason the stored depth of the texel that the point lies in and the depth that it is compared with, both
+/// along the view's axis, from the light or its window. The margin becomes their difference, where it has the answer's
+/// sign: with a filter other texels may have decided.
 void add_texel(Reason& reason, const FoundReceiver& found, const MapView& view, Given given);
 
 /// For each point of a batch the sample of one of several maps that blocks it, and then the triangle that it shows.

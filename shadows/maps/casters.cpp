@@ -1,7 +1,6 @@
 #include "umbra/shadows/maps/casters.h"
 
 #include <bit>
-#include <cmath>
 #include <mutex>
 
 #include "umbra/core/base/geometry.h"

@@ -1,4 +1,4 @@
-// What of a scene can block a light, and where it lies.
+// The triangles of a scene that can block a light, and where they lie.
 #pragma once
 
 #include <algorithm>
@@ -24,15 +24,15 @@ struct MinMax {
     [[nodiscard]] double half() const { return 0.5 * (max - min); }
 };
 
-/// What can cast a shadow, and where it lies: serves all lights. `scene` must outlive it.
+/// The triangles that can cast a shadow, and where they lie: serves all lights. `scene` must outlive it.
 ///
-/// Many scenes have floors and walls that reach far beyond all else, and a map fitted to those wastes its
-/// samples. What such planes do, seen from a light:
+/// Many scenes have floors and walls that reach far beyond all else, and a map fitted to those wastes its samples. Such
+/// planes, seen from a light:
 ///   - Where the whole scene lies on the light's side of a plane, it blocks nothing: no segment between two points of a
 ///     closed half-space crosses its border. It is not drawn.
 ///   - A set of planes, each with the others on the light's side, blocks nothing of these planes. All else that they
 ///     or other triangles block lies where other triangles lie, or behind those: the map's window need only hold
-///     triangles outside the set. What is not in the window is lit.
+///     triangles outside the set. Points outside of the window are lit.
 class Casters {
 public:
     /// Nothing is left out for any light, unless `leave_out`.
@@ -84,9 +84,9 @@ public:
     SelectedCasters(const Casters& casters, const Light& light);
 
     [[nodiscard]] const Scene& scene() const { return casters_.scene_; }
-    [[nodiscard]] const Box& box() const { return box_; }  ///< of what is fitted to
+    [[nodiscard]] const Box& box() const { return box_; }  ///< of the fitted ones
 
-    /// The interval of each of the n values that `values` gives for a position, over all that is fitted to.
+    /// The interval of each of the n values that `values` gives for a position, over all fitted casters.
     template <std::size_t n, class Values>
     [[nodiscard]] std::array<MinMax, n> ranges(const Values& values) const {
         return ranges<n>(fitted_, values);
@@ -104,14 +104,14 @@ public:
             .min;
     }
 
-    /// From p to the nearest point of what is fitted to.
+    /// From p to the nearest point of a fitted caster.
     [[nodiscard]] double distance(dvec3 p) const;
 
     /// The triangles that are drawn, or `all` of the scene, without parts whose boxes lie wholly beyond one side of the
     /// view.
     [[nodiscard]] std::vector<std::span<const uvec3>> seen_by(const dmat4& clip_from_world, bool all = false) const;
-    /// Of those that are drawn the ones that do not lie wholly beyond one side of the view themselves, in any order:
-    /// for a view of a few samples.
+    /// The drawn triangles that do not lie wholly beyond one side of the view, in any order: for a view of a few
+    /// samples.
     [[nodiscard]] std::vector<std::span<const uvec3>> reaching(const dmat4& clip_from_world) const;
 
 private:

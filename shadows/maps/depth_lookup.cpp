@@ -38,7 +38,7 @@ struct FourPlaces {
     Doubles x, y;
 };
 
-/// Four samples of a map, and what it shows there; as is_blocked has it, in a view without midpoints.
+/// Four samples of a map, compared as is_blocked does in a view without midpoints.
 struct FourSamples {
     Doubles nearness;  ///< where blocked
     Masks blocked;
@@ -60,7 +60,7 @@ void floor_of(const Doubles& v, Doubles& whole) {
     whole = whole > v ? whole - 1 : whole;
 }
 
-/// What four samples are compared with, as is_blocked has it, where the point's plane has the nearness `plane`.
+/// The nearness that four samples are compared with, as in is_blocked, where the point's plane has `plane`.
 template <BiasMode mode>
 void find_reference(const Receiver& p, const Doubles& plane, Doubles& r) {
     constexpr Doubles kZero{};
@@ -117,7 +117,7 @@ private:
     Masks lanes_{};
 };
 
-/// The share of a disc's samples that are not blocked, in a view without midpoints.
+/// The fraction of a disc's samples that are not blocked, in a view without midpoints.
 template <BiasMode mode>
 double lit_in_disc(const MapView& view, const Receiver& p, const Filter& filter) {
     FourSamples samples;
@@ -179,9 +179,9 @@ float lit_softly(const MapView& view, const Receiver& receiver, double depth, co
     return static_cast<float>(whole - blocked.all()) / static_cast<float>(whole);
 }
 
-/// The weight of the square's samples that are not blocked: is_blocked of each, with what the samples of a column and
-/// of a row have alike computed once. Rows of kBlocks times four samples are compared, all in the map, of which those
-/// beyond the square's side have no weight.
+/// The weight of the square's samples that are not blocked: is_blocked of each, with common terms of columns and rows
+/// computed once. Rows of kBlocks times four samples are compared, all in the map; those beyond the square have no
+/// weight.
 template <int kBlocks, BiasMode mode>
 double lit_in_square(const MapView& view, const Receiver& p, const SquareKernel& square) {
     constexpr Doubles kSteps{0, 1, 2, 3};

@@ -1,4 +1,4 @@
-// Kernels of percentage-closer filtering: which samples of a map are compared with a point, and what each counts.
+// Kernels of percentage-closer filtering: which samples of a map are compared with a point, and their weights.
 //
 // William Reeves, David Salesin, Robert Cook. Rendering Antialiased Shadows with Depth Maps. 1987
 // Ignacio Castano. Shadow Mapping Summary, Part 1. 2013 (castano3, castano5, castano7)
@@ -48,7 +48,7 @@ inline constexpr double kCastanoThree[] = {1, 2, 1}, kCastanoFive[] = {1, 3, 4, 
     return {};
 }
 
-/// Of a kernel's samples from its middle: that of Castano's is their own, of the others `radius`.
+/// The reach of a kernel's samples from its middle: Castano's have their own, the others `radius`.
 [[nodiscard]] constexpr int kernel_radius(Kernel kernel, int radius) {
     const int samples = static_cast<int>(profile(kernel).size());
     return samples > 0 ? samples / 2 : radius;
@@ -89,7 +89,7 @@ struct SquareKernel {
     double whole = 0;  ///< sum of the weights
 };
 
-/// Of a filter other than a disc about `at`, in samples; its radius is at most kMostRadius.
+/// The samples of a filter other than a disc about `at`, in samples; its radius is at most kMostRadius.
 inline SquareKernel square_kernel(dvec2 at, const Filter& filter) {
     const auto below = [](double v) { return static_cast<int>(std::floor(v)); };
     const int radius = filter.radius;
@@ -103,7 +103,7 @@ inline SquareKernel square_kernel(dvec2 at, const Filter& filter) {
     }
     const std::span<const double> heights = profile(filter.kernel);
     const int last                        = 2 * radius + 1;
-    // Of sample k of a row, where the kernel lies that part of a sample beyond its own samples.
+    // The weight of sample k of a row, where the kernel lies `part` of a sample beyond its own samples.
     const auto weight = [&](int k, double part) {
         const auto height  = [&](int at_k) { return heights.empty() ? 1 : heights[static_cast<std::size_t>(at_k)]; };
         const double here  = k < last ? height(k) : 0;

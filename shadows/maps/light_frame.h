@@ -1,12 +1,12 @@
-// Where a map looks from: a window onto the scene in light space, and how deep it reaches.
+// The place that a map looks from: a window onto the scene in light space, and how deep it reaches.
 #pragma once
 
 #include "umbra/shadows/maps/casters.h"
 
 namespace umbra {
 
-/// Where a map looks from and what it shows. Light space: x right, y down, z away from the
-/// light, right-handed, about `origin`. The window is in x/z and y/z (perspective) or in x and y (orthographic).
+/// Light space: x right, y down, z away from the light, right-handed, about `origin`. The window is in x/z and y/z
+/// (perspective) or in x and y (orthographic).
 struct LightFrame {
     bool perspective = true;
     dvec3 origin{0};
@@ -25,10 +25,6 @@ struct LightFrame {
     /// The depth of a nearness.
     [[nodiscard]] double depth(double nearness) const {
         return perspective ? near * far / (nearness * (far - near) + near) : far - nearness * (far - near);
-    }
-    /// How fast nearness falls with depth.
-    [[nodiscard]] double nearness_per_depth(double depth) const {
-        return perspective ? near * far / (depth * depth * (far - near)) : 1 / (far - near);
     }
     /// See DepthMap::draw; W is z / far, or 1.
     [[nodiscard]] dmat4 clip_from_world() const {

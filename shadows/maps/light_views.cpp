@@ -38,7 +38,7 @@ private:
     const LightViews::Options& options_;
     const SelectedCasters& casters_;
     std::vector<DepthMap> spare_;
-    double bytes_;  ///< of what casts, and of the maps so far
+    double bytes_;  ///< of the casters, and of the maps so far
 };
 
 Fitting::Fitting(const BuiltCasters& built, const SelectedCasters& casters, const Light& light,
@@ -109,13 +109,13 @@ void Fitting::add_view(LightFrame frame, int resolution) {
     const double inner = 1 - 2 * options_.border / resolution;
     frame.half /= inner;
     if (std::isfinite(frame.reach)) frame.reach = inner + 1e-3 / resolution;
-    // What casts without being fitted to may lie before the near plane, where it is drawn as nearness 1: what it shades
-    // must stay behind that when a bias has moved it.
+    // Casters that are not fitted may lie before the near plane, where they are drawn as nearness 1: the points that
+    // they shade must stay behind that when a bias has moved them.
     const double room = options_.headroom * 2 * std::max(frame.half.x, frame.half.y) / resolution;
     if (options_.all_depths)
         frame.near = std::min(frame.near, casters_.least_drawn([&](dvec3 p) { return frame.light_space(p).z; }));
     if (frame.perspective) {
-        // Of unorm depth, a step at `far` must not exceed a sample's width there: near bounds that step.
+        // A step of unorm depth at `far` must not exceed a sample's width there: near bounds that step.
         const double floor = options_.format == DepthFormat::float32
                                  ? kFloatNear
                                  : resolution * DepthMap(1, 1, options_.format).quantum(1) / 2;
@@ -150,7 +150,7 @@ DepthMap Fitting::new_map(int resolution) {
     return map;
 }
 
-/// Of a map of size x size samples, as wide as those of the view's, that shows one of them at (size / 2, size / 2).
+/// For a map of size x size samples, as wide as the view's, that shows one of these at (size / 2, size / 2).
 dmat4 clip_around(const MapView& view, ivec2 sample, int size) {
     const double there = 1.0 / size;
     const dvec2 samples(view.map.width(), view.map.height());
@@ -219,7 +219,7 @@ void LightViews::rasterise() {
         const auto triangles        = casters_.seen_by(clip_from_world);
         view.map.draw(clip_from_world, positions, triangles, faces_);
         if (!view.midpoint) continue;
-        // What blocks nothing may be the second surface: a box's lower side, on a floor.
+        // A surface that blocks nothing may be the second one: a box's lower side, on a floor.
         view.midpoint->draw_behind(view.map, clip_from_world, positions, casters_.seen_by(clip_from_world, true),
                                    faces_);
         const LightFrame& f = view.frame;

@@ -31,15 +31,15 @@ struct MapView {
 [[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces);
 /// The same of one sample: draws a few samples around it.
 [[nodiscard]] TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample);
-/// Draws into the view's map what reaches the samples that lie at most `around` from this one in x and in y. These
-/// become what they are in the whole map; others keep some of what they would show.
+/// Draws the triangles that reach the samples at most `around` from this one in x and in y. These become as in the
+/// whole map; others have some of the triangles that they would show.
 void draw_around(MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample, int around);
 
 /// Keeps the maps of a LightViews that ends, so that the next one draws in their memory: the system clears new memory
 /// page by page, which takes longer than drawing a small scene.
 class SpareMaps {
 public:
-    /// Keeps these in place of what it kept until now, which it returns. Any thread.
+    /// Keeps these, and returns the ones that it kept before. Any thread.
     [[nodiscard]] std::vector<MapView> exchange(std::vector<MapView> views) {
         const std::lock_guard lock(mutex_);
         kept_.swap(views);
@@ -51,7 +51,7 @@ private:
     std::vector<MapView> kept_;  ///< of one light at most
 };
 
-/// What `build` makes for methods with depth maps: what casts.
+/// The result of `build` for methods with depth maps: the casters.
 class BuiltCasters final : public Built {
 public:
     BuiltCasters(const Scene& of, const SceneFacts& its_facts, bool leave_out)
@@ -61,19 +61,18 @@ public:
     const std::shared_ptr<SpareMaps> spare = std::make_shared<SpareMaps>();
 };
 
-/// What `aim` makes: the views of one light, fitted and drawn.
+/// The result of `aim`: the views of one light, fitted and drawn.
 class LightViews : public Aimed {
 public:
-    /// Half of what the machine has.
+    /// Half of the machine's memory, bytes.
     [[nodiscard]] static double half_of_memory();
 
     struct Options {
         std::string_view method{};  ///< in errors
-        int resolution     = 2048;
-        DepthFormat format = DepthFormat::float32;
-        Faces faces        = Faces::all;
-        bool all_depths    = false;   ///< the maps keep how near everything is that they show; otherwise what is nearer
-                                      ///< than all that they are fitted to has nearness 1
+        int resolution      = 2048;
+        DepthFormat format  = DepthFormat::float32;
+        Faces faces         = Faces::all;
+        bool all_depths     = false;  ///< otherwise surfaces nearer than all that is fitted have nearness 1
         bool midpoints      = false;  ///< the views have midpoints, which takes as much memory and time as the maps
         double surround     = 0.5;
         double border       = 2;                 ///< samples by which a map reaches over its view
@@ -81,7 +80,7 @@ public:
         double memory_limit = half_of_memory();  ///< bytes, for all maps of a light
     };
 
-    /// `from` is a BuiltCasters. Throws UsageError where the maps and what casts take more than `memory_limit`.
+    /// `from` is a BuiltCasters. Throws UsageError where maps and casters take more than `memory_limit`.
     LightViews(const Built& from, LightId at, const Options& options);
     ~LightViews() override;
 
@@ -93,12 +92,11 @@ public:
     [[nodiscard]] TriangleId owner(std::size_t k, ivec2 sample) const {
         return umbra::owner(views_[k], casters_, faces_, sample);
     }
-    /// False where what lies outside a spot's cone was left out; else nothing that casts lies where no view looks.
+    /// False where the outside of a spot's cone was left out; else all casters are in some view.
     [[nodiscard]] bool cover_all() const { return cover_all_; }
     [[nodiscard]] std::size_t memory_bytes() const override;
 
 private:
-    /// Draws the depth of what casts into the maps of all views, and their midpoints.
     void rasterise();
 
     const SelectedCasters casters_;

@@ -5,7 +5,7 @@
 
 namespace umbra {
 
-/// Of a disk that has the area of the light, as large as a sphere looks; world units.
+/// Radius of a disk that has the area of the light, as large as a sphere looks; world units.
 [[nodiscard]] double disk_radius(const Light& light);
 
 /// Half sides, along x and y of the frame, of the rectangle whose points are spread about its centre as those of the

@@ -42,7 +42,7 @@ struct Fragment {
     std::uint32_t sample, word;
 };
 
-/// What one task snapped, and which of it reaches into which band.
+/// The triangles that one task snapped, and which of them reach into which band.
 struct Chunk {
     struct Band {
         std::vector<std::uint32_t> large;
@@ -124,7 +124,7 @@ struct Edges {
     }
 }
 
-/// What rows y cover, a row a lane: samples [first, last], which may be empty, and the nearness at `first`.
+/// The spans of rows y, a row a lane: samples [first, last], which may be empty, and the nearness at `first`.
 [[gnu::always_inline]] inline void find_spans(const Edges& e, const Doubles& y, Doubles& first, Doubles& last,
                                               Doubles& r_first) {
     const Doubles zero{};
@@ -215,7 +215,7 @@ constexpr RowBits kFirstRow{1, 1 << 8, 1 << 16, 1 << 24, 1, 1 << 8, 1 << 16, 1 <
 
 // ---- filling large triangles ---------------------------------------------------------------------------------------
 
-// What is done with a sample. Fragments have no triangle: where it is asked for, all triangles are large.
+// Ways to keep a sample. Fragments have no triangle: where it is asked for, all triangles are large.
 
 struct Nearest {
     static constexpr bool kNamed = false;

@@ -29,7 +29,7 @@ struct DepthCode {
     std::uint32_t far_word;  ///< of nearness 0
 };
 
-/// What is drawn, and how: see DepthMap::draw.
+/// The arguments of DepthMap::draw.
 struct Drawing {
     int width, height;
     DepthCode code;
@@ -42,10 +42,10 @@ struct Drawing {
 /// All three draw in parallel; the same for any number of threads and any order of triangles. Words are one a sample,
 /// row by row: sample (x, y) is at y * width + x.
 
-/// Every word becomes the least of itself and of what covers its sample.
+/// Every word becomes the least of itself and of those of the triangles that cover its sample.
 void keep_nearest(const Drawing& drawing, std::uint32_t* words);
 
-/// The same, without what is not greater than the word of `first` by more than `roundings`.
+/// The same for words that exceed that of `first` by more than `roundings`.
 void keep_nearest_behind(const Drawing& drawing, const std::uint32_t* first, std::uint32_t roundings,
                          std::uint32_t* words);
 

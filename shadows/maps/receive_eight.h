@@ -1,5 +1,5 @@
-// Where surface points lie in a depth map, one or eight at a time with the same bits, and whether one sample there blocks
-// eight: `lit_share` in loops over lanes.
+// Where surface points lie in a depth map, one or eight at a time with the same bits, and whether one sample there
+// blocks eight: `lit_share` in loops over lanes.
 #pragma once
 
 #include "umbra/shadows/maps/depth_lookup.h"

@@ -17,7 +17,7 @@ void DarkeningTree::brighten() {
     for (std::size_t level = 0; level < points_.levels.size(); ++level) {
         const std::size_t nodes    = points_.levels[level].size();
         const std::size_t children = level == 0 ? points_.leaf_count() : points_.levels[level - 1].size();
-        // What is not there is dark.
+        // Branches that do not exist are dark.
         dark_branches_[level].assign(nodes, 0);
         dark_branches_[level].back() = static_cast<std::uint8_t>(0xffu << (children - (nodes - 1) * kBranches));
     }

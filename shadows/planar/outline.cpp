@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <utility>
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
@@ -15,7 +14,7 @@
 namespace umbra::planar {
 namespace {
 
-/// How near to the height of a source an occluder may come, as a share of that height, and still be in an outline.
+/// The greatest height of an occluder in an outline, as a fraction of the source's.
 constexpr double kHighest = 1 - 0x1p-10;
 
 /// A vertex, its shadow, and how far rounding may have moved that.

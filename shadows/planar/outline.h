@@ -19,7 +19,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -48,8 +47,8 @@ struct Outline {
     [[nodiscard]] std::size_t memory_bytes() const;
 };
 
-/// What the edge adds to the count on the way from `from` along x to (to.x, from.y), then along y to `to`, of eight
-/// points `to` in double, or more: `change`. Where rounding leaves that open, |edge.change| is added to `doubt`.
+/// Adds to `change` the edge's changes of the count on the way from `from` along x to (to.x, from.y), then along y to
+/// `to`, of several points `to`. Where rounding leaves that open, |edge.change| is added to `doubt`.
 template <std::size_t lanes>
 void add_changes(const OutlineEdge& edge, dvec2 from, const double (&to_x)[lanes], const double (&to_y)[lanes],
                  double (&change)[lanes], double (&doubt)[lanes]) {
@@ -82,7 +81,7 @@ void add_changes(const OutlineEdge& edge, dvec2 from, const double (&to_x)[lanes
     }
 }
 
-/// Places in a box, as shares of its sides, of which one is, as good as always, away from all edges.
+/// Places in a box, as fractions of its sides, of which one is, as good as always, away from all edges.
 inline constexpr std::array<std::array<double, 2>, 4> kPlaces{
     {{0.5012893, 0.4970367}, {0.4571811, 0.5370713}, {0.5320179, 0.4679841}, {0.3819571, 0.6180713}}};
 

@@ -1,13 +1,6 @@
 // Planar projection: project every occluder from the light onto the receiver's plane, and find the points that lie in
-// its shadow.
-//
-// This work is based on:
-// James Blinn. Me and My (Fake) Shadow. 1988
-// Paul Heckbert, Michael Herf. Simulating Soft Shadows with Graphics Hardware. 1997 (lights with an area)
-// Philippe Bergeron. A General Version of Crow's Shadow Volumes. 1986 (edges that count)
-//
-// Blinn draws the projected polygons. Here they are not drawn: each surface point of the plane is asked whether a
-// projected triangle lies over it, so that there is no bitmap whose resolution could err.
+// its shadow. Blinn draws the projected polygons; here each surface point of the plane is asked whether one lies over
+// it, so that there is no bitmap whose resolution could err.
 //
 // build finds the receivers, which are both sides of every large plane, and the occluders with their edges. aim picks
 // the light's sources and projects from each of them, onto each receiver, the edges at which the number of shadows
@@ -15,6 +8,11 @@
 // visibility darkens, for each source, the points over which there is a shadow (darkening_tree.h): S_j is the fraction
 // of the sources from which the point stayed bright. A point where rounding leaves open whether there is one is decided
 // by the exact segment to the source (geometry/exact_sight.h).
+//
+// This work is based on:
+// James Blinn. Me and My (Fake) Shadow. 1988
+// Paul Heckbert, Michael Herf. Simulating Soft Shadows with Graphics Hardware. 1997 (lights with an area)
+// Philippe Bergeron. A General Version of Crow's Shadow Volumes. 1986 (edges that count)
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +25,6 @@
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/core/scene/topology.h"
 #include "umbra/shadows/geometry/exact_sight.h"
 #include "umbra/shadows/geometry/point_groups.h"
 #include "umbra/shadows/method.h"
@@ -53,28 +50,24 @@ struct Options {
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::plane_share>({.name  = "plane_share",
-                                      .doc   = "Smallest share of the scene's area that makes a plane a receiver.",
-                                      .phase = Phase::build,
-                                      .min   = kPlanarShare,
-                                      .max   = 1}),
-    parameter<&Options::light_samples>({.name  = "light_samples",
-                                        .doc   = "Points of an area light that occluders are projected from; other "
-                                                 "lights have one. 1: the centre. All their shadows are kept in memory.",
-                                        .unit  = "points a light",
-                                        .phase = Phase::aim,
-                                        .min   = 1,
-                                        .max   = 4096,
-                                        .sweep = "4|16|64|256",
-                                        .area_lights = true}),
+    parameter<&Options::plane_share>("plane_share", "Smallest share of the scene's area that makes a plane a receiver.",
+                                     {.phase = Phase::build, .min = kPlanarShare, .max = 1}),
+    parameter<&Options::light_samples>(
+        "light_samples",
+        "Points of an area light that occluders are projected from; other lights have one. 1: the "
+        "centre. All their shadows are kept in memory.",
+        {.unit        = "points a light",
+         .phase       = Phase::aim,
+         .min         = 1,
+         .max         = 4096,
+         .sweep       = "4|16|64|256",
+         .area_lights = true}),
     parameter<&Options::edges>(
-        {.name = "edges",
-         .doc  = "Which edges are projected. weighted: those whose triangles, turned to face the light, do not cancel: "
-                 "points count the shadows over them; per_triangle: all three of every triangle, whose shadows are "
-                 "tested one by one. The answers are the same.",
-         .phase   = Phase::build,
-         .choices = "weighted|per_triangle",
-         .sweep   = "weighted|per_triangle"}),
+        "edges",
+        "Which edges are projected. weighted: those whose triangles, turned to face the light, do not cancel: "
+        "points count the shadows over them; per_triangle: all three of every triangle, whose shadows are "
+        "tested one by one. The answers are the same.",
+        {.phase = Phase::build, .choices = "weighted|per_triangle", .sweep = "weighted|per_triangle"}),
 };
 
 constexpr std::uint32_t kNoGroup = 0xffffffffu;
@@ -95,7 +88,7 @@ bool is_flat(const PlanarReceiver& plane, const Box& box) {
     return plane.tolerance <= 64 * 0x1p-53 * double(reach.x + reach.y + reach.z);
 }
 
-/// What is projected, and onto what.
+/// The occluders, and the receivers onto which they are projected.
 struct Planes final : Built {
     Planes(const Scene& of, const SceneFacts& its_facts, const Options& options)
         : Built(of, its_facts),
@@ -114,8 +107,7 @@ struct Planes final : Built {
             }
         }
         for (TriangleId t = 0; t < scene.triangles.size(); ++t)
-            if (scene.blocks(t) && !is_degenerate(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2)))
-                occluders.triangles.push_back(t);
+            if (occludes(scene, t)) occluders.triangles.push_back(t);
         if (options.edges == Edges::weighted && !receivers.empty())
             mesh.emplace(scene).left_out = std::vector<std::uint8_t>();  // occluders has a list
     }
@@ -134,10 +126,10 @@ struct Planes final : Built {
 
 /// The shadows of one light.
 struct ProjectedLight final : Aimed {
-    ProjectedLight(const Planes& planes, LightId at, int samples)
+    ProjectedLight(const Planes& planes, LightId at, const Options& options)
         : Aimed(planes, at),
           centre(centre_of(source())),
-          sources(sources_of(source(), samples)),
+          sources(sources_of(source(), options.light_samples)),
           outlines(project(planes.occluders, planes.mesh ? &*planes.mesh : nullptr, planes.receivers, sources,
                            kMemoryShare * usable_memory())) {}
     [[nodiscard]] std::size_t memory_bytes() const override {
@@ -157,8 +149,8 @@ using Members = std::span<const std::uint32_t>;
 PlaneTree tree_of(const Scene& scene, const PointBatch& points, Members members, const Receiver& receiver,
                   const LocalSource& centre) {
     LeafPlaces places(points, members, [&](TriangleId t) -> std::array<dvec3, 3> {
-        const dvec3 a = receiver.local(dvec3(scene.vertex(t, 0)));
-        return {a, receiver.local(dvec3(scene.vertex(t, 1))) - a, receiver.local(dvec3(scene.vertex(t, 2))) - a};
+        const auto [a, b, c] = local_triangle(scene, t, receiver);
+        return {a, b - a, c - a};
     });
     return {members.size(), [&, places](auto& at, std::size_t begin, std::size_t end) mutable {
                 places.find(begin, end);
@@ -209,7 +201,7 @@ struct OnPlanes final : Looked {
     std::vector<Group> groups;  ///< one a receiver
 };
 
-class PlanarProjection final : public MethodWith<Options> {
+class PlanarProjection final : public MethodWith<Options, Planes, ProjectedLight, OnPlanes> {
 public:
     explicit PlanarProjection(const Settings& settings) : MethodWith(settings) {}
 
@@ -242,18 +234,6 @@ public:
                     fmt::format("lights with an area are taken as their centres: umbra only, no penumbra; {}", where)};
         return {How::approximately,
                 fmt::format("lights with an area are taken at {} points; {}", options.light_samples, where)};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Planes>(scene, facts, options);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<ProjectedLight>(as<Planes>(built), light, options.light_samples);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
-        return std::make_unique<OnPlanes>(as<Planes>(built), points);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -397,16 +377,14 @@ private:
 
 }  // namespace
 
-extern const MethodInfo planar_projection;
-const MethodInfo planar_projection{
+extern const MethodInfo planar_projection{
     .name  = "planar_projection",
     .title = "Planar projection",
     .paper = "James Blinn, Me and My (Fake) Shadow, 1988",
     .summary =
         "Projects all occluders from the light onto each plane of the scene and tests the plane's points against "
         "their outlines. Exact on planes for lights without an area; says nothing about curved receivers. Limit: more "
-        "than a million "
-        "scene sizes from the origin float coordinates merge faces into planes that are none.",
+        "than a million scene sizes from the origin float coordinates merge faces into planes that are none.",
     .parameters = kParameters,
     .presets    = {{"textbook", "light_samples=1,edges=per_triangle",
                     "Blinn 1988: every polygon projected, from the light's centre."},

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
@@ -80,11 +79,6 @@ std::vector<Source> sources_of(const Light& light, int samples) {
 // ---- clipping and projecting ----------------------------------------------------------------------------------------
 
 namespace {
-
-Triangle local_triangle(const Scene& scene, TriangleId t, const Receiver& receiver) {
-    return {receiver.local(dvec3(scene.vertex(t, 0))), receiver.local(dvec3(scene.vertex(t, 1))),
-            receiver.local(dvec3(scene.vertex(t, 2)))};
-}
 
 /// The order in which an edge's ends are taken, so that both triangles of an edge compute the same.
 bool before(dvec3 a, dvec3 b) {
@@ -246,9 +240,9 @@ double farthest(const Reach& reach) {
 }
 
 /// It is dot(n, p - from) with n = cross(f, t), f from the source to `from`, t from there to `to`. Coordinates are sums
-/// of three products, so that both ends and the source are off by up to 4 roundings of their magnitudes; that moves n by
-/// 4 roundings of (|from| + |s|) |t| + (|from| + |to|) |f|, and each step of the arithmetic by one of |f| |t|, 14 in all.
-/// Ends that are off by more move n by slack (|t| + 2 |f|), and p - from by slack.
+/// of three products, so that both ends and the source are off by up to 4 roundings of their magnitudes; that moves n
+/// by 4 roundings of (|from| + |s|) |t| + (|from| + |to|) |f|, and each step of the arithmetic by one of |f| |t|, 14 in
+/// all. Ends that are off by more move n by slack (|t| + 2 |f|), and p - from by slack.
 double doubt_of_side(const LocalSource& source, dvec3 from, dvec3 to, double far, double slack) {
     const double s    = sum_of_magnitudes(source.at);
     const double ends = sum_of_magnitudes(from) + sum_of_magnitudes(to) + 2 * slack;

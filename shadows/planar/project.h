@@ -80,7 +80,7 @@ struct LocalSource {
     }
 };
 
-/// What can cast a shadow. A triangle casts none onto the receiver that it belongs to.
+/// The triangles that can cast a shadow. One casts none onto the receiver that it belongs to.
 struct Occluders {
     static constexpr std::uint32_t kNoPlane = 0xffffffffu;
 
@@ -90,6 +90,10 @@ struct Occluders {
 };
 
 using Triangle = std::array<dvec3, 3>;  ///< corners in a receiver's coordinates
+[[nodiscard]] inline Triangle local_triangle(const Scene& scene, TriangleId t, const Receiver& receiver) {
+    return {receiver.local(dvec3(scene.vertex(t, 0))), receiver.local(dvec3(scene.vertex(t, 1))),
+            receiver.local(dvec3(scene.vertex(t, 2)))};
+}
 
 /// Bounds of a triangle's shadow, in a receiver's coordinates, in floats rounded outwards. A triangle that the plane
 /// cuts is several pieces. One of which rounding hides whether the plane cuts it is a piece, too.
@@ -141,8 +145,8 @@ struct ShadowSide {
     double doubt = 0;
 };
 
-/// The three sides of one of `run`'s shadows, positive inside, at points whose magnitudes are `far` at most. `source` is
-/// the one that it was projected from.
+/// The three sides of one of `run`'s shadows, positive inside, at points whose magnitudes are `far` at most. `source`
+/// is the one that it was projected from.
 [[nodiscard]] std::array<ShadowSide, 3> sides_of(const Scene& scene, const Receiver& receiver,
                                                  const LocalSource& source, const Shadows& run, const Shadow& shadow,
                                                  double far);

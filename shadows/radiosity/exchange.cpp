@@ -7,7 +7,6 @@
 #include <string>
 
 #include "umbra/core/base/parallel.h"
-#include "umbra/shadows/radiosity/form_factor.h"
 
 namespace umbra {
 
@@ -20,6 +19,25 @@ constexpr float kBeforeThePatch = 0.999f;
 double mean(dvec3 colour) { return (colour.x + colour.y + colour.z) / 3; }
 
 }  // namespace
+
+double patches::form_factor(dvec3 p, dvec3 n, std::span<const dvec3> polygon) {
+    // The part behind p's plane does not count; a convex polygon gains one corner there.
+    std::array<dvec3, 16> in_front;
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < polygon.size() && count + 2 <= in_front.size(); ++k) {
+        const dvec3 a = polygon[k] - p, b = polygon[(k + 1) % polygon.size()] - p;
+        const double at_a = glm::dot(n, a), at_b = glm::dot(n, b);
+        if (at_a >= 0) in_front[count++] = a;
+        if ((at_a < 0) != (at_b < 0)) in_front[count++] = a + at_a / (at_a - at_b) * (b - a);
+    }
+    double sum = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        const dvec3 a = in_front[k], b = in_front[(k + 1) % count], across = glm::cross(a, b);
+        const double length = glm::length(across);
+        if (length > 0) sum += glm::dot(n, across) / length * std::atan2(length, glm::dot(a, b));
+    }
+    return std::clamp(std::abs(sum) / (2 * kPi), 0.0, 1.0);
+}
 
 Exchange::Exchange(const Scene& scene, const Options& options)
     : scene_(&scene),
@@ -69,9 +87,9 @@ dvec3 Exchange::find_direct(const PatchSide& side, const Material& material) con
         const double intensity = static_cast<double>(falloff(light, position));
         if (!(cosine > 0) || !(intensity > 0)) continue;
         const bool shadowed = scene_->switches(side.centre.triangle).receives_shadows;
-        const double share =
+        const double seen =
             shadowed ? static_cast<double>(light_share(sight_, side.centre, light, options_.light_samples)) : 1;
-        light_sum += share * intensity * cosine * dvec3(light.diffuse);
+        light_sum += seen * intensity * cosine * dvec3(light.diffuse);
     }
     return dvec3(material.emission) + side.reflects * light_sum;
 }
@@ -82,7 +100,7 @@ double Exchange::unshot() const {
     return first_ > 0 ? left / first_ : 0;
 }
 
-/// Of a side that a patch with these corners and this side sends to.
+/// From `from` to a patch with these corners, of which `to` is a side.
 double Exchange::form_factor(const PatchSide& from, const std::array<dvec3, 3>& polygon, const PatchSide& to) const {
     if (from.area == 0 || to.area == 0) return 0;
     const dvec3 p = from.centre.position;

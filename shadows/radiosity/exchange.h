@@ -2,10 +2,11 @@
 // to send sends it to all others, again and again; what is lit directly comes first.
 //
 // Every side of every patch has one value, that of its centre, in units of the sum: I = I_e + sum_j S_j f_att,j I_j k_d
-// O_d (N.L_j) + k_d O_d sum_i F_i I_i, where F_i is the form factor from the centre to patch i times the seen share of
-// it. No specular light, and no ambient light, which stands for what is computed here.
+// O_d (N.L_j) + k_d O_d sum_i F_i I_i, where F_i is the form factor from the centre to patch i times the seen fraction
+// of it. No specular light, and no ambient light, which stands for the light that is computed here.
 //
 // This work is based on:
+// Johann Lambert. Photometria. 1760
 // Cindy Goral, Kenneth Torrance, Donald Greenberg, Bennett Battaile. Modeling the Interaction of Light between Diffuse
 // Surfaces. 1984
 // Michael Cohen, Shenchang Chen, John Wallace, Donald Greenberg. A Progressive Refinement Approach to Fast Radiosity
@@ -13,6 +14,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "umbra/core/render/points.h"
@@ -20,6 +22,15 @@
 #include "umbra/shadows/radiosity/sight.h"
 
 namespace umbra {
+
+namespace patches {
+
+/// The form factor from a point p of a surface with the unit normal n to a plane polygon, of whichever winding, that
+/// nothing hides: the integral of cos(a) cos(b) / (pi r^2) over the part of it that is in front of p, in [0, 1].
+/// Lambert's contour integral, in double. 0 where p lies in the polygon's plane. At most 14 corners.
+[[nodiscard]] double form_factor(dvec3 p, dvec3 n, std::span<const dvec3> polygon);
+
+}  // namespace patches
 
 class Exchange {
 public:
@@ -35,21 +46,21 @@ public:
     [[nodiscard]] std::size_t patches() const { return patches_.size(); }
     [[nodiscard]] std::size_t sides() const { return sides_.size(); }
 
-    /// Power is I times area, the mean of R, G and B. A share of what all sides had to send at first; 0 where that is
-    /// 0.
+    /// Power left to send, as a fraction of that of all sides at first; 0 where that is 0. Power is I times area, the
+    /// mean of R, G and B.
     [[nodiscard]] double unshot() const;
 
     /// The side that has the most power to send sends it. Returns which. Parallel, the same bits for any number of
     /// threads.
     SideId shoot();
 
-    /// What arrived of all power that was sent; the rest has left the scene. 1 where nothing was sent.
+    /// The arrived fraction of all power that was sent; the rest has left the scene. 1 where none was sent.
     [[nodiscard]] double arrived() const { return sent_ > 0 ? arrived_ / sent_ : 1; }
 
     [[nodiscard]] dvec3 direct(SideId side) const { return sides_[side].direct; }
     [[nodiscard]] dvec3 indirect(SideId side) const { return sides_[side].indirect; }
 
-    /// From the centre of a side to a patch's side, with the seen share of it; 0 to itself.
+    /// From the centre of a side to a patch's side, times the seen fraction of it; 0 to itself.
     [[nodiscard]] double form_factor(SideId from, SideId to) const;
 
     [[nodiscard]] SideId side_at(const PointBatch& points, std::size_t i) const;

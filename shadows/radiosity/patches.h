@@ -36,7 +36,7 @@ public:
     [[nodiscard]] double longest_edge(PatchId patch) const {
         return longest_[triangle_[patch]] / parts_[triangle_[patch]];
     }
-    /// Of a point of triangle t.
+    /// The place of a point of triangle t.
     [[nodiscard]] InPatch find(TriangleId t, double u, double v) const;
     [[nodiscard]] std::size_t memory_bytes() const;
 

@@ -1,6 +1,6 @@
-// Direct light as a radiosity system has it: surfaces are patches, a light sends each corner of a patch what its form
-// factor and the sight between them let through, and patches are cut where that changes. Between corners S_j is
-// interpolated. What surfaces send to one another is in exchange.h.
+// Direct light as a radiosity system has it: surfaces are patches, a light sends to each corner of a patch by its form
+// factor and the sight between them, and patches are cut where that changes. Between corners S_j is interpolated. Light
+// that surfaces send to one another is in exchange.h.
 //
 //     build        patches: triangles cut into equal parts; the tree of triangles that rays are traced in
 //     aim          S_j at the corners of each patch and, while it changes over it, of the four that it is cut into
@@ -66,37 +66,22 @@ struct Options {
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::size>({.name  = "size",
-                               .doc   = "Longest edge of a patch that is not cut further.",
-                               .unit  = "scene diagonals",
+    parameter<&Options::size>("size", "Longest edge of a patch that is not cut further.",
+                              {.unit  = "scene diagonals",
                                .phase = Phase::build,
                                .min   = 0.001,
                                .max   = 1,
                                .sweep = "0.125|0.0625|0.03125|0.015625"}),
-    parameter<&Options::levels>({.name  = "levels",
-                                 .doc   = "How many times a patch is cut into four where S_j changes over it.",
-                                 .phase = Phase::aim,
-                                 .min   = 0,
-                                 .max   = 8,
-                                 .sweep = "0|2|4|6"}),
-    parameter<&Options::threshold>({.name  = "threshold",
-                                    .doc   = "The change of S_j over an element from which on it is cut.",
-                                    .phase = Phase::aim,
-                                    .min   = 0,
-                                    .max   = 1}),
+    parameter<&Options::levels>("levels", "How many times a patch is cut into four where S_j changes over it.",
+                                {.phase = Phase::aim, .min = 0, .max = 8, .sweep = "0|2|4|6"}),
+    parameter<&Options::threshold>("threshold", "The change of S_j over an element from which on it is cut.",
+                                   {.phase = Phase::aim, .min = 0, .max = 1}),
     parameter<&Options::samples>(
-        {.name        = "samples",
-         .doc         = "Points of an area light to which rays run from a corner; other lights take one.",
-         .unit        = "rays a corner",
-         .phase       = Phase::aim,
-         .min         = 1,
-         .max         = 4096,
-         .sweep       = "16|64",
-         .area_lights = true}),
-    parameter<&Options::interpolation>({.name    = "interpolation",
-                                        .doc     = "S_j over an element: linear between its corners, or their mean.",
-                                        .phase   = Phase::visibility,
-                                        .choices = "linear|constant"}),
+        "samples", "Points of an area light to which rays run from a corner; other lights take one.",
+        {.unit = "rays a corner", .phase = Phase::aim, .min = 1, .max = 4096, .sweep = "16|64", .area_lights = true}),
+    parameter<&Options::interpolation>("interpolation",
+                                       "S_j over an element: linear between its corners, or their mean.",
+                                       {.choices = "linear|constant"}),
 };
 
 class Radiosity final : public MethodWith<Options> {
@@ -155,24 +140,20 @@ public:
         const auto blocker               = [&](const SurfacePoint& from) {
             return light_blocker(surfaces.sight, from, aimed.source(), options.samples);
         };
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                blockers[i] = kNoTriangle;
-                if (!points.asks(aimed.light, i)) continue;
-                const SurfacePoint from{exact_position(aimed.scene(), points, i), dvec3(points.normal(i)),
-                                        points.triangle[i]};
-                blockers[i] = blocker(from);
-                if (blockers[i] != kNoTriangle) continue;
-                // Dark by what the corners of its element see: the nearest one first.
-                const bool flipped = points.flipped[i] != 0;
-                const InPatch at   = surfaces.find(points, i);
-                auto corners       = light.sides[flipped ? 1 : 0][at.patch].corners(at.u, at.v);
-                std::ranges::sort(corners, {}, [&](dvec2 corner) {
-                    return glm::length(surfaces.place(at.patch, flipped, corner).position - from.position);
-                });
-                for (const dvec2 corner : corners)
-                    if (blockers[i] == kNoTriangle) blockers[i] = blocker(surfaces.place(at.patch, flipped, corner));
-            }
+        blame_each(aimed, looked, blockers, [&](std::size_t i) {
+            const SurfacePoint from{exact_position(aimed.scene(), points, i), dvec3(points.normal(i)),
+                                    points.triangle[i]};
+            TriangleId found = blocker(from);
+            // Else dark by the view of its element's corners: the nearest one first.
+            const bool flipped = points.flipped[i] != 0;
+            const InPatch at   = surfaces.find(points, i);
+            auto corners       = light.sides[flipped ? 1 : 0][at.patch].corners(at.u, at.v);
+            std::ranges::sort(corners, {}, [&](dvec2 corner) {
+                return glm::length(surfaces.place(at.patch, flipped, corner).position - from.position);
+            });
+            for (const dvec2 corner : corners)
+                if (found == kNoTriangle) found = blocker(surfaces.place(at.patch, flipped, corner));
+            return found;
         });
     }
 
@@ -198,8 +179,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo radiosity;
-const MethodInfo radiosity{
+extern const MethodInfo radiosity{
     .name  = "radiosity",
     .title = "Radiosity",
     .paper =
@@ -208,8 +188,7 @@ const MethodInfo radiosity{
         "Radiosity Approach for Realistic Image Synthesis, 1986",
     .summary =
         "Surfaces are patches; at each corner rays to points of the light say which share of its irradiance arrives, "
-        "and "
-        "patches are cut where that changes. One solution serves all cameras. Errs between corners: shadow edges are "
+        "and patches are cut where that changes. One solution serves all cameras. Errs between corners: shadow edges are "
         "as sharp as the elements are small, and what is smaller than a patch may be missed.",
     .parameters = kParameters,
     .presets    = {{"textbook", "levels=0,interpolation=constant",

@@ -11,7 +11,7 @@
 
 namespace umbra {
 
-/// What build makes: the patches of a scene, and rays between their points and lights.
+/// The result of build: the patches of a scene, and rays between their points and lights.
 struct RadiosityPatches final : Built {
     /// `size`: the longest edge, scene diagonals.
     RadiosityPatches(const Scene& of, const SceneFacts& its_facts, double size)
@@ -30,7 +30,7 @@ struct RadiosityPatches final : Built {
     const patches::Patches patches;
 };
 
-/// What aim makes: S_j of one light over all patches.
+/// The result of aim: S_j of one light over all patches.
 struct RadiosityElements final : Aimed {
     RadiosityElements(const RadiosityPatches& from, LightId at)
         : Aimed(from, at),
@@ -44,7 +44,7 @@ struct RadiosityElements final : Aimed {
         std::uint32_t leaf     = 0;
     };
     [[nodiscard]] ElementId element(const PointBatch& points, std::size_t i) const;
-    /// Of both sides of all patches.
+    /// The number of elements, of both sides of all patches.
     [[nodiscard]] std::size_t elements() const;
 
     using ElementsOfPatches = std::vector<patches::Elements>;  ///< one a patch

@@ -19,9 +19,9 @@ class Sight {
 public:
     explicit Sight(const Scene& scene) : rays_(scene, Met::blocking) {}
 
-    /// Which of at most eight targets are seen, as bits: bit k of the k-th. `to`: from the point to each target, or,
-    /// with `infinite`, the direction of what is infinitely far away. What is not in front of the point is not seen.
-    /// A ray ends where it has run `reach` of its way.
+    /// Which of at most eight targets are seen: bit k for the k-th. `to`: from the point to each target, or, with
+    /// `infinite`, the direction of a target at infinity. Targets that are not in front of the point are not seen. A
+    /// ray ends where it has run `reach` of its way.
     [[nodiscard]] unsigned seen(const SurfacePoint& from, std::span<const dvec3> to, bool infinite, float reach) const;
 
     /// The first triangle on the way, kNoTriangle where there is none.
@@ -33,8 +33,8 @@ private:
     RayScene rays_;
 };
 
-/// S_j by irradiance: what of a light's irradiance arrives at a point, of `samples` points of an area light; 0 where
-/// none of them is in front of it.
+/// S_j by irradiance: the fraction of a light's irradiance that arrives at a point, of `samples` points of an area
+/// light; 0 where none of them is in front of it.
 [[nodiscard]] float light_share(const Sight& sight, const SurfacePoint& from, const Light& light, int samples);
 
 /// A triangle that hides the light, or one of these points of it, from the point; kNoTriangle where none does.

@@ -65,8 +65,8 @@ struct LightShafts::Few {
 
 class LightShafts::Shaft {
 public:
-    /// Of a box around points in the plane through `in_plane`, above which all of the light is, and one around the
-    /// light, both along `axes`.
+    /// Around a box of points in the plane through `in_plane`, above which all of the light is, and a box of the light,
+    /// both along `axes`.
     Shaft(const DBox& points, const DBox& light, const dmat3& axes, dvec3 in_plane, dvec3 normal)
         : axes_(axes), points_(points.wider()), light_(light.wider()), floor_{normal, glm::dot(normal, in_plane)} {
         for (int k = 0; k < 8; ++k) {
@@ -198,7 +198,7 @@ bool LightShafts::in_one_plane(TriangleId t, TriangleId with) const {
     const std::array<dvec3, 3> a = corners(with), b = corners(t);
     const dvec3 u = a[1] - a[0], v = a[2] - a[0], n = glm::cross(u, v);
     const double length = glm::length(n);
-    // Of a sliver the plane is known too badly.
+    // The plane of a sliver is known too badly.
     if (!(length > 1e-3 * glm::length(u) * glm::length(v))) return false;
     return std::ranges::all_of(b, [&](dvec3 q) { return std::abs(glm::dot(n, q - a[0])) <= kInPlane * length; });
 }
@@ -248,7 +248,7 @@ std::optional<LightShafts::Shaft> LightShafts::shaft(const Run& run) const {
     return Shaft(run.box, light, axes_, on[0], normal);
 }
 
-/// What is known of a run by triangles of a list, or of all; `few` gets those that reach into its shaft.
+/// Decides a run by triangles of a list, or by all; `few` gets those that reach into its shaft.
 Known LightShafts::resolve(const Run& run, const Few* among, Few& few) const {
     few.count = kMany;
     if (!run.flat) return Known::nothing;

@@ -1,5 +1,5 @@
-// Rays to an area light that need not be traced: what all rays from a tile of points to the light must meet, or cannot
-// meet.
+// Rays to an area light that need not be traced: triangles that all rays from a tile of points to the light meet, or
+// none can meet.
 //
 // A shaft is the convex hull of a box around some points and a box around the light. If no triangle that the rays can
 // meet reaches into it, all of its points see all of the light; if one triangle covers it from side to side, none of
@@ -22,7 +22,7 @@
 
 namespace umbra::rays {
 
-/// What is known of all rays of a run of points (PointTile::for_each_run) without tracing them.
+/// The answer of all rays of a run of points (PointTile::for_each_run) without tracing them.
 enum class Known : std::uint8_t {
     nothing,  ///< rays have to tell
     lit,      ///< none is blocked
@@ -40,14 +40,13 @@ using TileKnown                           = std::array<Known, kRunsPerTile>;
 /// Shafts to one light. Const members may be called from many threads.
 class LightShafts {
 public:
-    /// `scene` and `tree`, made of it, must outlive this object. Of lights without an area, and of those that are a
-    /// million times as far away as the scene is wide, nothing is known: a ray that meets nothing takes less time than
-    /// a shaft.
+    /// `scene` and `tree`, made of it, must outlive this object. For lights without an area, and those a million times
+    /// as far away as the scene is wide, nothing is known: a ray that meets nothing takes less time than a shaft.
     LightShafts(const Scene& scene, const RaySpace& space, const ShaftTree& tree, const Target& target);
 
-    /// What is known of the runs of a tile, in their order. Rays start at `starts`, each on its own triangle, which it
-    /// does not meet (OffsetPolicy::skip_triangle). Something is known only of runs whose points that ask lie in one
-    /// plane and have all of the light well above it.
+    /// The answers of the runs of a tile, in their order. Rays start at `starts`, each on its own triangle, which it
+    /// does not meet (OffsetPolicy::skip_triangle). Only runs whose points that ask lie in one plane and have all of
+    /// the light well above it are decided.
     [[nodiscard]] TileKnown known(const PointBatch& points, LightId light, const PointTile& tile,
                                   const TileStarts& starts) const;
 

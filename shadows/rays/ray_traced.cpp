@@ -38,32 +38,24 @@ struct Options : SampleOptions {
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::offset>({.name    = "offset",
-                                 .doc     = "How a ray keeps from hitting the surface that it starts on.",
-                                 .phase   = Phase::visibility,
-                                 .choices = "skip_triangle|integer_offset|epsilon"}),
-    parameter<&Options::epsilon>({.name  = "epsilon",
-                                  .doc   = "offset=epsilon: distance along the normal at which a ray starts.",
-                                  .unit  = "scene diagonals",
-                                  .phase = Phase::visibility,
-                                  .min   = 0,
-                                  .max   = 1}),
+    parameter<&Options::offset>("offset", "How a ray keeps from hitting the surface that it starts on.",
+                                {.choices = "skip_triangle|integer_offset|epsilon"}),
+    parameter<&Options::epsilon>("epsilon", "offset=epsilon: distance along the normal at which a ray starts.",
+                                 {.unit = "scene diagonals", .min = 0, .max = 1}),
     samples_parameter<Options>("Rays from a point to an area light; other lights take one.", "rays a point",
                                "1|4|16|64|256"),
     sampler_parameter<Options>(),
     seed_parameter<Options>(),
-    parameter<&Options::measure>({.name = "measure",
-                                  .doc  = "Which fraction of an area light S_j is. area: of its area; irradiance: each "
-                                          "sample counts by the irradiance it sends, as in most renderers.",
-                                  .phase       = Phase::visibility,
-                                  .choices     = "area|irradiance",
-                                  .area_lights = true}),
-    parameter<&Options::cull>({.name = "cull",
-                               .doc  = "Which rays to an area light are not traced: none, or those that a shaft from a "
-                                       "tile of points to the light decides. S_j is the same, bit for bit.",
-                               .phase       = Phase::build,
-                               .choices     = "none|shafts",
-                               .area_lights = true}),
+    parameter<&Options::measure>(
+        "measure",
+        "Which fraction of an area light S_j is. area: of its area; irradiance: each sample counts by the "
+        "irradiance it sends, as in most renderers.",
+        {.choices = "area|irradiance", .area_lights = true}),
+    parameter<&Options::cull>(
+        "cull",
+        "Which rays to an area light are not traced: none, or those that a shaft from a tile of points to the "
+        "light decides. S_j is the same, bit for bit.",
+        {.phase = Phase::build, .choices = "none|shafts", .area_lights = true}),
 };
 
 /// The triangles that block light, as rays and shafts look for them.
@@ -95,7 +87,7 @@ struct TracedLight final : Aimed {
     std::optional<LightShafts> shafts;
 };
 
-class RayTraced final : public MethodWith<Options> {
+class RayTraced final : public MethodWith<Options, Occluders, TracedLight> {
 public:
     explicit RayTraced(const Settings& settings) : MethodWith(settings) {}
 
@@ -110,14 +102,6 @@ public:
         // ray starts, in float, on the wrong side of the other surface.
         return {How::approximately,
                 "one ray in float arithmetic decides each point: correct except for rounding at creases"};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Occluders>(scene, facts, options);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<TracedLight>(as<Occluders>(built), light, options);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -155,8 +139,7 @@ public:
     }
 
 private:
-    /// Stands for S_j where the point's plane leaves so little of the light that no sample is in front of it: there is
-    /// no irradiance to take a fraction of.
+    /// S_j of a point with no sample of the light in front of its plane: there is no irradiance to take a fraction of.
     static constexpr float kNoSample = -1;
 
     [[nodiscard]] StartPlaces start_places(const Occluders& from) const {
@@ -193,7 +176,6 @@ private:
         });
     }
 
-    /// The fraction of the light's samples that the point sees. What is behind the point's plane is not seen.
     [[nodiscard]] float visible_fraction(const TracedLight& traced, const Starts& starts, int lane,
                                          PointKey key) const {
         return options.measure == Measure::irradiance ? visible_irradiance(traced, starts, lane, key)
@@ -229,8 +211,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo ray_traced;
-const MethodInfo ray_traced{
+extern const MethodInfo ray_traced{
     .name  = "ray_traced",
     .title = "Ray-traced shadows",
     .paper =

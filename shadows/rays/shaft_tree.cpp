@@ -5,12 +5,12 @@
 
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/base/parallel.h"
-#include "umbra/shadows/geometry/coherent_order.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 
 namespace umbra::rays {
 namespace {
 
-/// Of a height above a plane, in float and ray space, where coordinates are about 1. Shafts are wider by much more.
+/// Bound of a height's error above a plane, in float and ray space, where coordinates are about 1; far below kWider.
 constexpr float kRounding = 4e-6f;
 
 using Floats = Lanes<float>;

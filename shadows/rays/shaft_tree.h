@@ -21,14 +21,14 @@ struct EightTriangles {
 /// Eight boxes along the axes of ray space, side by side; those that are too few repeat the last one.
 using EightBoxes = BoxLanes<float, 3, 8>;
 
-/// Planes around a convex region of ray space. What lies above one of them by more than rounding is outside; what is
-/// not said to be outside may be so all the same.
+/// Planes around a convex region of ray space. Boxes above one of them by more than rounding are outside, others may
+/// be.
 class ShaftPlanes {
 public:
     /// `normal` is of length 1 and points outside; `offset` is its product with the points of the plane.
     void add(dvec3 normal, double offset);
 
-    /// Bit k: what is in box k may reach into the region.
+    /// Bit k: box k may reach into the region.
     [[nodiscard]] unsigned may_meet(const EightBoxes& boxes) const;
     /// Bit k: triangle k may.
     [[nodiscard]] unsigned may_meet(const EightTriangles& triangles) const;

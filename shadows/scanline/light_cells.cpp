@@ -7,7 +7,7 @@
 namespace umbra::scanline {
 namespace {
 
-constexpr double kWide = 1e-9;  ///< boxes are widened by far more than what is rounded, relative to a face
+constexpr double kWide = 1e-9;  ///< boxes are widened by far more than rounding, relative to a face
 
 /// A face of the cube as x, y and depth: the point is in its frustum where |x|, |y| <= depth.
 dvec3 in_face(int face, dvec3 p) {

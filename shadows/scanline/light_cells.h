@@ -1,9 +1,5 @@
 // A subdivision of space as the light sees it: the sphere of directions around a position, in six faces of a cube, or
-// the plane across a direction, in square cells. What lies between a point and the light is in the cell of the point.
-//
-// This work is based on:
-// W. Jack Bouknight, Karl C. Kelley. An Algorithm for Producing Half-Tone Computer Graphics Presentations with Shadows
-// and Movable Light Sources. 1970
+// the plane across a direction, in square cells. A triangle between a point and the light is in the point's cell.
 #pragma once
 
 #include <array>
@@ -48,8 +44,7 @@ public:
     }
 
 private:
-    /// What a segment or triangle covers of a face, within [-1, 1] x [-1, 1]: its extent, and the first and last of its
-    /// corners.
+    /// The part of a face that a segment or triangle covers, in [-1, 1] x [-1, 1]: extent, first and last corner.
     struct Coverage {
         dvec2 low{1}, high{-1}, from{0}, to{0};
     };

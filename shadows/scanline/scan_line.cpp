@@ -1,7 +1,6 @@
 // Scan-line shadows: along each row of the raster, a run of pixels that show one triangle is a span, and each occluder
-// darkens an interval of it. Its ends are where the planes through the light and the occluder's edges cut the span, so
-// that no pixel between them is tested. Which triangles can darken a span is looked up in a subdivision of space as the
-// light sees it.
+// darkens an interval of it, between the planes through the light and the occluder's edges: no pixel between these ends
+// is tested. Which triangles can darken a span is looked up in a subdivision of space as the light sees it.
 //
 //     aim         the subdivision: which triangles lie in each of its cells
 //     look        the spans, and how far their points lie beside the lines through their ends
@@ -60,9 +59,9 @@ Span span_of(const Scene& scene, const PointBatch& points, std::size_t first, st
 /// The spans of all triangles, by rows. Without a raster 256 points are a row, and each point is a span.
 class Spans final : public Looked {
 public:
-    Spans(const Scene& scene, const PointBatch& at)
+    Spans(const Built& built, const PointBatch& at)
         : Looked(at),
-          scene_(scene),
+          scene_(built.scene),
           width_(at.raster ? static_cast<std::size_t>(std::max(at.raster->width, 1)) : 256),
           known_((at.size() + width_ - 1) / width_) {
         const auto is_surface = [&](std::size_t i) { return points.triangle[i] != kNoTriangle; };
@@ -71,7 +70,7 @@ public:
             for (std::size_t y = begin; y < end; ++y) {
                 found.clear();
                 for_each_run(y, is_surface, [&](std::size_t first, std::size_t last) {
-                    if (last - first >= kLeast) found.push_back(span_of(scene, points, first, last));
+                    if (last - first >= kLeast) found.push_back(span_of(scene_, points, first, last));
                 });
                 known_[y].assign(found.begin(), found.end());
             }
@@ -122,7 +121,7 @@ private:
     std::vector<std::vector<Span>> known_;  ///< of each row
 };
 
-/// What a triangle hides from the light: the positions where all four of these are positive.
+/// The positions that a triangle hides from the light: those where all four of these are positive.
 struct Shadow {
     /// dot(normal, p - from).
     struct SidePlane {
@@ -160,7 +159,7 @@ struct Asked {
     std::vector<std::size_t> doubtful;  ///< points of the span by whose side of some shadow rounding decides
 };
 
-/// The scene, and what decides points that rounding leaves open.
+/// The scene, and the exact test for points that rounding leaves open.
 struct Sight final : Built {
     Sight(const Scene& of, const SceneFacts& its_facts) : Built(of, its_facts), exact(of) {}
     [[nodiscard]] std::size_t memory_bytes() const override { return exact.memory_bytes(); }
@@ -257,14 +256,7 @@ private:
 
     /// Whether triangle t may hide something of triangle `own`.
     [[nodiscard]] bool rises(TriangleId t, TriangleId own) const {
-        const int side =
-            side_of_light(source(), scene().vertex(own, 0), scene().vertex(own, 1), scene().vertex(own, 2));
-        return rises_over(scene(), t, own, side);
-    }
-
-    [[nodiscard]] double size_of(TriangleId t) const {
-        return sum_of_magnitudes(dvec3(scene().vertex(t, 0))) + sum_of_magnitudes(dvec3(scene().vertex(t, 1))) +
-               sum_of_magnitudes(dvec3(scene().vertex(t, 2)));
+        return rises_over(scene(), t, own, side_of_light(scene(), source(), own));
     }
 
     /// For positions of triangle `own`. None for a triangle that the light sees edge-on.
@@ -273,12 +265,12 @@ private:
         const dvec3 corner[3]{dvec3(scene().vertex(t, 0)), dvec3(scene().vertex(t, 1)), dvec3(scene().vertex(t, 2))};
         const dvec3 end    = infinite ? -dvec3(source().direction) : dvec3(source().position);
         const dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-        const int facing   = side_of_light(source(), scene().vertex(t, 0), scene().vertex(t, 1), scene().vertex(t, 2));
+        const int facing   = side_of_light(scene(), source(), t);
         if (facing == 0) return std::nullopt;
         const double turn = facing > 0 ? -1 : 1;
         Shadow shadow;
         // Coordinates are known up to some roundings of this, and so is each factor of the values.
-        const double size = size_of(t) + size_of(own) + (infinite ? 0 : sum_of_magnitudes(end));
+        const double size = size_of(scene(), t) + size_of(scene(), own) + (infinite ? 0 : sum_of_magnitudes(end));
         const double area = sum_of_magnitudes(corner[1] - corner[0]) * sum_of_magnitudes(corner[2] - corner[0]);
         // First, since it rules out most.
         shadow.sides[0] = {turn * normal, corner[0], dvec3(0), kRounding * size * area};
@@ -301,25 +293,13 @@ private:
     const LightCells cells_;
 };
 
-class ScanLine final : public Method {
+class ScanLine final : public MethodWith<NoOptions, Sight, Shadows, Spans> {
 public:
-    explicit ScanLine(const Settings&) {}  // it has no parameters
+    explicit ScanLine(const Settings& settings) : MethodWith(settings) {}
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
         if (!facts.hard_lights_only) return {How::not_at_all, "Spans have edges, and no penumbra: no area lights."};
         return {How::to_rounding, "The ends of shadows on each span, in double."};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Sight>(scene, facts);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<Shadows>(built, light);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
-        return std::make_unique<Spans>(built.scene, points);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -337,21 +317,16 @@ public:
     }
 
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
-        const auto& shadows      = as<Shadows>(aimed);
         const PointBatch& points = looked.points;
-        parallel_ranges(points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                blockers[i] = points.asks(aimed.light, i)
-                                  ? shadows.blocker(exact_position(aimed.scene(), points, i), points.triangle[i])
-                                  : kNoTriangle;
+        blame_each(aimed, looked, blockers, [&](std::size_t i) {
+            return as<Shadows>(aimed).blocker(exact_position(aimed.scene(), points, i), points.triangle[i]);
         });
     }
 };
 
 }  // namespace
 
-extern const MethodInfo scan_line;
-const MethodInfo scan_line{
+extern const MethodInfo scan_line{
     .name  = "scan_line",
     .title = "Scan-line shadows",
     .paper =

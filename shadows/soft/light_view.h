@@ -1,8 +1,8 @@
 // An area light seen from one surface point, and the edges before it in the light's own plane.
 //
 // A point q is q - o = X u + Y v + W c: o the start of the point's rays, c from there to the light's centre, u, v its
-// half axes. From o, q lies over the point (X/W, Y/W) of the light; the light is within |x|, |y| <= 1, and what lies
-// before it has 0 < W < 1.
+// half axes. From o, q lies over the point (X/W, Y/W) of the light; the light is within |x|, |y| <= 1, and points
+// before it have 0 < W < 1.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ struct FlatEdge {
     [[nodiscard]] bool cuts(LightKind kind) const;
 };
 
-/// What is known before any edge is looked at of the light that a point sees. For one thread.
+/// The light that a point sees, before any edge. For one thread.
 class LightView {
 public:
     /// `starts`, `lane`: the point, for which `seen` was made.

@@ -7,10 +7,6 @@
 //    --q--        is known for every point before that edge is looked at; where this makes all triangles of an edge
 //     /           cancel, no point sees it as a silhouette edge before this light.
 //    p
-//
-// This work is based on:
-// Samuli Laine, Timo Aila, Ulf Assarsson, Jaakko Lehtinen, Tomas Akenine-Moeller. Soft Shadow Volumes for Ray Tracing.
-// 2005
 #pragma once
 
 #include <cmath>

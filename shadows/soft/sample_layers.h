@@ -2,13 +2,9 @@
 //
 //       +---------------+     A sample's layers are those at the left of the lowest row, plus the steps of all edges
 //      >|----.   * *    |     that a line from there to the sample crosses: first up along the left side, where edges
-//       | *   \     *   |     come in, then along its row. What the first number is does not matter: samples without
+//       | *   \     *   |     come in, then along its row. Any first number does: samples without
 //       |   *  \  *     |     layers are those with the least, if any.
 //       +-------\-------+
-//
-// This work is based on:
-// Samuli Laine, Timo Aila, Ulf Assarsson, Jaakko Lehtinen, Tomas Akenine-Moeller. Soft Shadow Volumes for Ray Tracing.
-// 2005
 #pragma once
 
 #include <cstdint>
@@ -59,7 +55,7 @@ private:
     std::int32_t last_row_;
     std::vector<vec2> unsorted_;  ///< and their rows
     std::vector<std::int32_t> row_;
-    std::vector<float> x_, y_;  ///< sorted by row, filled up to a multiple of eight with what is above all edges
+    std::vector<float> x_, y_;  ///< sorted by row, filled up to a multiple of eight above all edges
     std::vector<std::int32_t> layers_, doubt_;
     std::vector<std::uint32_t> begin_;  ///< of each row, and the end
 };

@@ -44,12 +44,10 @@ const std::vector<Parameter> kParameters{
     sampler_parameter<Options>(),
     seed_parameter<Options>(),
     parameter<&Options::doubtful>(
-        {.name    = "doubtful",
-         .doc     = "What becomes of a sample that rounding may put on either side of an edge. trace: a ray decides; "
-                    "count: it stays where floats put it.",
-         .phase   = Phase::visibility,
-         .choices = "trace|count",
-         .area_lights = true}),
+        "doubtful",
+        "What becomes of a sample that rounding may put on either side of an edge. trace: a ray decides; "
+        "count: it stays where floats put it.",
+        {.choices = "trace|count", .area_lights = true}),
 };
 
 /// The triangles that block light, and their edges.
@@ -97,7 +95,7 @@ private:
     std::optional<LightEdges> edges_;  ///< none before a light without an area
 };
 
-/// What the points of a tile reuse, and what they wait for.
+/// The memory that the points of a tile reuse, and the rays that they wait for.
 struct SoftLight::Scratch {
     /// A point whose samples with the fewest layers are seen if the ray to one of them meets nothing.
     struct Waiting {
@@ -131,7 +129,7 @@ void SoftLight::see_tile(const PointBatch& points, const PointTile& tile, bool d
     }
 }
 
-/// S_j of the points first .. first + count - 1, at most eight, or what it waits for.
+/// S_j of the points first .. first + count - 1, at most eight, or the ray that it waits for.
 UMBRA_FOR_EACH_PROCESSOR void SoftLight::see_run(const PointBatch& points, std::size_t first, std::size_t count,
                                                  const Starts& starts, Scratch& scratch, std::span<float> s) const {
     std::optional<SeenLight> seen[8];
@@ -231,7 +229,7 @@ int SoftLight::count_doubtful(const SeenLight& seen, const Starts& starts, int l
     return visible;
 }
 
-class SoftVolumes final : public MethodWith<Options> {
+class SoftVolumes final : public MethodWith<Options, Occluders, SoftLight> {
 public:
     explicit SoftVolumes(const Settings& settings) : MethodWith(settings) {}
 
@@ -242,14 +240,6 @@ public:
                 fmt::format("area lights are sampled at {} points, seen or hidden by silhouette edges; a light without "
                             "an area takes one ray",
                             options.samples)};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Occluders>(scene, facts);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<SoftLight>(as<Occluders>(built), light, options);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -276,8 +266,7 @@ public:
 
 }  // namespace
 
-extern const MethodInfo soft_volumes;
-const MethodInfo soft_volumes{
+extern const MethodInfo soft_volumes{
     .name  = "soft_volumes",
     .title = "Soft shadow volumes",
     .paper =

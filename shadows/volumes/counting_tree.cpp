@@ -58,10 +58,10 @@ struct EightExtents {
     }
 };
 
-/// The eye's view where all points lie well in front of it, but from a little beside the eye: so that a plane or an
-/// edge that contains the eye, as in scenes laid out on a grid, or a light at the eye, is no special case. A far eye
-/// comes nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye:
-/// they are looked at from outside their box.
+/// The eye's view where all points lie well in front of it, but from a little beside the eye, so that planes and edges
+/// that contain the eye, as in scenes laid out on a grid, or a light at the eye need no special case. A far eye comes
+/// nearer on its line of sight, where double resolves more. Points without a raster may lie all around the eye: they
+/// are looked at from outside their box.
 ViewFrame choose_view(const PointBatch& points) {
     const bool perspective    = points.raster && points.raster->projection == Projection::perspective;
     const dvec3 eye           = perspective ? points.raster->eye : dvec3(0);
@@ -244,8 +244,8 @@ struct PointCounts::OneRegion {
 private:
     enum class Near : std::uint8_t { within, outside, open };
 
-    /// Of a point at one of the region's faces. Every point is at the near cap of its own triangle, and of copies of
-    /// that: they lie in one plane, on the light's side of which it is.
+    /// The place of a point at one of the region's faces. Every point is at the near cap of its own triangle, and of
+    /// copies of that: they lie in one plane, on the light's side of which it is.
     [[nodiscard]] Near near_point(std::size_t at) const {
         const TriangleId own = to.points_.triangle[to.index_[at]];
         if (region.cap == kNoTriangle || !(region.cap == own || is_copy(own))) return Near::open;
@@ -283,7 +283,7 @@ private:
     }
 
     /// Which nodes lie within no part of the half-space, and, four bits above these, which wholly. Certain answers
-    /// only: what lies nearer to the plane than the rounding of f, at any point of the box, is neither.
+    /// only: a box with a point nearer to the plane than the rounding of f is neither.
     static unsigned cover(const HalfSpace& f, const Tree::Node& boxes) {
         const double nx = f.nx, ny = f.ny, nz = f.nz, nw = f.nw, size_z = std::abs(nz);
         // The corners of boxes at which f is least, and those at which it is most.

@@ -43,8 +43,8 @@ struct Region {
     int count = 0;
     dvec3 box_min{-std::numeric_limits<double>::infinity()};
     dvec3 box_max{+std::numeric_limits<double>::infinity()};
-    /// Of a near cap, whose plane is the first face: its triangle, and whether the region is the side of the plane that
-    /// the light is on. A point of that triangle is on that side.
+    /// The triangle of a near cap, whose plane is the first face, and whether the region is on the light's side of that
+    /// plane. A point of that triangle is on that side.
     TriangleId cap       = kNoTriangle;
     bool on_light_s_side = false;
 

@@ -19,14 +19,14 @@ namespace {
 
 uvec3 oriented(uvec3 t, int orientation) { return orientation > 0 ? t : uvec3(t[0], t[2], t[1]); }
 
-/// A point that is no deeper than this may be projected anywhere.
+/// Points that are not deeper than this may be projected anywhere.
 double least_depth(const dvec3& v) { return 0x1p-20 * (std::abs(v.x) + std::abs(v.y)); }
 
 struct SeenBox {
     dvec3 low, high;  // of (x, y, w)
 };
-/// Of a triangle, and larger by more than rounding may move it and points, which is `slack` for those.
-/// Nothing where it does not lie in front of the view.
+/// Around a triangle, wider than rounding of it and of points, which is `slack` for these. Nothing where it does not
+/// lie in front of the view.
 std::optional<SeenBox> box_of(const std::array<dvec3, 3>& corners, double slack) {
     dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
     for (const dvec3& v : corners) {
@@ -62,8 +62,8 @@ SeenVolumes::SeenVolumes(const SilhouetteMeshes& meshes, const SeenVertices& ver
       vertices_(vertices.at),
       largest_w_(tree.largest_w()),
       // Points and vertices carry a few roundings u = 2^-53 relative to their distances from O, and points to those of
-      // their triangles' corners, at most `radius`; a normal relative to the lengths of what it is a product of. All
-      // that together, over a point's least depth 1/w, is below 100 u.
+      // their triangles' corners, at most `radius`; a normal relative to the lengths of its factors. All that together,
+      // over a point's least depth 1/w, is below 100 u.
       slack_(0x1p-45 * vertices.radius * largest_w_) {}
 
 void SeenVolumes::add_near_cap(PointCounts& counts, TriangleId t, int orientation, bool depth_fail) const {

@@ -74,7 +74,7 @@ private:
     [[nodiscard]] Line end_line(std::uint32_t v) const;
 
     [[nodiscard]] dvec3 far(std::uint32_t v) const { return at_infinity_ ? travel_ : vertices_[v] + travel_; }
-    /// Length of what `far` is a sum of.
+    /// Sum of the lengths of the terms of `far`.
     [[nodiscard]] double far_size(std::uint32_t v) const {
         return glm::length(travel_) + (at_infinity_ ? 0 : glm::length(vertices_[v]));
     }

@@ -50,20 +50,18 @@ struct Options {
 };
 
 const std::vector<Parameter> kParameters{
-    parameter<&Options::counting>({.name = "counting",
-                                   .doc = "Which faces a point counts. depth_pass: those between it and the viewpoint, "
-                                          "starting from the viewpoint's own count; depth_fail: those beyond it, with "
-                                          "caps at infinity.",
-                                   .phase   = Phase::visibility,
-                                   .choices = "depth_pass|depth_fail",
-                                   .sweep   = "depth_pass|depth_fail"}),
+    parameter<&Options::counting>(
+        "counting",
+        "Which faces a point counts. depth_pass: those between it and the viewpoint, starting from the "
+        "viewpoint's own count; depth_fail: those beyond it, with caps at infinity.",
+        {.choices = "depth_pass|depth_fail", .sweep = "depth_pass|depth_fail"}),
     parameter<&Options::edges>(
-        {.name = "edges",
-         .doc = "Which edges extrude a side. weighted: those whose triangles, turned to face the light, do not cancel; "
-                "silhouette: of closed meshes that are wound outwards and have the light outside, silhouettes of the "
-                "triangles that face it, right unless such a mesh turns inside out where it crosses itself; "
-                "per_triangle: all three edges of every triangle.",
-         .phase   = Phase::aim,
+        "edges",
+        "Which edges extrude a side. weighted: those whose triangles, turned to face the light, do not "
+        "cancel; silhouette: of closed meshes that are wound outwards and have the light outside, silhouettes "
+        "of the triangles that face it, right unless such a mesh turns inside out where it crosses itself; "
+        "per_triangle: all three edges of every triangle.",
+        {.phase   = Phase::aim,
          .choices = "weighted|silhouette|per_triangle",
          .sweep   = "weighted|silhouette|per_triangle"}),
 };
@@ -77,13 +75,13 @@ struct Meshes final : Built {
     const ExactSight sight;
 };
 
-/// What bounds the volumes of one light.
+/// The triangles and edges that bound the volumes of one light.
 struct Volumes final : Aimed {
-    Volumes(const Meshes& from, LightId at, Edges which)
+    Volumes(const Meshes& from, LightId at, const Options& options)
         : Aimed(from, at), meshes(from.meshes), orientation(sides_of_light(scene(), source())) {
         leave_out_transparent();
-        if (which == Edges::silhouette) leave_out_back_faces();
-        edges = which == Edges::per_triangle ? all_edges() : meshes.edges(orientation);
+        if (options.edges == Edges::silhouette) leave_out_back_faces();
+        edges = options.edges == Edges::per_triangle ? all_edges() : meshes.edges(orientation);
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
         return orientation.capacity() + edges.capacity() * sizeof(ChangeEdge);
@@ -138,7 +136,7 @@ struct Seen final : Looked {
     const SeenVertices vertices;
 };
 
-class ShadowVolumes final : public MethodWith<Options> {
+class ShadowVolumes final : public MethodWith<Options, Meshes, Volumes, Seen> {
 public:
     explicit ShadowVolumes(const Settings& settings) : MethodWith(settings) {}
 
@@ -151,18 +149,6 @@ public:
         return {How::to_rounding,
                 "counts volumes at the points themselves, with weighted edges for open, "
                 "non-manifold or inconsistently oriented meshes"};
-    }
-
-    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
-        return std::make_unique<Meshes>(scene, facts);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
-        return std::make_unique<Volumes>(as<Meshes>(built), light, options.edges);
-    }
-
-    [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
-        return std::make_unique<Seen>(as<Meshes>(built), points);
     }
 
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
@@ -199,18 +185,14 @@ public:
     /// double: the farthest triangle is named, which rounding at the point's own surface cannot be.
     void blame(const Aimed& aimed, const Looked& looked, std::span<TriangleId> blockers) const override {
         const TriangleTree tree(aimed.scene());
-        parallel_ranges(looked.points.size(), 64, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                blockers[i] = kNoTriangle;
-                if (!looked.points.asks(aimed.light, i)) continue;
-                const Line line(as<Volumes>(aimed), looked.points, i);
-                Holding holding;
-                tree.visit({line.p, line.to_light, line.end, 0}, [&](TriangleId t) {
-                    if (t != looked.points.triangle[i]) holding.add(t, line);
-                    return true;
-                });
-                blockers[i] = holding.farthest;
-            }
+        blame_each(aimed, looked, blockers, [&](std::size_t i) {
+            const Line line(as<Volumes>(aimed), looked.points, i);
+            Holding holding;
+            tree.visit({line.p, line.to_light, line.end, 0}, [&](TriangleId t) {
+                if (t != looked.points.triangle[i]) holding.add(t, line);
+                return true;
+            });
+            return holding.farthest;
         });
     }
 
@@ -262,8 +244,8 @@ private:
 
         void add(TriangleId t, const Line& line) {
             if (line.of.orientation[t] == 0) return;
-            std::array<dvec3, 3> v;
-            for (int k = 0; k < 3; ++k) v[static_cast<std::size_t>(k)] = dvec3(line.of.scene().vertex(t, k)) - line.p;
+            std::array<dvec3, 3> v = corners_of(line.of.scene(), t);
+            for (dvec3& corner : v) corner -= line.p;
             int inside = 0;
             for (std::size_t k = 0; k < 3; ++k)
                 inside += glm::dot(glm::cross(v[k], v[(k + 1) % 3]), line.to_light) >= 0 ? +1 : -1;
@@ -282,8 +264,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo shadow_volumes;
-const MethodInfo shadow_volumes{
+extern const MethodInfo shadow_volumes{
     .name  = "shadow_volumes",
     .title = "Shadow volumes",
     .paper = "Frank Crow, Shadow Algorithms for Computer Graphics, 1977",

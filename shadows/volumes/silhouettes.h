@@ -2,10 +2,9 @@
 //
 // A closed object is a halfedge mesh of CGAL, and its silhouettes are read off that mesh. A halfedge mesh holds
 // 2-manifolds only: where an edge has one triangle, three, or two that run it in the same direction, or where a vertex
-// has two fans, CGAL refuses the triangle. Scenes have such objects, and shadow volumes serve them; they are lists of
-// edges, each with any number of triangles. What says whether an object is such a manifold (ObjectFacts::manifold) is
-// the project's own core/scene/topology.h, since it has to count the faults of those that are not. Which way a triangle
-// faces is decided by CGAL's exact predicates for both kinds.
+// has two fans, CGAL refuses the triangle. Other objects are lists of edges, each with any number of triangles. Which
+// object is such a manifold (ObjectFacts::manifold) is decided by core/scene/topology.h, which counts the faults of the
+// others, and which way a triangle faces by CGAL's exact predicates.
 #pragma once
 
 #include <memory>
@@ -30,7 +29,7 @@ public:
     SilhouetteMesh(const Scene& scene, const Topology& topology, std::uint32_t first_vertex, bool closed);
 
     [[nodiscard]] bool closed() const { return halfedges_ != nullptr; }
-    /// Of each edge of a closed object, sorted by a, then b.
+    /// One for each edge of a closed object, sorted by a, then b.
     [[nodiscard]] std::vector<Neighbours> neighbours() const;
     /// The edges of any other.
     [[nodiscard]] const EdgeList& soup() const { return soup_; }

@@ -1,7 +1,6 @@
 #include "umbra/shadows/zbuffer/contact_march.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace umbra {

@@ -14,7 +14,7 @@ namespace umbra {
 struct ContactMarch {
     int steps        = 0;    ///< 0: no march
     double length    = 0.3;  ///< world units, or as far as the light is, if that is closer
-    double thickness = 0.1;  ///< world units: as thick is what the picture shows taken to be
+    double thickness = 0.1;  ///< world units: of the surfaces in the picture
 };
 
 /// The pixel of the first step that lies behind the plane of the facet seen there, but by no more than the thickness;

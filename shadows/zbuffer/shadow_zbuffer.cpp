@@ -1,10 +1,8 @@
 // Shadow z-buffer: draw depth from the light, then compare every surface point with it.
 //
-// build finds what can block a light (shadows/maps/casters.h).
-// aim fits frames to that as the light sees it, one map or six (light_views.h, light_frame.h), and rasterises its depth
-// into each (depth_map.h).
-// look notes which picture the points are seen in, and traces that picture where contact shadows need it and the points
-// have none (answers.h).
+// build finds what can block a light (shadows/maps/casters.h). aim fits frames to that as the light sees it, one map or
+// six (light_views.h, light_frame.h), and rasterises its depth into each (depth_map.h). look notes which picture the
+// points are seen in, and traces that picture where contact shadows need it and the points have none (answers.h).
 // visibility takes each point to the view that covers it, projects it there, moves it towards the light by the bias,
 // and compares its depth with those that the filter asks for (kernels.h, depth_lookup.h): S_j is the fraction that does
 // not block. If it is asked to, it then looks for contacts in the picture (contact_march.h).
@@ -51,80 +49,58 @@ struct Options : ComparingOptions, ViewOptions, SearchOptions {
 const std::vector<Parameter> kParameters{
     resolution_parameter<Options>("Texels along each side of a map; a cube has six maps.",
                                   "256|512|1024|2048|4096|8192"),
-    parameter<&Options::depth>({.name    = "depth",
-                                .doc     = "Bits of a depth value; float stores reversed depth.",
-                                .phase   = Phase::aim,
-                                .choices = "16|24|32|float"}),
+    parameter<&Options::depth>("depth", "Bits of a depth value; float stores reversed depth.",
+                               {.phase = Phase::aim, .choices = "16|24|32|float"}),
     bias_parameter<Options>(),
     constant_parameter<Options>(),
     slope_parameter<Options>(),
     normal_offset_parameter<Options>(),
-    parameter<&Options::filter>({.name    = "filter",
-                                 .doc     = "nearest: one comparison; pcf: the mean of several around the point; pcss: "
-                                            "for area lights a search for blockers, and pcf as wide as the penumbra "
-                                            "behind them, for other lights pcf.",
-                                 .phase   = Phase::aim,
-                                 .choices = "nearest|pcf|pcss",
-                                 .sweep   = "nearest|pcf"}),
+    parameter<&Options::filter>(
+        "filter",
+        "nearest: one comparison; pcf: the mean of several around the point; pcss: for area lights a search "
+        "for blockers, and pcf as wide as the penumbra behind them, for other lights pcf.",
+        {.phase = Phase::aim, .choices = "nearest|pcf|pcss", .sweep = "nearest|pcf"}),
     parameter<&Options::kernel>(
-        {.name  = "kernel",
-         .doc   = "pcf: which texels are compared. grid: a square of them; disc: those at points spread evenly over a "
-                  "disk of radius + 1/2; castano3, castano5, castano7: 3, 5 or 7 a side that count most in the middle, "
-                  "and move with the point.",
-         .phase = Phase::aim,
-         .choices = "grid|disc|castano3|castano5|castano7"}),
+        "kernel",
+        "pcf: which texels are compared. grid: a square of them; disc: those at points spread evenly over a "
+        "disk of radius + 1/2; castano3, castano5, castano7: 3, 5 or 7 a side that count most in the middle, "
+        "and move with the point.",
+        {.phase = Phase::aim, .choices = "grid|disc|castano3|castano5|castano7"}),
     radius_parameter<Options>("pcf: compares (2 radius + 1)^2 texels, not of Castano's kernels.", 16),
     bilinear_parameter<Options>(),
     parameter<&Options::rotation>(
-        {.name  = "rotation",
-         .doc   = "kernel=disc and pcss: rotates the points of each disc. noise: by an angle that the point's position "
-                  "in the map decides; gradient: by one that its pixel decides, spread over any 3 x 3 pixels; points "
-                  "that no picture shows have the pixel that the camera sees them through.",
-         .phase = Phase::visibility,
-         .choices = "none|noise|gradient"}),
-    parameter<&Options::samples>(
-        {.name  = "samples",
-         .doc   = "kernel=disc: points compared; pcss: texels, in the search and again in the filter.",
-         .unit  = "texels",
-         .phase = Phase::aim,
-         .min   = 1,
-         .max   = 1024}),
+        "rotation",
+        "kernel=disc and pcss: rotates the points of each disc. noise: by an angle that the point's "
+        "position in the map decides; gradient: by one that its pixel decides, spread over any 3 x 3 "
+        "pixels; points that no picture shows have the pixel that the camera sees them through.",
+        {.choices = "none|noise|gradient"}),
+    parameter<&Options::samples>("samples",
+                                 "kernel=disc: points compared; pcss: texels, in the search and again in the filter.",
+                                 {.unit = "texels", .phase = Phase::aim, .min = 1, .max = 1024}),
     search_parameter<Options>("pcss: how far from the point texels are compared, at most."),
-    parameter<&Options::faces>({.name  = "faces",
-                                .doc   = "Which side of a triangle casts; back (second depth) and front expect closed "
-                                         "occluders whose normals point outwards.",
-                                .phase = Phase::aim,
-                                .choices = "all|front|back"}),
+    parameter<&Options::faces>(
+        "faces",
+        "Which side of a triangle casts; back (second depth) and front expect closed occluders whose normals "
+        "point outwards.",
+        {.phase = Phase::aim, .choices = "all|front|back"}),
     parameter<&Options::surface>(
-        {.name = "surface",
-         .doc  = "Depth that a texel keeps. first: of the first surface that the light sees; midpoint: halfway between "
-                 "it and the second, if there is one, so that the lit sides of closed occluders need no bias: bias=auto "
-                 "is then receiver_plane. Where one surface is alone, its own, with the bias that is set.",
-         .phase   = Phase::aim,
-         .choices = "first|midpoint"}),
+        "surface",
+        "Depth that a texel keeps. first: of the first surface that the light sees; midpoint: halfway "
+        "between it and the second, if there is one, so that the lit sides of closed occluders need no "
+        "bias: bias=auto is then receiver_plane. Where one surface is alone, its own, with the bias that is "
+        "set.",
+        {.phase = Phase::aim, .choices = "first|midpoint"}),
     parameter<&Options::contact_steps>(
-        {.name = "contact_steps",
-         .doc =
-             "Contact shadows: steps of a march through the picture, from the point towards the light; a point is dark "
-             "where a step lies just behind what the picture shows. 0: no march. Points without a picture have one of "
-             "the scene traced.",
-         .unit  = "steps",
-         .phase = Phase::look,
-         .min   = 0,
-         .max   = 1024}),
-    parameter<&Options::contact_length>({.name  = "contact_length",
-                                         .doc   = "How far that march goes.",
-                                         .unit  = "world units",
-                                         .phase = Phase::visibility,
-                                         .min   = 1e-6,
-                                         .max   = 1e6}),
+        "contact_steps",
+        "Contact shadows: steps of a march through the picture, from the point towards the light; a "
+        "point is dark where a step lies just behind what the picture shows. 0: no march. Points "
+        "without a picture have one of the scene traced.",
+        {.unit = "steps", .phase = Phase::look, .min = 0, .max = 1024}),
+    parameter<&Options::contact_length>("contact_length", "How far that march goes.",
+                                        {.unit = "world units", .min = 1e-6, .max = 1e6}),
     parameter<&Options::contact_thickness>(
-        {.name  = "contact_thickness",
-         .doc   = "How thick what the picture shows is taken to be: a step further behind it is not dark.",
-         .unit  = "world units",
-         .phase = Phase::visibility,
-         .min   = 0,
-         .max   = 1e6}),
+        "contact_thickness", "How thick what the picture shows is taken to be: a step further behind it is not dark.",
+        {.unit = "world units", .min = 0, .max = 1e6}),
     fit_parameter<Options>(),
     surround_parameter<Options>(),
 };
@@ -286,8 +262,7 @@ private:
 
 }  // namespace
 
-extern const MethodInfo shadow_zbuffer;
-const MethodInfo shadow_zbuffer{
+extern const MethodInfo shadow_zbuffer{
     .name  = "shadow_zbuffer",
     .title = "Shadow z-buffer",
     .paper = "Lance Williams, Casting Curved Shadows on Curved Surfaces, 1978",

@@ -211,8 +211,8 @@ TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     MethodInfo info;
     info.name       = "failing";
     info.title      = "Failing";
-    info.parameters = {parameter<&FailingOptions::at>(
-        {.name = "at", .doc = "Where it fails.", .choices = "never|build|aim|look|visibility|contract"})};
+    info.parameters = {parameter<&FailingOptions::at>("at", "Where it fails.",
+                                                      {.choices = "never|build|aim|look|visibility|contract"})};
     info.create     = create<Failing>;
 
     options_.methods = {"shadow_zbuffer"};

@@ -21,8 +21,8 @@ struct OutsideOptions {
     std::string folder;
 };
 const std::vector<Parameter> kOutsideParameters{
-    parameter<&OutsideOptions::command>({.name = "command", .doc = "The program.", .phase = Phase::build}),
-    parameter<&OutsideOptions::folder>({.name = "folder", .doc = "For its files.", .phase = Phase::build})};
+    parameter<&OutsideOptions::command>("command", "The program.", {.phase = Phase::build}),
+    parameter<&OutsideOptions::folder>("folder", "For its files.", {.phase = Phase::build})};
 
 template <class T>
 void append(std::ofstream& out, const T& value) {

@@ -98,12 +98,10 @@ MethodInfo fake_method(std::string_view name) {
     MethodInfo info;
     info.name       = name;
     info.parameters = {
-        parameter<&FakeOptions::tree>(
-            {.name = "tree", .doc = "A number.", .phase = Phase::build, .min = 0, .max = 1000}),
-        parameter<&FakeOptions::map>({.name = "map", .doc = "A number.", .phase = Phase::aim, .min = 0, .max = 1000}),
-        parameter<&FakeOptions::grid>(
-            {.name = "grid", .doc = "A number.", .phase = Phase::look, .min = 0, .max = 1000}),
-        parameter<&FakeOptions::samples>({.name = "samples", .doc = "A number.", .min = 0, .max = 1000})};
+        parameter<&FakeOptions::tree>("tree", "A number.", {.phase = Phase::build, .min = 0, .max = 1000}),
+        parameter<&FakeOptions::map>("map", "A number.", {.phase = Phase::aim, .min = 0, .max = 1000}),
+        parameter<&FakeOptions::grid>("grid", "A number.", {.phase = Phase::look, .min = 0, .max = 1000}),
+        parameter<&FakeOptions::samples>("samples", "A number.", {.min = 0, .max = 1000})};
     info.create = create<FakeMethod>;
     return info;
 }

@@ -17,8 +17,7 @@ struct Options {
     int samples = 3;
 };
 
-const std::vector<Parameter> kParameters{
-    parameter<&Options::samples>({.name = "samples", .doc = "A number.", .min = 1, .max = 100})};
+const std::vector<Parameter> kParameters{parameter<&Options::samples>("samples", "A number.", {.min = 1, .max = 100})};
 
 TEST(Parameters, BelongToTheStructOfTheirOwnFile) {
     EXPECT_EQ(Settings(kParameters).as<Options>().samples, 3);

@@ -89,10 +89,9 @@ inline MethodInfo planted_method(std::string_view seed = {}) {
     info.title      = "Planted";
     info.paper      = "Nobody, Wrong on Purpose";
     info.summary    = "Wrong where a test says so.";
-    info.parameters = {
-        parameter<&PlantedOptions::seed>({.name = "seed", .doc = "Noise.", .min = 0, .max = 2147483647})};
-    info.seed   = seed;
-    info.create = create<PlantedMethod>;
+    info.parameters = {parameter<&PlantedOptions::seed>("seed", "Noise.", {.min = 0, .max = 2147483647})};
+    info.seed       = seed;
+    info.create     = create<PlantedMethod>;
     return info;
 }
 

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "umbra/core/scene/primitives.h"
-#include "umbra/shadows/bins/binned_points.h"
 #include "umbra/shadows/bins/light_image.h"
 #include "umbra/shadows/bins/point_bins.h"
 #include "umbra/shadows/bins/shadow_planes.h"
-#include "umbra/shadows/geometry/coherent_order.h"
+#include "umbra/shadows/geometry/triangle_tree.h"
 #include "umbra/tests/support/adversarial_scenes.h"
 #include "umbra/tests/support/method_case.h"
 

@@ -45,14 +45,15 @@ std::optional<Receiver> expected(const MapView& view, const Facet& facet, dvec3 
     receiver.r_x = std::isfinite(scale) ? scale * n.x * sample.x : 0;
     receiver.r_y = std::isfinite(scale) ? scale * n.y * sample.y : 0;
 
-    const double per_width = width * f.nearness_per_depth(v.z);
+    const double per_depth = f.perspective ? f.near * f.far / (v.z * v.z * (f.far - f.near)) : 1 / (f.far - f.near);
+    const double per_width = width * per_depth;
     const double gradient  = std::max(std::abs(receiver.r_x), std::abs(receiver.r_y));
     const double snapping  = (std::abs(receiver.r_x) + std::abs(receiver.r_y)) / kSnapsPerSample;
     const double samples   = 2 * filter.radius + 1;
     receiver.bias          = bias.constant * per_width + bias.slope * gradient;
     if (bias.mode == BiasMode::manual) return receiver;
     const double largest = glm::length(p) + glm::length(f.origin) + std::abs(v.z);
-    receiver.bias += view.map.quantum(receiver.r) + kPositionRounding * largest * f.nearness_per_depth(v.z);
+    receiver.bias += view.map.quantum(receiver.r) + kPositionRounding * largest * per_depth;
     receiver.slack    = samples * (kAutoWidth * per_width + kAutoGradient * gradient) + snapping;
     receiver.most     = samples * kMostAutomatic * per_width;
     receiver.snapping = snapping;

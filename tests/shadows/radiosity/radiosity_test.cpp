@@ -15,7 +15,6 @@
 
 #include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/radiosity/exchange.h"
-#include "umbra/shadows/radiosity/form_factor.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {
