@@ -111,7 +111,7 @@ json column_groups(const std::vector<Column>& columns) {
 
 json error_view(const Results& results) {
     const std::vector<Column> columns = counted_columns(results.methods);
-    bool unshadowed                   = false;  // some object receives no shadows
+    bool unshadowed                   = false;
     json groups                       = rows_by_light(results, [&](const MethodRecord& method, const ErrorRecord& e) {
         unshadowed  = unshadowed || e.unshadowed > 0;
         json counts = json::array();

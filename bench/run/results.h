@@ -184,9 +184,10 @@ void describe(Fields& of, Is<ErrorRecord>) {
        "Lights without an area: the mean is up to 10 % low where the boundary is oblique to the pixels");
     of("penumbra_width_px", &ErrorRecord::penumbra_width_px,
        "effective widths over the line S = 1/2 of the reference; null for lights without an area");
-    of.may("unshadowed", &ErrorRecord::unshadowed,
-           "points that face the light and whose objects receive no shadows: S is 1 for every method. Only where there "
-           "are some");
+    of.may(
+        "unshadowed", &ErrorRecord::unshadowed,
+        "points that face the light and whose objects receive no shadows, or that lie in a sphere light: S is 1 for every "
+        "method. Only where there are some");
 }
 
 struct ReferenceFailureRecord {

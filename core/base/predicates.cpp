@@ -4,6 +4,9 @@
 #include "umbra/core/base/predicates.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Gmpq.h>
+
+#include <cmath>
 
 namespace umbra {
 namespace {
@@ -31,6 +34,26 @@ int side_of_direction(vec3 a, vec3 b, vec3 c, dvec3 d) {
     if (is_exact(p, b, a) && is_exact(q, c, a))
         return CGAL::orientation(Point(CGAL::ORIGIN), point(p), point(q), point(d));
     return CGAL::compare_signed_distance_to_plane(point(a), point(b), point(c), point(d), Point(CGAL::ORIGIN));
+}
+
+bool lies_in_sphere(vec3 a, vec3 b, vec3 c, float u, float v, vec3 centre, float radius) {
+    using Rational = CGAL::Gmpq;
+    // Each coordinate of the point has 8 roundings at most of the numbers that it is computed from.
+    const dvec3 x(a), y(b), z(c), from(centre);
+    const double U = u, V = v, r = radius;
+    const dvec3 to       = x - from + U * (y - x) + V * (z - x);
+    const dvec3 reach    = glm::abs(x) + glm::abs(y) + glm::abs(z) + glm::abs(from);
+    const double largest = reach.x + reach.y + reach.z + r;
+    const double excess  = glm::dot(to, to) - r * r;
+    if (const double error = 64 * 0x1p-53 * largest * largest; std::abs(excess) > error && error > 1e-290)
+        return excess < 0;
+    Rational square = 0;
+    for (int k = 0; k < 3; ++k) {
+        const Rational p = x[k], q = y[k], s = z[k];
+        const Rational d = p - Rational(from[k]) + Rational(U) * (q - p) + Rational(V) * (s - p);
+        square += d * d;
+    }
+    return square <= Rational(r) * Rational(r);
 }
 
 }  // namespace umbra

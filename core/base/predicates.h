@@ -12,4 +12,7 @@ namespace umbra {
 [[nodiscard]] int side_of_direction(vec3 a, vec3 b, vec3 c, vec3 d);
 [[nodiscard]] int side_of_direction(vec3 a, vec3 b, vec3 c, dvec3 d);
 
+/// Whether (1-u-v) a + u b + v c lies in a sphere or on it. Exact.
+[[nodiscard]] bool lies_in_sphere(vec3 a, vec3 b, vec3 c, float u, float v, vec3 centre, float radius);
+
 }  // namespace umbra

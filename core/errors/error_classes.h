@@ -33,7 +33,7 @@ enum class ErrorClass : std::uint8_t {
     leak,         ///< interior, elsewhere
     penumbra,     ///< interior, where the reference has a penumbra of an area light: it is missing, or wrong
     noise,        ///< interior, and the mean of runs with other random numbers is right
-    unshadowed    ///< some of the light is in front, and the object receives no shadows: S_j = 1 for every method
+    unshadowed    ///< Facing::unshadowed: S_j = 1 for every method
 };
 
 /// The names of the classes in the order of their codes, as files and pages write them.

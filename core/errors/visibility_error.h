@@ -11,7 +11,7 @@ namespace umbra {
 
 /// Counts are points, taken from the plane of classes; `points` are those with a surface whose light is not `away` and
 /// that both planes define, and all counts and means below `away` are over them. Of the others with a surface and a
-/// light not `away`, `unshadowed` are those of objects that receive no shadows, `on_boundary` those that the reference
+/// light not `away`, `unshadowed` are those with Facing::unshadowed, `on_boundary` those that the reference
 /// says are, `undefined` those that either plane leaves open. lit, umbra and penumbra are by `kFullOrNone`.
 struct VisibilityError {
     std::uint64_t points = 0, undefined = 0, away = 0, unshadowed = 0;

@@ -46,6 +46,13 @@ Facing facing_of(const Scene& scene, LightId id, TriangleId t, bool flipped) {
     return as_received(scene, t, is_front ? Facing::front : Facing::away);
 }
 
+bool lies_in_light(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
+    const TriangleId t = points.triangle[i];
+    const Light& l     = scene.lights[light];
+    return lies_in_sphere(scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2), points.u[i], points.v[i],
+                          l.position, l.radius);
+}
+
 bool centre_of_cut_light_is_behind(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
     const TriangleId t = points.triangle[i];
     const int side     = side_of_light(scene.lights[light], scene.vertex(t, 0), scene.vertex(t, 1), scene.vertex(t, 2));

@@ -21,6 +21,17 @@ namespace umbra {
 /// Which part of the light a point of triangle t sees, whose normal is `flipped` against the triangle's winding. Exact.
 [[nodiscard]] Facing facing_of(const Scene& scene, LightId light, TriangleId t, bool flipped);
 
+/// Whether point i lies in a sphere light or on it. Exact.
+[[nodiscard]] bool lies_in_light(const Scene& scene, const PointBatch& points, LightId light, std::size_t i);
+
+/// The facing of point i, whose triangle has `of_triangle`: a sphere light that the point lies in shines on it past all
+/// occluders. Exact.
+[[nodiscard]] inline Facing facing_at(const Scene& scene, const PointBatch& points, LightId light, std::size_t i,
+                                      Facing of_triangle) {
+    const bool may_lie_in = of_triangle == Facing::partly && scene.lights[light].kind == LightKind::sphere;
+    return may_lie_in && lies_in_light(scene, points, light, i) ? Facing::unshadowed : of_triangle;
+}
+
 /// centre_is_behind where the plane of point i cuts the light.
 [[nodiscard]] bool centre_of_cut_light_is_behind(const Scene& scene, const PointBatch& points, LightId light,
                                                  std::size_t i);

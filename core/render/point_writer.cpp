@@ -91,7 +91,9 @@ void face_eight(const Light& light, const Triangles8& t, const Doubles& flipped,
         const double lesser = std::min(std::abs(low), std::abs(high));
         const double facing = 1.0 + (high > 0 ? 1.0 : 0.0) + (low > 0 ? 1.0 : 0.0);
         const double sure   = keeps_sign(lesser, t.sides[k], reach) ? known[k] : 0.0;
-        to[k]               = static_cast<int>(sure > 0 ? facing : static_cast<double>(kOpen));
+        // A point in a plane that cuts a sphere may lie in the sphere.
+        const double open = light.kind == LightKind::sphere && facing == 2.0 ? 1.0 : 0.0;
+        to[k]             = static_cast<int>(sure > open ? facing : static_cast<double>(kOpen));
     }
 }
 
@@ -278,6 +280,7 @@ UMBRA_FOR_EACH_PROCESSOR void PointWriter::face_open_points(const PointTile& til
     for (LightId j = 0; j < scene_.lights.size(); ++j) {
         std::vector<Facing>& facing = batch_.facing[j];
         std::size_t last            = batch_.size();  // neighbours often lie on one triangle
+        Facing of_last              = Facing::none;
         tile.for_each_run([&](std::size_t first, std::size_t count) {
             for (std::size_t i = first; i < first + count; ++i) {
                 if (facing[i] != kOpen) continue;
@@ -287,8 +290,9 @@ UMBRA_FOR_EACH_PROCESSOR void PointWriter::face_open_points(const PointTile& til
                     continue;
                 }
                 const bool same = last < i && batch_.triangle[last] == t && batch_.flipped[last] == batch_.flipped[i];
-                facing[i]       = same ? facing[last] : facing_of(scene_, j, t, batch_.flipped[i] != 0);
-                last            = i;
+                if (!same) of_last = facing_of(scene_, j, t, batch_.flipped[i] != 0);
+                facing[i] = facing_at(scene_, batch_, j, i, of_last);
+                last      = i;
             }
         });
     }

@@ -119,7 +119,7 @@ void face_light(PointBatch& batch, const Scene& scene, LightId id) {
                 last_flip   = batch.flipped[i];
                 last_facing = facing_of(scene, id, t, last_flip != 0);
             }
-            facing[i] = last_facing;
+            facing[i] = facing_at(scene, batch, id, i, last_facing);
         }
     });
 }

@@ -16,7 +16,8 @@ enum class Facing : std::uint8_t {
     away,       ///< the whole light is behind, or exactly in the plane: S_j = 0 for every method
     partly,     ///< an area light that the plane cuts
     front,      ///< all of the light is in front
-    unshadowed  ///< some of the light is in front, and the object receives no shadows: S_j = 1 for every method
+    unshadowed  ///< some of the light is in front, and the object receives no shadows or the point lies in a sphere
+                ///< light: S_j = 1 for every method
 };
 
 /// Whether methods are asked for S_j.
@@ -37,7 +38,7 @@ struct PointBatch {
     std::vector<std::vector<Facing>> facing;  ///< [light][point]; filled by face_lights
 
     [[nodiscard]] std::size_t size() const { return triangle.size(); }
-    /// Whether S_j is asked of point i: some of the light is in front of its plane, and its object receives shadows.
+    /// Whether S_j is asked of point i: some of the light is in front of its plane, and no rule makes it unshadowed.
     [[nodiscard]] bool asks(LightId light, std::size_t i) const { return is_asked(facing[light][i]); }
     /// S_j of point i for every method, where it is not asked.
     [[nodiscard]] float decided(LightId light, std::size_t i) const {

@@ -241,7 +241,7 @@ TEST_F(Report, PointsOfObjectsWithoutShadowsAreCountedApart) {
     json results = sample("court");
     put(out / "court", results);
     write_report({out}, out);
-    const std::string column = "Of objects that receive no shadows", none = read(out / "court/index.html");
+    const std::string column = "Unshadowed", none = read(out / "court/index.html");
     EXPECT_FALSE(contains(none, column));
     EXPECT_TRUE(contains(none, "<tr class=\"group\"><th colspan=\"9\" scope=\"rowgroup\">lamp</th></tr>"));
     results["methods"][1]["errors"][0]["unshadowed"] = 2345;

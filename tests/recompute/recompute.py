@@ -682,7 +682,7 @@ COLUMNS = {
     'Umbra': of_error('umbra', 'count'),
     'Penumbra': of_error('penumbra', 'count'), 'Undefined': of_error('undefined', 'count'),
     'On the boundary': of_error('on_boundary', 'count'), 'Not in the sample': of_error('not_judged', 'count'),
-    'Facing away': of_error('away', 'count'), 'Of objects that receive no shadows': lambda m, e: [('count',
+    'Facing away': of_error('away', 'count'), 'Unshadowed': lambda m, e: [('count',
     e.get('unshadowed', 0))]}
 OF_METHODS = {
     'Phase, ms / Build': medians('build_ms'), 'Phase, ms / Aim': medians('aim_ms'),

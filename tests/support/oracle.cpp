@@ -244,8 +244,10 @@ Facing Oracle::facing(const SurfacePoint& point, const Light& light) const {
         const Vector slant = cross(own.normal, axis);
         extent             = r * r * dot(slant, slant) / dot(axis, axis);
     }
-    if (h * h < extent) return Facing::partly;
-    return of_height(h);
+    if (h * h >= extent) return of_height(h);
+    if (light.kind == LightKind::disk) return Facing::partly;
+    const Vector to_centre = centre - model_->place(point);
+    return dot(to_centre, to_centre) <= r * r ? Facing::unshadowed : Facing::partly;
 }
 
 /// Whether the line from p along d, d not included, meets the triangle in whose plane it lies.

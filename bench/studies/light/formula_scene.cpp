@@ -84,7 +84,11 @@ std::pair<double, double> heights_of(const Light& light, dvec3 p, dvec3 n) {
 
 Facing facing_of(const Light& light, const OnBody& at) {
     const auto [low, high] = heights_of(light, at.position, at.normal);
-    return high <= 0 ? Facing::away : low >= 0 ? Facing::front : Facing::partly;
+    if (high <= 0) return Facing::away;
+    if (low >= 0) return Facing::front;
+    const bool inside = light.kind == LightKind::sphere &&
+                        glm::distance(at.position, dvec3(light.position)) <= static_cast<double>(light.radius);
+    return inside ? Facing::unshadowed : Facing::partly;
 }
 
 /// Faces all points of a level to all lights, those on bodies by the tangent plane.

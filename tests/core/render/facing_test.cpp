@@ -76,6 +76,32 @@ TEST(CentreIsBehind, IsTheSameToBothMethodsThatTakeTheCentre) {
     EXPECT_GT(behind, 800u);
 }
 
+/// No method is asked for a point in a sphere light or on it: whatever lies between, S is 1. Decided exactly.
+TEST(Facing, OfPointsInASphereLight) {
+    const vec3 a(0), b(4, 0, 0), c(0, 0, -4);
+    for (const float scale : {1.0f, 0x1p60f, 0x1p-60f}) {
+        Scene scene;
+        scene.materials.emplace_back().two_sided = false;
+        add_object(scene, "floor", {a, scale * b, scale * c}, {}, {{0, 1, 2}}, 0);
+        Light& light   = scene.lights.emplace_back();
+        light.kind     = LightKind::sphere;
+        light.radius   = scale;
+        const float u  = 0.25f;
+        const auto far = [](float x) { return std::nextafter(x, 1.0f); };
+        PointBatch points;
+        points.eye = {0, 9, 0};
+        const std::vector<vec2> named{{0, 0},       {0.2f, 0.1f},  {u, 0},        {0, u},
+                                      {far(u), 0},  {0, far(u)},   {0.15f, 0.2f}, {0.16f, 0.2f},
+                                      {0.5f, 0.5f}, {u, 0x1p-40f}, {0.1f, 0.22f}};
+        points.resize(named.size());
+        for (std::size_t i = 0; i < named.size(); ++i) set_point(points, i, scene, 0, named[i].x, named[i].y);
+        face_lights(points, scene);
+        const std::vector<bool> within{true, true, true, true, false, false, false, false, false, false, true};
+        for (std::size_t i = 0; i < named.size(); ++i)
+            EXPECT_EQ(points.facing[0][i], within[i] ? Facing::unshadowed : Facing::partly) << i << ' ' << scale;
+    }
+}
+
 /// A light flush with a face gives it nothing, whatever the light's shape; lifted by next to nothing it gives it all.
 TEST(Facing, OfLightsFlushWithAFace) {
     for (const LightKind kind : {LightKind::rectangle, LightKind::disk}) {

@@ -73,7 +73,7 @@ Scene slope_and_soup(unsigned seed) {
 }
 
 struct Found {
-    std::size_t points = 0, none = 0, away = 0, partly = 0, front = 0;
+    std::size_t points = 0, none = 0, away = 0, partly = 0, front = 0, unshadowed = 0;
 };
 
 void expect_one_by_one(const Scene& scene, int width, int height, Found& found) {
@@ -94,7 +94,8 @@ void expect_one_by_one(const Scene& scene, int width, int height, Found& found) 
             ++(f == Facing::none     ? found.none
                : f == Facing::away   ? found.away
                : f == Facing::partly ? found.partly
-                                     : found.front);
+               : f == Facing::front  ? found.front
+                                     : found.unshadowed);
 }
 
 TEST(PointWriter, WritesWhatPointsWrittenOneByOneHave) {
@@ -113,6 +114,7 @@ TEST(PointWriter, WritesWhatPointsWrittenOneByOneHave) {
     EXPECT_GT(found.away, 100000u);
     EXPECT_GT(found.partly, 100000u);
     EXPECT_GT(found.front, 100000u);
+    EXPECT_GT(found.unshadowed, 200u) << "within a sphere light";
 }
 
 /// A scene may have no lights, and a picture fewer pixels than a packet.

@@ -438,7 +438,11 @@ TEST(RayTraced, InsideASphereLightNothingBlocks) {
     add_quad(scene, vec3(-1, 0, 1), vec3(1, 0, 1), vec3(1, 0, -1), vec3(-1, 0, -1));
     scene.lights.push_back(area_light(LightKind::sphere));
     scene.lights[0].radius = 5;
-    for (float s : trace(scene, points_on_quad(scene, sweep(64))).s) EXPECT_EQ(s, 1.0f);
+    const PointBatch points = points_on_quad(scene, sweep(64));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_FALSE(points.asks(0, i));
+        EXPECT_EQ(points.decided(0, i), 1.0f);
+    }
 }
 
 // ---- determinism ---------------------------------------------------------------------------------------------------
