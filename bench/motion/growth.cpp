@@ -4,9 +4,7 @@
 
 #include "umbra/bench/motion/growth_page.h"
 #include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -38,27 +36,24 @@ std::vector<const GrowthFamily*> chosen_families(const GrowthCommand& command) {
 
 }  // namespace
 
-Json measure_growth(const GrowthCommand& command) {
+GrowthRecord measure_growth(const GrowthCommand& command) {
     const std::vector<const GrowthFamily*> families = chosen_families(command);
     static_cast<void>(chosen_methods(command.methods, command.choices, {}));  // what is typed is wrong now
-    Json record = {{"schema", kResultsSchema},
-                   {"version", version()},
-                   {"command", command.command},
-                   {"machine", to_record(machine_record(command.threads))},
-                   {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
-                   {"growth", Json::array()},
-                   {"failed", Json::array()}};
-    if (const auto budget = budget_record(command.options.turns.most)) record["budget"] = to_record(*budget);
+    GrowthRecord record{.head         = head_record(command.command),
+                        .budget       = budget_record(command.options.turns.most),
+                        .machine      = machine_record(command.threads),
+                        .load_average = {.before = load_average()}};
     for (const GrowthFamily* family : families) {
         const auto fail = [&](const std::string& method, const std::string& message) {
-            record["failed"].push_back({{"family", family->name}, {"method", method}, {"message", message}});
+            record.failed.push_back(
+                {.family = std::string(family->name), .method = method, .failure = {.message = message}});
         };
         try {
             const GrowthRun run =
                 run_growth(*family, methods_of(command, *family), command.most.value_or(family->most), command.options);
             for (const GrowthSeries& series : run.series)
                 if (series.left_out.starts_with("failed")) fail(series.choice.text(), series.left_out);
-            record["growth"].push_back(growth_json(run));
+            record.growth.push_back(family_record(run));
         } catch (const UsageError&) {
             throw;
         } catch (const InputError&) {
@@ -67,10 +62,10 @@ Json measure_growth(const GrowthCommand& command) {
             fail("the scene", current_message());
         }
     }
-    if (record["growth"].empty()) return record;
-    record["load_average"]["after"] = number(load_average());
+    if (record.growth.empty()) return record;
+    record.load_average.after = load_average();
     StagedFiles staged;
-    staged.write(command.out / "results.json", json_text(record));
+    staged.write(command.out / "results.json", json_text(to_record(record)));
     write_growth_page(record, command.out, staged);
     staged.commit();
     return record;

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/growth_run.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/motion/growth_record.h"
 
 namespace umbra {
 
@@ -23,13 +22,11 @@ struct GrowthCommand {
     int threads = 0;
 };
 
-/// Runs the families and writes OUT/results.json (growth.schema.json) and OUT/index.html. Returns the record. A family
+/// Runs the families and writes OUT/results.json and OUT/index.html. Returns the record. A family
 /// that throws is in its `failed`; a method that throws has its message in its series. Throws UsageError, InputError.
-Json measure_growth(const GrowthCommand& command);
-
-[[nodiscard]] Json growth_json(const GrowthRun& run);
+GrowthRecord measure_growth(const GrowthCommand& command);
 
 /// The record's families as tables for a terminal.
-[[nodiscard]] std::string growth_table(const Json& record);
+[[nodiscard]] std::string growth_table(const GrowthRecord& record);
 
 }  // namespace umbra

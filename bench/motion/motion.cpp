@@ -4,9 +4,7 @@
 
 #include "umbra/bench/motion/motion_page.h"
 #include "umbra/bench/out/staged_files.h"
-#include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -29,24 +27,20 @@ bool shows_a_surface(const PreparedScene& prepared) {
 
 }  // namespace
 
-Json measure_motion(const std::vector<std::filesystem::path>& files, const MotionCommand& command,
-                    std::vector<std::string>& unreadable) {
+MotionRecord measure_motion(const std::vector<std::filesystem::path>& files, const MotionCommand& command,
+                            std::vector<std::string>& unreadable) {
     const std::vector<ChosenScene> scenes = chosen_scenes(files);
     static_cast<void>(chosen_methods(command.methods, command.choices, files));  // what is typed is wrong now
-    Json record = {{"schema", kResultsSchema},
-                   {"version", version()},
-                   {"command", command.command},
-                   {"machine", to_record(machine_record(command.threads))},
-                   {"load_average", {{"before", number(load_average())}, {"after", nullptr}}},
-                   {"frames", command.options.frames},
-                   {"arc_degrees", kArc},
-                   {"area_points", command.options.area_points},
-                   {"max_rmse", command.max_rmse},
-                   {"motion", Json::array()},
-                   {"failed", Json::array()}};
-    if (const auto budget = budget_record(command.options.still.most)) record["budget"] = to_record(*budget);
+    MotionRecord record{.head         = head_record(command.command),
+                        .budget       = budget_record(command.options.still.most),
+                        .machine      = machine_record(command.threads),
+                        .load_average = {.before = load_average()},
+                        .frames       = static_cast<std::uint64_t>(command.options.frames),
+                        .arc_degrees  = kArc,
+                        .area_points  = command.options.area_points,
+                        .max_rmse     = command.max_rmse};
     const auto fail = [&](const std::string& scene, const std::string& method, const std::string& message) {
-        record["failed"].push_back({{"scene", scene}, {"method", method}, {"message", message}});
+        record.failed.push_back({.scene = scene, .method = method, .failure = {.message = message}});
     };
     for (const auto& [file, name, folder] : scenes) {
         try {
@@ -58,7 +52,7 @@ Json measure_motion(const std::vector<std::filesystem::path>& files, const Motio
             const SceneMotion motion = run_motion(std::move(prepared), chosen, command.options);
             for (const MethodMotion& method : motion.methods)
                 if (method.failed) fail(motion.name, method.still.choice.text(), *method.failed);
-            record["motion"].push_back(scene_motion_json(motion, command.max_rmse));
+            record.motion.push_back(scene_motion_record(motion, command.max_rmse));
         } catch (const InputError& e) {
             unreadable.emplace_back(e.what());
         } catch (const UsageError&) {
@@ -67,10 +61,10 @@ Json measure_motion(const std::vector<std::filesystem::path>& files, const Motio
             fail(name, "the reference", current_message());
         }
     }
-    if (record["motion"].empty()) return record;
-    record["load_average"]["after"] = number(load_average());
+    if (record.motion.empty()) return record;
+    record.load_average.after = load_average();
     StagedFiles staged;
-    staged.write(command.out / "results.json", json_text(record));
+    staged.write(command.out / "results.json", json_text(to_record(record)));
     write_motion_page(record, command.out, staged);
     staged.commit();
     return record;

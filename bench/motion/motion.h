@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/motion_run.h"
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/motion/motion_record.h"
 
 namespace umbra {
 
@@ -21,16 +20,13 @@ struct MotionCommand {
     int threads = 0;
 };
 
-/// Runs the scenes and writes OUT/results.json (motion.schema.json) and OUT/index.html. Returns the record. The
+/// Runs the scenes and writes OUT/results.json and OUT/index.html. Returns the record. The
 /// messages of scenes that cannot be read, or show no surface, are appended to `unreadable`, and these are skipped.
 /// What threw is in the record's `failed`. Without any scene nothing is written. Throws UsageError, InputError.
-Json measure_motion(const std::vector<std::filesystem::path>& files, const MotionCommand& command,
-                    std::vector<std::string>& unreadable);
-
-/// Of one scene, with its winners and break-even points.
-[[nodiscard]] Json scene_motion_json(const SceneMotion& motion, double max_rmse);
+MotionRecord measure_motion(const std::vector<std::filesystem::path>& files, const MotionCommand& command,
+                            std::vector<std::string>& unreadable);
 
 /// The record's scenes as tables for a terminal.
-[[nodiscard]] std::string motion_table(const Json& record);
+[[nodiscard]] std::string motion_table(const MotionRecord& record);
 
 }  // namespace umbra

@@ -36,28 +36,26 @@ struct Competitor {
     CornerTimes times;
     std::size_t style;
 };
-std::vector<Competitor> competitors(const Json& scene, double max_rmse) {
+std::vector<Competitor> competitors(const SceneMotionRecord& scene, double max_rmse) {
     std::vector<Competitor> all;
     std::size_t style = 0;
-    for (const Json& method : scene["methods"]) {
+    for (const MovedMethodRecord& method : scene.methods) {
         const std::size_t own = style++;
-        if (!method.contains("movements") || method.contains("failed")) continue;
-        Competitor c{text(method["text"]), {}, own};
+        if (method.movements.empty() || !method.failed.empty()) continue;
+        Competitor c{method.text, {}, own};
         bool competes = true;
         for (std::size_t k = 0; k < kMovements.size(); ++k) {
-            const std::string name(to_string(kMovements[k]));
-            if (!method["movements"].contains(name)) return {};  // the scene has no such corner
-            const Json& m = method["movements"][name];
-            c.times[k]    = m["median_ms"].get<double>();
-            competes =
-                competes && m["undefined"].get<std::uint64_t>() == 0 && value(m["worst_rmse"]).value_or(0) <= max_rmse;
+            const MovedRecord* m = method.movements.find(to_string(kMovements[k]));
+            if (m == nullptr) return {};  // the scene has no such corner
+            c.times[k] = m->median_ms;
+            competes   = competes && m->undefined == 0 && known(m->worst_rmse).value_or(0) <= max_rmse;
         }
         if (competes) all.push_back(std::move(c));
     }
     return all;
 }
 
-json triangle_view(const Json& scene, double max_rmse, const std::string& caption) {
+json triangle_view(const SceneMotionRecord& scene, double max_rmse, const std::string& caption) {
     const std::vector<Competitor> all = competitors(scene, max_rmse);
     std::vector<CornerTimes> times;
     for (const Competitor& c : all) times.push_back(c.times);
@@ -82,88 +80,80 @@ json triangle_view(const Json& scene, double max_rmse, const std::string& captio
     return {{"caption", caption}, {"any", !regions.empty()}, {"regions", std::move(regions)}};
 }
 
-json winner_view(const Json& winner, bool ranked) {
-    if (winner.is_null() || !ranked)
-        return {
-            {"none", winner.is_null() ? "none" : "not ranked"}, {"method", ""}, {"ms", ""}, {"ties", ""}, {"next", ""}};
+json winner_view(const std::optional<WinnerRecord>& winner, bool ranked) {
+    if (!winner || !ranked)
+        return {{"none", winner ? "not ranked" : "none"}, {"method", ""}, {"ms", ""}, {"ties", ""}, {"next", ""}};
     std::string ties, next;
-    for (const Json& tie : winner["ties"]) ties += (ties.empty() ? "" : ", ") + text(tie);
-    if (ties.empty() && !winner["runner_up"].is_null())
-        next =
-            fmt::format("{} × {}", text(winner["runner_up"]), score(value(winner["runner_up_over_winner"]["median"])));
+    for (const std::string& tie : winner->ties) ties += (ties.empty() ? "" : ", ") + tie;
+    if (ties.empty() && winner->runner_up)
+        next = fmt::format("{} × {}", *winner->runner_up, score(known(winner->runner_up_over_winner->median)));
     return {{"none", false},
-            {"method", winner["method"]},
-            {"ms", milliseconds(value(winner["ms"]))},
+            {"method", winner->method},
+            {"ms", milliseconds(known(winner->ms))},
             {"ties", ties},
             {"next", next}};
 }
 
-/// "1.07 to 1.20, 97.9 %"; of fewer than six frames there is none.
-std::string interval_in_words(const Json& ratio) {
-    const Json& interval = ratio["interval"];
-    if (interval[0].is_null()) return "fewer than six frames";
-    return fmt::format("{} to {}, {}", score(value(interval[0])), score(value(interval[1])), coverage_text(ratio));
-}
-
-json movement_cells(const Json& method, const std::string& movement) {
-    if (!method["movements"].contains(movement)) return {{"absent", true}};
-    const Json& m = method["movements"][movement];
+json movement_cells(const MovedMethodRecord& method, Movement movement) {
+    const MovedRecord* const m = method.movements.find(to_string(movement));
+    if (m == nullptr) return {{"absent", true}};
+    const RatioRecord& ratio = m->frame_over_model;
     return {{"absent", false},
-            {"ms", milliseconds(value(m["median_ms"]))},
-            {"ratio", score(value(m["frame_over_model"]["median"]))},
-            {"interval", interval_in_words(m["frame_over_model"])},
-            {"rmse", score(value(m["worst_rmse"]))},
-            {"answered", answered_share(m).value_or(1) < 1 ? percent(answered_share(m)) : ""}};
+            {"ms", milliseconds(known(m->median_ms))},
+            {"ratio", score(known(ratio.median))},
+            {"interval", interval_in_words(ratio.interval, ratio.coverage, "fewer than six frames")},
+            {"rmse", score(known(m->worst_rmse))},
+            {"answered", m->answered().value_or(1) < 1 ? percent(m->answered()) : ""}};
 }
 
-json method_view(const Json& method) {
-    json view = {{"text", method["text"]},
-                 {"title", method["title"]},
-                 {"ran", method.contains("movements")},
+json method_view(const MovedMethodRecord& method) {
+    json view = {{"text", method.text},
+                 {"title", method.title},
+                 {"ran", !method.movements.empty()},
                  {"why", ""},
                  {"movements", json::array()}};
-    if (method.contains("failed"))
-        view["why"] = "failed: " + text(method["failed"]);
-    else if (!method.contains("movements"))
-        view["why"] = "does not serve: " + text(method["serves"]["why"]);
-    if (!method.contains("movements")) return view;
-    for (const char* phase : {"build", "aim", "look", "visibility"})
-        view[phase] = milliseconds(value(method["at_rest"][fmt::format("{}_ms", phase)]["median"]));
-    for (const Movement movement : kMovements)
-        view["movements"].push_back(movement_cells(method, std::string(to_string(movement))));
+    if (!method.failed.empty())
+        view["why"] = "failed: " + method.failed;
+    else if (method.movements.empty())
+        view["why"] = "does not serve: " + method.serves.why;
+    if (method.movements.empty()) return view;
+    const TimesRecord& rest = method.at_rest->phases;
+    view["build"]           = milliseconds(known(rest.build_ms->median));
+    view["aim"]             = milliseconds(known(rest.aim_ms->median));
+    view["look"]            = milliseconds(known(rest.look_ms->median));
+    view["visibility"]      = milliseconds(known(rest.visibility_ms->median));
+    for (const Movement movement : kMovements) view["movements"].push_back(movement_cells(method, movement));
     return view;
 }
 
 /// "Differences below ... are noise of this machine."
-std::string noise_in_words(const Json& noise_bar) {
-    if (noise_bar.is_null()) return "an unknown bar";
-    const std::string bar = percent(value(noise_bar)) + " %";
-    return is_ranked(noise_bar) ? bar : bar + " (too much to say which method is fastest where)";
+std::string noise_in_words(double noise_bar) {
+    if (!known(noise_bar)) return "an unknown bar";
+    const std::string bar = percent(noise_bar) + " %";
+    return is_too_noisy(noise_bar) ? bar + " (too much to say which method is fastest where)" : bar;
 }
 
-json scene_view(const Json& record, const Json& scene, std::size_t number) {
+json scene_view(const MotionRecord& record, const SceneMotionRecord& scene, std::size_t number) {
     json movements = json::array(), methods = json::array(), winners = json::array(), pairs = json::array();
-    for (const Json& m : scene["movements"])
+    for (const MovementRecord& m : scene.movements)
         movements.push_back(
-            {{"name", m["movement"]},
-             {"what", m.contains("cannot") ? "This scene cannot have it: " + text(m["cannot"]) : text(m["what"])}});
-    const bool ranked = is_ranked(scene["noise_bar"]);
-    for (const Json& method : scene["methods"]) methods.push_back(method_view(method));
-    for (const Json& row : scene["winners"])
-        winners.push_back({{"mix", row["mix"]},
-                           {"cells", {winner_view(row["complete"], ranked), winner_view(row["within"], ranked)}}});
-    for (const Json& pair : scene["break_even"])
-        pairs.push_back(
-            {{"method", pair["method"]},
-             {"over", pair["over"]},
-             {"setup", milliseconds(value(pair["setup_ms"]))},
-             {"saves", milliseconds(value(pair["saves_ms"]))},
-             {"frames", count(value(pair["frames"]))},
-             {"rounds", pair["rounds"][0] == pair["rounds"][1]
-                            ? ""
-                            : fmt::format("{} to {}", count(value(pair["rounds"][0])),
-                                          pair["rounds"][1].is_null() ? "never" : count(value(pair["rounds"][1])))}});
-    const double max_rmse = record["max_rmse"].get<double>();
+            {{"name", m.movement}, {"what", m.cannot.empty() ? m.what : "This scene cannot have it: " + m.cannot}});
+    const bool ranked = !is_too_noisy(scene.noise_bar);
+    for (const MovedMethodRecord& method : scene.methods) methods.push_back(method_view(method));
+    for (const MixRecord& row : scene.winners)
+        winners.push_back(
+            {{"mix", row.mix}, {"cells", {winner_view(row.complete, ranked), winner_view(row.within, ranked)}}});
+    for (const BreakEvenRecord& pair : scene.break_even)
+        pairs.push_back({{"method", pair.method},
+                         {"over", pair.over},
+                         {"setup", milliseconds(known(pair.setup_ms))},
+                         {"saves", milliseconds(known(pair.saves_ms))},
+                         {"frames", count(known(pair.frames))},
+                         {"rounds", pair.rounds[0] == pair.rounds[1]
+                                        ? ""
+                                        : fmt::format("{} to {}", count(known(pair.rounds[0])),
+                                                      known(pair.rounds[1]) ? count(pair.rounds[1]) : "never")}});
+    const double max_rmse = record.max_rmse;
     json triangles        = json::array();
     for (const auto& [bound, caption] :
          {std::pair{1e300, std::string("of all that answer every point")},
@@ -171,18 +161,18 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
         if (json triangle = triangle_view(scene, bound, caption); ranked && triangle["any"].get<bool>())
             triangles.push_back(std::move(triangle));
     std::string lights;
-    for (const Json& light : scene["lights"]) lights += (lights.empty() ? "" : ", ") + text(light["name"]);
+    for (const MovedLightRecord& light : scene.lights) lights += (lights.empty() ? "" : ", ") + light.name;
     return {{"id", fmt::format("scene-{}", number)},
-            {"title", scene["title"]},
-            {"facts", fmt::format("{} triangles, {} × {} pixels, {}: {}", count(scene["triangles"].get<double>()),
-                                  scene["size"]["width"].get<int>(), scene["size"]["height"].get<int>(),
-                                  scene["lights"].size() == 1 ? "light" : "lights", lights)},
-            {"reference", fmt::format("{}{}", text(scene["reference"]["method"]),
-                                      scene["reference"]["sampled"].get<bool>()
-                                          ? fmt::format(", at about {} stratified points for lights with an area",
-                                                        record["area_points"].get<std::uint64_t>())
-                                          : ", at every point")},
-            {"noise", noise_in_words(scene["noise_bar"])},
+            {"title", scene.title},
+            {"facts",
+             fmt::format("{} triangles, {} × {} pixels, {}: {}", count(static_cast<double>(scene.triangles)),
+                         *scene.size.width, *scene.size.height, scene.lights.size() == 1 ? "light" : "lights", lights)},
+            {"reference",
+             scene.reference.method +
+                 (scene.reference.sampled
+                      ? fmt::format(", at about {} stratified points for lights with an area", record.area_points)
+                      : ", at every point")},
+            {"noise", noise_in_words(scene.noise_bar)},
             {"movements", std::move(movements)},
             {"methods", std::move(methods)},
             {"winners", std::move(winners)},
@@ -194,13 +184,13 @@ json scene_view(const Json& record, const Json& scene, std::size_t number) {
 
 }  // namespace
 
-void write_motion_page(const Json& record, const std::filesystem::path& out, StagedFiles& staged) {
-    json view        = record_view(record, "scene");
-    view["frames"]   = std::to_string(record["frames"].get<int>());
-    view["arc"]      = fmt::format("{:g}", record["arc_degrees"].get<double>());
-    view["max_rmse"] = fmt::format("{:g}", record["max_rmse"].get<double>());
+void write_motion_page(const MotionRecord& record, const std::filesystem::path& out, StagedFiles& staged) {
+    json view        = record_view(record.head, record.machine, record.load_average, record.failed);
+    view["frames"]   = std::to_string(record.frames);
+    view["arc"]      = fmt::format("{:g}", record.arc_degrees);
+    view["max_rmse"] = fmt::format("{:g}", record.max_rmse);
     view["scenes"]   = json::array();
-    for (const Json& scene : record["motion"])
+    for (const SceneMotionRecord& scene : record.motion)
         view["scenes"].push_back(scene_view(record, scene, view["scenes"].size() + 1));
     const PageHead head = {"What moves: the fastest shadow method by movement", "", {}};
     staged.write(out / "index.html", render_page(assets::motion_html, head, view));

@@ -134,6 +134,7 @@ std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::s
 std::vector<BreakEven> break_evens(const SceneMotion& motion, const std::vector<std::size_t>& competitors) {
     constexpr double never = std::numeric_limits<double>::infinity();
     std::vector<BreakEven> pairs;
+    if (is_too_noisy(motion.noise_bar)) return pairs;
     for (const std::size_t slow : competitors)
         for (const std::size_t fast : competitors) {
             const TurnTimes &a = motion.methods[slow].still, &b = motion.methods[fast].still;

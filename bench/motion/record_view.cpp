@@ -3,37 +3,32 @@
 #include <fmt/format.h>
 
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 
-bool is_ranked(const Json& noise_bar) { return !noise_bar.is_null() && !is_too_noisy(noise_bar.get<double>()); }
-
-std::string coverage_text(const Json& ratio) {
-    const double coverage = ratio.value("coverage", 0.0);
-    return coverage > 0 ? fmt::format("{:.1f} %", 100 * coverage) : "-";
+std::string interval_in_words(const std::vector<double>& interval, double coverage, const char* none) {
+    if (!known(interval[0])) return none;
+    return fmt::format("{} to {}, {}", score(known(interval[0])), score(known(interval[1])), coverage_text(coverage));
 }
 
-std::optional<double> answered_share(const Json& movement) {
-    double answered = 0, asked = 0;
-    for (const Json& frame : movement["frames"]) {
-        answered += frame["points"].get<double>();
-        asked += frame["points"].get<double>() + frame["undefined"].get<double>();
-    }
-    return asked > 0 ? std::optional(answered / asked) : std::nullopt;
+std::string coverage_text(double coverage) { return coverage > 0 ? fmt::format("{:.1f} %", 100 * coverage) : "-"; }
+
+std::string machine_line(const MachineRecord& machine, const LoadRecord& load) {
+    const auto fixed = [](double value) { return known(value) ? fmt::format("{:.2f}", value) : "-"; };
+    return fmt::format("{}, {}, load average {} to {}\n", machine.cpu,
+                       counted(static_cast<double>(machine.threads), "thread"), fixed(load.before), fixed(load.after));
 }
 
-nlohmann::json record_view(const Json& record, const char* place) {
+nlohmann::json record_view(const HeadRecord& head, const MachineRecord& machine, const LoadRecord& load,
+                           const std::vector<ListedFailureRecord>& failed) {
     nlohmann::json failures = nlohmann::json::array();
-    for (const Json& failure : record["failed"])
-        failures.push_back(
-            fmt::format("{}: {}: {}", text(failure[place]), text(failure["method"]), text(failure["message"])));
-    const Json& load = record["load_average"];
-    return {{"command", without_folders(text(record["command"]))},
-            {"version", record["version"]},
-            {"cpu", record["machine"]["cpu"]},
-            {"threads", counted(record["machine"]["threads"].get<double>(), "thread")},
-            {"load", fmt::format("{} to {}", score(value(load["before"])), score(value(load["after"])))},
+    for (const ListedFailureRecord& f : failed)
+        failures.push_back(fmt::format("{}{}: {}: {}", f.scene, f.family, f.method, f.failure.message));
+    return {{"command", without_folders(head.command)},
+            {"version", head.version},
+            {"cpu", machine.cpu},
+            {"threads", counted(static_cast<double>(machine.threads), "thread")},
+            {"load", fmt::format("{} to {}", score(known(load.before)), score(known(load.after)))},
             {"has_failures", !failures.empty()},
             {"failures", std::move(failures)}};
 }

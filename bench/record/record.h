@@ -54,9 +54,9 @@
 namespace umbra {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// Nothing where the value is not known.
+/// Nothing where the value is not known, or infinite, which JSON cannot tell from that.
 [[nodiscard]] inline std::optional<double> known(double value) {
-    return std::isnan(value) ? std::nullopt : std::optional(value);
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 using Scalar = std::variant<bool, std::int64_t, double, std::string>;
@@ -99,7 +99,7 @@ struct Allowed {
     std::optional<std::size_t> items{};  ///< so many
 };
 [[nodiscard]] inline Allowed only(bool value) { return {.only = value}; }
-inline const Allowed kThreeNumbers{.items = 3};
+inline const Allowed kTwoNumbers{.items = 2}, kThreeNumbers{.items = 3}, kFraction{.least = 0, .most = 1};
 [[nodiscard]] inline Allowed at_least(double least) { return {.least = least}; }
 [[nodiscard]] inline Allowed one_of(std::initializer_list<std::string_view> words) { return {.words = words}; }
 

@@ -64,7 +64,7 @@ struct MedianRank {
 inline constexpr double kMostNoise = 0.3;
 
 /// Whether times vary too much to rank anything by them.
-[[nodiscard]] inline bool is_too_noisy(double noise_bar) { return noise_bar > kMostNoise; }
+[[nodiscard]] inline bool is_too_noisy(double noise_bar) { return !(noise_bar <= kMostNoise); }
 
 /// Whether the noise bar tells that a median of times is above another one.
 [[nodiscard]] inline bool is_dearer(double dearer, double cheaper, double noise_bar) {

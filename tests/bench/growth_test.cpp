@@ -166,7 +166,7 @@ TEST_F(PlantedGrowth, CrossingsLieBetweenTheSizesAroundThem) {
     EXPECT_NEAR(found[0].x, 4096, 1e-6);
     EXPECT_FALSE(found[0].first_is_faster_below) << "x^0.5 is more below";
     EXPECT_TRUE(measured_crossings(run.series[0], run.series[0], Quantity::camera_frame).empty());
-    const Json json = growth_json(run);
+    const Json json = to_record(family_record(run));
     ASSERT_FALSE(json["crossings"].empty());
     EXPECT_EQ(json["crossings"][0]["below"], "planted:seed=1");
     EXPECT_NEAR(json["crossings"][0]["fitted"]["x"].get<double>(), 4096, 1e-3);
@@ -177,10 +177,8 @@ TEST_F(PlantedGrowth, CrossingsLieBetweenTheSizesAroundThem) {
 TEST_F(PlantedGrowth, TheTableHasEachPhaseInItsColumn) {
     planted_behaviour.memory_bytes = 2500000;
     const GrowthRun run            = run_growth(kPlanted, {MethodChoice(info_)}, 256, options_);
-    const Json record              = {{"growth", {growth_json(run)}},
-                                      {"machine", {{"cpu", "A CPU"}, {"threads", 2}}},
-                                      {"load_average", {{"before", 1}, {"after", 1}}}};
-    const std::string table        = growth_table(record);
+    const std::string table        = growth_table(
+               {.machine = {.cpu = "A CPU", .threads = 2}, .load_average = {1, 1}, .growth = {family_record(run)}});
     EXPECT_NE(table.find(fmt::format("{:>12} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "256", "2.00", "3.00", "0.00",
                                      "16384.00", "2.50")),
               std::string::npos)
@@ -251,21 +249,22 @@ TEST(GrowthCommand, WritesWhatTheSchemaSaysAndAPage) {
     command.options.turns.rounds = 2;
     command.options.longest_ms   = 0;  // one size: this is about what is written
     command.out                  = folder.path() / "out";
-    const Json record            = measure_growth(command);
+    const GrowthRecord measured  = measure_growth(command);
+    const Json record            = to_record(measured);
     const std::string written    = text_of(command.out / "results.json");
     EXPECT_EQ(Json::parse(written), record);
-    EXPECT_TRUE(fits_schema(UMBRA_GROWTH_SCHEMA, written));
+    EXPECT_TRUE(fits(growth_schema().dump(), written));
     ASSERT_EQ(record["growth"].size(), 2u);
     EXPECT_EQ(record["growth"][1]["methods"][0]["points"][0]["text"], "shadow_zbuffer:resolution=256");
     EXPECT_TRUE(record["growth"][1]["methods"][1]["points"].empty());
-    const std::string page = text_of(command.out / "index.html"), table = growth_table(record);
+    const std::string page = text_of(command.out / "index.html"), table = growth_table(measured);
     EXPECT_NE(page.find("<section id=\"triangles\""), std::string::npos);
     EXPECT_NE(page.find("class=\"line\""), std::string::npos);
     EXPECT_EQ(page.find("{{"), std::string::npos);
     EXPECT_NE(table.find("has no parameter for resolution"), std::string::npos);
     Json changed                               = record;
     changed["growth"][0]["methods"][0]["sums"] = 1;
-    EXPECT_FALSE(fits_schema(UMBRA_GROWTH_SCHEMA, changed.dump()));
+    EXPECT_FALSE(fits(growth_schema().dump(), changed.dump()));
 }
 
 TEST(GrowthCommand, ComparesTwoWaysOfShadowVolumesWithOthersFigures) {
@@ -276,14 +275,15 @@ TEST(GrowthCommand, ComparesTwoWaysOfShadowVolumesWithOthersFigures) {
     command.most                 = 256.0 * 256;
     command.options.turns.rounds = 2;
     command.out                  = folder.path() / "out";
-    const Json record            = measure_growth(command);
+    const GrowthRecord measured  = measure_growth(command);
+    const Json record            = to_record(measured);
     const Json& check            = record["growth"][0]["external"];
     ASSERT_FALSE(check.is_null());
     ASSERT_EQ(check["ours"].size(), 2u);
     EXPECT_EQ(check["ours"][1]["pixels"], 65536.0);
     EXPECT_NEAR(check["theirs"][0]["ratio"].get<double>(), 0.515, 1e-3);
-    EXPECT_TRUE(fits_schema(UMBRA_GROWTH_SCHEMA, record.dump()));
-    EXPECT_NE(growth_table(record).find("dormon/ShadowsTestData"), std::string::npos);
+    EXPECT_TRUE(fits(growth_schema().dump(), record.dump()));
+    EXPECT_NE(growth_table(measured).find("dormon/ShadowsTestData"), std::string::npos);
     EXPECT_NE(text_of(command.out / "index.html").find("an external check"), std::string::npos);
 }
 

@@ -240,6 +240,7 @@ TEST(NoiseBar, RanksNothingAboveThirtyPercent) {
     EXPECT_FALSE(is_too_noisy(0.3));
     EXPECT_TRUE(is_too_noisy(0.301));
     EXPECT_TRUE(is_too_noisy(noise_bar({}))) << "of too few rounds";
+    EXPECT_TRUE(is_too_noisy(std::numeric_limits<double>::quiet_NaN())) << "unknown";
     EXPECT_TRUE(is_dearer(5.1, 4, 0.25));
     EXPECT_FALSE(is_dearer(5, 4, 0.25));
     EXPECT_FALSE(is_dearer(3, 4, 0));

@@ -19,19 +19,18 @@ int growth(GrowthLine line, const Common& common) {
     command.command        = common.command;
     command.threads        = thread_count();
     check_writable_beside(command.out);
-    const PlaceLock lock = PlaceLock::inside(command.out);
-    Json record          = on_terminal(common, [&](const auto& progress) {
+    const PlaceLock lock      = PlaceLock::inside(command.out);
+    const GrowthRecord record = on_terminal(common, [&](const auto& progress) {
         command.options.progress = progress;
         return measure_growth(command);
     });
     if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet && !record["growth"].empty())
+        print_out("{}", json_text(to_record(record)));
+    else if (!common.quiet && !record.growth.empty())
         print_out("{}{}\n", growth_table(record), (command.out / "index.html").string());
-    for (const Json& failure : record["failed"])
-        print_error("{}: {}: {}\n", failure["family"].get<std::string>(), failure["method"].get<std::string>(),
-                    failure["message"].get<std::string>());
-    return record["failed"].empty() ? kDone : kInternal;
+    for (const ListedFailureRecord& f : record.failed)
+        print_error("{}: {}: {}\n", f.family, f.method, f.failure.message);
+    return record.failed.empty() ? kDone : kInternal;
 }
 
 }  // namespace

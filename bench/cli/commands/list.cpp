@@ -8,6 +8,8 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/ladders/ladder_record.h"
+#include "umbra/bench/motion/growth_record.h"
+#include "umbra/bench/motion/motion_record.h"
 #include "umbra/bench/run/results.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/core/base/error.h"
@@ -111,7 +113,10 @@ int list_one(const std::string& name, bool as_json) {
 
 int list(const ListLine& line) {
     if (!line.schema.empty()) {
-        print_out("{}", json_text(line.schema == "ladders" ? ladders_schema() : results_schema()));
+        print_out("{}", json_text(line.schema == "ladders"  ? ladders_schema()
+                                  : line.schema == "motion" ? motion_schema()
+                                  : line.schema == "growth" ? growth_schema()
+                                                            : results_schema()));
         return kDone;
     }
     return line.name.empty() ? list_all(line.as_json) : list_one(line.name, line.as_json);
@@ -124,9 +129,10 @@ Action list_command(CLI::App& app, const Common& /*common*/) {
     app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full, or metrics")
         ->type_name("");
     app.add_flag("--json", line->as_json, "Print JSON");
-    app.add_option("--schema", line->schema, "Print the JSON Schema of results.json as compare or ladder writes it")
-        ->check(CLI::IsMember({"results", "ladders"}))
-        ->type_name("results|ladders");
+    app.add_option("--schema", line->schema,
+                   "Print the JSON Schema of results.json as compare, ladder, motion or growth writes it")
+        ->check(CLI::IsMember({"results", "ladders", "motion", "growth"}))
+        ->type_name("results|ladders|motion|growth");
     return [line] { return list(*line); };
 }
 

@@ -26,19 +26,18 @@ int motion(MotionLine line, const Common& common) {
     check_writable_beside(command.out);
     const PlaceLock lock = PlaceLock::inside(command.out);
     std::vector<std::string> unreadable;
-    Json record = on_terminal(common, [&](const auto& progress) {
+    const MotionRecord record = on_terminal(common, [&](const auto& progress) {
         command.options.progress = progress;
         return measure_motion(files, command, unreadable);
     });
     if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet && !record["motion"].empty())
+        print_out("{}", json_text(to_record(record)));
+    else if (!common.quiet && !record.motion.empty())
         print_out("{}{}\n", motion_table(record), (command.out / "index.html").string());
     for (const std::string& message : unreadable) print_error("{}\n", message);
-    for (const Json& failure : record["failed"])
-        print_error("{}: {}: {}\n", failure["scene"].get<std::string>(), failure["method"].get<std::string>(),
-                    failure["message"].get<std::string>());
-    return !record["failed"].empty() ? kInternal : unreadable.empty() ? kDone : kUnreadable;
+    for (const ListedFailureRecord& f : record.failed)
+        print_error("{}: {}: {}\n", f.scene, f.method, f.failure.message);
+    return !record.failed.empty() ? kInternal : unreadable.empty() ? kDone : kUnreadable;
 }
 
 }  // namespace
