@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "umbra/bench/run/run.h"
-
 namespace umbra {
 
 FrameWork frame_work(Movement movement, std::size_t lights, LightId moved) {
@@ -15,7 +13,23 @@ FrameWork frame_work(Movement movement, std::size_t lights, LightId moved) {
 
 KeptMethod::KeptMethod(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
                        std::function<double()> clock, const Budget& most)
-    : work_(choice, scene, facts), clock_(std::move(clock)), most_(most), planes_(scene.lights.size()) {}
+    : work_(choice, scene, facts), facts_(facts), clock_(std::move(clock)), most_(most), planes_(scene.lights.size()) {}
+
+FrameWork KeptMethod::set(const MethodChoice& choice) {
+    const Phase first = first_changed_phase(work_.choice().settings, choice.settings);
+    const bool same   = work_.choice().text() == choice.text();
+    if (!same) work_.set(choice);
+    return {!same && first == Phase::build, std::vector<bool>(planes_.size(), !same && first <= Phase::aim),
+            !same && first <= Phase::look};
+}
+
+MethodRun KeptMethod::as_run() const {
+    MethodRun run{.choice = choice(), .service = service()};
+    run.planes      = planes_;
+    run.is_coloured = facts_.has_coloured_filters;
+    run.work        = std::make_shared<MethodAtWork>(work_);
+    return run;
+}
 
 double KeptMethod::timed(const std::function<void()>& work) const {
     const double start = clock_();
@@ -42,10 +56,10 @@ RunTimes KeptMethod::run(const FrameWork& work, const PointBatch& points) {
         times.look = timed([&] { work_.look(points); });
     }
     for (LightId j = 0; j < lights; ++j) {
-        if (planes_[j].size() == points.size())
+        if (planes_[j].size() == points.size() && planes_[j].colour.empty() != facts_.has_coloured_filters)
             planes_[j].clear();
         else
-            planes_[j] = VisibilityPlane(points.size());
+            planes_[j] = VisibilityPlane(points.size(), facts_.has_coloured_filters);
         times.visibility[j] = timed([&] { work_.visibility(j, planes_[j].out()); });
         check_contract(choice().info->name, planes_[j], points, j);
     }

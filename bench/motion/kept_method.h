@@ -6,6 +6,7 @@
 
 #include "umbra/bench/motion/animation.h"
 #include "umbra/bench/run/at_work.h"
+#include "umbra/bench/run/run.h"
 #include "umbra/bench/time/turns.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
@@ -33,6 +34,9 @@ public:
     [[nodiscard]] const MethodChoice& choice() const { return work_.choice(); }
     [[nodiscard]] Service service() const { return work_.service(); }
 
+    /// Another setting of the same method. Returns what is to be repeated because of it.
+    FrameWork set(const MethodChoice& choice);
+
     /// Runs what `work` says on the scene as it is now; the points that it last looked at must still be there. Throws
     /// what the method throws, and std::logic_error where it breaks its contract. Milliseconds; 0 for what was not
     /// repeated.
@@ -40,11 +44,17 @@ public:
 
     /// Of the last frame: [light].
     [[nodiscard]] const std::vector<VisibilityPlane>& planes() const { return planes_; }
+    /// The last frame as a run, which can be asked further.
+    [[nodiscard]] MethodRun as_run() const;
+    /// The method with what its phases made, for one who asks it further.
+    [[nodiscard]] const MethodAtWork& at_work() const { return work_; }
+    [[nodiscard]] std::size_t memory_bytes() const { return work_.memory_bytes() + work_.points_bytes(); }
 
 private:
     [[nodiscard]] double timed(const std::function<void()>& work) const;
 
     MethodAtWork work_;
+    const SceneFacts& facts_;
     std::function<double()> clock_;
     Budget most_;
     std::vector<VisibilityPlane> planes_;

@@ -97,27 +97,27 @@ std::vector<std::pair<std::string, Field>> Field::members() const {
     return all;
 }
 
-Field read_results(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw InputError(fmt::format("{}: cannot be opened, expected a results.json", file.string()));
-    const std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-
+Field parse_json(const std::string& bytes, const std::string& name) {
     auto document  = std::make_shared<Field::Document>();
-    document->file = file.string();
+    document->file = name;
     try {
         document->root = Json::parse(bytes);
     } catch (const nlohmann::json::parse_error& error) {
         const auto end  = bytes.begin() + std::ptrdiff_t(std::clamp<std::size_t>(error.byte, 1, bytes.size() + 1) - 1);
         const auto line = 1 + std::count(bytes.begin(), end, '\n');
         const auto newline = std::find(std::make_reverse_iterator(end), bytes.rend(), '\n').base();
-        throw InputError(fmt::format("{}:{}:{}: not JSON, or cut off here; expected a complete results.json",
-                                     file.string(), line, 1 + (end - newline)));
+        throw InputError(fmt::format("{}:{}:{}: not JSON, or cut off here; expected a complete JSON text", name, line,
+                                     1 + (end - newline)));
     } catch (const nlohmann::json::exception&) {  // a number beyond double
-        throw InputError(
-            fmt::format("{}: a number is out of range, expected numbers that a double can hold", file.string()));
+        throw InputError(fmt::format("{}: a number is out of range, expected numbers that a double can hold", name));
     }
+    return {document, &document->root, ""};
+}
 
-    Field root{document, &document->root, ""};
+Field read_results(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError(fmt::format("{}: cannot be opened, expected a results.json", file.string()));
+    const Field root = parse_json({std::istreambuf_iterator<char>(stream), {}}, file.string());
     if (root["schema"].number() != kResultsSchema)
         root["schema"].refuse(fmt::format("{}, the version that this program reads", kResultsSchema));
     return root;

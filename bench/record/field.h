@@ -39,7 +39,7 @@ public:
     [[noreturn]] void refuse(std::string_view expected) const;
 
 private:
-    friend Field read_results(const std::filesystem::path& file);
+    friend Field parse_json(const std::string& bytes, const std::string& name);
     struct Document;
     Field(std::shared_ptr<const Document> document, const Json* value, std::string pointer)
         : document_(std::move(document)), value_(value), pointer_(std::move(pointer)) {}
@@ -48,6 +48,9 @@ private:
     const Json* value_ = nullptr;
     std::string pointer_;
 };
+
+/// The root of a JSON text; `name` names it in errors. Throws InputError.
+[[nodiscard]] Field parse_json(const std::string& bytes, const std::string& name);
 
 /// The root of a results.json of the schema that this version writes. Throws InputError.
 [[nodiscard]] Field read_results(const std::filesystem::path& file);

@@ -8,6 +8,7 @@
 #include "umbra/bench/run/at_work.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/point_answer.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/core/base/error.h"
 
@@ -22,56 +23,6 @@ struct WhyLine {
     bool as_json = false;
 };
 
-struct TriangleRecord {
-    TriangleId triangle = kNoTriangle;
-    std::string object{};
-};
-template <class Fields>
-void describe(Fields& of, Is<TriangleRecord>) {
-    of("triangle", &TriangleRecord::triangle, "");
-    of("object", &TriangleRecord::object, "");
-}
-
-struct EvidenceRecord {
-    std::string name{};
-    Scalar value{};
-    std::string unit{};
-};
-template <class Fields>
-void describe(Fields& of, Is<EvidenceRecord>) {
-    of("name", &EvidenceRecord::name, "");
-    of("value", &EvidenceRecord::value, "");
-    of.may("unit", &EvidenceRecord::unit, "");
-}
-
-/// A method's answer and its reason.
-struct AnswerRecord {
-    std::string method{}, not_served{}, failed{};
-    std::optional<float> visibility{};
-    std::string verdict{};
-    std::optional<TriangleRecord> blocker{};
-    std::optional<double> at{};
-    std::vector<double> towards{};
-    std::optional<double> margin{};
-    std::string unit{};
-    std::vector<EvidenceRecord> evidence{};
-    bool answered = false;
-};
-template <class Fields>
-void describe(Fields& of, Is<AnswerRecord>) {
-    of("method", &AnswerRecord::method, "");
-    of.may("not_served", &AnswerRecord::not_served, "why it does not serve the scene");
-    of.may("visibility", &AnswerRecord::visibility, "S");
-    of.where(&AnswerRecord::answered, "verdict", &AnswerRecord::verdict, "");
-    of.where(&AnswerRecord::answered, "blocker", &AnswerRecord::blocker, "the triangle that blocks");
-    of.where(&AnswerRecord::answered, "at", &AnswerRecord::at, "where it does, from 0 at the point to 1 at the light");
-    of.where(&AnswerRecord::answered, "towards", &AnswerRecord::towards, "the place that the segment goes to");
-    of.where(&AnswerRecord::answered, "margin", &AnswerRecord::margin, "how far the answer is from being another");
-    of.where(&AnswerRecord::answered, "unit", &AnswerRecord::unit, "of the margin");
-    of.where(&AnswerRecord::answered, "evidence", &AnswerRecord::evidence, "");
-    of.may("failed", &AnswerRecord::failed, "the message of what it threw");
-}
-
 struct WhyLightRecord {
     std::string light{};
     bool away = false, unshadowed = false;
@@ -82,7 +33,8 @@ void describe(Fields& of, Is<WhyLightRecord>) {
     of("light", &WhyLightRecord::light, "");
     of("methods", &WhyLightRecord::methods, "");
     of.may("away", &WhyLightRecord::away, "the light is behind the surface");
-    of.may("unshadowed", &WhyLightRecord::unshadowed, "the object receives no shadows");
+    of.may("unshadowed", &WhyLightRecord::unshadowed,
+           "the object receives no shadows, or the point lies in a sphere light");
 }
 
 struct PointRecord {
@@ -114,67 +66,6 @@ void describe(Fields& of, Is<WhyRecord>) {
     of("lights", &WhyRecord::lights, "");
 }
 
-TriangleRecord triangle_record(const Scene& scene, TriangleId t) {
-    return {t, scene.objects[scene.triangle_object[t]].name};
-}
-
-void add_reason(AnswerRecord& record, const Scene& scene, const Reason& reason) {
-    record.answered = true;
-    record.verdict  = to_string(reason.verdict);
-    if (reason.blocker != kNoTriangle) record.blocker = triangle_record(scene, reason.blocker);
-    if (reason.at) record.at = *reason.at;
-    record.towards = {reason.towards.x, reason.towards.y, reason.towards.z};
-    if (std::isfinite(reason.margin)) record.margin = reason.margin;
-    record.unit = reason.unit;
-    for (const Evidence& e : reason.evidence) {
-        EvidenceRecord entry{.name = std::string(e.name), .unit = std::string(e.unit)};
-        std::visit([&](const auto& value) { entry.value = value; }, e.value);
-        record.evidence.push_back(std::move(entry));
-    }
-}
-
-/// One method's answer and its reason at pixel i.
-AnswerRecord answer_record(MethodAtWork& work, const PointBatch& picture, std::size_t i, LightId light) {
-    const Scene& scene = work.built().scene;
-    AnswerRecord record{.method = work.choice().text()};
-    try {
-        const bool whole = work.choice().info->needs_raster;
-        const auto which = static_cast<std::uint32_t>(i);
-        PointBatch point = pick(picture, {&which, 1});
-        if (!whole) point.raster.reset();
-        const PointBatch& asked = whole ? picture : point;
-        const std::size_t k     = whole ? i : 0;
-        work.look(asked);
-        VisibilityPlane plane(asked.size(), work.built().facts.has_coloured_filters);
-        work.visibility(light, plane.out());
-        const Given given{plane.s[k], plane.answer[k]};
-        if (plane.defined(k)) record.visibility = given.s;
-        add_reason(record, scene, work.method().explain(work.aimed(light), work.looked(), k, given));
-        work.forget_look();
-    } catch (...) {
-        record.failed = current_message();
-    }
-    return record;
-}
-
-std::string sentence(const AnswerRecord& a) {
-    if (!a.failed.empty()) return a.failed;
-    if (!a.not_served.empty()) return "does not serve this scene: " + a.not_served;
-    std::string text = a.verdict;
-    if (a.visibility) text += fmt::format(", S {:.4g}", *a.visibility);
-    if (a.blocker) {
-        text += fmt::format("; triangle {} of {} blocks", a.blocker->triangle, a.blocker->object);
-        if (a.at) text += fmt::format(" at {:.4g} of the way to the light", *a.at);
-    }
-    if (a.margin) text += fmt::format("; margin {:.4g} {}", *a.margin, a.unit);
-    for (const EvidenceRecord& e : a.evidence) {
-        const double* number = std::get_if<double>(&e.value);
-        text += fmt::format("; {}: {}{}{}", e.name, number ? fmt::format("{:.6g}", *number) : text_of(e.value),
-                            e.unit.empty() ? "" : " ", e.unit);
-    }
-    return text;
-}
-
 std::string text_of(const WhyRecord& record) {
     const PointRecord& point = record.point;
     std::string text = fmt::format("{}: pixel {}, {}: triangle {} of {}, position {:.6g} {:.6g} {:.6g}\n", record.scene,
@@ -183,7 +74,8 @@ std::string text_of(const WhyRecord& record) {
     for (const WhyLightRecord& light : record.lights) {
         text += fmt::format("light {}\n", light.light);
         if (light.away) text += "  The light is behind the surface: S is 0 for every method.\n";
-        if (light.unshadowed) text += "  The object receives no shadows: S is 1 for every method.\n";
+        if (light.unshadowed)
+            text += "  The object receives no shadows, or the point lies in the light: S is 1 for every method.\n";
         for (const AnswerRecord& a : light.methods) text += fmt::format("  {:24} {}\n", a.method, sentence(a));
     }
     return text;

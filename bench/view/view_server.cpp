@@ -1,0 +1,189 @@
+#include "umbra/bench/view/view_server.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <algorithm>
+#include <list>
+#include <mutex>
+#include <random>
+
+#include "report_assets.h"
+#include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/view/view_session.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+
+namespace umbra {
+namespace {
+
+constexpr std::size_t kMostBytes = 256 * 1024;  // of a request: ten thousand placed objects are far less
+
+/// 128 random bits.
+std::string random_word() {
+    std::random_device random;
+    std::string word;
+    for (int k = 0; k < 4; ++k) word += fmt::format("{:08x}", static_cast<std::uint32_t>(random()));
+    return word;
+}
+
+/// Little-endian length of the record, the record, the pictures.
+std::string packed(const ViewReply& reply) {
+    const std::string record = json_text(to_record(reply.record));
+    std::string body;
+    for (unsigned k = 0; k < 4; ++k) body += static_cast<char>(record.size() >> (8 * k) & 0xff);
+    body += record;
+    body.append(reinterpret_cast<const char*>(reply.pictures.data()), reply.pictures.size());
+    return body;
+}
+
+void answer_text(httplib::Response& response, int status, const std::string& text) {
+    response.status = status;
+    response.set_content(text + "\n", "text/plain; charset=utf-8");
+}
+
+}  // namespace
+
+struct ViewServer::Pages {
+    explicit Pages(const ViewerOptions& with) : options(with), word(random_word()) {}
+
+    struct Page {
+        std::string name;
+        std::mutex busy;
+        std::unique_ptr<ViewSession> session;  ///< null until it is first needed
+    };
+
+    /// The page of this name, as the last that asked.
+    std::shared_ptr<Page> find(const std::string& name) {
+        const std::lock_guard lock(mutex);
+        const auto there = std::ranges::find(open, name, [](const auto& page) { return page->name; });
+        if (there != open.end()) {
+            open.splice(open.begin(), open, there);
+            return open.front();
+        }
+        auto page  = std::make_shared<Page>();
+        page->name = name;
+        if (spare) page->session = std::move(spare);
+        open.push_front(page);
+        if (open.size() > options.pages) open.pop_back();
+        return page;
+    }
+
+    /// Runs work(session, request), and writes an error where it throws.
+    template <class Work>
+    void handle(const httplib::Request& request, httplib::Response& response, const Work& work) {
+        try {
+            const ViewRequest wanted         = view_request(request.body);
+            const std::shared_ptr<Page> page = find(wanted.page);
+            const std::unique_lock lock(page->busy, std::try_to_lock);
+            if (!lock) return answer_text(response, 409, "the page's last request is still being answered");
+            if (!page->session) page->session = std::make_unique<ViewSession>(options.scene);
+            work(*page->session, wanted);
+        } catch (const UsageError& e) {
+            answer_text(response, 400, e.what());
+        } catch (const InputError& e) {
+            answer_text(response, 422, e.what());
+        } catch (...) {
+            answer_text(response, 500, current_message());
+        }
+    }
+
+    void add_routes();
+    [[nodiscard]] httplib::Server::HandlerResponse check(const httplib::Request& request,
+                                                         httplib::Response& response) const;
+
+    ViewerOptions options;
+    std::string word;
+    int port = 0;
+    httplib::Server server;
+    std::mutex mutex;                       ///< of the next two
+    std::list<std::shared_ptr<Page>> open;  ///< the last that asked first
+    std::unique_ptr<ViewSession> spare;     ///< loaded ahead, for the first page
+    std::string scene;                      ///< its record, as JSON
+};
+
+/// Refuses what does not come from this machine's browser, opened by the address.
+httplib::Server::HandlerResponse ViewServer::Pages::check(const httplib::Request& request,
+                                                          httplib::Response& response) const {
+    response.set_header("Cache-Control", "no-store");
+    response.set_header("X-Content-Type-Options", "nosniff");
+    response.set_header("Referrer-Policy", "no-referrer");
+    response.set_header("Content-Security-Policy",
+                        "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
+                        "frame-ancestors 'none'; form-action 'none'; base-uri 'none'");
+    const std::string host = request.get_header_value("Host"), here = fmt::format("127.0.0.1:{}", port),
+                      local  = fmt::format("localhost:{}", port);
+    const std::string origin = request.get_header_value("Origin");
+    const bool is_host       = host == here || host == local;
+    const bool is_origin     = origin.empty() || origin == "http://" + host;
+    if (is_host && is_origin && request.path.starts_with("/" + word + "/"))
+        return httplib::Server::HandlerResponse::Unhandled;
+    answer_text(response, 403, "not the address that umbra view has printed");
+    return httplib::Server::HandlerResponse::Handled;
+}
+
+void ViewServer::Pages::add_routes() {
+    const std::string root = "/" + word + "/";
+    server.set_payload_max_length(kMostBytes);
+    server.set_read_timeout(5);
+    server.set_write_timeout(5);
+    server.set_keep_alive_timeout(5);
+    server.new_task_queue = [] { return new httplib::ThreadPool(8); };
+    server.set_pre_routing_handler(
+        [this](const httplib::Request& request, httplib::Response& response) { return check(request, response); });
+    server.Get(root, [this](const httplib::Request&, httplib::Response& response) {
+        const PageHead head{"Umbra view: " + scene_name(options.scene), "", {"view.js"}};
+        response.set_content(render_page(assets::view_html, head, {{"scene", scene_name(options.scene)}}),
+                             "text/html; charset=utf-8");
+    });
+    const auto asset = [&](const char* name, std::string_view content, const char* type) {
+        server.Get(root + name, [content, type](const httplib::Request&, httplib::Response& response) {
+            response.set_content(std::string(content), type);
+        });
+    };
+    asset("report.css", assets::report_css, "text/css; charset=utf-8");
+    asset("view.css", assets::view_css, "text/css; charset=utf-8");
+    asset("view.js", assets::view_js, "text/javascript; charset=utf-8");
+    server.Get(root + "scene.json", [this](const httplib::Request&, httplib::Response& response) {
+        response.set_content(scene, "application/json");
+    });
+    server.Post(root + "show", [this](const httplib::Request& request, httplib::Response& response) {
+        handle(request, response, [&](ViewSession& session, const ViewRequest& wanted) {
+            response.set_content(packed(session.show(wanted, options.most)), "application/octet-stream");
+        });
+    });
+    server.Post(root + "why", [this](const httplib::Request& request, httplib::Response& response) {
+        handle(request, response, [&](ViewSession& session, const ViewRequest& wanted) {
+            response.set_content(json_text(to_record(session.why(wanted, options.most))), "application/json");
+        });
+    });
+    server.Post(root + "file", [this](const httplib::Request& request, httplib::Response& response) {
+        handle(request, response, [&](ViewSession& session, const ViewRequest& wanted) {
+            static_cast<void>(session.show(wanted, options.most));
+            response.set_content(session.scene_text(), "application/json");
+        });
+    });
+}
+
+ViewServer::ViewServer(const ViewerOptions& options) : pages_(std::make_unique<Pages>(options)) {
+    Pages& p                 = *pages_;
+    p.spare                  = std::make_unique<ViewSession>(options.scene);
+    ViewedSceneRecord record = p.spare->scene_record();
+    record.chosen            = options.methods;
+    record.command           = "umbra compare " + options.scene.string() + " --methods";
+    for (const std::string& method : options.methods) record.command += " " + method;
+    p.scene = json_text(to_record(record));
+    p.add_routes();
+    const bool any = options.port == 0;
+    p.port         = any ? p.server.bind_to_any_port("127.0.0.1") : options.port;
+    if (p.port <= 0 || (!any && !p.server.bind_to_port("127.0.0.1", options.port)))
+        throw UsageError(fmt::format("port {}: cannot be listened on, expected one that is free", options.port));
+}
+
+ViewServer::~ViewServer() { stop(); }
+
+std::string ViewServer::address() const { return fmt::format("http://127.0.0.1:{}/{}/", pages_->port, pages_->word); }
+void ViewServer::serve() { pages_->server.listen_after_bind(); }
+void ViewServer::stop() { pages_->server.stop(); }
+
+}  // namespace umbra
