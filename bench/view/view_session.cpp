@@ -63,7 +63,7 @@ Image final_picture(const Scene& scene, const PointBatch& points, const std::vec
 Moved ViewSession::place(const ViewRequest& request) {
     if (request.light >= std::max<std::size_t>(posed_.as_in_file().lights.size(), 1))
         throw UsageError(fmt::format("light {}, expected 0 to {}", request.light, posed_.as_in_file().lights.size()));
-    const Moved moved = posed_.place(request);
+    Moved moved = posed_.place(request);
     if (moved.all) sides_.clear();
     const std::size_t lights = posed_.scene().lights.size();
     bool any                 = moved.camera || moved.objects;
