@@ -5,8 +5,9 @@
 namespace umbra {
 
 void write_decided(const Scene& scene, const PointBatch& points, LightId light, const Visibility& out) {
-    if (std::ranges::all_of(scene.objects, [](const Object& object) { return object.switches.receives_shadows; }))
-        return;
+    const bool all_receive =
+        std::ranges::all_of(scene.objects, [](const Object& object) { return object.switches.receives_shadows; });
+    if (all_receive && scene.lights[light].kind != LightKind::sphere) return;  // nothing is unshadowed
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (points.decided(light, i) == 0) continue;
         out.s[i] = points.decided(light, i);

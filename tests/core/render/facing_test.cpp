@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "umbra/core/render/ask_visibility.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/tests/support/method_case.h"
 
@@ -99,6 +100,9 @@ TEST(Facing, OfPointsInASphereLight) {
         const std::vector<bool> within{true, true, true, true, false, false, false, false, false, false, true};
         for (std::size_t i = 0; i < named.size(); ++i)
             EXPECT_EQ(points.facing[0][i], within[i] ? Facing::unshadowed : Facing::partly) << i << ' ' << scale;
+        VisibilityPlane plane(points.size());
+        write_decided(scene, points, 0, plane.out());
+        for (std::size_t i = 0; i < named.size(); ++i) EXPECT_EQ(plane.s[i], within[i] ? 1.0f : 0.0f) << i;
     }
 }
 
