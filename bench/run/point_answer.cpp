@@ -54,6 +54,14 @@ AnswerRecord answer_record(MethodAtWork& work, const PointBatch& picture, std::s
     return record;
 }
 
+std::string decided_in_words(const Scene& scene, const PointBatch& points, LightId light, std::size_t i) {
+    if (points.asks(light, i)) return "";
+    if (!points.faces(light, i)) return "The light is behind the surface: S is 0 for every method.";
+    return scene.switches(points.triangle[i]).receives_shadows
+               ? "The point lies in the light: S is 1 for every method."
+               : "The object receives no shadows: S is 1 for every method.";
+}
+
 std::string sentence(const AnswerRecord& a) {
     if (!a.failed.empty()) return a.failed;
     if (!a.not_served.empty()) return "does not serve this scene: " + a.not_served;

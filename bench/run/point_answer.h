@@ -66,6 +66,9 @@ void describe(Fields& of, Is<AnswerRecord>) {
 /// record's `failed`. Phases that have not run do so first. Drops what the method looks at.
 [[nodiscard]] AnswerRecord answer_record(MethodAtWork& work, const PointBatch& picture, std::size_t i, LightId light);
 
+/// Why no method is asked for the light at point i, which has a surface, a sentence; empty where methods are.
+[[nodiscard]] std::string decided_in_words(const Scene& scene, const PointBatch& points, LightId light, std::size_t i);
+
 /// "umbra, S 0; triangle 3 of box blocks at 0.4 of the way to the light; ..."
 [[nodiscard]] std::string sentence(const AnswerRecord& answer);
 

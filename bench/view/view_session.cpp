@@ -78,7 +78,7 @@ Moved ViewSession::place(const ViewRequest& request) {
     return moved;
 }
 
-void ViewSession::run(Side& side, const MethodChoice& choice, const Budget& most) {
+void ViewSession::run(Side& side, const MethodChoice& choice, const Budget& most, bool again) {
     const std::size_t lights = posed_.scene().lights.size();
     if (side.method && side.method->choice().info == choice.info) {
         const FrameWork work = side.method->set(choice);
@@ -89,6 +89,8 @@ void ViewSession::run(Side& side, const MethodChoice& choice, const Budget& most
         side.method = std::make_unique<KeptMethod>(choice, posed_.scene(), posed_.facts(), now_in_ms, most);
         side.due    = frame_work(Movement::object, lights, 0);
     }
+    const bool due = side.due.build || side.due.look || std::ranges::find(side.due.aim, true) != side.due.aim.end();
+    if (!again && !due && side.failed.empty()) return;
     side.failed.clear();
     side.done  = side.due;
     side.times = {0, std::vector<double>(lights), 0, std::vector<double>(lights)};
@@ -170,7 +172,7 @@ ViewReply ViewSession::show(const ViewRequest& request, const Budget& most) {
     const PointBatch& points = posed_.points();
     const auto light         = static_cast<LightId>(request.light);
     sides_.resize(choices.size());
-    for (std::size_t k = 0; k < choices.size(); ++k) run(sides_[k], choices[k], most);
+    for (std::size_t k = 0; k < choices.size(); ++k) run(sides_[k], choices[k], most, true);
     if (request.truth > 0 && !scene.lights.empty()) find_truth(request, most);
 
     const int width = points.raster->width, height = points.raster->height;
@@ -274,13 +276,8 @@ WhyHereRecord ViewSession::why(const ViewRequest& request, const Budget& most) {
     WhyHereRecord record{.on       = triangle_record(scene, points.triangle[i]),
                          .position = numbers(dvec3(points.position(i))),
                          .light    = scene.lights[light].name};
-    if (!points.asks(light, i)) {
-        record.decided = points.faces(light, i)
-                             ? "The object receives no shadows, or the point lies in the light: S is 1 "
-                               "for every method."
-                             : "The light is behind the surface: S is 0 for every method.";
-        return record;
-    }
+    record.decided = decided_in_words(scene, points, light, i);
+    if (!record.decided.empty()) return record;
     const auto answer = [&](MethodAtWork work) {
         work.limit(most);
         AnswerHereRecord here;
@@ -296,7 +293,7 @@ WhyHereRecord ViewSession::why(const ViewRequest& request, const Budget& most) {
     };
     sides_.resize(choices.size());
     for (std::size_t k = 0; k < choices.size(); ++k) {
-        run(sides_[k], choices[k], most);
+        run(sides_[k], choices[k], most, false);
         answer(sides_[k].method->at_work());
     }
     if (is_area(scene.lights[light].kind)) record.seen = seen_light(i, scene.lights[light]);

@@ -50,7 +50,8 @@ private:
         FrameWork done{};  ///< of its last run
     };
     Moved place(const ViewRequest& request);
-    void run(Side& side, const MethodChoice& choice, const Budget& most);
+    /// Nothing where no phase is due and the last run went well, unless `again`.
+    void run(Side& side, const MethodChoice& choice, const Budget& most, bool again);
     [[nodiscard]] SideRecord side_record(const Side& side) const;
     void find_truth(const ViewRequest& request, const Budget& most);
     /// The errors of a side, and the picture of the layer, where that is one of the errors.

@@ -188,16 +188,16 @@ public:
     [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "for a test"}; }
     [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
         if (options.at == Fails::build) throw std::runtime_error("no stone left");
-        return Method::build(scene, facts);
+        return MethodWith::build(scene, facts);
     }
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
         if (options.at == Fails::aim && built.scene.lights[light].name == "panel")
             throw UsageError("the panel is too large");
-        return Method::aim(built, light);
+        return MethodWith::aim(built, light);
     }
     [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
         if (options.at == Fails::look) throw MethodError("it sees nothing");
-        return Method::look(built, points);
+        return MethodWith::look(built, points);
     }
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
         const PointBatch& points = looked.points;

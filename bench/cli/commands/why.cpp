@@ -26,6 +26,7 @@ struct WhyLine {
 struct WhyLightRecord {
     std::string light{};
     bool away = false, unshadowed = false;
+    std::string decided{};
     std::vector<AnswerRecord> methods{};
 };
 template <class Fields>
@@ -33,8 +34,8 @@ void describe(Fields& of, Is<WhyLightRecord>) {
     of("light", &WhyLightRecord::light, "");
     of("methods", &WhyLightRecord::methods, "");
     of.may("away", &WhyLightRecord::away, "the light is behind the surface");
-    of.may("unshadowed", &WhyLightRecord::unshadowed,
-           "the object receives no shadows, or the point lies in a sphere light");
+    of.may("unshadowed", &WhyLightRecord::unshadowed, "the object receives no shadows, or the point lies in the light");
+    of.may("decided", &WhyLightRecord::decided, "why no method is asked, in words");
 }
 
 struct PointRecord {
@@ -73,9 +74,7 @@ std::string text_of(const WhyRecord& record) {
                                    point.position[0], point.position[1], point.position[2]);
     for (const WhyLightRecord& light : record.lights) {
         text += fmt::format("light {}\n", light.light);
-        if (light.away) text += "  The light is behind the surface: S is 0 for every method.\n";
-        if (light.unshadowed)
-            text += "  The object receives no shadows, or the point lies in the light: S is 1 for every method.\n";
+        if (!light.decided.empty()) text += "  " + light.decided + "\n";
         for (const AnswerRecord& a : light.methods) text += fmt::format("  {:24} {}\n", a.method, sentence(a));
     }
     return text;
@@ -108,7 +107,8 @@ int why(const WhyLine& line, const Common& common) {
     for (LightId light = 0; light < scene.lights.size(); ++light)
         if (line.light.empty() || scene.lights[light].name == line.light) {
             lights.push_back(light);
-            record.lights.push_back({.light = scene.lights[light].name});
+            record.lights.push_back(
+                {.light = scene.lights[light].name, .decided = decided_in_words(scene, points, light, i)});
         }
     for (const MethodChoice& choice : choices) {
         MethodAtWork work(choice, scene, prepared.facts);
