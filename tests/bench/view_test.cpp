@@ -85,7 +85,10 @@ TEST_F(View, PlacesAsIfTheSceneHadBegunThere) {
     static_cast<void>(show());
     request_.lights = {light(0)};
     request_.lights[0].position[0] += 0.5;
-    static_cast<void>(show());
+    request_.lights[0].position[1] = -2;  // below the floor, which faces away then
+    const ViewReply light_moved    = show();
+    ViewSession light_there(scene_file_of("six_lights"));
+    EXPECT_EQ(light_there.show(request_, {}).pictures, light_moved.pictures);
     request_.objects             = {{scene_.objects.size() - 1, {0.25, 0, 0}, 0}};
     const ViewReply step_by_step = show();
     ViewSession other(scene_file_of("six_lights"));

@@ -437,7 +437,7 @@ TEST(RayTraced, InsideASphereLightNothingBlocks) {
     Scene scene;
     add_quad(scene, vec3(-1, 0, 1), vec3(1, 0, 1), vec3(1, 0, -1), vec3(-1, 0, -1));
     scene.lights.push_back(area_light(LightKind::sphere));
-    scene.lights[0].radius = 5;
+    scene.lights[0].radius  = 5;
     const PointBatch points = points_on_quad(scene, sweep(64));
     for (std::size_t i = 0; i < points.size(); ++i) {
         EXPECT_FALSE(points.asks(0, i));
