@@ -38,14 +38,15 @@ int side_of_direction(vec3 a, vec3 b, vec3 c, dvec3 d) {
 
 bool lies_in_sphere(vec3 a, vec3 b, vec3 c, float u, float v, vec3 centre, float radius) {
     using Rational = CGAL::Gmpq;
-    // Each coordinate of the point has 8 roundings at most of the numbers that it is computed from.
+    // A coordinate of `to` has at most 3 times the magnitude of `reach`, and an error of at most 6 roundings of that: 18
+    // of `reach`. Its square then has one of at most 2 * 3 * 18 of the square of `reach`, and the sum 4 more of 9.
     const dvec3 x(a), y(b), z(c), from(centre);
     const double U = u, V = v, r = radius;
     const dvec3 to       = x - from + U * (y - x) + V * (z - x);
     const dvec3 reach    = glm::abs(x) + glm::abs(y) + glm::abs(z) + glm::abs(from);
     const double largest = reach.x + reach.y + reach.z + r;
     const double excess  = glm::dot(to, to) - r * r;
-    if (const double error = 64 * 0x1p-53 * largest * largest; std::abs(excess) > error && error > 1e-290)
+    if (const double error = 256 * 0x1p-53 * largest * largest; std::abs(excess) > error && error > 1e-290)
         return excess < 0;
     Rational square = 0;
     for (int k = 0; k < 3; ++k) {
