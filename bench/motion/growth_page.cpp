@@ -101,7 +101,7 @@ json fit_row(const GrowthSeriesRecord& method, const QuantityRecord& of) {
 }
 
 /// A size that a fit leads to, which may be beyond any that there are.
-std::string size_text(double size) { return size > 1e9 ? "over 10⁹" : count(known(size)); }
+std::string size_text(double size) { return known(size).value_or(0) > 1e9 ? "over 10⁹" : count(known(size)); }
 
 json external_view(const ExternalRecord& check) {
     json ours = json::array(), theirs = json::array();

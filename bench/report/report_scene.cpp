@@ -213,6 +213,8 @@ json scene_view(const SceneFiles& scene, const std::vector<MethodRecord>& settin
                             {"finding", finding(results)},
                             {"pair", slider_view(scene, worst_method(results))},
                             {"source", source_of(results.scene)},
+                            {"view", std::filesystem::path(results.scene.source).is_absolute() ? results.scene.name
+                                                                                               : source_of(results.scene)},
                             {"size", size_in_words(results.size)},
                             {"warnings", results.scene.warnings},
                             {"pictures", std::move(pictures)},
