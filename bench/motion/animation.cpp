@@ -32,19 +32,19 @@ dvec3 turned(dvec3 v, dvec3 axis, double time) {
 
 vec3 turned_direction(vec3 v, dvec3 axis, double time) { return vec3(turned(dvec3(v), axis, time)); }
 
-/// Which object owns each position alone: its index, or one of these.
-constexpr std::uint32_t kUnused = ~0u, kShared = ~0u - 1;
+}  // namespace
+
+dvec3 vertical_axis(const Scene& scene) { return unit_axis(largest_coordinate(scene.camera.up)); }
+
 std::vector<std::uint32_t> owners(const Scene& scene) {
-    std::vector<std::uint32_t> owner(scene.positions.size(), kUnused);
+    std::vector<std::uint32_t> owner(scene.positions.size(), kUnusedPosition);
     for (TriangleId t = 0; t < scene.triangles.size(); ++t)
         for (int k = 0; k < 3; ++k) {
             std::uint32_t& o = owner[scene.triangles[t][k]];
-            o                = o == kUnused || o == scene.triangle_object[t] ? scene.triangle_object[t] : kShared;
+            o = o == kUnusedPosition || o == scene.triangle_object[t] ? scene.triangle_object[t] : kSharedPosition;
         }
     return owner;
 }
-
-}  // namespace
 
 std::string_view to_string(Movement movement) {
     switch (movement) {
@@ -93,7 +93,7 @@ void Animation::choose_object(const Scene& start, const SceneFacts& facts) {
     std::vector<bool> shares(start.objects.size());
     for (TriangleId t = 0; t < start.triangles.size(); ++t)
         for (int k = 0; k < 3; ++k)
-            if (owner[start.triangles[t][k]] == kShared) shares[start.triangle_object[t]] = true;
+            if (owner[start.triangles[t][k]] == kSharedPosition) shares[start.triangle_object[t]] = true;
 
     std::optional<std::size_t> best;
     for (std::size_t o = 0; o < start.objects.size(); ++o) {

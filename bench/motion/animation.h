@@ -50,6 +50,13 @@ private:
     std::vector<vec3> positions_, normals_;
 };
 
+/// Along x, y or z, whichever the camera's up direction is nearest to: heights are measured along it.
+[[nodiscard]] dvec3 vertical_axis(const Scene& scene);
+
+/// The object that each position belongs to alone, or one of these.
+inline constexpr std::uint32_t kUnusedPosition = ~0u, kSharedPosition = ~0u - 1;
+[[nodiscard]] std::vector<std::uint32_t> owners(const Scene& scene);
+
 /// How far things turn over an animation, degrees.
 inline constexpr double kArc = 45;
 

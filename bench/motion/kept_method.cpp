@@ -17,10 +17,8 @@ KeptMethod::KeptMethod(const MethodChoice& choice, const Scene& scene, const Sce
 
 FrameWork KeptMethod::set(const MethodChoice& choice) {
     const Phase first = first_changed_phase(work_.choice().settings, choice.settings);
-    const bool same   = work_.choice().text() == choice.text();
-    if (!same) work_.set(choice);
-    return {!same && first == Phase::build, std::vector<bool>(planes_.size(), !same && first <= Phase::aim),
-            !same && first <= Phase::look};
+    if (work_.choice().text() != choice.text()) work_.set(choice);
+    return {first == Phase::build, std::vector<bool>(planes_.size(), first <= Phase::aim), first <= Phase::look};
 }
 
 MethodRun KeptMethod::as_run() const {

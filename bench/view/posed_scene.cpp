@@ -7,6 +7,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
+#include "umbra/bench/motion/animation.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
@@ -17,16 +18,6 @@ namespace umbra {
 namespace {
 
 vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
-
-constexpr std::uint32_t kUnused = ~0u, kShared = ~0u - 1;
-
-/// The coordinate along which the camera's up direction is longest.
-dvec3 vertical_of(const Scene& scene) {
-    const vec3 up = glm::abs(scene.camera.up);
-    dvec3 axis(0);
-    axis[up.x > up.y && up.x > up.z ? 0 : up.y >= up.z ? 1 : 2] = 1;
-    return axis;
-}
 
 void place_light(Light& light, const Light& start, const PlacedLight& placed) {
     light              = start;
@@ -67,21 +58,17 @@ std::filesystem::path PosedScene::file_of(std::uint64_t frame) const {
 void PosedScene::load(std::uint64_t frame) {
     Scene loaded = load_scene(file_of(frame));
     std::error_code none;
-    written_ = std::filesystem::last_write_time(split_frame(file_.string()).file, none);
-    start_   = std::move(loaded);
-    scene_   = start_;
-    std::vector<std::uint32_t> owner(scene_.positions.size(), kUnused);
+    written_                               = std::filesystem::last_write_time(split_frame(file_.string()).file, none);
+    start_                                 = std::move(loaded);
+    scene_                                 = start_;
+    const std::vector<std::uint32_t> owner = owners(scene_);
     movable_.assign(scene_.objects.size(), true);
     vertices_.assign(scene_.objects.size(), {});
+    for (std::uint32_t p = 0; p < owner.size(); ++p)
+        if (owner[p] < kSharedPosition) vertices_[owner[p]].push_back(p);
     for (TriangleId t = 0; t < scene_.triangles.size(); ++t)
-        for (int k = 0; k < 3; ++k) {
-            const std::uint32_t object = scene_.triangle_object[t], p = scene_.triangles[t][k];
-            if (owner[p] == kUnused) owner[p] = object, vertices_[object].push_back(p);
-            if (owner[p] == object) continue;
-            movable_[object] = false;
-            if (owner[p] != kShared) movable_[owner[p]] = false;
-            owner[p] = kShared;
-        }
+        for (int k = 0; k < 3; ++k)
+            if (owner[scene_.triangles[t][k]] == kSharedPosition) movable_[scene_.triangle_object[t]] = false;
     facts_ms_  = timed_ms([&] { facts_ = find_facts(scene_); });
     now_       = {};
     now_.frame = frame;
@@ -97,7 +84,7 @@ dvec3 PosedScene::middle(std::size_t o) const {
 
 void PosedScene::place_object(const PlacedObject& placed) {
     const dvec3 centre = middle(placed.object), move(placed.move[0], placed.move[1], placed.move[2]);
-    const dmat4 turn   = glm::rotate(dmat4(1), glm::radians(placed.turn), vertical_of(start_));
+    const dmat4 turn   = glm::rotate(dmat4(1), glm::radians(placed.turn), vertical_axis(start_));
     for (const std::uint32_t p : vertices_[placed.object]) {
         const dvec3 from = dvec3(start_.positions[p]);
         scene_.positions[p] =
@@ -107,12 +94,6 @@ void PosedScene::place_object(const PlacedObject& placed) {
 }
 
 Moved PosedScene::place(const ViewRequest& request) {
-    for (const PlacedLight& light : request.lights)
-        if (light.light >= start_.lights.size())
-            throw UsageError(fmt::format("light {}, expected 0 to {}", light.light, start_.lights.size()));
-    for (const PlacedObject& object : request.objects)
-        if (object.object >= start_.objects.size() || !movable_[object.object])
-            throw UsageError(fmt::format("object {} cannot be moved", object.object));
     Moved moved;
     std::error_code none;
     const auto written = std::filesystem::last_write_time(split_frame(file_.string()).file, none);
@@ -122,6 +103,14 @@ Moved PosedScene::place(const ViewRequest& request) {
         load(request.frame);
         moved.all = true;
     }
+    if (request.light >= std::max<std::size_t>(start_.lights.size(), 1))
+        throw UsageError(fmt::format("light {}, of which there are {}", request.light, start_.lights.size()));
+    for (const PlacedLight& light : request.lights)
+        if (light.light >= start_.lights.size())
+            throw UsageError(fmt::format("light {}, of which there are {}", light.light, start_.lights.size()));
+    for (const PlacedObject& object : request.objects)
+        if (object.object >= start_.objects.size() || !movable_[object.object])
+            throw UsageError(fmt::format("object {} cannot be moved", object.object));
     const bool first = moved.all || now_.width == 0;
     moved.all        = first;
     moved.lights.assign(scene_.lights.size(), first);

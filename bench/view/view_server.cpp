@@ -45,6 +45,11 @@ void answer_text(httplib::Response& response, int status, const std::string& tex
 }  // namespace
 
 struct ViewServer::Pages {
+    /// httplib listens to five connections at a time that wait to be accepted, and drops others.
+    struct ListeningServer : httplib::Server {
+        void widen() const { ::listen(svr_sock_, SOMAXCONN); }
+    };
+
     explicit Pages(const ViewerOptions& with) : options(with), word(random_word()) {}
 
     struct Page {
@@ -95,7 +100,7 @@ struct ViewServer::Pages {
     ViewerOptions options;
     std::string word;
     int port = 0;
-    httplib::Server server;
+    ListeningServer server;
     std::mutex mutex;                       ///< of the next two
     std::list<std::shared_ptr<Page>> open;  ///< the last that asked first
     std::unique_ptr<ViewSession> spare;     ///< loaded ahead, for the first page
@@ -108,9 +113,9 @@ httplib::Server::HandlerResponse ViewServer::Pages::check(const httplib::Request
     response.set_header("Cache-Control", "no-store");
     response.set_header("X-Content-Type-Options", "nosniff");
     response.set_header("Referrer-Policy", "no-referrer");
-    response.set_header("Content-Security-Policy",
-                        "default-src 'self'; img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
-                        "frame-ancestors 'none'; form-action 'none'; base-uri 'none'");
+    response.set_header(
+        "Content-Security-Policy",
+        "default-src 'self'; img-src 'self' data: blob:; frame-ancestors 'none'; form-action 'none'; base-uri 'none'");
     const std::string host = request.get_header_value("Host"), here = fmt::format("127.0.0.1:{}", port),
                       local  = fmt::format("localhost:{}", port);
     const std::string origin = request.get_header_value("Origin");
@@ -178,6 +183,7 @@ ViewServer::ViewServer(const ViewerOptions& options) : pages_(std::make_unique<P
     p.port         = any ? p.server.bind_to_any_port("127.0.0.1") : options.port;
     if (p.port <= 0 || (!any && !p.server.bind_to_port("127.0.0.1", options.port)))
         throw UsageError(fmt::format("port {}: cannot be listened on, expected one that is free", options.port));
+    p.server.widen();
 }
 
 ViewServer::~ViewServer() { stop(); }

@@ -3,19 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/image/metrics.h"
 #include "umbra/core/io/scene_writer.h"
 #include "umbra/core/render/light_points.h"
+#include "umbra/core/render/sampling.h"
 #include "umbra/core/render/shade.h"
 
 namespace umbra {
@@ -42,16 +42,6 @@ void append_bytes(const Image& image, std::vector<std::uint8_t>& bytes) {
 /// Places along each side of the light at which it is looked for.
 constexpr int kSeenSide = 48;
 
-double now_in_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-double sum(const std::vector<double>& values) {
-    double total = 0;
-    for (const double v : values) total += v;
-    return total;
-}
-
 Image blank(int width, int height) { return {width, height, {"R", "G", "B"}}; }
 
 Image final_picture(const Scene& scene, const PointBatch& points, const std::vector<VisibilityPlane>& planes) {
@@ -61,8 +51,6 @@ Image final_picture(const Scene& scene, const PointBatch& points, const std::vec
 }  // namespace
 
 Moved ViewSession::place(const ViewRequest& request) {
-    if (request.light >= std::max<std::size_t>(posed_.as_in_file().lights.size(), 1))
-        throw UsageError(fmt::format("light {}, expected 0 to {}", request.light, posed_.as_in_file().lights.size()));
     Moved moved = posed_.place(request);
     if (moved.all) sides_.clear();
     const std::size_t lights = posed_.scene().lights.size();
@@ -86,7 +74,7 @@ void ViewSession::run(Side& side, const MethodChoice& choice, const Budget& most
         side.due.look        = side.due.look || work.look;
         for (std::size_t j = 0; j < lights; ++j) side.due.aim[j] = side.due.aim[j] || work.aim[j];
     } else {
-        side.method = std::make_unique<KeptMethod>(choice, posed_.scene(), posed_.facts(), now_in_ms, most);
+        side.method = std::make_unique<KeptMethod>(choice, posed_.scene(), posed_.facts(), wall_clock_ms, most);
         side.due    = frame_work(Movement::object, lights, 0);
     }
     const bool due = side.due.build || side.due.look || std::ranges::find(side.due.aim, true) != side.due.aim.end();
@@ -113,6 +101,7 @@ SideRecord ViewSession::side_record(const Side& side) const {
                       .layer  = "nothing"};
     if (!side.method->service() || !side.failed.empty()) return record;
     const bool aimed    = std::ranges::find(side.done.aim, true) != side.done.aim.end();
+    const auto sum      = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
     record.phases       = {{"build", side.times.build, side.done.build},
                            {"aim", sum(side.times.aim), aimed},
                            {"look", side.times.look, side.done.look},
@@ -223,12 +212,8 @@ SeenLightRecord ViewSession::seen_light(std::size_t i, const Light& light) {
     if (light.kind == LightKind::disk) {
         const DiskAxes axes = disk_axes(light);
         u = axes.u, v = axes.v;
-    } else if (light.kind == LightKind::sphere) {  // the circle in which the cone from p touches it
-        const dvec3 to_centre = centre - p;
-        const double r = light.radius, d = glm::length(to_centre), share = r * r / (d * d);
-        const Axes axes = axes_across(to_centre / d);
-        centre -= share * to_centre;
-        u = axes.u * (r * std::sqrt(std::max(0.0, 1 - share))), v = axes.v * (r * std::sqrt(std::max(0.0, 1 - share)));
+    } else if (TangentDisk disk; light.kind == LightKind::sphere && tangent_disk(p, centre, light.radius, disk)) {
+        centre = disk.centre, u = disk.axis_u, v = disk.axis_v;
     }
     if (!rays_) rays_.emplace(scene, Met::blocking);
     const RaySpace& space = rays_->space();
@@ -297,8 +282,8 @@ WhyHereRecord ViewSession::why(const ViewRequest& request, const Budget& most) {
         answer(sides_[k].method->at_work());
     }
     if (is_area(scene.lights[light].kind)) record.seen = seen_light(i, scene.lights[light]);
-    const Reference reference = default_reference(posed_.facts());
-    answer(MethodAtWork(reference.choice, scene, posed_.facts()));
+    answer(truth_ && truth_->run.work ? *truth_->run.work
+                                      : MethodAtWork(default_reference(posed_.facts()).choice, scene, posed_.facts()));
     return record;
 }
 

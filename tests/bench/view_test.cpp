@@ -43,6 +43,21 @@ std::string repeated(const ViewReply& reply, std::size_t side = 0) {
     return names;
 }
 
+/// The reasons at pixels of a grid, those without a surface left out.
+std::vector<WhyHereRecord> reasons(ViewSession& session, ViewRequest request, std::uint64_t dx, std::uint64_t dy) {
+    std::vector<WhyHereRecord> all;
+    for (std::uint64_t x = dx / 2; x < request.width; x += dx)
+        for (std::uint64_t y = dy / 2; y < request.height; y += dy) {
+            request.x = x, request.y = y;
+            try {
+                all.push_back(session.why(request, {}));
+            } catch (const UsageError& e) {
+                EXPECT_STREQ(e.what(), "no surface at this pixel");
+            }
+        }
+    return all;
+}
+
 class View : public testing::Test {
 protected:
     [[nodiscard]] ViewReply show() { return session_.show(request_, {}); }
@@ -156,21 +171,15 @@ TEST_F(View, ErrorsAreThoseOfTheTruth) {
 TEST_F(View, SaysWhyAPointIsDark) {
     request_.methods = {"shadow_volumes"};
     std::size_t dark = 0, lit = 0;
-    for (std::uint64_t x = 4; x < 96; x += 6)
-        for (std::uint64_t y = 4; y < 54; y += 3) {
-            request_.x = x, request_.y = y;
-            try {
-                const WhyHereRecord why = session_.why(request_, {});
-                if (!why.decided.empty()) continue;
-                ASSERT_EQ(why.answers.size(), 2u) << "the method and the reference";
-                const bool is_dark = why.answers[0].answer.verdict == "umbra";
-                ++(is_dark ? dark : lit);
-                EXPECT_EQ(why.answers[0].answer.verdict, why.answers[1].answer.verdict);
-                EXPECT_EQ(why.answers[1].blocker_corners.size(), is_dark ? 3u : 0u);
-                EXPECT_NE(why.answers[0].sentence.find("S "), std::string::npos);
-            } catch (const UsageError&) {  // no surface
-            }
-        }
+    for (const WhyHereRecord& why : reasons(session_, request_, 6, 3)) {
+        if (!why.decided.empty()) continue;
+        ASSERT_EQ(why.answers.size(), 2u) << "the method and the reference";
+        const bool is_dark = why.answers[0].answer.verdict == "umbra";
+        ++(is_dark ? dark : lit);
+        EXPECT_EQ(why.answers[0].answer.verdict, why.answers[1].answer.verdict);
+        EXPECT_EQ(why.answers[1].blocker_corners.size(), is_dark ? 3u : 0u);
+        EXPECT_NE(why.answers[0].sentence.find("S "), std::string::npos);
+    }
     EXPECT_GT(lit, 10u);
     EXPECT_GT(dark, 3u);
 }
@@ -178,23 +187,16 @@ TEST_F(View, SaysWhyAPointIsDark) {
 TEST(ViewOfAnAreaLight, ShowsWhatThePointSeesOfIt) {
     const Scene scene = load_scene(scene_file_of("umbra_penumbra"));
     ViewSession session(scene_file_of("umbra_penumbra"));
-    ViewRequest request = start_of(scene, "ray_traced");
     std::size_t judged = 0, penumbra = 0;
-    for (std::uint64_t x = 2; x < 96; x += 6)
-        for (std::uint64_t y = 2; y < 54; y += 5) {
-            request.x = x, request.y = y;
-            try {
-                const WhyHereRecord why = session.why(request, {});
-                if (!why.decided.empty()) continue;
-                ASSERT_TRUE(why.seen);
-                ASSERT_EQ(why.seen->cells.size(), why.seen->side * why.seen->side);
-                const float exact = why.answers[1].answer.visibility.value();
-                EXPECT_NEAR(why.seen->fraction, exact, 0.04) << x << ' ' << y;
-                ++judged;
-                penumbra += exact > 0.1f && exact < 0.9f;
-            } catch (const UsageError&) {  // no surface
-            }
-        }
+    for (const WhyHereRecord& why : reasons(session, start_of(scene, "ray_traced"), 6, 5)) {
+        if (!why.decided.empty()) continue;
+        ASSERT_TRUE(why.seen);
+        ASSERT_EQ(why.seen->cells.size(), why.seen->side * why.seen->side);
+        const float exact = why.answers[1].answer.visibility.value();
+        EXPECT_NEAR(why.seen->fraction, exact, 0.04);
+        ++judged;
+        penumbra += exact > 0.1f && exact < 0.9f;
+    }
     EXPECT_GT(judged, 50u);
     EXPECT_GT(penumbra, 5u);
 }
@@ -212,14 +214,8 @@ TEST_F(View, PointsInASphereLightAreDecided) {
     const ViewReply shown = session.show(request, {});
     EXPECT_EQ(shown.record.sides[0].failed, "");
     std::size_t within = 0;
-    for (std::uint64_t x = 1; x < 96; x += 15)
-        for (std::uint64_t y = 1; y < 54; y += 8) {
-            request.x = x, request.y = y;
-            try {
-                within += session.why(request, {}).decided.starts_with("The point lies in the light");
-            } catch (const UsageError&) {  // no surface
-            }
-        }
+    for (const WhyHereRecord& why : reasons(session, request, 15, 8))
+        within += why.decided.starts_with("The point lies in the light");
     EXPECT_GT(within, 0u);
 }
 
@@ -246,6 +242,17 @@ TEST_F(View, ReadsAFileAgainThatHasChanged) {
     const ViewReply after = session.show(request_, {});
     EXPECT_EQ(repeated(after), "build aim look visibility");
     EXPECT_NE(before.pictures, after.pictures);
+    // Fewer lights than the page has placed.
+    const Light& last = scene_.lights[5];
+    request_.light    = 5;
+    request_.lights   = {{5, {last.position.x, 9, last.position.z}, {0, -1, 0}, 1}};
+    request_.objects  = {{scene_.objects.size() - 1, {0, 1, 0}, 0}};
+    EXPECT_EQ(repeated(session.show(request_, {})), "build aim look visibility");
+    fs::copy_file(scene_file_of("sun_on_plane"), file, fs::copy_options::overwrite_existing);
+    fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(7));
+    EXPECT_THROW((void)session.show(request_, {}), UsageError);
+    request_.light = 0, request_.lights.clear(), request_.objects.clear();
+    EXPECT_EQ(session.show(request_, {}).pictures, before.pictures);
     std::ofstream(file) << "{";
     fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(9));
     EXPECT_THROW((void)session.show(request_, {}), InputError);
@@ -363,18 +370,15 @@ TEST_F(Served, OutlivesWrongRequests) {
         const int answer = post(root_ + (k % 3 == 0 ? "why" : "show"), wrong);
         EXPECT_TRUE(answer == 200 || answer == 400 || answer == 422) << answer << ' ' << wrong;
     }
-    // More at once than it listens to: some connections may be dropped, none may be answered otherwise.
     std::vector<std::thread> many;
-    std::atomic<int> answered = 0, dropped = 0;
-    for (int k = 0; k < 60; ++k)
+    std::atomic<int> answered = 0;
+    for (int k = 0; k < 200; ++k)
         many.emplace_back([&, k] {
             const int answer = post(root_ + "show", good(k % 2 ? "one" : "two"));
             answered += answer == 200 || answer == 409;
-            dropped += answer < 0;
         });
     for (std::thread& one : many) one.join();
-    EXPECT_EQ(answered + dropped, 60);
-    EXPECT_GE(answered, 40);
+    EXPECT_EQ(answered, 200);
     EXPECT_EQ(post(root_ + "show", good()), 200);
 }
 

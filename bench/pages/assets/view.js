@@ -188,8 +188,8 @@ function handle(kind, p, label, move) {
   const at = project(p);
   if (at.depth <= 0 && !scene.orthographic) return;
   const [w, h] = state.size;
-  const x = Math.min(Math.max(at.x, 0), w), y = Math.min(Math.max(at.y, 0), h);
   const r = 7 * w / ($("stage").clientWidth || w);
+  const x = Math.min(Math.max(at.x, r), w - r), y = Math.min(Math.max(at.y, r), h - r);  // in reach, where it is outside
   const circle = shape("circle", { cx: x, cy: y, r: kind === "aim" ? 0.7 * r : r, class: "handle " + kind, tabindex: 0, role: "button", "aria-label": label });
   circle.dataset.key = kind + label;
   const by = (dx, dy, dz) => {
