@@ -117,7 +117,7 @@ Field parse_json(const std::string& bytes, const std::string& name) {
 Field read_results(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(fmt::format("{}: cannot be opened, expected a results.json", file.string()));
-    const Field root = parse_json({std::istreambuf_iterator<char>(stream), {}}, file.string());
+    Field root = parse_json({std::istreambuf_iterator<char>(stream), {}}, file.string());
     if (root["schema"].number() != kResultsSchema)
         root["schema"].refuse(fmt::format("{}, the version that this program reads", kResultsSchema));
     return root;

@@ -43,11 +43,11 @@ public:
     }
     [[nodiscard]] std::unique_ptr<const Aimed> aim(const Built& built, LightId light) const override {
         work(Phase::aim, light);
-        return Method::aim(built, light);
+        return MethodWith::aim(built, light);
     }
     [[nodiscard]] std::unique_ptr<const Looked> look(const Built& built, const PointBatch& points) const override {
         work(Phase::look, 0);
-        return Method::look(built, points);
+        return MethodWith::look(built, points);
     }
     void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
         work(Phase::visibility, aimed.light);
