@@ -38,8 +38,8 @@ int side_of_direction(vec3 a, vec3 b, vec3 c, dvec3 d) {
 
 bool lies_in_sphere(vec3 a, vec3 b, vec3 c, float u, float v, vec3 centre, float radius) {
     using Rational = CGAL::Gmpq;
-    // A coordinate of `to` has at most 3 times the magnitude of `reach`, and an error of at most 6 roundings of that: 18
-    // of `reach`. Its square then has one of at most 2 * 3 * 18 of the square of `reach`, and the sum 4 more of 9.
+    // A coordinate of `to` has at most 3 times the magnitude of `reach`, and an error of at most 6 roundings of that:
+    // 18 of `reach`. Its square then has one of at most 2 * 3 * 18 of the square of `reach`, and the sum 4 more of 9.
     const dvec3 x(a), y(b), z(c), from(centre);
     const double U = u, V = v, r = radius;
     const dvec3 to       = x - from + U * (y - x) + V * (z - x);
