@@ -142,6 +142,27 @@ CountingTree::CountingTree(const Scene& scene, const PointBatch& points)
             w[k]               = 1 / depth;
         }
     });
+    for (std::size_t level = 0, width = Tree::kLeaf; level < tree_.levels.size(); ++level, width *= Tree::kBranches) {
+        const auto triangle = [&](std::size_t i) {
+            return level == 0 ? points.triangle[index_[i]] : own_[level - 1][i / (width / Tree::kBranches)];
+        };
+        RawVector<TriangleId> own(tree_.levels[level].size() * Tree::kBranches);
+        parallel_ranges(own.size(), 1024, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t child = begin; child < end; ++child) {
+                const auto [first, last] = tree_.points_under(level, child);
+                own[child]               = first < last ? triangle(first) : kNoTriangle;
+                for (std::size_t i = first; i < last; i += level == 0 ? 1 : width / Tree::kBranches)
+                    if (triangle(i) != own[child]) own[child] = kNoTriangle;
+            }
+        });
+        own_.push_back(std::move(own));
+    }
+}
+
+std::size_t CountingTree::memory_bytes() const {
+    std::size_t bytes = index_.size() * sizeof(std::uint32_t) + tree_.memory_bytes();
+    for (const auto& own : own_) bytes += own.size() * sizeof(TriangleId);
+    return bytes;
 }
 
 // ---- the counts -----------------------------------------------------------------------------------------------------
@@ -149,6 +170,7 @@ CountingTree::CountingTree(const Scene& scene, const PointBatch& points)
 PointCounts::PointCounts(const CountingTree& tree, const Scene& scene, const PointBatch& points, LightId light)
     : tree_(tree.tree_),
       index_(tree.index_),
+      own_(tree.own_),
       scene_(scene),
       points_(points),
       asks_(tree_.leaf_count()),
@@ -196,6 +218,15 @@ struct PointCounts::OneRegion {
             if (which == 0) return;
             for (std::size_t k = 0; k < kFanOut; ++k) still[k] &= ~((covered >> (kFanOut + k) & 1u) << face);
         }
+        if (region.cap != kNoTriangle)
+            for (unsigned rest = which; rest != 0; rest &= rest - 1) {
+                const auto k = static_cast<std::size_t>(std::countr_zero(rest));
+                if ((still[k] & 1u) == 0 || !is_at_cap(to.own_[level][n * kFanOut + k])) continue;
+                if (region.on_light_s_side)
+                    still[k] &= ~1u;
+                else
+                    which &= ~(1u << k);
+            }
         for (; which != 0; which &= which - 1) {
             const auto k = static_cast<std::size_t>(std::countr_zero(which));
             if (still[k] == 0)
@@ -244,11 +275,9 @@ struct PointCounts::OneRegion {
 private:
     enum class Near : std::uint8_t { within, outside, open };
 
-    /// The place of a point at one of the region's faces. Every point is at the near cap of its own triangle, and of
-    /// copies of that: they lie in one plane, on the light's side of which it is.
+    /// The place of a point at one of the region's faces.
     [[nodiscard]] Near near_point(std::size_t at) const {
-        const TriangleId own = to.points_.triangle[to.index_[at]];
-        if (region.cap == kNoTriangle || !(region.cap == own || is_copy(own))) return Near::open;
+        if (region.cap == kNoTriangle || !is_at_cap(to.points_.triangle[to.index_[at]])) return Near::open;
         if (!region.on_light_s_side) return Near::outside;
         double least = std::numeric_limits<double>::infinity();
         for (std::size_t face = 1; face < static_cast<std::size_t>(region.count); ++face) {
@@ -259,8 +288,10 @@ private:
         return least > 1 ? Near::within : least < -1 ? Near::outside : Near::open;
     }
 
-    /// Whether each of the cap's corners is one of the triangle's.
-    [[nodiscard]] bool is_copy(TriangleId t) const {
+    /// Whether points of triangle t are at the near cap: of their own triangle, and of copies of that. These lie in one
+    /// plane, on the light's side of which such points are. kNoTriangle is none.
+    [[nodiscard]] bool is_at_cap(TriangleId t) const {
+        if (t == region.cap || t == kNoTriangle) return t == region.cap;
         const Scene& scene = to.scene_;
         for (int k = 0; k < 3; ++k) {
             const vec3 corner = scene.vertex(region.cap, k);

@@ -60,9 +60,7 @@ public:
     [[nodiscard]] const ViewFrame& view() const { return view_; }
     /// w of the nearest point.
     [[nodiscard]] double largest_w() const { return index_.empty() ? 0 : tree_.levels.back()[0].bounds().high[2]; }
-    [[nodiscard]] std::size_t memory_bytes() const {
-        return index_.size() * sizeof(std::uint32_t) + tree_.memory_bytes();
-    }
+    [[nodiscard]] std::size_t memory_bytes() const;
 
 private:
     friend class PointCounts;
@@ -71,6 +69,7 @@ private:
     RawVector<std::uint32_t> index_;  // point of the batch
     ViewFrame view_;
     Tree tree_;
+    std::vector<RawVector<TriangleId>> own_;  // [level][child of a node]: of all points below, where they share one
 };
 
 /// Counts at the points of a tree that need an answer for one light: those whose facing to it is `front` or `partly`.
@@ -103,6 +102,7 @@ private:
 
     const Tree& tree_;
     const RawVector<std::uint32_t>& index_;
+    const std::vector<RawVector<TriangleId>>& own_;
     const Scene& scene_;
     const PointBatch& points_;
     RawVector<std::uint16_t> asks_;  // of each leaf: a bit for each point
