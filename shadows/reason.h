@@ -40,6 +40,8 @@ struct Reason {
                          ///< penumbra the sign of S_j - 1/2
     std::string unit{};  ///< of the margin: "world", "texels", "layers", "samples", "of the light"
     std::vector<Evidence> evidence{};
+    std::vector<dvec3> texel{};  ///< corners of the map's texel on the plane of the point, in turn, world space; empty
+                                 ///< where no texel was compared
 };
 
 [[nodiscard]] PointVerdict verdict_of(Given given);

@@ -34,13 +34,29 @@ ivec2 texel_of(const Receiver& receiver, const MapView& view) {
 
 void add_texel(Reason& reason, const FoundReceiver& found, const MapView& view, Given given) {
     const Receiver& receiver = found.receiver;
-    const ivec2 texel        = texel_of(receiver, view);
-    const double stored      = view.frame.depth(view.map.nearness(texel.x, texel.y));
-    const double own         = view.frame.depth(receiver.r);
+    reason.evidence.push_back({"map", static_cast<double>(found.view)});
+    if (receiver.x < 0 || receiver.y < 0 || receiver.x > view.map.width() || receiver.y > view.map.height()) {
+        reason.evidence.push_back({"texel", "outside the map, where nothing casts"});
+        return;
+    }
+    const ivec2 texel   = texel_of(receiver, view);
+    const double stored = view.frame.depth(view.map.nearness(texel.x, texel.y));
+    const double own    = view.frame.depth(receiver.r);
     const double compared =
         view.frame.depth(std::min(1.0, receiver.r + receiver.bias + std::min(receiver.slack, receiver.most)));
-    reason.evidence.push_back({"map", static_cast<double>(found.view)});
+    for (const ivec2 corner : {ivec2(0, 0), ivec2(1, 0), ivec2(1, 1), ivec2(0, 1)}) {
+        const dvec2 at(texel + corner);
+        const double r     = receiver.r + receiver.r_x * (at.x - receiver.x) + receiver.r_y * (at.y - receiver.y);
+        const double depth = view.frame.depth(r);
+        // Where light grazes, the plane may go to infinity within the texel.
+        const bool cut = view.frame.perspective && (depth <= 0 || depth > 4 * own);
+        reason.texel.push_back(
+            view.frame.position(2.0 * at / dvec2(view.map.width(), view.map.height()) - 1.0, cut ? 4 * own : depth));
+    }
+    const dvec2 width =
+        2.0 * view.frame.half / dvec2(view.map.width(), view.map.height()) * (view.frame.perspective ? own : 1.0);
     reason.evidence.push_back({"texel", fmt::format("{}, {}", texel.x, texel.y)});
+    reason.evidence.push_back({"width of the texel", std::max(width.x, width.y), "world"});
     reason.evidence.push_back({"stored depth", stored, "world"});
     reason.evidence.push_back({"depth of the point", own, "world"});
     reason.evidence.push_back({"bias towards the light", own - compared, "world"});

@@ -153,9 +153,10 @@ private:
 /// The texel that the point lies in, or the nearest one of the map.
 [[nodiscard]] ivec2 texel_of(const Receiver& receiver, const MapView& view);
 
-/// Adds to a reason the stored depth of the texel that the point lies in and the depth that it is compared with, both
-/// along the view's axis, from the light or its window. The margin becomes their difference, where it has the answer's
-/// sign: with a filter other texels may have decided.
+/// Adds to a reason the outline of the texel that the point lies in, its stored depth and the depth that it is compared
+/// with, both along the view's axis, from the light or its window; of a point beside the map, that it lies there. The
+/// margin becomes the difference of the depths, where it has the answer's sign: with a filter other texels may have
+/// decided.
 void add_texel(Reason& reason, const FoundReceiver& found, const MapView& view, Given given);
 
 /// For each point of a batch the sample of one of several maps that blocks it, and then the triangle that it shows.

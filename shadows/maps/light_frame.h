@@ -26,6 +26,11 @@ struct LightFrame {
     [[nodiscard]] double depth(double nearness) const {
         return perspective ? near * far / (nearness * (far - near) + near) : far - nearness * (far - near);
     }
+    /// The position in world space that a place in the window, of [-1, 1]^2, has at a depth.
+    [[nodiscard]] dvec3 position(dvec2 place, double depth) const {
+        const dvec2 at = (centre + place * half) * (perspective ? depth : 1.0);
+        return origin + at.x * x + at.y * y + depth * z;
+    }
     /// See DepthMap::draw; W is z / far, or 1.
     [[nodiscard]] dmat4 clip_from_world() const {
         dvec4 X, Y, R, W;
