@@ -143,7 +143,8 @@ public:
     }
 
     /// Writes S_j for every point that asks for it (`points.asks(light, i)`): s in [0, 1], `undefined` where the method
-    /// cannot tell, a half width where it proves one. Other entries stay as they are, which is the answer there. Both
+    /// cannot tell, a half width where it proves one. Random numbers of a point depend on PointBatch::number, so that
+    /// it has the same answer whoever else is asked. Other entries stay as they are, which is the answer there. Both
     /// values come from one Built.
     virtual void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const = 0;
 

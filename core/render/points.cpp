@@ -16,6 +16,7 @@ void PointBatch::resize(std::size_t n) {
     for (std::vector<float>* f : {&u, &v, &px, &py, &pz, &nx, &ny, &nz}) f->resize(n, 0.0f);
     flipped.resize(n, 0);
     for (std::vector<Facing>& plane : facing) plane.resize(n, Facing::none);
+    if (!numbers.empty()) numbers.resize(n);
 }
 
 namespace {
@@ -97,6 +98,8 @@ PointBatch pick(const PointBatch& from, std::span<const std::uint32_t> which) {
     copy(from.px, to.px), copy(from.py, to.py), copy(from.pz, to.pz);
     copy(from.nx, to.nx), copy(from.ny, to.ny), copy(from.nz, to.nz);
     for (std::size_t j = 0; j < from.facing.size(); ++j) copy(from.facing[j], to.facing[j]);
+    to.numbers.reserve(which.size());
+    for (const std::uint32_t i : which) to.numbers.push_back(from.number(i));
     return to;
 }
 

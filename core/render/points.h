@@ -36,8 +36,12 @@ struct PointBatch {
     std::optional<CameraFrame> raster;  ///< set for the primary batch
     vec3 eye{0};                        ///< where V points to, also for batches without a raster
     std::vector<std::vector<Facing>> facing;  ///< [light][point]; filled by face_lights
+    std::vector<std::size_t> numbers;         ///< of a picked batch, see number(); else empty
 
     [[nodiscard]] std::size_t size() const { return triangle.size(); }
+    /// The index of point i in the batch that it was picked from, or its own: what random numbers of the point depend
+    /// on, so that it has the same ones whoever else is asked.
+    [[nodiscard]] std::size_t number(std::size_t i) const { return numbers.empty() ? i : numbers[i]; }
     /// Whether S_j is asked of point i: some of the light is in front of its plane, and no rule makes it unshadowed.
     [[nodiscard]] bool asks(LightId light, std::size_t i) const { return is_asked(facing[light][i]); }
     /// S_j of point i for every method, where it is not asked.

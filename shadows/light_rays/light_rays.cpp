@@ -99,7 +99,7 @@ void LightRays::blame(const StartPlaces& places, const PointBatch& points, std::
                 TriangleId& blocker = blockers[first + k];
                 blocker             = kNoTriangle;
                 if (!is_asked(facing[first + k])) continue;
-                blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], first + k);
+                blocker = first_blocker(starts, static_cast<int>(k), facing[first + k], points.number(first + k));
                 if (blocker == kNoTriangle) blocker = near_light_.blocker(points, first + k);
             }
         }

@@ -118,7 +118,7 @@ public:
                           std::span<float> s) const;
 
     /// The first triangle on the ray to the light; for an area light, on the first ray that meets one, in up to sixteen
-    /// sets of samples. For Method::blame. Samples are keyed by the point's index in the batch.
+    /// sets of samples. For Method::blame. Samples are keyed by PointBatch::number.
     void blame(const StartPlaces& places, const PointBatch& points, std::span<TriangleId> blockers) const;
 
     [[nodiscard]] std::size_t memory_bytes() const { return samples_.memory_bytes() + near_light_.memory_bytes(); }

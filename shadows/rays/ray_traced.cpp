@@ -170,7 +170,7 @@ private:
                 if (!points.asks(traced.light, first + k)) continue;
                 s[first + k] = here != Known::nothing ? (here == Known::lit ? 1.0f : 0.0f)
                                                       : visible_fraction(traced, starts[run], static_cast<int>(k),
-                                                                         traced.rays.samples().key(first + k));
+                                                                         traced.rays.samples().key(points.number(first + k)));
             }
             ++run;
         });

@@ -86,7 +86,7 @@ private:
                  std::span<float> s) const;
     [[nodiscard]] bool may_end_near_light(const LightView& view, TriangleId own) const;
     [[nodiscard]] bool count_layers(const LightView& view, const SeenLight& seen, const Starts& starts, int lane,
-                                    std::size_t point, Scratch& scratch) const;
+                                    std::size_t point, PointKey key, Scratch& scratch) const;
     [[nodiscard]] int count_doubtful(const SeenLight& seen, const Starts& starts, int lane,
                                      const SampleLayers& layers) const;
 
@@ -152,9 +152,10 @@ UMBRA_FOR_EACH_PROCESSOR void SoftLight::see_run(const PointBatch& points, std::
     for (std::size_t k = 0; k < count; ++k) {
         const int lane = static_cast<int>(k);
         if (!points.asks(light, first + k)) continue;
-        if (view[k] && count_layers(*view[k], *seen[k], starts, lane, first + k, scratch)) continue;
+        const PointKey key = rays_.samples().key(points.number(first + k));
+        if (view[k] && count_layers(*view[k], *seen[k], starts, lane, first + k, key, scratch)) continue;
         const FlushDenormals flush;
-        s[first + k] = rays_.visible_fraction(starts, lane, rays_.samples().key(first + k));
+        s[first + k] = rays_.visible_fraction(starts, lane, key);
     }
 }
 
@@ -168,9 +169,8 @@ bool SoftLight::may_end_near_light(const LightView& view, TriangleId own) const 
 
 /// Lets the point wait for one ray. False where edges do not tell.
 bool SoftLight::count_layers(const LightView& view, const SeenLight& seen, const Starts& starts, int lane,
-                             std::size_t point, Scratch& scratch) const {
+                             std::size_t point, PointKey key, Scratch& scratch) const {
     const vec3 o(starts.x[lane], starts.y[lane], starts.z[lane]);
-    const PointKey key   = rays_.samples().key(point);
     SampleLayers& layers = scratch.layers;
     bool cut             = false;  // the light, by an edge
     scratch.flat.clear();

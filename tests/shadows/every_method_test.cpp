@@ -12,6 +12,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/parallel.h"
+#include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/method.h"
 #include "umbra/tests/support/known_scenes.h"
 #include "umbra/tests/support/method_case.h"
@@ -295,6 +296,26 @@ TEST_P(Contract, ABatchWithoutARasterGetsTheSameAnswers) {
         }
         EXPECT_GT(compared, 500u);
         EXPECT_EQ(differing, 0u) << "of " << compared;
+    }
+}
+
+TEST_P(Contract, APickedPointHasTheAnswerThatItHasAmongOthers) {
+    if (info().needs_raster) GTEST_SKIP() << "answers for whole pictures only";
+    const Scene scene       = load_scene(std::string(UMBRA_SCENES) + "/umbra_penumbra.json");
+    const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 48, 27);
+    MethodCase run(info(), scene);
+    if (!run.serves()) GTEST_SKIP() << run.serves().why;
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t i = 5; i < points.size(); i += 7) some.push_back(i);
+    const PointBatch picked = pick(points, some);
+    for (LightId j = 0; j < scene.lights.size(); ++j) {
+        run.prepare(j);
+        const VisibilityPlane all = run.visibility(points, j), alone = run.visibility(picked, j);
+        for (std::size_t k = 0; k < some.size(); ++k) {
+            if (!picked.asks(j, k)) continue;
+            EXPECT_EQ(alone.s[k], all.s[some[k]]) << "point " << some[k];
+            EXPECT_EQ(alone.answer[k], all.answer[some[k]]) << "point " << some[k];
+        }
     }
 }
 
