@@ -10,6 +10,7 @@
 #include <span>
 #include <utility>
 
+#include "umbra/bench/compare/explained_points.h"
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/fine_picture.h"
 #include "umbra/bench/compare/image_figures.h"
@@ -156,6 +157,9 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
                     .then =
                         [&](const Outcome& found) {
                             entry = served_record(id, prepared, found, truth->reference.choice.text());
+                            for (LightId j = 0; j < scene.lights.size(); ++j)
+                                entry.errors[j].explained = explained_points(
+                                    scene, prepared.points, j, found.run, truth->ran.run, found.explained[j].classes);
                             Rendered rendered;
                             shade_ms =
                                 timed_ms([&] { rendered = render_planes(scene, prepared.points, found.run.planes); });

@@ -11,6 +11,7 @@
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
 #include "umbra/bench/report/scene_tables.h"
+#include "umbra/bench/report/why_view.h"
 
 namespace umbra {
 namespace {
@@ -219,6 +220,7 @@ json scene_view(const SceneFiles& scene, const std::vector<MethodRecord>& settin
                             {"warnings", results.scene.warnings},
                             {"pictures", std::move(pictures)},
                             {"lights", light_views(scene)},
+                            {"why", why_view(scene)},
                             {"legend", class_legend()},
                             {"errors", error_view(results)},
                             {"causes", cause_view(results)},
@@ -238,6 +240,7 @@ json scene_view(const SceneFiles& scene, const std::vector<MethodRecord>& settin
                               [](const json& column) { return column.contains("rings_words"); });
     });
     view["failures"]     = scene_failures(results);
+    view["has_why"]      = !view["why"].empty();
     view["has_failures"] = !view["failures"].empty();
     view["has_warnings"] = !view["warnings"].empty();
     view["chart"]        = chart.empty() ? json(false) : error_time_chart(chart);

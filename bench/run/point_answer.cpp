@@ -22,6 +22,7 @@ void add_reason(AnswerRecord& record, const Scene& scene, const Reason& reason) 
     record.towards = {reason.towards.x, reason.towards.y, reason.towards.z};
     if (std::isfinite(reason.margin)) record.margin = reason.margin;
     record.unit = reason.unit;
+    for (const dvec3& corner : reason.texel) record.texel.push_back({corner.x, corner.y, corner.z});
     for (const Evidence& e : reason.evidence) {
         EvidenceRecord entry{.name = std::string(e.name), .unit = std::string(e.unit)};
         std::visit([&](const auto& value) { entry.value = value; }, e.value);
@@ -62,6 +63,72 @@ std::string decided_in_words(const Scene& scene, const PointBatch& points, Light
                : "The object receives no shadows: S is 1 for every method.";
 }
 
+std::optional<double> AnswerRecord::number(std::string_view name) const {
+    for (const EvidenceRecord& e : evidence)
+        if (const double* value = std::get_if<double>(&e.value); value && e.name == name) return *value;
+    return std::nullopt;
+}
+
+namespace {
+
+/// The margin, where it is a length.
+std::optional<double> length_of_margin(const AnswerRecord& a) {
+    return a.margin && a.unit == "world" ? std::optional(std::abs(*a.margin)) : std::nullopt;
+}
+
+std::string in_words(const EvidenceRecord& e) {
+    const double* number = std::get_if<double>(&e.value);
+    return fmt::format("{}: {}{}{}", e.name, number ? fmt::format("{:.6g}", *number) : text_of(e.value),
+                       e.unit.empty() ? "" : " ", e.unit);
+}
+
+std::string truth_in_words(const AnswerRecord& truth, double length) {
+    if (!truth.blocker) {
+        const auto room = length_of_margin(truth);
+        return room ? fmt::format("Nothing is in the way: the nearest occluder is {:.3g} from the segment.", *room)
+                    : fmt::format("The point sees {:.3g} of the light.", *truth.visibility);
+    }
+    std::string text = fmt::format("Triangle {} of {} is in the way", truth.blocker->triangle, truth.blocker->object);
+    if (truth.at) text += fmt::format(", {:.3g} from the point", *truth.at * length);
+    if (const auto edge = length_of_margin(truth)) text += fmt::format(", {:.3g} from its nearest edge", *edge);
+    if (*truth.visibility > 0) text += fmt::format("; the point sees {:.3g} of the light", *truth.visibility);
+    return text + ".";
+}
+
+/// The answers are not the same. `own`: the point's triangle; `length`: of the truth's segment.
+std::string difference_in_words(const AnswerRecord& method, const AnswerRecord& truth, TriangleId own, double length) {
+    const bool too_dark = *method.visibility < *truth.visibility;
+    std::string text    = truth_in_words(truth, length);
+    if (too_dark && method.blocker && method.blocker->triangle == own)
+        text += " The method takes the point's own triangle for an occluder.";
+    else if (too_dark && method.blocker && !(truth.blocker && truth.blocker->triangle == method.blocker->triangle))
+        text += fmt::format(" The method names triangle {} of {}.", method.blocker->triangle, method.blocker->object);
+    const auto stored = method.number("stored depth"), own_depth = method.number("depth of the point"),
+               bias = method.number("bias towards the light"), width = method.number("width of the texel");
+    if (!stored || !own_depth || !bias || !width) {
+        for (const EvidenceRecord& e : method.evidence) text += fmt::format(" Its {}.", in_words(e));
+        return text;
+    }
+    text += fmt::format(
+        " The map's texel is {:.3g} wide here and stores depth {:.6g}; the point is at {:.6g}, less a bias of {:.3g}.",
+        *width, *stored, *own_depth, *bias);
+    if (const auto edge = length_of_margin(truth); edge && *edge < *width)
+        text += " One depth stands for the whole texel, and the edge passes within its width.";
+    else if (!too_dark && truth.blocker && truth.at && *bias > *truth.at * length)
+        text += " The bias lifts the point past the occluder.";
+    return text;
+}
+
+}  // namespace
+
+void add_difference(AnswerRecord& method, const AnswerRecord& truth, const Scene& scene, const PointBatch& points,
+                    std::size_t i) {
+    if (!method.visibility || !truth.visibility || *method.visibility == *truth.visibility) return;
+    const dvec3 towards(truth.towards[0], truth.towards[1], truth.towards[2]);
+    method.difference =
+        difference_in_words(method, truth, points.triangle[i], glm::length(towards - exact_position(scene, points, i)));
+}
+
 std::string sentence(const AnswerRecord& a) {
     if (!a.failed.empty()) return a.failed;
     if (!a.not_served.empty()) return "does not serve this scene: " + a.not_served;
@@ -72,11 +139,7 @@ std::string sentence(const AnswerRecord& a) {
         if (a.at) text += fmt::format(" at {:.4g} of the way to the light", *a.at);
     }
     if (a.margin) text += fmt::format("; margin {:.4g} {}", *a.margin, a.unit);
-    for (const EvidenceRecord& e : a.evidence) {
-        const double* number = std::get_if<double>(&e.value);
-        text += fmt::format("; {}: {}{}{}", e.name, number ? fmt::format("{:.6g}", *number) : text_of(e.value),
-                            e.unit.empty() ? "" : " ", e.unit);
-    }
+    for (const EvidenceRecord& e : a.evidence) text += "; " + in_words(e);
     return text;
 }
 

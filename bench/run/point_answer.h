@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbra/bench/record/record.h"
@@ -43,7 +44,12 @@ struct AnswerRecord {
     std::optional<double> margin{};
     std::string unit{};
     std::vector<EvidenceRecord> evidence{};
+    std::vector<std::vector<double>> texel{};
+    std::string difference{};
     bool answered = false;
+
+    /// The number of that name; nothing where there is none.
+    [[nodiscard]] std::optional<double> number(std::string_view name) const;
 };
 template <class Fields>
 void describe(Fields& of, Is<AnswerRecord>) {
@@ -57,6 +63,8 @@ void describe(Fields& of, Is<AnswerRecord>) {
     of.where(&AnswerRecord::answered, "margin", &AnswerRecord::margin, "how far the answer is from being another");
     of.where(&AnswerRecord::answered, "unit", &AnswerRecord::unit, "of the margin");
     of.where(&AnswerRecord::answered, "evidence", &AnswerRecord::evidence, "");
+    of.may("texel", &AnswerRecord::texel, "corners of the map's texel on the plane of the point, world space");
+    of.may("difference", &AnswerRecord::difference, "from the truth, in words");
     of.may("failed", &AnswerRecord::failed, "the message of what it threw");
 }
 
@@ -68,6 +76,11 @@ void describe(Fields& of, Is<AnswerRecord>) {
 
 /// Why no method is asked for the light at point i, which has a surface, a sentence; empty where methods are.
 [[nodiscard]] std::string decided_in_words(const Scene& scene, const PointBatch& points, LightId light, std::size_t i);
+
+/// Sets `difference` of the method's answer where the truth's is another: a few sentences from the first difference of
+/// their evidence, at point i.
+void add_difference(AnswerRecord& method, const AnswerRecord& truth, const Scene& scene, const PointBatch& points,
+                    std::size_t i);
 
 /// "umbra, S 0; triangle 3 of box blocks at 0.4 of the way to the light; ..."
 [[nodiscard]] std::string sentence(const AnswerRecord& answer);

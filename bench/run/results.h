@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/point_answer.h"
 
 namespace umbra {
 
@@ -134,6 +135,30 @@ void describe(Fields& of, Is<PenumbraRecord>) {
     of("reference", &PenumbraRecord::reference, "");
 }
 
+/// The point that shows the errors of a class best, and why the method and the truth answer as they do there. Polygons
+/// are in pixels of the picture, from its top left corner.
+struct ExplainedPointRecord {
+    std::string error_class{};
+    std::vector<int> pixel{};
+    TriangleRecord on{};
+    AnswerRecord method{}, truth{};
+    std::vector<std::vector<double>> segment{}, method_blocker{}, truth_blocker{}, texel{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ExplainedPointRecord>) {
+    of.name("explained_point", "the point with the largest error of a class");
+    of("class", &ExplainedPointRecord::error_class, "");
+    of("pixel", &ExplainedPointRecord::pixel, "column and row, from 0 at the top left");
+    of("on", &ExplainedPointRecord::on, "the triangle that the point lies on");
+    of("method", &ExplainedPointRecord::method, "");
+    of("truth", &ExplainedPointRecord::truth, "");
+    of("segment", &ExplainedPointRecord::segment,
+       "the truth's, pixels; without what is behind the eye, like the others");
+    of("method_blocker", &ExplainedPointRecord::method_blocker, "");
+    of("truth_blocker", &ExplainedPointRecord::truth_blocker, "");
+    of("texel", &ExplainedPointRecord::texel, "of the method's map, on the plane of the point");
+}
+
 /// Differences of one method from the truth, at one light.
 struct ErrorRecord {
     std::string light{};
@@ -150,6 +175,7 @@ struct ErrorRecord {
     std::optional<DisplacementRecord> edge_displacement_px{};
     std::optional<PenumbraRecord> penumbra_width_px{};
     std::uint64_t unshadowed = 0;
+    std::vector<ExplainedPointRecord> explained{};
 };
 template <class Fields>
 void describe(Fields& of, Is<ErrorRecord>) {
@@ -188,6 +214,7 @@ void describe(Fields& of, Is<ErrorRecord>) {
         "unshadowed", &ErrorRecord::unshadowed,
         "points that face the light and whose objects receive no shadows, or that lie in a sphere light: S is 1 for every "
         "method. Only where there are some");
+    of.may("explained", &ErrorRecord::explained, "a point of each class of interior errors that there are");
 }
 
 struct ReferenceFailureRecord {

@@ -284,6 +284,8 @@ WhyHereRecord ViewSession::why(const ViewRequest& request, const Budget& most) {
     if (is_area(scene.lights[light].kind)) record.seen = seen_light(i, scene.lights[light]);
     answer(truth_ && truth_->run.work ? *truth_->run.work
                                       : MethodAtWork(default_reference(posed_.facts()).choice, scene, posed_.facts()));
+    for (AnswerHereRecord& here : record.answers)
+        add_difference(here.answer, record.answers.back().answer, scene, points, i);
     return record;
 }
 

@@ -371,6 +371,55 @@ TEST_F(PageFigures, ClassPicturesAreShownAsClasses) {
               "shadow_zbuffer.S.lamp.png.classes.png");
 }
 
+TEST_F(PageFigures, ExplainedPointsHaveTheirReasonsAndTheirPlaces) {
+    json& method                                 = results["methods"][1];
+    const std::string png                        = "shadow_zbuffer.classes.lamp.png";
+    method["files"]["lights"]["lamp"]["classes"] = png;
+    const auto answer                            = [](double s, std::uint32_t triangle, const std::string& object) {
+        return json{{"method", "m"},
+                    {"visibility", s},
+                    {"verdict", s > 0 ? "lit" : "umbra"},
+                    {"blocker", {{"triangle", triangle}, {"object", object}}},
+                    {"at", 0.25},
+                    {"towards", {1, 2, 3}},
+                    {"margin", nullptr},
+                    {"unit", ""},
+                    {"evidence", json::array()}};
+    };
+    json point                       = {{"class", "leak"},
+                                        {"pixel", {320, 100}},
+                                        {"on", {{"triangle", 71}, {"object", "hall"}}},
+                                        {"method", answer(1, 72, "arch")},
+                                        {"truth", answer(0, 73, "tower")},
+                                        {"segment", {{320.5, 100.5}, {401.5, 7.25}}},
+                                        {"method_blocker", {{11, 12}, {13, 14}, {15, 16}}},
+                                        {"truth_blocker", {{21, 22}, {23, 24}, {25, 26}}},
+                                        {"texel", {{31, 32}, {33, 34}, {35, 36}, {37, 38}}}};
+    point["method"]["difference"]    = "The tower <stands> there.";
+    method["errors"][0]["explained"] = {point};
+    put(out / "court", results);
+    Image classes(640, 360, {"R", "G", "B"});
+    std::fill(classes.data.begin(), classes.data.end(), 0xf2 / 255.0f);
+    write_image(out / "court" / png, classes);
+    EXPECT_FALSE(contains(page, "id=\"why\""));
+    write_report({out}, out);
+    const std::string html = read(out / "court/index.html"), why = html.substr(html.find("<section id=\"why\""));
+    ASSERT_TRUE(contains(html, "<section id=\"why\""));
+    const std::string section = why.substr(0, why.find("</section>"));
+    for (const char* part :
+         {"<summary><b>The shadow_zbuffer</b>, light lamp: ", "background: #c40000", "false light: leak",
+          "column 320, row 100, on triangle 71 of hall", "href=\"shadow_zbuffer.classes.lamp.png\"",
+          "viewBox=\"213.83 40.50 213.33 120.00\"", "cx=\"320.5\" cy=\"100.5\"",
+          "<polyline class=\"ray\" points=\"320.5,100.5 401.5,7.25\"/>",
+          "<polygon class=\"method\" points=\"11,12 13,14 15,16\"/>",
+          "<polygon class=\"truth\" points=\"21,22 23,24 25,26\"/>",
+          "<polygon class=\"texel\" points=\"31,32 33,34 35,36 37,38\"/>",
+          "<dt>The shadow_zbuffer</dt><dd>lit, S 1; triangle 72 of arch blocks at 0.25 of the way to the light</dd>",
+          "<dd>umbra, S 0; triangle 73 of tower blocks at 0.25 of the way to the light</dd>",
+          "<dd>The tower &lt;stands&gt; there.</dd>"})
+        EXPECT_TRUE(contains(section, part)) << part << "\n" << section;
+}
+
 TEST_F(PageFigures, Summary) {
     double interior = 0, edge = 0, absolute = 0, points = 0;
     for (std::size_t j = 0; j < 2; ++j) {

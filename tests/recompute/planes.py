@@ -207,6 +207,25 @@ def light_errors(geometry, reference, method, light, kind, faults):
     return e, (sum(asked), sum(a and b != 0 for a, b in zip(asked, answer)))
 
 
+def telling_points(reference, method, light):
+    """The point of each interior class of wrong points with the largest error, and of those with most of its class near."""
+    plane = lambda picture, what: picture.channels[f'{what}.{light}']
+    s, truth, classes = plane(method, 'S'), plane(reference, 'S'), plane(method, 'class')
+    width, height = reference.width, reference.height
+    found = []
+    for name in ('acne', 'false_shadow', 'detachment', 'leak', 'false_light', 'penumbra', 'noise'):
+        members = {i for i, c in enumerate(classes) if NAMES[c] == name}
+        if not members:
+            continue
+        error = {i: abs(_single(s[i] - truth[i])) for i in members}
+        most = max(error.values())
+        near = lambda i: sum(y * width + x in members for y in range(max(0, i // width - 3), min(height, i // width + 4))
+                             for x in range(max(0, i % width - 3), min(width, i % width + 4)))
+        i = max((k for k in sorted(members) if error[k] == most), key=near)
+        found.append({'class': name, 'pixel': [i % width, i // width], 'method': s[i], 'truth': truth[i]})
+    return found
+
+
 def _shown(picture, tone, exposure):
     """The displayed picture, rows of (r, g, b): exposed, tone-mapped, clamped, sRGB."""
     rgb = [[max(0.0, _single(exposure * v)) for v in pixel] for pixel in zip(*(picture.channels[c] for c in 'RGB'))]

@@ -68,6 +68,35 @@ def other_sign(record):
     e['bias'] = -e['bias']
 
 
+def in_explained(change):
+    """In the first point that a record of compare explains."""
+    def plant(folder):
+        for place, folders, files in os.walk(folder):
+            folders.sort()
+            if 'reference.exr' not in files:
+                continue
+            path = os.path.join(place, 'results.json')
+            with open(path, encoding='utf-8') as f:
+                record = json.load(f)
+            points = [x for m in record['methods'] for e in m.get('errors', ()) for x in e.get('explained', ())]
+            if points:
+                change(points[0])
+                with open(path, 'w', encoding='utf-8') as f:
+                    json.dump(record, f)
+                return
+        raise SystemExit(f'{folder}: no point is explained')
+    return plant
+
+
+def neighbour(point):
+    point['pixel'][0] += 1
+
+
+def sides_exchanged(point):
+    point['method']['visibility'], point['truth']['visibility'] = (point['truth']['visibility'],
+            point['method']['visibility'])
+
+
 def one_light_less(record):
     for m in record['methods']:
         del m['errors'][-1]
@@ -251,6 +280,8 @@ FAULTS = {
         ('a bias has the other sign', in_json(other_sign, True)),
         ('a light is missing from the errors', in_json(one_light_less, True)),
         ('interior and edge band are exchanged', in_json(cause_exchanged, True)),
+        ('another point than the most telling is explained', in_explained(neighbour)),
+        ('an explained point has the S of the truth for that of the method', in_explained(sides_exchanged)),
         ('a piece of an edge too many', in_json(edges_without_lost, True)),
         ('two methods have one another\'s text', in_json(lambda r: exchanged_text(r), True)),
         ('coverage counts as whole', in_json(lambda r: [m.update(coverage=0.5) for m in r['methods'][:1]], True)),

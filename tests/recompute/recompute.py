@@ -19,7 +19,7 @@ from collections import Counter
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pages import NONE, headed, number, shows, tables  # noqa: E402
 from pictures import read_exr  # noqa: E402
-from planes import REACH, Geometry, light_errors, picture_figures  # noqa: E402
+from planes import REACH, Geometry, light_errors, picture_figures, telling_points  # noqa: E402
 from statistics_anew import interval, median, ratio, student_bound, upper_share  # noqa: E402
 
 
@@ -153,7 +153,11 @@ def compared(folder, record, tally):
             for fault in faults:
                 tally.fault(where, fault)
             tally.same('errors', f'{where}, {light["name"]}', {k: v for k, v in error.items() if k not in ('light',
-                    'noise')}, anew)
+                    'noise', 'explained')}, anew)
+            told = [{'class': x['class'], 'pixel': x['pixel'], 'method': x['method'].get('visibility'),
+                     'truth': x['truth'].get('visibility')} for x in error.get('explained', [])]
+            tally.same('explained points', f'{where}, {light["name"]}.explained', told,
+                       telling_points(reference, picture, light['name']))
         tally.same('coverage', f'{where}.coverage', method['coverage'], given / asked if asked else None)
         fine = '--pixel-samples' in record['command']
         if method.get('image') and not fine:

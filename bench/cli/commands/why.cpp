@@ -10,6 +10,7 @@
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/point_answer.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
@@ -75,7 +76,10 @@ std::string text_of(const WhyRecord& record) {
     for (const WhyLightRecord& light : record.lights) {
         text += fmt::format("light {}\n", light.light);
         if (!light.decided.empty()) text += "  " + light.decided + "\n";
-        for (const AnswerRecord& a : light.methods) text += fmt::format("  {:24} {}\n", a.method, sentence(a));
+        for (const AnswerRecord& a : light.methods) {
+            text += fmt::format("  {:24} {}\n", a.method, sentence(a));
+            if (!a.difference.empty()) text += fmt::format("  {:24}   unlike the truth: {}\n", "", a.difference);
+        }
     }
     return text;
 }
@@ -122,6 +126,12 @@ int why(const WhyLine& line, const Common& common) {
             else
                 entry.methods.push_back(answer_record(work, points, i, lights[k]));
         }
+    }
+    const std::string truth = default_reference(prepared.facts).choice.text();
+    for (WhyLightRecord& light : record.lights) {
+        const auto found = std::ranges::find(light.methods, truth, &AnswerRecord::method);
+        if (found == light.methods.end()) continue;
+        for (AnswerRecord& a : light.methods) add_difference(a, *found, scene, points, i);
     }
     print_out("{}", line.as_json ? json_text(to_record(record)) : without_controls(text_of(record)));
     return kDone;

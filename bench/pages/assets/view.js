@@ -239,6 +239,7 @@ function drawWhy() {
   const from = project(why.position);
   for (const a of why.answers) {
     if (a.blocker_corners.length) $("over").append(shape("polygon", { class: "blocker", points: points(a.blocker_corners) }));
+    if (a.texel) $("over").append(shape("polygon", { class: "texel", points: points(a.texel) }));
     if (a.towards) $("over").append(shape("polyline", { class: "ray", points: points([why.position, a.towards]), fill: "none" }));
   }
   $("over").append(shape("circle", { class: "asked", cx: from.x, cy: from.y, r: 5 * state.size[0] / $("stage").clientWidth }));
@@ -427,7 +428,10 @@ async function askWhy(clientX, clientY) {
   $("why").hidden = !why;
   if (why) {
     const list = element("dl");
-    for (const a of why.answers) list.append(element("dt", {}, a.method), element("dd", {}, a.sentence));
+    for (const a of why.answers) {
+      list.append(element("dt", {}, a.method), element("dd", {}, a.sentence));
+      if (a.difference) list.append(element("dd", { class: "unlike" }, `Unlike the truth: ${a.difference}`));
+    }
     $("why-text").replaceChildren(element("p", {}, `Pixel ${x}, ${y}: triangle ${why.triangle} of ${why.object}, light ${why.light}.`),
       why.decided ? element("p", {}, why.decided) : list);
     if (why.seen) drawSeen(why.seen);
