@@ -168,9 +168,10 @@ private:
             const Known here = known[run];
             for (std::size_t k = 0; k < count; ++k) {
                 if (!points.asks(traced.light, first + k)) continue;
-                s[first + k] = here != Known::nothing ? (here == Known::lit ? 1.0f : 0.0f)
-                                                      : visible_fraction(traced, starts[run], static_cast<int>(k),
-                                                                         traced.rays.samples().key(points.number(first + k)));
+                s[first + k] = here != Known::nothing
+                                   ? (here == Known::lit ? 1.0f : 0.0f)
+                                   : visible_fraction(traced, starts[run], static_cast<int>(k),
+                                                      traced.rays.samples().key(points.number(first + k)));
             }
             ++run;
         });
