@@ -124,6 +124,7 @@ std::string difference_in_words(const AnswerRecord& method, const AnswerRecord& 
 void add_difference(AnswerRecord& method, const AnswerRecord& truth, const Scene& scene, const PointBatch& points,
                     std::size_t i) {
     if (!method.visibility || !truth.visibility || *method.visibility == *truth.visibility) return;
+    if (!method.answered || !truth.answered) return;  // the method of one threw when it was asked for its reason
     const dvec3 towards(truth.towards[0], truth.towards[1], truth.towards[2]);
     method.difference =
         difference_in_words(method, truth, points.triangle[i], glm::length(towards - exact_position(scene, points, i)));

@@ -169,6 +169,10 @@ TEST_F(Difference, IsNoneWhereTheAnswersAreTheSame) {
     EXPECT_EQ(words(), "");
     method_.visibility.reset();
     EXPECT_EQ(words(), "") << "the method gave no answer";
+    method_.visibility = 1;
+    truth_.towards.clear();
+    truth_.answered = false;
+    EXPECT_EQ(words(), "") << "the truth threw when it was asked for its reason";
 }
 
 TEST_F(Difference, HasTheOccluderTheTexelAndTheBias) {
