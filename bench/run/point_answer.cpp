@@ -86,7 +86,8 @@ std::string truth_in_words(const AnswerRecord& truth, double length) {
     if (!truth.blocker) {
         const auto room = length_of_margin(truth);
         return room ? fmt::format("Nothing is in the way: the nearest occluder is {:.3g} from the segment.", *room)
-                    : fmt::format("The point sees {:.3g} of the light.", *truth.visibility);
+               : *truth.visibility == 1 ? "The point sees all of the light."
+                                        : fmt::format("The point sees {:.3g} of the light.", *truth.visibility);
     }
     std::string text = fmt::format("Triangle {} of {} is in the way", truth.blocker->triangle, truth.blocker->object);
     if (truth.at) text += fmt::format(", {:.3g} from the point", *truth.at * length);

@@ -195,6 +195,10 @@ TEST_F(Difference, TellsAcneFromAnotherOccluder) {
     method_.blocker    = TriangleRecord{.triangle = prepared_.points.triangle[i_], .object = "plane"};
     EXPECT_TRUE(says("Nothing is in the way: the nearest occluder is 0.3 from the segment.")) << words();
     EXPECT_TRUE(says("The method takes the point's own triangle for an occluder."));
+    truth_.margin.reset();
+    EXPECT_TRUE(says("The point sees all of the light.")) << words();
+    truth_.visibility = 0.9375;
+    EXPECT_TRUE(says("The point sees 0.938 of the light.")) << words();
     method_.blocker = TriangleRecord{.triangle = prepared_.points.triangle[i_] + 1, .object = "fence"};
     EXPECT_FALSE(says("own triangle"));
     EXPECT_TRUE(says("of fence."));
