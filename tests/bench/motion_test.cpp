@@ -210,8 +210,8 @@ TEST_F(PlantedMotion, EachMovementRepeatsItsPhasesAndNoOther) {
     (void)run();
     const Calls camera{{Phase::look, 0}, {Phase::visibility, 0}, {Phase::visibility, 1}};
     const Calls light{{Phase::aim, 0}, {Phase::visibility, 0}, {Phase::visibility, 1}};
-    const Calls object{{Phase::build, 0}, {Phase::aim, 0},        {Phase::aim, 1},
-                       {Phase::look, 0},  {Phase::visibility, 0}, {Phase::visibility, 1}};
+    const Calls object{{Phase::build, 0},      {Phase::look, 0}, {Phase::aim, 0},
+                       {Phase::visibility, 0}, {Phase::aim, 1},  {Phase::visibility, 1}};
     for (int frame = 1; frame <= 3; ++frame) {
         // What precedes the next movement is run under the last line of the one before.
         if (frame < 3) {
@@ -220,6 +220,15 @@ TEST_F(PlantedMotion, EachMovementRepeatsItsPhasesAndNoOther) {
         }
         EXPECT_EQ(calls_[fmt::format("stage: object, frame {} of 3", frame)], object);
     }
+}
+
+/// Of aims that are too large to be kept together, each runs once in a frame, and not within the time of visibility.
+TEST_F(PlantedMotion, LargeAimsRunOnceAFrame) {
+    planted_behaviour.memory_bytes = std::size_t{1} << 30;
+    (void)run();
+    const Calls object{{Phase::build, 0},      {Phase::look, 0}, {Phase::aim, 0},
+                       {Phase::visibility, 0}, {Phase::aim, 1},  {Phase::visibility, 1}};
+    EXPECT_EQ(calls_["stage: object, frame 2 of 3"], object);
 }
 
 TEST_F(PlantedMotion, FramesCostWhatTheirPhasesCostAndTheModelAgrees) {
