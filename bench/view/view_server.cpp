@@ -130,6 +130,7 @@ httplib::Server::HandlerResponse ViewServer::Pages::check(const httplib::Request
 void ViewServer::Pages::add_routes() {
     const std::string root = "/" + word + "/";
     server.set_payload_max_length(kMostBytes);
+    server.set_tcp_nodelay(true);  // the body of a short answer would wait 40 ms for the head to be acknowledged
     server.set_read_timeout(5);
     server.set_write_timeout(5);
     server.set_keep_alive_timeout(5);
