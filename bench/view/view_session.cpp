@@ -284,8 +284,10 @@ WhyHereRecord ViewSession::why(const ViewRequest& request, const Budget& most) {
     if (is_area(scene.lights[light].kind)) record.seen = seen_light(i, scene.lights[light]);
     answer(truth_ && truth_->run.work ? *truth_->run.work
                                       : MethodAtWork(default_reference(posed_.facts()).choice, scene, posed_.facts()));
-    for (AnswerHereRecord& here : record.answers)
-        add_difference(here.answer, record.answers.back().answer, scene, points, i);
+    // The truth is that of areas: another measure is no error.
+    for (std::size_t k = 0; k < choices.size(); ++k)
+        if (choices[k].make()->measures() == Measure::area)
+            add_difference(record.answers[k].answer, record.answers.back().answer, scene, points, i);
     return record;
 }
 

@@ -131,7 +131,10 @@ int why(const WhyLine& line, const Common& common) {
     for (WhyLightRecord& light : record.lights) {
         const auto found = std::ranges::find(light.methods, truth, &AnswerRecord::method);
         if (found == light.methods.end()) continue;
-        for (AnswerRecord& a : light.methods) add_difference(a, *found, scene, points, i);
+        // The truth is that of areas: another measure is no error.
+        for (std::size_t k = 0; k < choices.size() && k < light.methods.size(); ++k)
+            if (choices[k].make()->measures() == Measure::area)
+                add_difference(light.methods[k], *found, scene, points, i);
     }
     print_out("{}", line.as_json ? json_text(to_record(record)) : without_controls(text_of(record)));
     return kDone;
