@@ -17,6 +17,7 @@
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/parallel_sort.h"
+#include "umbra/core/base/predicates.h"
 
 namespace umbra {
 namespace {
@@ -32,12 +33,14 @@ struct Plane {
 /// How far rounding can have moved a vertex along the normal. A coordinate comes out of a 4x4 transform after four
 /// roundings of 2^-24: relative to itself, or, where the transform mixes axes, to terms that may have cancelled. How
 /// far it mixes them shows in the tilt of the plane: an axis-parallel plane's tolerance is that of its one coordinate,
-/// so that a tile a hair's breadth above a floor stays a tile wherever it lies. Last, the double arithmetic here.
+/// so that a tile a hair's breadth above a floor stays a tile wherever it lies. Last, the double arithmetic here, of
+/// which the same is true.
 double rounding(dvec3 normal, dvec3 x) {
     const dvec3 n = glm::abs(normal), size = glm::abs(x);
-    const double largest = std::max({n.x, n.y, n.z});
-    const double tilt    = std::sqrt(std::max(0.0, 1 - largest * largest));
-    return 4 * 0x1p-24 * (glm::dot(n, size) + tilt * glm::length(size)) + 32 * 0x1p-53 * (size.x + size.y + size.z);
+    const double own = glm::dot(n, size), across = std::max({n.x, n.y, n.z});
+    const double tilt = std::sqrt(std::max(0.0, glm::dot(n, n) - across * across));
+    const bool tilted = n.x + n.y + n.z > across;
+    return 4 * 0x1p-24 * (own + tilt * glm::length(size)) + 32 * 0x1p-53 * (tilted ? size.x + size.y + size.z : own);
 }
 
 std::array<dvec3, 3> corners(const Scene& scene, TriangleId t) {
@@ -138,6 +141,29 @@ Plane settle(const Scene& scene, const Seed& seed, std::span<const TriangleId> c
     return plane;
 }
 
+/// Whether all corners lie in one plane. `triangles` are not empty.
+bool is_exact(const Scene& scene, const Plane& plane, double tolerance, std::span<const TriangleId> triangles) {
+    const vec3 first = scene.vertex(triangles[0], 0);
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::ranges::all_of(triangles, [&](TriangleId t) {
+                return scene.vertex(t, 0)[axis] == first[axis] && scene.vertex(t, 1)[axis] == first[axis] &&
+                       scene.vertex(t, 2)[axis] == first[axis];
+            }))
+            return true;
+    const TriangleId base =
+        *std::ranges::max_element(triangles, {}, [&](TriangleId t) { return glm::length(area_normal(scene, t)); });
+    const vec3 a = scene.vertex(base, 0), b = scene.vertex(base, 1), c = scene.vertex(base, 2);
+    double reach = 0;
+    for (const vec3 x : {a, b, c})
+        reach = std::max(reach, glm::length(dvec3(x) - plane.origin) + glm::length(dvec3(x)));
+    if (tolerance > 64 * 0x1p-53 * reach) return false;  // the rest would be as costly as it is clear
+    return std::ranges::all_of(triangles, [&](TriangleId t) {
+        for (int k = 0; k < 3; ++k)
+            if (side_of_plane(a, b, c, scene.vertex(t, k)) != 0) return false;
+        return true;
+    });
+}
+
 PlanarReceiver receiver(const Scene& scene, const Plane& plane, std::vector<TriangleId> triangles) {
     PlanarReceiver r;
     dvec3 wound{0};
@@ -149,6 +175,7 @@ PlanarReceiver receiver(const Scene& scene, const Plane& plane, std::vector<Tria
     r.normal    = r.normal + dvec3(0);  // no -0 for people to read
     r.offset    = glm::dot(r.normal, plane.origin) + 0.0;
     r.area      = area_of(scene, triangles);
+    r.exact     = is_exact(scene, plane, r.tolerance, triangles);
     r.triangles = std::move(triangles);
     return r;
 }

@@ -14,6 +14,7 @@ struct PlanarReceiver {
     double offset    = 0;   ///< dot(normal, x) = offset
     double tolerance = 0;   ///< largest distance of a vertex of its triangles from the plane
     double area      = 0;
+    bool exact       = false;           ///< all vertices of its triangles lie in one plane, without any rounding
     std::vector<TriangleId> triangles;  ///< sorted; wound to either side
 };
 

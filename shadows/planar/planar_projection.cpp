@@ -82,12 +82,6 @@ bool is_receiver(const PlanarReceiver& plane, double scene_area, const Options& 
     return plane.area >= options.plane_share * scene_area;
 }
 
-/// Whether all its corners lie in it, up to the arithmetic that found it, in double.
-bool is_flat(const PlanarReceiver& plane, const Box& box) {
-    const vec3 reach = glm::max(glm::abs(box.min), glm::abs(box.max));
-    return plane.tolerance <= 64 * 0x1p-53 * double(reach.x + reach.y + reach.z);
-}
-
 /// The occluders, and the receivers onto which they are projected.
 struct Planes final : Built {
     Planes(const Scene& of, const SceneFacts& its_facts, const Options& options)
@@ -214,7 +208,7 @@ public:
             if (is_receiver(plane, area, options)) {
                 ++planes;
                 served += plane.area;
-                flat = flat && is_flat(plane, facts.box);
+                flat = flat && plane.exact;
             }
         if (planes == 0)
             return {How::not_at_all,

@@ -135,6 +135,33 @@ TEST(Planes, AxisParallelFloorIsExact) {
     EXPECT_EQ(facts.planes[0].normal, dvec3(0, 1, 0));
     EXPECT_EQ(facts.planes[0].offset, static_cast<double>(0.1f));
     EXPECT_EQ(facts.planes[0].tolerance, 0);
+    EXPECT_TRUE(facts.planes[0].exact);
+}
+
+/// A floor of 10^12 and a triangle 0.001 above it, as small. A level floor is exact, whatever its size; of a sloping
+/// one only the words can tell that rounding has taken the triangle for a part of it.
+TEST(Planes, OfAnySizeHoldNothingThatLiesOffThemOrAreNotExact) {
+    const Mesh small{{{0, 1e-3f, 0}, {1e-3f, 1e-3f, 0}, {0, 1e-3f, 1e-3f}}, {}, {{0, 1, 2}}};
+    for (const float far : {1e4f, 1e8f, 1e12f, 1e15f}) {
+        const Mesh level{{{-far, 0, -far}, {far, 0, -far}, {0, 0, far}}, {}, {{0, 2, 1}}};
+        Scene scene = scene_of(level);
+        add(scene, "small", small);
+        const SceneFacts facts = find_facts(scene);
+        ASSERT_EQ(facts.planes.size(), 1u) << far;
+        EXPECT_EQ(facts.planes[0].triangles, std::vector<TriangleId>{0}) << far;
+        EXPECT_TRUE(facts.planes[0].exact) << far;
+
+        Mesh slope = level;
+        for (vec3& x : slope.positions) x.y = x.x;
+        Scene alone = scene_of(slope);
+        EXPECT_TRUE(find_facts(alone).planes.at(0).exact) << far;
+        add(alone, "small", small);
+        const PlanarReceiver plane = find_facts(alone).planes.at(0);
+        EXPECT_EQ(plane.exact, plane.triangles.size() == 1) << far;
+        slope.positions[2].y = std::nextafter(slope.positions[2].x + 1, far);
+        add(alone, "other", slope);
+        for (const PlanarReceiver& p : find_facts(alone).planes) EXPECT_EQ(p.exact, p.triangles.size() == 1) << far;
+    }
 }
 
 TEST(Planes, JoinsObjectsAndBothSides) {
