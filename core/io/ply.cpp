@@ -67,9 +67,10 @@ struct Header {
     std::size_t end = 0;  ///< where the data begins
 };
 
-// Words are read in any case. Where the first line ends in a CR alone, all lines of the header do, so that an LF behind
-// the last one is a byte of the data.
-Header read_header(const SourceText& source) {
+// Words are read in any case. A line of another kind before the first element is left out, as where a program signs its
+// name: behind it, a misspelt property would move the columns. Where the first line ends in a CR alone, all lines of
+// the header do, so that an LF behind the last one is a byte of the data.
+Header read_header(const SourceText& source, std::vector<std::string>& warnings) {
     Tokens tokens(source);
     Header header;
     const Token magic = tokens.next();
@@ -78,7 +79,9 @@ Header read_header(const SourceText& source) {
     const std::size_t first_end = line_end(source.text, tokens.offset());
     const bool ends_in_cr       = first_end < source.text.size() && source.text[first_end] == '\r';
     tokens.skip_line();
-    bool has_format = false;
+    bool has_format      = false;
+    std::size_t left_out = 0;
+    std::string first;
     for (;; tokens.skip_line()) {
         const Token keyword   = tokens.next();
         const std::string key = lowered(keyword.text);
@@ -136,6 +139,9 @@ Header read_header(const SourceText& source) {
             if (!name) tokens.fail(name, "a property without a name");
             property.name = lowered(name.text);
             header.elements.back().properties.push_back(std::move(property));
+        } else if (header.elements.empty()) {
+            if (++left_out == 1) first = fmt::format("line {}: {}", tokens.line(), in_quotes(keyword.text));
+            (void)tokens.rest_of_line();  // a backslash at its end joins nothing
         } else {
             tokens.fail(keyword, fmt::format("unknown header line {} (known: format element property comment obj_info "
                                              "end_header)",
@@ -143,6 +149,10 @@ Header read_header(const SourceText& source) {
         }
     }
     if (!has_format) tokens.fail({{}, 0}, "the header names no format, expected \"format ascii 1.0\"");
+    if (left_out > 0)
+        warnings.push_back(fmt::format("{} of the header {} unknown: the first is {}.",
+                                       left_out == 1 ? "a line" : fmt::format("{} lines", left_out),
+                                       left_out == 1 ? "is" : "are", first));
     return header;
 }
 
@@ -302,7 +312,7 @@ void read_element(Body& body, const Element& element, const Reading& reading, Me
 }
 
 MeshPart ply_part(const SourceText& source, const Reading& reading, std::vector<std::string>& warnings) {
-    const Header header = read_header(source);
+    const Header header = read_header(source, warnings);
     const auto named    = [](std::string_view name) { return [name](const Element& e) { return e.name == name; }; };
     const auto vertex   = std::find_if(header.elements.begin(), header.elements.end(), named("vertex"));
     const auto again =

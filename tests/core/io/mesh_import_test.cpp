@@ -211,7 +211,8 @@ INSTANTIATE_TEST_SUITE_P(
         {"ply_format", "a.ply", with(kPly, "ascii", "morse"), ":2:8: unknown format \"morse\""},
         {"ply_no_format", "a.ply", with(kPly, "format ascii 1.0\n", ""), "names no format"},
         {"ply_type", "a.ply", with(kPly, "float", "complex"), ":5:10: unknown type \"complex\""},
-        {"ply_line", "a.ply", with(kPly, "comment", "remark"), ":3:1: unknown header line \"remark\""},
+        {"ply_line", "a.ply", with(kPly, "property float z", "propery float z"),
+         ":7:1: unknown header line \"propery\""},
         {"ply_claims", "a.ply", with(kPly, "vertex 4", "vertex 4000000000"),
          "the header says 4000000000 of element vertex"},
         {"ply_claims_more", "a.ply", with(kPly, "vertex 4", "vertex 99999999999"),
@@ -456,6 +457,17 @@ TEST(Ply, AnyNumberOfElementsWithoutPropertiesIsNothing) {
     const Scene scene =
         load_scene(folder.write("a.ply", with(kPly, "element face", "element nothing 4294967290\nelement face")));
     EXPECT_EQ(scene.triangles.size(), 2u);
+}
+
+// As a program that forgot the word "comment" signs its files.
+TEST(Ply, UnknownLinesBeforeTheElementsAreToldAndLeftOut) {
+    const TemporaryFolder folder;
+    const Scene scene = load_scene(folder.write("a.ply", with(kPly, "comment", "Created by somebody\nremark")));
+    EXPECT_EQ(scene.triangles.size(), 2u);
+    EXPECT_NE(fmt::format("{}", fmt::join(scene.warnings, "\n"))
+                  .find("a.ply: 2 lines of the header are unknown: the first is line 3: \"Created\"."),
+              std::string::npos)
+        << fmt::format("{}", fmt::join(scene.warnings, "\n"));
 }
 
 // As some shells write what a program prints. No reader guesses at it.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include "umbra/core/base/error.h"
@@ -51,6 +52,38 @@ std::string refusal(SceneFile read) {
         return e.what();
     }
     return "accepted";
+}
+
+/// An opacity just below 1: each reader says in one warning what the picture and the shadows make of it.
+TEST(LoadScene, OpacityJustBelowOneIsSaidInEveryFormat) {
+    const TemporaryFolder folder;
+    const std::string wall = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl pane\nf 1 2 3\n";
+    folder.write("d.obj", "mtllib d.mtl" + wall.substr(12)), folder.write("d.mtl", "newmtl pane\nd 0.99\n");
+    folder.write("tr.obj", "mtllib tr.mtl" + wall.substr(12)), folder.write("tr.mtl", "newmtl pane\nTr 0.01\n");
+    folder.write("native.json", R"({"camera": {"eye": [0, 0, 3], "target": [0, 0, 0]}, "lights": [{"type": "point",
+        "position": [0, 5, 0]}], "materials": {"pane": {"opacity": 0.99}}, "objects": [{"name": "wall", "type": "box",
+        "size": [1, 1, 1], "material": "pane"}]})");
+    folder.write("blend.gltf",
+                 R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]}], "materials": [{"name": "pane",
+        "alphaMode": "BLEND", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0.99]}}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0],
+        "max": [1, 1, 0]}], "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri":
+        "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})");
+    folder.write("fill.nff",
+                 "v\nfrom 0 0 3\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 8 8\nl 0 5 0\n"
+                 "f 1 1 1 1 0 1 0.01 1\np 3\n0 0 0\n1 0 0\n0 1 0\n");
+    for (const char* name : {"d.obj", "tr.obj", "native.json", "blend.gltf", "fill.nff"}) {
+        const Scene scene = load_scene(folder.path() / name);
+        std::vector<std::string> said;
+        for (const std::string& warning : scene.warnings)
+            if (warning.find("is not computed") != std::string::npos ||
+                warning.find("are not computed") != std::string::npos)
+                said.push_back(warning);
+        ASSERT_EQ(said.size(), 1u) << name << ": " << fmt::format("{}", fmt::join(scene.warnings, "\n"));
+        EXPECT_NE(said[0].find("opaque"), std::string::npos) << name << ": " << said[0];
+        EXPECT_NE(said[0].find("shadow"), std::string::npos) << name << ": " << said[0];
+    }
 }
 
 TEST(LoadScene, UnknownEndingsNameTheKnownOnes) {
