@@ -7,6 +7,7 @@
 #include "umbra/bench/run/at_work.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/bench/run/run.h"
+#include "umbra/core/errors/error_causes.h"
 #include "umbra/core/errors/visibility_error.h"
 
 namespace umbra {
@@ -29,6 +30,10 @@ FrameTruth::FrameTruth(const Reference& reference, const Scene& scene, const Sce
         work.forget_aims();
         work.visibility(j, planes_.back().out());
         check_contract(reference.choice.info->name, planes_.back(), asked, j);
+        terminator_.emplace_back(points.size(), ErrorClass::no_surface);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (points.asks(j, i)) terminator_.back()[i] = ErrorClass::right;
+        mark_terminator(terminator_.back(), scene, points, j);
     }
 }
 
@@ -50,15 +55,18 @@ FrameErrors FrameTruth::errors(const std::vector<VisibilityPlane>& planes) const
             ++errors.points;
             squares += difference * difference;
             errors.max = std::max(errors.max, difference);
-            errors.wrong += difference > static_cast<double>(tolerance + truth.half_width[k]);
+            errors.wrong += terminator_[j][i] == ErrorClass::right &&
+                            difference > static_cast<double>(tolerance + truth.half_width[k]);
         }
     }
     errors.rmse = errors.points > 0 ? std::sqrt(squares / static_cast<double>(errors.points)) : 0;
     if (!sampled_) {
         errors.interior = 0;
         for (LightId j = 0; j < planes_.size(); ++j) {
-            const VisibilityError e =
-                visibility_error(*points_, j, planes.at(j), planes_[j], visibility_tolerance(scene_->lights[j].kind));
+            ClassPlane classes =
+                error_classes(*points_, j, planes.at(j), planes_[j], visibility_tolerance(scene_->lights[j].kind));
+            mark_terminator(classes, *scene_, *points_, j);
+            const VisibilityError e = count_errors(*points_, classes, planes.at(j), planes_[j]);
             *errors.interior += e.false_shadow.interior + e.false_light.interior;
         }
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "umbra/bench/run/reference.h"
+#include "umbra/core/errors/error_classes.h"
 
 namespace umbra {
 
@@ -13,7 +14,8 @@ namespace umbra {
 /// method and `on_boundary` are no error anywhere.
 struct FrameErrors {
     std::uint64_t points = 0, undefined = 0;
-    std::uint64_t wrong = 0;                ///< |s - truth| above the tolerance of the kind of light
+    std::uint64_t wrong = 0;                ///< |s - truth| above the tolerance of the kind of light, and not at the
+                                            ///< terminator, as in umbra compare
     std::optional<std::uint64_t> interior;  ///< of them, outside the edge band; none where a light is sampled
     double rmse = 0, max = 0;
 };
@@ -36,6 +38,7 @@ private:
     bool sampled_ = false;                 ///< some light has an area
     std::vector<std::uint32_t> sample_;    ///< where lights with an area are compared
     std::vector<VisibilityPlane> planes_;  ///< [light]; of lights with an area one entry a sampled point
+    std::vector<ClassPlane> terminator_;   ///< [light]: other than `right` at the terminator
 };
 
 }  // namespace umbra

@@ -61,7 +61,7 @@ void describe(Fields& of, Is<FrameRecord>) {
     of("visibility_ms", &FrameRecord::visibility_ms, "one a light");
     of("points", &FrameRecord::points, "compared, all lights together");
     of("undefined", &FrameRecord::undefined, "");
-    of("wrong", &FrameRecord::wrong, "");
+    of("wrong", &FrameRecord::wrong, "beyond the tolerance of the kind of light, not at the terminator");
     of("interior", &FrameRecord::interior, "");
     of("rmse", &FrameRecord::rmse, "of the points that the method answers; null where it answers none", kFraction);
     of("max", &FrameRecord::max, "", kFraction);

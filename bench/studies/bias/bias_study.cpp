@@ -8,25 +8,31 @@
 #include "umbra/bench/run/at_work.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/errors/error_causes.h"
 
 namespace umbra {
 namespace {
 
 /// What a light's points are compared with.
 struct LightTruth {
-    enum class Place : std::uint8_t { unjudged, interior, edge };
+    enum class Place : std::uint8_t { unjudged, terminator, interior, edge };
     std::vector<Place> place;
     std::vector<float> s;
 };
 
-LightTruth find_truth(MethodAtWork& reference, const PointBatch& points, LightId light) {
+/// Judged is what `umbra compare` judges; at the terminator nothing is wrong.
+LightTruth find_truth(MethodAtWork& reference, const Scene& scene, const PointBatch& points, LightId light) {
     VisibilityPlane plane(points.size());
     reference.visibility(light, plane.out());
     const std::vector<std::uint8_t> band = edge_band(points, light, plane, kHardTolerance);
+    ClassPlane classes                   = error_classes(points, light, plane, plane, kHardTolerance);
+    mark_terminator(classes, scene, points, light);
     LightTruth truth{std::vector<LightTruth::Place>(points.size(), LightTruth::Place::unjudged), {}};
     for (std::size_t i = 0; i < points.size(); ++i)
-        if (points.facing[light][i] == Facing::front && plane.answer[i] == Answer::given)
-            truth.place[i] = band[i] != 0 ? LightTruth::Place::edge : LightTruth::Place::interior;
+        if (is_compared(classes[i]))
+            truth.place[i] = classes[i] == ErrorClass::terminator ? LightTruth::Place::terminator
+                             : band[i] != 0                       ? LightTruth::Place::edge
+                                                                  : LightTruth::Place::interior;
     truth.s = std::move(plane.s);
     return truth;
 }
@@ -34,7 +40,7 @@ LightTruth find_truth(MethodAtWork& reference, const PointBatch& points, LightId
 BiasErrors count_wrong(const LightTruth& truth, const VisibilityPlane& plane) {
     BiasErrors errors;
     for (std::size_t i = 0; i < plane.s.size(); ++i) {
-        if (truth.place[i] == LightTruth::Place::unjudged || plane.answer[i] != Answer::given) continue;
+        if (truth.place[i] <= LightTruth::Place::terminator || plane.answer[i] != Answer::given) continue;
         const float difference = plane.s[i] - truth.s[i];
         if (std::abs(difference) <= kHardTolerance) continue;
         VisibilityError::Kind& kind = difference < 0 ? errors.false_shadow : errors.false_light;
@@ -162,7 +168,7 @@ BiasStudy study_bias(PreparedScene prepared, const std::string& settings, const 
         return with_bias(studied.settings, mode, constant, slope, normal_offset);
     };
     for (LightId light = 0; light < scene.lights.size(); ++light) {
-        const LightTruth truth = find_truth(exact, prepared.points, light);
+        const LightTruth truth = find_truth(exact, scene, prepared.points, light);
         study.points += static_cast<std::uint64_t>(
             std::ranges::count_if(truth.place, [](LightTruth::Place p) { return p != LightTruth::Place::unjudged; }));
         study.automatic += lookups.errors(light, truth, bias("auto", 0, 0, 0));
