@@ -78,16 +78,19 @@ ShadingChoiceRecord choose_shading(const ShadingRecord& record, std::span<const 
         choice.nearest = {nearest.name, worst_ratio(nearest, limits)};
         return choice;
     }
+    if (is_too_noisy(record.noise_bar)) {
+        for (const ShadingModelRecord* model : within) choice.tied.push_back(model->name);
+        return choice;
+    }
     std::ranges::stable_sort(within, {}, [](const ShadingModelRecord* m) { return cost(*m); });
     const ShadingModelRecord& chosen = *within.front();
-    const double noise_bar           = std::isfinite(record.noise_bar) ? record.noise_bar : kInfinite;
     choice.model                     = chosen.name;
     choice.ms                        = cost(chosen);
     for (const ShadingModelRecord& model : record.models)
         if (model.name == "phong") choice.of_phong = ratio_record(model, paired_ratio(chosen.times_ms, model.times_ms));
     for (std::size_t k = 1; k < within.size(); ++k) {
         const Ratio ratio = paired_ratio(within[k]->times_ms, chosen.times_ms);
-        if (!differs(ratio, noise_bar))
+        if (!differs(ratio, record.noise_bar))
             choice.tied.push_back(within[k]->name);
         else if (!choice.runner_up)
             choice.runner_up = ratio_record(*within[k], ratio);
@@ -96,8 +99,13 @@ ShadingChoiceRecord choose_shading(const ShadingRecord& record, std::span<const 
 }
 
 std::vector<std::string> shading_findings(const ShadingRecord& record) {
-    std::vector<std::string> findings{fmt::format("No other model is both faster and closer to phong (RMSE) than: {}.",
-                                                  fmt::join(record.front, ", "))};
+    const std::string noise =
+        std::isfinite(record.noise_bar) ? fmt::format("by {:.0f} %", std::ceil(100 * record.noise_bar)) : "too much";
+    std::vector<std::string> findings{
+        is_too_noisy(record.noise_bar)
+            ? fmt::format("Not ranked by time, as times vary {}: run it again when the machine is less busy.", noise)
+            : fmt::format("No other model is both faster and closer to phong (RMSE) than: {}.",
+                          fmt::join(record.front, ", "))};
     if (!record.choice) return findings;
     const ShadingChoiceRecord& choice = *record.choice;
     std::vector<std::string> limits;
@@ -110,6 +118,11 @@ std::vector<std::string> shading_findings(const ShadingRecord& record) {
         const double factor = choice.nearest->factor;
         findings.push_back(fmt::format("{}: none. Nearest: {}{}.", within, choice.nearest->model,
                                        std::isfinite(factor) ? fmt::format(", {:.3g} times a limit", factor) : ""));
+        return findings;
+    }
+    if (!choice.model) {
+        findings.push_back(fmt::format("{}: {}. None is called the cheapest, as times vary {}.", within,
+                                       fmt::join(choice.tied, ", "), noise));
         return findings;
     }
     std::string found = fmt::format("{}, the cheapest is {}: {:.2f} ms, {} of phong's time.", within,

@@ -120,10 +120,11 @@ template <class Fields>
 void describe(Fields& of, Is<ShadingChoiceRecord>) {
     of("limits", &ShadingChoiceRecord::limits, "");
     of("model", &ShadingChoiceRecord::model,
-       "with the least median time of those whose worst errors are within the limits");
+       "with the least median time of those whose worst errors are within the limits; none above a noise bar of 30 %");
     of("ms", &ShadingChoiceRecord::ms, "");
     of("of_phong", &ShadingChoiceRecord::of_phong, "");
-    of("tied", &ShadingChoiceRecord::tied, "within the limits, and as cheap as far as noise lets one see");
+    of("tied", &ShadingChoiceRecord::tied,
+       "within the limits, and as cheap as far as noise lets one see; all of them where `model` is absent");
     of("runner_up", &ShadingChoiceRecord::runner_up, "the cheapest other one within the limits that is not tied");
     of("nearest", &ShadingChoiceRecord::nearest,
        "where none is within the limits: its largest error over its limit is least");
@@ -162,7 +163,7 @@ void describe(Fields& of, Is<ShadingRecord>) {
     of("noise_bar", &ShadingRecord::noise_bar,
        "how far from 1 the ratio of the time of `phong` to that of the same again may lie");
     of("models", &ShadingRecord::models, "");
-    of("front", &ShadingRecord::front, "no other model is both faster and closer");
+    of("front", &ShadingRecord::front, "no other model is both faster and closer; empty above a noise bar of 30 %");
     of.may("choice", &ShadingRecord::choice, "");
     of("stages", &ShadingRecord::stages, "");
     of("csv", &ShadingRecord::csv, "");

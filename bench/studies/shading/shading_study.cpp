@@ -190,7 +190,7 @@ ShadingRecord compare_shading(const PreparedScene& prepared, const ShadingOption
                                  .picture     = picture,
                                  .difference  = difference});
     }
-    record.front = shading_front(record.models);
+    if (!is_too_noisy(record.noise_bar)) record.front = shading_front(record.models);
     if (!options.limits.empty()) record.choice = choose_shading(record, options.limits);
     for (const Stage& stage : draw_stages(prepared, [&](const PointBatch& points) { return shadows(points); })) {
         const std::string picture = fmt::format("stage_{}_{}.png", record.stages.size() + 1, stage.name);
