@@ -1,6 +1,7 @@
 // Why a method gave one answer: which triangle blocks the point, where, by how much, and the values that it compared.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -30,6 +31,12 @@ struct Given {
     Answer answer = Answer::given;
 };
 
+/// A sample of a light with an area that the answer counts.
+struct LightSample {
+    dvec3 at;  ///< world space, on the light; of a sphere on the disk that the point sees of it
+    bool seen = false;
+};
+
 struct Reason {
     PointVerdict verdict = PointVerdict::lit;
     TriangleId blocker   = kNoTriangle;  ///< one that blocks; none where the point is lit, or none can be named
@@ -40,6 +47,10 @@ struct Reason {
                          ///< penumbra the sign of S_j - 1/2
     std::string unit{};  ///< of the margin: "world", "texels", "layers", "samples", "of the light"
     std::vector<Evidence> evidence{};
+    std::vector<LightSample> samples{};  ///< empty where none were taken
+    std::vector<std::array<dvec3, 2>>
+        silhouette{};            ///< edges from which the blocker's object extrudes the sides of its
+                                 ///< volumes, world space; empty where it names none
     std::vector<dvec3> texel{};  ///< corners of the map's texel on the plane of the point, in turn, world space; empty
                                  ///< where no texel was compared
 };

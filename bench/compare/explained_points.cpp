@@ -89,6 +89,9 @@ std::vector<ExplainedPointRecord> explained_points(const Scene& scene, const Poi
         std::vector<dvec3> texel;
         for (const auto& corner : record.method.texel) texel.push_back(place(corner));
         record.texel = seen(picture, texel, nearest);
+        // Thousands of numbers, which `umbra why` and `umbra view` show.
+        for (AnswerRecord* answer : {&record.method, &record.truth})
+            answer->samples.clear(), answer->silhouette.clear();
         all.push_back(std::move(record));
     }
     return all;

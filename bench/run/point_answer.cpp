@@ -23,6 +23,8 @@ void add_reason(AnswerRecord& record, const Scene& scene, const Reason& reason) 
     if (std::isfinite(reason.margin)) record.margin = reason.margin;
     record.unit = reason.unit;
     for (const dvec3& corner : reason.texel) record.texel.push_back({corner.x, corner.y, corner.z});
+    for (const LightSample& s : reason.samples) record.samples.push_back({s.at.x, s.at.y, s.at.z, s.seen ? 1.0 : 0.0});
+    for (const auto& [a, b] : reason.silhouette) record.silhouette.push_back({a.x, a.y, a.z, b.x, b.y, b.z});
     for (const Evidence& e : reason.evidence) {
         EvidenceRecord entry{.name = std::string(e.name), .unit = std::string(e.unit)};
         std::visit([&](const auto& value) { entry.value = value; }, e.value);

@@ -44,7 +44,7 @@ struct AnswerRecord {
     std::optional<double> margin{};
     std::string unit{};
     std::vector<EvidenceRecord> evidence{};
-    std::vector<std::vector<double>> texel{};
+    std::vector<std::vector<double>> texel{}, samples{}, silhouette{};
     std::string difference{};
     bool answered = false;
 
@@ -64,6 +64,10 @@ void describe(Fields& of, Is<AnswerRecord>) {
     of.where(&AnswerRecord::answered, "unit", &AnswerRecord::unit, "of the margin");
     of.where(&AnswerRecord::answered, "evidence", &AnswerRecord::evidence, "");
     of.may("texel", &AnswerRecord::texel, "corners of the map's texel on the plane of the point, world space");
+    of.may("samples", &AnswerRecord::samples,
+           "of an area light: x, y, z in world space, and 1 where the point sees it");
+    of.may("silhouette", &AnswerRecord::silhouette,
+           "edges that extrude the sides of the blocker's volumes: two positions, world space");
     of.may("difference", &AnswerRecord::difference, "from the truth, in words");
     of.may("failed", &AnswerRecord::failed, "the message of what it threw");
 }

@@ -200,6 +200,7 @@ struct SeenLightRecord {
     std::uint64_t side = 0;
     double aspect = 1, fraction = kUnknown;
     std::vector<int> cells{};
+    std::vector<std::vector<double>> frame{};
 };
 template <class Fields>
 void describe(Fields& of, Is<SeenLightRecord>) {
@@ -208,6 +209,8 @@ void describe(Fields& of, Is<SeenLightRecord>) {
     of("fraction", &SeenLightRecord::fraction, "lit, of those on the light");
     of("cells", &SeenLightRecord::cells,
        "row by row: -1 lit, -2 not on the light, -3 behind the point's plane, else the object that blocks");
+    of("frame", &SeenLightRecord::frame,
+       "the picture's middle, and from there its right and its upper edge, world space");
 }
 
 struct WhyHereRecord {

@@ -218,6 +218,7 @@ SeenLightRecord ViewSession::seen_light(std::size_t i, const Light& light) {
     if (!rays_) rays_.emplace(scene, Met::blocking);
     const RaySpace& space = rays_->space();
     SeenLightRecord seen{.side = kSeenSide, .aspect = glm::length(u) / glm::length(v)};
+    seen.frame        = {numbers(centre), numbers(u), numbers(v)};
     std::uint64_t lit = 0, of = 0;
     const FlushDenormals flush;
     for (int row = 0; row < kSeenSide; ++row)

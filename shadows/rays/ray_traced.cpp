@@ -126,13 +126,15 @@ public:
     }
 
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {
-        Reason reason = Method::explain(aimed, looked, i, given);
+        Reason reason      = Method::explain(aimed, looked, i, given);
+        const auto& traced = as<TracedLight>(aimed);
+        Starts starts;
+        start_places(traced.occluders).load(looked.points, i, 1, starts);
         if (is_area(aimed.source().kind)) {
             if (options.measure == Measure::area) add_samples(reason, options.samples, given);
+            reason.samples = samples_of(traced, starts, looked.points, i);
             return reason;
         }
-        Starts starts;
-        start_places(as<TracedLight>(aimed).occluders).load(looked.points, i, 1, starts);
         reason.evidence.push_back(
             {"start of the ray above its triangle", static_cast<double>(starts.height[0]), "world"});
         return reason;
@@ -144,6 +146,28 @@ private:
 
     [[nodiscard]] StartPlaces start_places(const Occluders& from) const {
         return {from.scene, from.rays.space(), options.offset, static_cast<float>(options.epsilon) * from.diagonal};
+    }
+
+    /// The rays of one point, once more: without those of samples behind its plane, which nobody traces.
+    [[nodiscard]] static std::vector<LightSample> samples_of(const TracedLight& traced, const Starts& starts,
+                                                             const PointBatch& points, std::size_t i) {
+        const FlushDenormals flush;
+        const RaySpace& space = traced.occluders.rays.space();
+        std::vector<LightSample> samples;
+        (void)traced.rays.for_each_packet(
+            starts, 0, traced.rays.samples().key(points.number(i)), [&](const ShadowPacket& packet) {
+                ShadowPacket rays = packet;
+                traced.occluders.rays.occluded(rays);
+                for (int k = 0; k < 8; ++k)
+                    if (packet.valid[k] != 0) {
+                        const dvec3 start(packet.org_x[k], packet.org_y[k], packet.org_z[k]);
+                        const dvec3 way(packet.dir_x[k], packet.dir_y[k], packet.dir_z[k]);
+                        samples.push_back(
+                            {(start + way) / double(space.scale) + dvec3(space.centre), rays.tfar[k] >= 0});
+                    }
+                return true;
+            });
+        return samples;
     }
 
     /// Area lights: eight rays of one point are a packet.

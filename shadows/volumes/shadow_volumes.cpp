@@ -28,6 +28,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
 
 #include "umbra/core/base/parallel.h"
@@ -215,12 +216,28 @@ public:
         reason.margin       = dark ? -layers : 0.5;
         reason.unit         = "layers";
         reason.evidence.push_back({"volumes that hold the point", static_cast<double>(holding.count)});
+        if (reason.blocker != kNoTriangle) reason.silhouette = silhouette_of(line.of, reason.blocker);
         if (centre_is_behind(aimed.scene(), looked.points, aimed.light, i))
             reason.evidence.push_back({"the light's centre is behind the surface", 1.0});
         return reason;
     }
 
 private:
+    /// The edges that extrude the sides of the volumes of the triangle's object.
+    [[nodiscard]] static std::vector<std::array<dvec3, 2>> silhouette_of(const Volumes& volumes, TriangleId t) {
+        const Scene& scene   = volumes.scene();
+        const Object& object = scene.objects[scene.triangle_object[t]];
+        std::map<std::uint32_t, dvec3> vertices;
+        for (std::uint32_t u = object.first_triangle; u < object.first_triangle + object.triangle_count; ++u)
+            for (int k = 0; k < 3; ++k) vertices[volumes.meshes.triangles()[u][k]] = dvec3(scene.vertex(u, k));
+        std::vector<std::array<dvec3, 2>> edges;
+        for (const ChangeEdge& edge : volumes.edges) {
+            const auto a = vertices.find(edge.a), b = vertices.find(edge.b);
+            if (a != vertices.end() && b != vertices.end()) edges.push_back({a->second, b->second});
+        }
+        return edges;
+    }
+
     /// From a point to the light.
     struct Line {
         Line(const Volumes& volumes, const PointBatch& points, std::size_t i)

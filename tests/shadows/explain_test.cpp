@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -260,6 +261,71 @@ TEST(Explain, ThePointLiesInTheTexelThatWasCompared) {
             }
             EXPECT_GE(drawn, 10u) << name << " " << maps;
         }
+    }
+}
+
+/// The samples of a reason lie on the light, are as many as make the answer, and see what segments of this file see.
+TEST(Explain, OfRaysShowsTheSamplesThatMakeTheAnswer) {
+    const Scene scene       = load_scene(std::string(UMBRA_SCENES) + "/umbra_penumbra.json");
+    const Light& lamp       = scene.lights[0];
+    const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 96, 54);
+    Asked method("ray_traced:samples=16");
+    method.build(scene);
+    method.aim(0);
+    const auto looked           = method.look(points);
+    const VisibilityPlane plane = method.visibility(points, 0);
+    std::size_t partly = 0, samples = 0, unlike = 0;
+    for (const std::size_t i : spread(points, 0, 120)) {
+        const Reason reason = method.method().explain(method.aimed(), *looked, i, {plane.s[i], plane.answer[i]});
+        const auto seen     = static_cast<std::size_t>(std::ranges::count_if(reason.samples, &LightSample::seen));
+        EXPECT_EQ(static_cast<float>(seen) / 16, plane.s[i]) << i;
+        partly += seen > 0 && seen < 16;
+        const Point p = of(exact_position(scene, points, i));
+        for (const LightSample& sample : reason.samples) {
+            const dvec3 at = sample.at - dvec3(lamp.position), u(lamp.edge_u), v(lamp.edge_v);
+            EXPECT_LE(std::abs(glm::dot(at, u)), 0.50001 * glm::dot(u, u)) << i;
+            EXPECT_LE(std::abs(glm::dot(at, v)), 0.50001 * glm::dot(v, v)) << i;
+            EXPECT_LE(std::abs(glm::dot(at, glm::normalize(glm::cross(u, v)))), 1e-4) << i;
+            bool blocked = false;
+            for (TriangleId t = 0; t < scene.triangles.size() && !blocked; ++t)
+                blocked = t != points.triangle[i] && !std::isnan(meets(scene, t, p, of(sample.at)));
+            ++samples;
+            unlike += blocked == sample.seen;
+        }
+    }
+    EXPECT_GT(partly, 5u);
+    EXPECT_LE(unlike, samples / 200) << "of " << samples;
+}
+
+/// The edges of a reason are the blocker's own, and close: each vertex ends an even number of them.
+TEST(Explain, OfVolumesShowsTheSilhouetteOfTheBlocker) {
+    for (const char* name : {"sun_on_plane", "light_outside_view", "stairs"}) {
+        const Scene scene       = load_scene(std::string(UMBRA_SCENES) + "/" + name + ".json");
+        const PointBatch points = primary_points(RayScene(scene), scene, scene.camera, 96, 54);
+        Asked method("shadow_volumes");
+        method.build(scene);
+        method.aim(0);
+        const auto looked           = method.look(points);
+        const VisibilityPlane plane = method.visibility(points, 0);
+        std::size_t drawn           = 0;
+        for (const std::size_t i : spread(points, 0, 60)) {
+            const Reason reason = method.method().explain(method.aimed(), *looked, i, {plane.s[i], plane.answer[i]});
+            EXPECT_EQ(reason.silhouette.empty(), reason.blocker == kNoTriangle) << name << i;
+            if (reason.blocker == kNoTriangle) continue;
+            ++drawn;
+            const Object& object = scene.objects[scene.triangle_object[reason.blocker]];
+            std::map<std::array<double, 3>, int> ends;
+            for (const auto& edge : reason.silhouette)
+                for (const dvec3& v : edge) ++ends[{v.x, v.y, v.z}];
+            for (const auto& [v, count] : ends) {
+                EXPECT_EQ(count % 2, 0) << name << i;
+                bool own = false;
+                for (std::uint32_t t = object.first_triangle; t < object.first_triangle + object.triangle_count; ++t)
+                    for (int k = 0; k < 3; ++k) own |= dvec3(scene.vertex(t, k)) == dvec3(v[0], v[1], v[2]);
+                EXPECT_TRUE(own) << name << i;
+            }
+        }
+        EXPECT_GT(drawn, 0u) << name;
     }
 }
 

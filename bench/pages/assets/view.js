@@ -240,6 +240,7 @@ function drawWhy() {
   for (const a of why.answers) {
     if (a.blocker_corners.length) $("over").append(shape("polygon", { class: "blocker", points: points(a.blocker_corners) }));
     if (a.texel) $("over").append(shape("polygon", { class: "texel", points: points(a.texel) }));
+    for (const edge of a.silhouette || []) $("over").append(shape("polyline", { class: "edge", points: points([edge.slice(0, 3), edge.slice(3)]) }));
     if (a.towards) $("over").append(shape("polyline", { class: "ray", points: points([why.position, a.towards]), fill: "none" }));
   }
   $("over").append(shape("circle", { class: "asked", cx: from.x, cy: from.y, r: 5 * state.size[0] / $("stage").clientWidth }));
@@ -274,7 +275,7 @@ function drawFigures() {
   if (!truth) errors.append(element("p", { class: "small" }, "The truth is computed when the picture rests."));
   if (truth && truth.failed) errors.append(element("p", { class: "small" }, truth.failed));
   if (truth && !truth.failed)
-    errors.append(element("p", { class: "small" }, `${truth.method}${truth.exact ? ", exact" : ""}, in ${figure(truth.ms)} ms` +
+    errors.append(element("p", { class: "small" }, `The truth: ${truth.method}${truth.exact ? "" : ", which is not exact"}, in ${figure(truth.ms)} ms` +
       (truth.judged < truth.of ? `; at a sample of ${truth.judged} of ${truth.of} points` : `; at all ${truth.of} points`)));
   for (const side of last.sides) {
     if (!side.errors) continue;
@@ -434,14 +435,14 @@ async function askWhy(clientX, clientY) {
     }
     $("why-text").replaceChildren(element("p", {}, `Pixel ${x}, ${y}: triangle ${why.triangle} of ${why.object}, light ${why.light}.`),
       why.decided ? element("p", {}, why.decided) : list);
-    if (why.seen) drawSeen(why.seen);
+    if (why.seen) drawSeen(why.seen, why.answers.find((a) => a.samples));
   }
   drawHandles();
   pump();
 }
 
-/** What the point sees of the light. */
-function drawSeen(seen) {
+/** What the point sees of the light, and the samples that a method took of it. */
+function drawSeen(seen, sampled) {
   const n = seen.side, canvas = element("canvas", { id: "seen", width: n, height: n, role: "img", "aria-label": "The light as this point sees it" });
   canvas.style.aspectRatio = seen.aspect;
   const draw = canvas.getContext("2d"), blockers = new Map();
@@ -462,7 +463,19 @@ function drawSeen(seen) {
   row("#ffe9a0", `seen: ${(100 * seen.fraction).toFixed(1)} % of ${on} places on the light, by rays`);
   for (const [o, count] of blockers) row(hue(o), `behind ${scene.objects[o].name}: ${(100 * count / on).toFixed(1)} %`);
   if (seen.cells.includes(-3)) row("#55555c", "behind the plane of the point");
-  $("why-text").append(element("h3", {}, "What the point sees of the light"), canvas, list);
+  const light = element("div", { class: "seen" });
+  light.append(canvas);
+  if (sampled) {
+    const [middle, right, up] = seen.frame, dots = shape("svg", { viewBox: "-1 -1 2 2", preserveAspectRatio: "none", "aria-hidden": "true" });
+    for (const [x, y, z, hit] of sampled.samples) {
+      const at = add([x, y, z], middle, -1), along = (axis) => dot(at, axis) / dot(axis, axis);
+      dots.append(shape("ellipse", { class: hit ? "hit" : "missed", cx: along(right), cy: -along(up), rx: 0.03 / Math.max(seen.aspect, 1), ry: 0.03 * Math.min(seen.aspect, 1) }));
+    }
+    light.append(dots);
+    row("#0b6", `samples of ${sampled.method} that see the light: ${sampled.samples.filter((s) => s[3]).length}`);
+    row("#d22", `samples that do not: ${sampled.samples.filter((s) => !s[3]).length}`);
+  }
+  $("why-text").append(element("h3", {}, "What the point sees of the light"), light, list);
 }
 
 // ---- controls
