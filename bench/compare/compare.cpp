@@ -16,6 +16,7 @@
 #include "umbra/bench/compare/image_figures.h"
 #include "umbra/bench/compare/method_files.h"
 #include "umbra/bench/compare/record.h"
+#include "umbra/bench/compare/values_script.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/out/staged_folder.h"
@@ -135,6 +136,7 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
     results.reference.files = write_reference_files({staging, "reference", options.command}, prepared,
                                                     {reference_run, rendered_of(main_truth), fine});
 
+    ValuesScript values(scene, prepared.points, reference_run);
     std::set<std::string> used = {"reference"};
     double shade_ms            = 0;
     std::vector<MethodChoice> listed;
@@ -168,6 +170,8 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
                                 {truth->ran.run, rendered_of(*truth), fine}, found.explained);
                             entry.image = written.image;
                             entry.files = std::move(written.files);
+                            values.add(label_of(entry), found.run, found.explained,
+                                       truth == &main_truth ? nullptr : &truth->ran.run);
                         }};
         if (itself && slow && reference_ran.stand_in.empty())
             trial.run = [&](std::optional<LightId>&) { return reference_run; };
@@ -183,11 +187,13 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
     }
     results.turns = time_methods(staging, prepared, listed, answered, options.repeats, options.budget, tell);
     for (Answered& a : answered) results.methods.push_back(std::move(a.entry));
-    results.times = {{"load_ms", prepared.load_ms},
-                     {"facts_ms", prepared.facts_ms},
-                     {"rays_build_ms", prepared.rays_build_ms},
-                     {"gbuffer_ms", prepared.gbuffer_ms},
-                     {"shade_ms", shade_ms}};
+    results.times  = {{"load_ms", prepared.load_ms},
+                      {"facts_ms", prepared.facts_ms},
+                      {"rays_build_ms", prepared.rays_build_ms},
+                      {"gbuffer_ms", prepared.gbuffer_ms},
+                      {"shade_ms", shade_ms}};
+    results.values = {"values.js"};
+    write_text(staging / results.values.name, values.text());
     write_text(staging / "results.json", record_text(results));
     if (options.add_page) options.add_page(staging);
     stage.commit();

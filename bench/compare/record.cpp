@@ -173,6 +173,7 @@ Results with_prefix(Results results, const std::string& prefix) {
         for (auto& [light, of] : files->lights)
             for (FileName* file : {&of.visibility, &of.difference, &of.classes}) set(*file);
     };
+    set(results.values);
     set_all(results.reference.files);
     for (MethodRecord& method : results.methods) set_all(method.files);
     return results;

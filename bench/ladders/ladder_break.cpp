@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "umbra/bench/compare/explained_points.h"
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/ladders/minimal_scene.h"
 #include "umbra/bench/out/files.h"
@@ -61,7 +62,9 @@ BreakRecord write_break(const std::filesystem::path& folder, const std::string& 
             .triangles        = scene.triangles.size(),
             .triangles_before = whole.triangles.size(),
             .points           = o.points,
-            .interior         = o.interior()};
+            .interior         = o.interior(),
+            .reference        = stage->truth.choice.text(),
+            .explained = explained_points(scene, stage->points, worst, run, stage->truth, explained[worst].classes)};
 }
 
 }  // namespace umbra

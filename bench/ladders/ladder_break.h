@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/record/record.h"
+#include "umbra/bench/run/results.h"
 
 namespace umbra {
 
@@ -13,6 +15,8 @@ namespace umbra {
 struct BreakRecord {
     std::string scene{}, visibility{}, truth{}, classes{}, light{};
     std::uint64_t width = 0, height = 0, triangles = 0, triangles_before = 0, points = 0, interior = 0;
+    std::string reference{};
+    std::vector<ExplainedPointRecord> explained{};
 };
 template <class Fields>
 void describe(Fields& of, Is<BreakRecord>) {
@@ -28,10 +32,13 @@ void describe(Fields& of, Is<BreakRecord>) {
     of("triangles_before", &BreakRecord::triangles_before, "");
     of("points", &BreakRecord::points, "");
     of("interior", &BreakRecord::interior, "");
+    of.may("reference", &BreakRecord::reference, "as typed");
+    of.may("explained", &BreakRecord::explained, "of each class of interior errors the most telling point");
 }
 
 /// Reduces the scene of the rung where the method broke, and writes NAME.json (a native scene), and the S of the
-/// method, of the truth, and the classes of the errors as PNGs into `folder`.
+/// method, of the truth, and the classes of the errors as PNGs into `folder`. Explains the points that show the errors
+/// best.
 BreakRecord write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder,
                         double value, const MethodChoice& method);
 

@@ -16,6 +16,7 @@
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/pages/why_point.h"
 
 namespace umbra {
 namespace {
@@ -69,7 +70,17 @@ json break_view(const LadderRecord& ladder, const ClimbRecord& climbed, const Br
                     {"height", std::to_string(shown.height)}};
     };
     const std::string label = label_of(climbed);
+    json points             = json::array();
+    for (const ExplainedPointRecord& point : shown.explained)
+        if (point.pixel.size() == 2)
+            points.push_back(why_point(point, {url(fs::path("breaks") / shown.classes),
+                                               label,
+                                               shown.reference,
+                                               {.width = shown.width, .height = shown.height}}));
+    const bool has_why = !points.empty();
     return {{"label", label},
+            {"has_why", has_why},
+            {"why", std::move(points)},
             {"at", climbed.breaks_at ? fmt::format("{} {}", rung_value(*climbed.breaks_at), ladder.unit) : ""},
             {"kind", climbed.kind.value_or("")},
             {"interior", count(double(shown.interior))},

@@ -19,7 +19,8 @@ namespace {
 
 constexpr std::string_view kRecord = "results.json", kPage = "index.html";
 constexpr std::array<std::string_view, 2> kEnergyFiles = {"objects.csv", "faces.csv"};  // its record names no files
-constexpr std::array<std::string_view, 4> kPageFiles   = {"report.css", "slider.js", "finder.js", "pictures.js"};
+constexpr std::array<std::string_view, 5> kPageFiles   = {"report.css", "slider.js", "compare.js", "finder.js",
+                                                          "pictures.js"};
 
 /// A results.json of ours of any version; discarded where it is none.
 json record_in(const fs::path& folder) {

@@ -26,32 +26,39 @@ struct ErrorColour {
     std::string_view member;    ///< its own count in that object; empty where it has none
     bool interior;              ///< outside the edge band and not at the terminator: a mistake of the method
     std::string_view sentence;  ///< what the class means
+    std::string_view in_short;  ///< of interior classes: the fault, for those who see it for the first time
 };
 
 /// In the order of the legends. A new class is one more row: legends, tables and sums follow.
 inline constexpr std::array kErrorPalette = {
     ErrorColour{ErrorClass::acne, "acne", "false shadow: acne", "#0a2a9c", "false_shadow", "acne", true,
-                "Too dark: the surface shades itself, or the method names no occluder."},
+                "Too dark: the surface shades itself, or the method names no occluder.",
+                "lit surfaces that shade themselves"},
     ErrorColour{ErrorClass::false_shadow, "false_shadow", "false shadow: other", "#0072b2", "false_shadow", "", true,
-                "Too dark: the method blames another surface."},
+                "Too dark: the method blames another surface.", "lit points in the shadow of another surface"},
     ErrorColour{ErrorClass::false_shadow_edge, "false_shadow_edge", "false shadow: edge band", "#7cc4ee",
-                "false_shadow", "", false, "Too dark within 1.5 pixels of a shadow boundary."},
+                "false_shadow", "", false, "Too dark within 1.5 pixels of a shadow boundary.", ""},
     ErrorColour{ErrorClass::detachment, "detachment", "false light: detachment", "#e69f00", "false_light", "detachment",
-                true, "Too bright next to a contact: the shadow is detached from its occluder (“peter-panning”)."},
+                true, "Too bright next to a contact: the shadow is detached from its occluder (“peter-panning”).",
+                "shadows that are detached from what casts them"},
     ErrorColour{ErrorClass::leak, "leak", "false light: leak", "#c40000", "false_light", "leak", true,
-                "Too bright away from any contact: light leaks through an occluder."},
+                "Too bright away from any contact: light leaks through an occluder.",
+                "light that leaks through an occluder"},
     ErrorColour{ErrorClass::false_light, "false_light", "false light: unknown occluder", "#d55e00", "false_light", "",
-                true, "Too bright: no occluder is known, so detachment and leak cannot be distinguished."},
+                true, "Too bright: no occluder is known, so detachment and leak cannot be distinguished.",
+                "shadows that are missing"},
     ErrorColour{ErrorClass::false_light_edge, "false_light_edge", "false light: edge band", "#ffc861", "false_light",
-                "", false, "Too bright within 1.5 pixels of a shadow boundary."},
+                "", false, "Too bright within 1.5 pixels of a shadow boundary.", ""},
     ErrorColour{ErrorClass::penumbra, "penumbra", "penumbra", "#882255", "", "", true,
-                "Wrong by more than 0.1 where the reference is in penumbra: a missing or noisy penumbra."},
+                "Wrong by more than 0.1 where the reference is in penumbra: a missing or noisy penumbra.",
+                "a penumbra, which is missing or noisy on the left"},
     ErrorColour{ErrorClass::noise, "noise", "noise", "#999933", "", "", true,
-                "Wrong by its random numbers alone: the mean of runs with other seeds is right."},
+                "Wrong by its random numbers alone: the mean of runs with other seeds is right.",
+                "noise of random numbers"},
     ErrorColour{ErrorClass::terminator_wrong, "terminator_wrong", "wrong at the terminator", "#009e73", "", "", false,
-                "Wrong where the smooth normal faces away from the light: the sum multiplies S by 0 there."},
+                "Wrong where the smooth normal faces away from the light: the sum multiplies S by 0 there.", ""},
     ErrorColour{ErrorClass::on_boundary, "on_boundary", "on the boundary: never wrong", "#cc79a7", "", "", false,
-                "The segment to the light passes a silhouette or a border: no answer is wrong."},
+                "The segment to the light passes a silhouette or a border: no answer is wrong.", ""},
 };
 
 }  // namespace umbra

@@ -61,6 +61,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
                                         {"failures_note", assets::failures_note_html},
                                         {"picture", assets::picture_html},
                                         {"slider", assets::slider_html},
+                                        {"why_point", assets::why_point_html},
                                         {"classes", assets::classes_html},
                                         {"ladder_table", assets::ladder_table_html},
                                         {"textbook_table", assets::textbook_table_html},
@@ -83,6 +84,7 @@ void write_page_assets(const std::filesystem::path& folder, const std::vector<st
                        StagedFiles& staged) {
     staged.write(folder / "report.css", assets::report_css);
     for (const auto& [name, content] : {std::pair{"slider.js", assets::slider_js},
+                                        {"compare.js", assets::compare_js},
                                         {"finder.js", assets::finder_js},
                                         {"pictures.js", assets::pictures_js}})
         for (const std::string& script : scripts)

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "umbra/bench/pages/error_palette.h"
 #include "umbra/bench/pages/error_rings.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/pages/values_call.h"
 #include "umbra/core/base/paths.h"
 #include "umbra/core/image/image_io.h"
 
@@ -23,14 +25,21 @@ SceneFiles::SceneFiles(const ScenePage& scene, StagedFiles& staged) : scene_(sce
     if (size.height) size_["height"] = std::to_string(*size.height);
 }
 
-std::string SceneFiles::link(const FileName& file, const fs::path& from) const {
+fs::path SceneFiles::found(const FileName& file) const {
     const fs::path name = file.name;
     const fs::path path = scene_.data / name;
     if (name.is_absolute() || *path.lexically_normal().lexically_relative(scene_.data).begin() == "..")
         file.at.refuse("a file in the same folder");
     if (!is_file(path)) file.at.refuse("an existing file");
-    if (scene_.page != scene_.data) staged_.copy(path, (scene_.page / name).lexically_normal());
-    return url((scene_.page / name).lexically_normal().lexically_relative(from));
+    return path;
+}
+
+fs::path SceneFiles::placed(const FileName& file) const { return (scene_.page / file.name).lexically_normal(); }
+
+std::string SceneFiles::link(const FileName& file, const fs::path& from) const {
+    const fs::path path = found(file);
+    if (scene_.page != scene_.data) staged_.copy(path, placed(file));
+    return url(placed(file).lexically_relative(from));
 }
 
 json SceneFiles::figure(const FileName& file, const std::string& who, const std::string& what, const std::string& alt,
@@ -44,10 +53,7 @@ json SceneFiles::figure(const FileName& file, const std::string& who, const std:
     return view;
 }
 
-Image SceneFiles::picture(const FileName& file) const {
-    (void)link(file, scene_.page);  // refuses a file that lies elsewhere
-    return read_image(scene_.data / file.name).image;
-}
+Image SceneFiles::picture(const FileName& file) const { return read_image(found(file)).image; }
 
 json SceneFiles::legend(const FileName& classes) const {
     json all = json::array();
@@ -75,6 +81,16 @@ json SceneFiles::rings(const FileName& classes) const {
                                   found.rings.size() == 1 ? "1 ring" : fmt::format("{} rings", found.rings.size()),
                                   found.rings.size() == 1 ? "a small group" : "small groups")},
             {"shapes", std::move(shapes)}};
+}
+
+json SceneFiles::values(const FileName& script) const {
+    if (!script) return false;
+    std::ifstream in(found(script), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    const std::optional<std::string> checked = checked_values(bytes);
+    if (!checked) script.at.refuse("a script that umbra compare wrote");
+    if (scene_.page != scene_.data) staged_.write(placed(script), *checked);
+    return url(placed(script).lexically_relative(scene_.page));
 }
 
 json SceneFiles::exr(const std::optional<FilesRecord>& files) const {
@@ -109,18 +125,15 @@ const MethodRecord* find_setting(const std::vector<MethodRecord>& methods, const
 }
 
 std::string method_label(const MethodRecord& method, const std::vector<MethodRecord>& methods) {
-    const auto runs         = std::ranges::count(methods, method.name, &MethodRecord::name);
-    const std::string shown = method.title.empty() ? in_words(method.name) : method.title;
-    const auto colon        = method.text.find(':');
-    std::string settings    = colon != std::string::npos ? method.text.substr(colon + 1) : "";
     // Records of two versions of the program may write other settings as one text.
+    std::string others;
     for (const auto& [name, value] : method.parameters)
         if (std::ranges::any_of(methods, [&, &of = name, &here = value](const MethodRecord& m) {
                 const Scalar* there = m.parameters.find(of);
                 return setting_text(m) == setting_text(method) && there != nullptr && text_of(*there) != text_of(here);
             }))
-            settings += fmt::format("{}{}={}", settings.empty() ? "" : ",", name, text_of(value));
-    return runs > 1 && !settings.empty() ? fmt::format("{} ({})", shown, settings) : shown;
+            others += fmt::format("{}{}={}", others.empty() ? "" : ",", name, text_of(value));
+    return label_of(method) + (others.empty() ? "" : fmt::format(" ({})", others));
 }
 
 std::vector<MethodRecord> settings_of(const std::vector<ScenePage>& scenes) {

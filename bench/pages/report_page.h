@@ -48,9 +48,15 @@ public:
     /// folder that is handed out.
     [[nodiscard]] nlohmann::json exr(const std::optional<FilesRecord>& files) const;
 
+    /// The address of the script of values; false where there is none. Refuses one that calls anything else.
+    [[nodiscard]] nlohmann::json values(const FileName& script) const;
+
     [[nodiscard]] const ScenePage& scene() const { return scene_; }
 
 private:
+    /// A file of the record, below its folder; refuses any other.
+    [[nodiscard]] std::filesystem::path found(const FileName& file) const;
+    [[nodiscard]] std::filesystem::path placed(const FileName& file) const;  ///< beside the page
     [[nodiscard]] Image picture(const FileName& file) const;
 
     const ScenePage& scene_;
@@ -75,7 +81,7 @@ private:
 /// The entry of `methods` with that setting; null where it was not run.
 [[nodiscard]] const MethodRecord* find_setting(const std::vector<MethodRecord>& methods, const MethodRecord& setting);
 
-/// What a method is called on a page. Where one method runs with several settings, these tell the runs apart.
+/// What a method is called on a page: its title, with the settings that are not the defaults.
 [[nodiscard]] std::string method_label(const MethodRecord& method, const std::vector<MethodRecord>& methods);
 
 /// The settings of all scenes, an entry of `methods` of each: those that answer on more scenes first, and of equals the

@@ -69,7 +69,46 @@ std::string right_in_words(const std::vector<Compared>& right) {
     return fmt::format("all {} other methods: none{}", right.size(), partial ? " where they answer" : "");
 }
 
+/// What most of a method's wrong interior points have in common; null where there is none.
+const ErrorColour* most_frequent(const MethodRecord& method) {
+    const ErrorColour* found = nullptr;
+    double most              = 0;
+    const auto take          = [&](const ErrorColour& entry, double n) {
+        if (n > most) found = &entry, most = n;
+    };
+    for (const ErrorColour& entry : kErrorPalette) {
+        if (!entry.interior) continue;
+        double n = 0;
+        for (const std::string& group : error_groups()) {
+            if (entry.error_class == ErrorClass::penumbra) n += sum_of(method, &ErrorRecord::penumbra_error, group);
+            if (entry.error_class == ErrorClass::noise) n += sum_of(method, &ErrorRecord::noise_error, group);
+            if (entry.group != group) continue;
+            n += sum_of(method, group, entry.member.empty() ? "interior" : entry.member);
+            if (entry.member.empty())
+                n -= sum_of(method, &ErrorRecord::penumbra_error, group) +
+                     sum_of(method, &ErrorRecord::noise_error, group);
+            for (const ErrorColour& named : kErrorPalette)
+                if (entry.member.empty() && named.group == group && !named.member.empty())
+                    n -= sum_of(method, group, named.member);
+        }
+        take(entry, n);
+    }
+    return found;
+}
+
 }  // namespace
+
+std::string first_finding(const Results& results, const MethodRecord& method) {
+    const std::string sides = fmt::format("left the shadows of “{}”, right {}. ", label_of(method),
+                                          results.reference.exact ? "the exact ones" : "those of the reference");
+    const Totals found      = totals(method);
+    if (found.interior == 0)
+        return fmt::format("{}Away from shadow edges, all of {} points are right.", sides, count(found.points));
+    const ErrorColour* most = most_frequent(method);
+    return fmt::format("{}Away from shadow edges, {} of {} points are wrong on the left. {}", sides,
+                       count(found.interior), count(found.points),
+                       most == nullptr ? "" : fmt::format("Most of them: {}.", most->in_short));
+}
 
 std::string finding(const Results& results) {
     const std::vector<MethodRecord>& methods = results.methods;

@@ -12,4 +12,8 @@ namespace umbra {
 /// where no method was compared.
 [[nodiscard]] std::string finding(const Results& results);
 
+/// The same of one method, for those who see it for the first time: how many points away from shadow edges are wrong,
+/// and what most of them have in common.
+[[nodiscard]] std::string first_finding(const Results& results, const MethodRecord& method);
+
 }  // namespace umbra

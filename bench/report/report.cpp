@@ -35,8 +35,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::vector<std::string> kSceneScripts = {"slider.js", "pictures.js"};
-const std::vector<std::string> kIndexScripts = {"slider.js", "finder.js", "pictures.js"};  // with all of a scene's
+const std::vector<std::string> kSceneScripts = {"slider.js", "compare.js", "pictures.js"};
+const std::vector<std::string> kIndexScripts = {"slider.js", "finder.js", "pictures.js"};
 
 std::vector<fs::path> results_files(const fs::path& dir) {
     std::vector<fs::path> files;
@@ -301,7 +301,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
-    write_page_assets(root, kIndexScripts, staged);
+    for (const auto& scripts : {kIndexScripts, kSceneScripts}) write_page_assets(root, scripts, staged);
     staged.commit();
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "umbra/bench/pages/failures.h"
 #include "umbra/bench/pages/report_text.h"
@@ -71,15 +72,25 @@ json front_classes(const SceneFiles& files, const MethodRecord& method, const st
     return view;
 }
 
-/// The first screen: the scene on which a method has the most wrong interior points, that method beside the reference,
-/// and what the figures of the scene say. The first scene where nothing is wrong; false where none has both pictures.
+bool has_soft_light(const Results& results) {
+    return std::ranges::any_of(results.lights, [](const LightRecord& light) {
+        return light.kind == "rectangle" || light.kind == "disk" || light.kind == "sphere";
+    });
+}
+
+/// The first screen: of scenes in soft light that with the most triangles, or else the scene on which a method has the
+/// most wrong interior points; its worst method beside the reference, and how wrong it is. The first scene where nothing
+/// is wrong; false where none has both pictures.
 json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out) {
     std::optional<std::size_t> shown;
-    double most = -1;
+    std::tuple<bool, double, double> most;
     for (std::size_t i = 0; i < scenes.size(); ++i) {
         const MethodRecord* method = worst_method(scenes[i].results);
         if (method == nullptr || !picture_of(scenes[i].results.reference.files)) continue;
-        if (const double wrong = totals(*method).interior; wrong > most) shown = i, most = wrong;
+        const double wrong = totals(*method).interior;
+        const bool soft    = wrong > 0 && has_soft_light(scenes[i].results);
+        const std::tuple rank(soft, soft ? static_cast<double>(scenes[i].triangles) : 0, wrong);
+        if (!shown || rank > most) shown = i, most = rank;
     }
     if (!shown) return false;
     const ScenePage& scene = scenes[*shown];
@@ -87,7 +98,7 @@ json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
     json view              = slider_view(files[*shown], method, out);
     view["href"]           = url((scene.page / "index.html").lexically_relative(out));
     view["title"]          = scene.title;
-    view["finding"]        = finding(scene.results);
+    view["finding"]        = first_finding(scene.results, *method);
     view["classes"]        = front_classes(files[*shown], *method, method_label(*method, scene.results.methods), out);
     return view;
 }

@@ -213,6 +213,7 @@ json scene_view(const SceneFiles& scene, const std::vector<MethodRecord>& settin
                             {"shows", results.scene.shows},
                             {"finding", finding(results)},
                             {"pair", slider_view(scene, worst_method(results))},
+                            {"values", scene.values(results.values)},
                             {"source", source_of(results.scene)},
                             {"view", std::filesystem::path(results.scene.source).is_absolute() ? results.scene.name
                                                                                                : source_of(results.scene)},

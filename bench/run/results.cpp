@@ -1,8 +1,19 @@
 #include "umbra/bench/run/results.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 namespace umbra {
 
 std::string record_text(const Results& results) { return json_text(to_record(results)); }
+
+std::string label_of(const MethodRecord& method) {
+    std::string label = method.title.empty() ? method.name : method.title;
+    if (method.title.empty()) std::ranges::replace(label, '_', ' ');
+    const auto colon = method.text.find(':');
+    return colon == std::string::npos ? label : fmt::format("{} ({})", label, method.text.substr(colon + 1));
+}
 
 Json results_schema() {
     Json schema = schema_of<Results>("results.json: several shadow methods on one scene, compared with a reference");

@@ -380,6 +380,7 @@ struct Results {
     std::optional<TurnsRecord> turns{};
     ReferenceRecord reference{};
     std::vector<MethodRecord> methods{};
+    FileName values{};
     std::optional<BudgetRecord> budget{};
 };
 template <class Fields>
@@ -394,8 +395,12 @@ void describe(Fields& of, Is<Results>) {
     of("turns", &Results::turns, "");
     of("reference", &Results::reference, "");
     of("methods", &Results::methods, "");
+    of.may("values", &Results::values, "a script with S_j and classes, which the page of the scene loads");
     of.may("budget", &Results::budget, "");
 }
+
+/// What a method is called on pages: its title, with the settings that are not the defaults.
+[[nodiscard]] std::string label_of(const MethodRecord& method);
 
 [[nodiscard]] std::string record_text(const Results& results);  ///< as results.json holds it
 [[nodiscard]] Json results_schema();                            ///< JSON Schema, draft 4

@@ -1,5 +1,6 @@
 #include "umbra/core/image/image_io.h"
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 #include <fcntl.h>
@@ -323,7 +324,9 @@ std::vector<std::uint32_t> interleaved(const Image& image) {
     return values;
 }
 
-void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, const Image& image, bool is_png) {
+/// `memory`, where it is given, takes the bytes in place of the file.
+void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, const Image& image, bool is_png,
+                  OIIO::Filesystem::IOProxy* memory = nullptr) {
     const auto check = [&](bool done) {
         if (!done) throw std::runtime_error(one_line(output.geterror()));
     };
@@ -349,6 +352,7 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
             ++spec.nchannels;
         }
     }
+    if (memory != nullptr) spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &memory);
     check(output.open(path.string(), spec));
     if (is_png)
         check(output.write_image(OIIO::TypeDesc::UINT8, to_8_bit(image, channels).data()));
@@ -444,6 +448,15 @@ void write_image(const std::filesystem::path& file, const Image& image) {
     } catch (const std::exception& reason) {
         throw InputError(fmt::format("{}: cannot write image: {}", file.string(), reason.what()));
     }
+}
+
+std::string png_bytes(const Image& image) {
+    OIIO::Filesystem::IOVecOutput bytes;
+    const std::filesystem::path name = "memory.png";  // says the format, no more
+    const auto output                = OIIO::ImageOutput::create(name.string());
+    if (!output) throw std::runtime_error(one_line(OIIO::geterror()));
+    write_pixels(*output, name, image, true, &bytes);
+    return {bytes.buffer().begin(), bytes.buffer().end()};
 }
 
 }  // namespace umbra

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "umbra/core/image/image.h"
 
@@ -35,5 +36,8 @@ inline constexpr std::size_t kMaxPixels = 1u << 28;
 /// is written as 0. Written beside and moved into place, so that a file that was there stays whole if this fails.
 /// Throws InputError.
 void write_image(const std::filesystem::path& file, const Image& image);
+
+/// The bytes of the .png that write_image writes. Throws std::runtime_error.
+[[nodiscard]] std::string png_bytes(const Image& image);
 
 }  // namespace umbra

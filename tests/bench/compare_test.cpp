@@ -116,6 +116,70 @@ TEST_F(Compare, RecordFollowsItsSchemaAndNamesFilesThatExist) {
 }
 
 /// A floor that receives no shadows, and a box over it: its points are counted, and compared nowhere.
+/// The bytes of "data:image/png;base64,...", as a picture of 8 bits.
+Image decoded(const std::string& url, const fs::path& folder) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/",
+                      head   = "data:image/png;base64,";
+    EXPECT_TRUE(url.starts_with(head));
+    std::string bytes;
+    std::uint32_t bits = 0;
+    int held           = 0;
+    for (const char c : url.substr(head.size())) {
+        if (c == '=') break;
+        bits = bits << 6 | static_cast<std::uint32_t>(digits.find(c));
+        if ((held += 6) >= 8) bytes += static_cast<char>(bits >> (held -= 8) & 255);
+    }
+    write(folder / "values.png", bytes);
+    return read_image(folder / "values.png").image;
+}
+
+/// What a page shows under the cursor is what the planes of the EXR files hold.
+TEST_F(Compare, ValuesOfThePageAreThoseOfThePlanes) {
+    options_.methods = {"shadow_zbuffer:resolution=64", "planar_projection"};
+    ASSERT_EQ(compare_scenes({scene_}, options_).names.size(), 1u);
+    const fs::path folder = options_.out / "lamp_over_box";
+    const Json record     = Json::parse(text_of(folder / "results.json"));
+    ASSERT_EQ(record["values"], "values.js");
+    const std::string script = text_of(folder / "values.js"), call = "umbraValues(";
+    ASSERT_TRUE(script.starts_with(call) && script.ends_with(");\n"));
+    const Json values = Json::parse(script.substr(call.size(), script.size() - call.size() - 3));
+    EXPECT_EQ(values["lights"], (Json{"lamp", "panel"}));
+    EXPECT_EQ(values["objects"][0], (Json{"floor", 2}));
+    EXPECT_EQ(values["columns"][1]["who"], "Shadow z-buffer (resolution=64)");
+    const Image reference = read_image(folder / "reference.exr").image, faces = decoded(values["faces"], folder_);
+    const auto byte = [](const Image& image, std::size_t i, std::size_t c) {
+        return static_cast<unsigned>(std::lround(255 * image.at(i, c)));
+    };
+    const auto& triangle = reference.integers.at("id.face");
+    for (std::size_t i = 0; i < faces.pixels(); ++i)
+        ASSERT_EQ((byte(faces, i, 0) << 16 | byte(faces, i, 1) << 8 | byte(faces, i, 2)) - 1, triangle[i]) << i;
+    std::size_t shadow = 0, wrong = 0, undefined = 0;
+    for (const auto& [column, file] : {std::pair{0, "reference"}, {1, "shadow_zbuffer"}, {2, "planar_projection"}}) {
+        const Image exr = read_image(folder / (std::string(file) + ".exr")).image;
+        for (const auto& [k, light] : {std::pair{0, "lamp"}, {1, "panel"}}) {
+            const Image plane       = decoded(values["columns"][column]["planes"][k], folder_);
+            const std::string named = light;
+            const auto s            = std::size_t(std::ranges::find(exr.channels, "S." + named) - exr.channels.begin());
+            const auto& answers     = exr.integers.at("answer." + named);
+            for (std::size_t i = 0; i < exr.pixels(); ++i) {
+                ASSERT_EQ(byte(plane, i, 2), answers[i] == 0 ? 0u : 255u) << file << ' ' << light << ' ' << i;
+                if (answers[i] != 0) {
+                    ASSERT_EQ(byte(plane, i, 0), std::lround(255 * exr.at(i, s))) << file << ' ' << i;
+                }
+                if (column > 0) {
+                    ASSERT_EQ(byte(plane, i, 1), exr.integers.at("class." + named)[i]) << file << ' ' << i;
+                }
+                shadow += byte(plane, i, 0) == 0;
+                wrong += column > 0 && byte(plane, i, 1) > static_cast<unsigned>(ErrorClass::terminator_wrong);
+                undefined += answers[i] == 0;
+            }
+        }
+    }
+    EXPECT_GT(shadow, 100u);
+    EXPECT_GT(wrong, 10u);
+    EXPECT_GT(undefined, 10u);
+}
+
 TEST_F(Compare, PointsThatReceiveNoShadowsAreCountedApart) {
     const fs::path scene = folder_ / "lit.json";
     write(scene, R"({

@@ -82,7 +82,7 @@ inline json method(const std::string& name, const std::vector<std::string>& ligh
               {"title", "The " + name},
               {"paper", "A paper, 1978"},
               {"summary", "What it does."},
-              {"text", name + ":resolution=512"},
+              {"text", name},
               {"parameters", {{"resolution", "512"}}},
               {"serves", {{"how", "approximately"}, {"why", "it has texels"}}},
               {"times", {{"build_ms", timing(4)}, {"aim_ms", timing(2)}, {"visibility_ms", timing(1)}}},

@@ -133,6 +133,37 @@ TEST_F(Report, SumsOverLightsAndNeverAddsInteriorToEdge) {
     EXPECT_TRUE(contains(html, "1\u202f234\u202f567 triangles"));
 }
 
+/// A script of values is handed out where it is a call with JSON alone: what a record names might be anybody's.
+TEST_F(Report, HandsOutNoScriptButValues) {
+    json record      = sample("court");
+    record["values"] = "values.js";
+    put(out / "from" / "court", record);
+    const auto reported = [&](const std::string& script) {
+        write(out / "from" / "court" / "values.js", script);
+        write_report({out / "from"}, out / "to");
+        return read(out / "to" / "court" / "values.js");
+    };
+    EXPECT_EQ(reported("umbraValues({\"schema\": 1});\n"), "umbraValues({\"schema\":1});\n");
+    EXPECT_EQ(reported("umbraValues({\"a\":\"</script>\\u00e4\"});\n"), "umbraValues({\"a\":\"</script>\\u00e4\"});\n");
+    for (const char* foreign : {"alert(1);\n", "umbraValues({});alert(1);\n", "umbraValues(alert(1));\n",
+                                "umbraValues({}", "umbraValues([1]);\n", "umbraValues(1);\n", ""})
+        EXPECT_THROW((void)reported(foreign), InputError) << foreign;
+    EXPECT_EQ(read(out / "to" / "court" / "values.js"), "umbraValues({\"a\":\"</script>\\u00e4\"});\n")
+        << "and keeps what was there";
+}
+
+/// A setting has its figures under its own name, also where it is the only one of its method.
+TEST_F(Report, CallsASettingByItsSettings) {
+    json record                  = sample("court");
+    record["methods"][2]["text"] = "ray_traced:samples=4";
+    put(out / "court", record);
+    write_report({out}, out);
+    for (const char* page : {"index.html", "court/index.html"}) {
+        EXPECT_TRUE(contains(read(out / page), "The ray_traced (samples=4)")) << page;
+        EXPECT_FALSE(contains(read(out / page), "The ray_traced<")) << page;
+    }
+}
+
 TEST_F(Report, BeginsWithTheSceneAndTheMethodThatAreMostWrong) {
     json mild = sample("mild"), grave = sample("grave");
     // Two lights: 2 (12 + 0) wrong points; the second method of the second scene has 4 more.
@@ -149,9 +180,9 @@ TEST_F(Report, BeginsWithTheSceneAndTheMethodThatAreMostWrong) {
     const std::string front = index.substr(0, index.find("id=\"about\""));
     EXPECT_TRUE(contains(
         front,
-        "<a href=\"z/index.html\"><b>The grave</b></a>: The ray_traced: 28 wrong interior "
-        "points of 460\u202f800 compared with the inexact reference (24 false shadow, 3 leak, 1 other false light); "
-        "The shadow_zbuffer: 24.</p>"))
+        "<a href=\"z/index.html\"><b>The grave</b></a>: left the shadows of “The ray_traced”, right those of the "
+        "reference. Away from shadow edges, 28 of 460\u202f800 points are wrong on the left. Most of them: lit points in "
+        "the shadow of another surface.</p>"))
         << front;
     // The slider's pair, and the class picture of the light with the most wrong points.
     EXPECT_TRUE(contains(front, "<div class=\"half right\"><img src=\"z/reference.png\""));
@@ -178,9 +209,9 @@ TEST_F(Report, ASceneWithoutErrorsSaysSo) {
     results["reference"]["exact"] = true;
     put(out / "court", results);
     write_report({out}, out);
-    for (const fs::path& page : files_below(out, ".html"))
-        EXPECT_TRUE(contains(read(page),
-                             "All 2 methods: no wrong interior point against the exact reference, where they answer."));
+    EXPECT_TRUE(contains(read(out / "court/index.html"),
+                         "All 2 methods: no wrong interior point against the exact reference, where they answer."));
+    EXPECT_TRUE(contains(read(out / "index.html"), "Away from shadow edges, all of 460\u202f800 points are right."));
 }
 
 TEST_F(Report, RefusesAClassPictureThatIsNone) {
@@ -217,7 +248,7 @@ TEST_F(Report, WhatNeedsAScriptIsHiddenUntilItRuns) {
                 EXPECT_TRUE(fs::is_regular_file(file.parent_path() / src)) << src;
                 ++scripts;
             }
-    EXPECT_EQ(scripts, 5u);
+    EXPECT_EQ(scripts, 6u);
 }
 
 TEST_F(Report, AClassThatIsCountedGetsItsColumn) {
@@ -265,7 +296,8 @@ TEST_F(Report, PenumbraAndNoiseAreNoOtherFalseShadow) {
         }
     put(out / "court", results);
     write_report({out}, out);
-    EXPECT_TRUE(contains(read(out / "index.html"), "(2 false shadow, 18 in penumbrae, 4 by noise)"));
+    EXPECT_TRUE(contains(read(out / "court/index.html"), "(2 false shadow, 18 in penumbrae, 4 by noise)"));
+    EXPECT_TRUE(contains(read(out / "index.html"), "Most of them: a penumbra, which is missing or noisy on the left."));
 }
 
 TEST_F(Report, WritesTheSameBytesAgain) {
@@ -393,7 +425,7 @@ TEST_F(Report, KeepsEveryRunOfLadders) {
 
 TEST_F(Report, DoesNotCompareTheReferenceWithItself) {
     json results                 = sample("court");
-    results["reference"]["text"] = results["methods"][2]["text"];  // ray_traced:resolution=512
+    results["reference"]["text"] = results["methods"][2]["text"];
     put(out / "court", results);
     write_report({out}, out);
     EXPECT_TRUE(contains(read(out / "index.html"), "colspan=\"3\">the reference</td><td class=\"ms\""));
@@ -412,7 +444,7 @@ TEST_F(Report, RunsOfOneMethodAreToldApartByTheirSettings) {
     put(out / "court", results);
     write_report({out}, out);
     for (const fs::path& page : files_below(out, ".html"))
-        for (const char* label : {"The shadow_zbuffer (resolution=512)", "The shadow_zbuffer (resolution=2048)"})
+        for (const char* label : {">The shadow_zbuffer<", "The shadow_zbuffer (resolution=2048)"})
             EXPECT_TRUE(contains(read(page), label)) << page << ": " << label;
 }
 
