@@ -1,5 +1,6 @@
 #include <OpenImageIO/imageio.h>
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "umbra/bench/diff/diff.h"
 #include "umbra/bench/report/report.h"
+#include "umbra/bench/view/view_session.h"
 #include "umbra/core/image/image_headers.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/fuzz/fuzz_folder.h"
@@ -72,8 +74,28 @@ void pipeline(Bytes bytes) {
     read_or_refuse([&] { run_pipeline(file); });
 }
 
+/// As one page of `umbra view` would, whose session lives on: the body of a request, of which nothing but the size of
+/// the picture and the time are cut down, and the question why at each pixel that it names.
+void view(Bytes bytes) {
+    static ViewSession session(fuzz_folder().write("viewed.json", R"({"size": [16, 16], "camera": {"eye": [0, 3, 4],
+        "target": [0, 0, 0]}, "lights": [{"type": "point", "position": [1, 3, 1]},
+        {"type": "rectangle", "position": [0, 4, 0], "edge_u": [1, 0, 0], "edge_v": [0, 0, 1]}],
+        "objects": [{"type": "plane", "size": [6, 6]}, {"name": "lid", "type": "box", "transform": [{"translate": [0, 0.6, 0]}]}],
+        "animation": {"frames": 3, "objects": {"lid": {"keys": [{"frame": 2, "turn": 90}]}}}})"));
+    const std::string_view text{reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+    read_or_refuse([&] {
+        ViewRequest wanted      = view_request(std::string(text));
+        wanted.width            = std::min<std::uint64_t>(wanted.width, 24);
+        wanted.height           = std::min<std::uint64_t>(wanted.height, 16);
+        constexpr Budget little = {.seconds = 0.05, .bytes = 64e6};
+        (void)session.show(wanted, little);
+        if (wanted.x && wanted.y) (void)session.why(wanted, little);
+        (void)session.scene_text();
+    });
+}
+
 constexpr std::array kTargets{FuzzTarget{"image", image}, FuzzTarget{"report", report, true},
-                              FuzzTarget{"pipeline", pipeline, true}};
+                              FuzzTarget{"pipeline", pipeline, true}, FuzzTarget{"view", view, true}};
 
 }  // namespace
 

@@ -57,8 +57,9 @@ class Fuzz : public ::testing::TestWithParam<FuzzTarget> {};
 TEST_P(Fuzz, SurvivesItsSeedsAndChangesOfThem) {
     const FuzzTarget& target = GetParam();
     // A scene goes through all methods in about five milliseconds, and a report is written in about as many.
-    const bool slow = target.name == "pipeline" || target.name == "report" || target.name == "image";
-    const auto all  = seeds(target.name);
+    const bool slow =
+        target.name == "pipeline" || target.name == "report" || target.name == "image" || target.name == "view";
+    const auto all = seeds(target.name);
     ASSERT_GE(all.size(), 2u) << "tests/fuzz/corpus/" << target.name;
     for (std::size_t s = 0; s < all.size(); ++s) {
         EXPECT_EQ(fault(target, all[s].bytes), "") << all[s].name;
