@@ -189,7 +189,10 @@ def read_exr(path):
 
 def read_png(path):
     """Rows of (r, g, b)."""
-    data = open(path, 'rb').read()
+    return png_of(open(path, 'rb').read(), path)
+
+
+def png_of(data, path='a PNG'):
     at, packed = 8, b''
     while at < len(data):
         size, kind = struct.unpack_from('>I4s', data, at)

@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Plants one fault at a time in copies of small reports: recompute.py has to find each.
 
-    tests/recompute/planted_faults.py COMPARED SWEPT MOVED SUMMED RECOMMENDED LADDERED
+    tests/recompute/planted_faults.py COMPARED SWEPT MOVED SUMMED RECOMMENDED LADDERED GROWN BIASED LECTURED
 
 The folders are what compare (of a scene with several lights, with two settings of one method), sweep,
-motion, energy, recommend and ladder wrote; small_reports.py writes such folders.
+motion, energy, recommend, ladder, growth, bias (beside a comparison of its settings) and report (of studies, with the
+lectures in German) wrote; small_reports.py writes such folders.
 """
 import json
 import os
@@ -41,9 +42,9 @@ def in_json(change, of_scene=False, name='results.json'):
     return plant
 
 
-def in_page(change, of_scene=False):
+def in_page(change, of_scene=False, name='index.html'):
     def plant(folder):
-        path = os.path.join(scene_folder(folder) if of_scene else folder, 'index.html')
+        path = os.path.join(scene_folder(folder) if of_scene else folder, name)
         with open(path, encoding='utf-8') as f:
             page = f.read()
         changed = change(page)
@@ -274,6 +275,55 @@ def columns_of_energy(record):
     exchanged(o, 'irradiance', 'unshadowed')
 
 
+def a_fit(record):
+    """A fitted exponent of a method, and the method."""
+    return next((f, m) for m in record['growth'][0]['methods'] for f in m['fits'] if f.get('verdict'))
+
+
+def median_as_least(record):
+    """Medians for the least times: fits take those, so that they are no longer of these samples."""
+    _, m = a_fit(record)
+    for p in m['points']:
+        for phase in p['times'].values():
+            if isinstance(phase, dict) and 'samples' in phase:
+                phase['samples'] = [phase['median'] * (1.1 if i % 2 else 0.9) for i in range(len(phase['samples']))]
+
+
+def other_verdict(record):
+    fit, _ = a_fit(record)
+    fit['verdict'] = 'agrees' if fit['verdict'] != 'agrees' else 'above'
+
+
+def wider(record):
+    fit, _ = a_fit(record)
+    fit['interval'] = [fit['exponent'] - 1.1 * (fit['exponent'] - fit['interval'][0]), fit['interval'][1]]
+
+
+def terminator_counted(record):
+    """As if what is wrong at the terminator were a false shadow."""
+    for study in record['bias']:
+        if study['scene'] in ('all', 'self_shadow'):
+            study['receiver_plane']['false_shadow']['interior'] += 1
+
+
+def in_bias(change):
+    return in_json(change, name='bias/results.json')
+
+
+def in_study(command, change):
+    scenes = {'shading': 'self_shadow', 'whitted': 'mirror_and_glass', 'radiosity': 'closed_room'}
+    return in_json(change, name=f'{command}-{scenes[command]}/results.json')
+
+
+def times_of_other(record):
+    a, b = record['models'][:2]
+    exchanged_between(a, b, 'times_ms')
+
+
+def exchanged_between(a, b, key):
+    a[key], b[key] = b[key], a[key]
+
+
 FAULTS = {
     'compared': [
         ('a figure is half of what the planes say', in_json(halved, True)),
@@ -285,6 +335,9 @@ FAULTS = {
         ('a piece of an edge too many', in_json(edges_without_lost, True)),
         ('two methods have one another\'s text', in_json(lambda r: exchanged_text(r), True)),
         ('coverage counts as whole', in_json(lambda r: [m.update(coverage=0.5) for m in r['methods'][:1]], True)),
+        ('what a page shows under the cursor is of two settings in one another\'s rows',
+         in_page(lambda script: script.replace('resolution=64)"', '\0', 1).replace('resolution=256)"', 'resolution=64)"',
+                 1).replace('\0', 'resolution=256)"'), True, 'values.js')),
         ('heads of two columns of a scene page are exchanged', in_page(heads_exchanged('MAE', 'RMSE'), True)),
         ('a scene page names the last light above the rows of the first', in_page(light_renamed, True)),
         ('a scene page shows percentages without their tenths', in_page(coverage_rounded, True)),
@@ -338,6 +391,37 @@ FAULTS = {
         ('a page names another class of errors', in_page(lambda page: page.replace('<small>leak</small>',
                                                                                    '<small>acne</small>', 1))),
         ('heads of two columns of a ladder page are exchanged', in_page(heads_exchanged('lit', 'in shadow'))),
+    ],
+    'grown': [
+        ('an exponent is of other times', in_json(median_as_least)),
+        ('an exponent meets another verdict', in_json(other_verdict)),
+        ('an interval is a tenth wider', in_json(wider)),
+        ('heads of two columns of exponents are exchanged', in_page(heads_exchanged('exponent', '95 %'))),
+        ('a page shows another exponent', in_page(figure_raised(r'<td class="text">camera frame</td><td>'))),
+    ],
+    'biased': [
+        ('what is wrong at the terminator counts as false shadow', in_bias(terminator_counted)),
+        ('another setting is called the best', in_bias(lambda r: r['bias'][1]['best_manual'].update(constant=4.0))),
+        ('the sum leaves out a scene', in_bias(lambda r: r['bias'][0].update(points=r['bias'][1]['points']))),
+        ('false shadow and false light are exchanged in the head of the page',
+         in_page(lambda page: page.replace('>shadow<', '>\0<', 1).replace('>light<', '>shadow<', 1).replace('\0', 'light'),
+                 name='bias/index.html')),
+        ('a file has another number of wrong points', in_page(figure_raised(r'self_shadow,[^,]*,\d+,'),
+                                                              name='bias/bias.csv')),
+    ],
+    'lectured': [
+        ('the times of two shading models are exchanged', in_study('shading', times_of_other)),
+        ('the errors of two shading models are exchanged',
+         in_study('shading', lambda r: exchanged_between(r['models'][0], r['models'][2], 'rmse'))),
+        ('the first ray leaves and is not counted', in_study('whitted', lambda r: r['depths'][1].update(
+            left=r['depths'][1]['left'] - 1))),
+        ('a phase has the part of another', in_study('whitted', lambda r: exchanged_between(*r['phases'][:2],
+                                                                                         'fraction'))),
+        ('a step of radiosity is missing', in_study('radiosity', lambda r: r['unshot'].pop(3))),
+        ('the lectures show another figure', in_page(figure_raised(r'<span lang="de">[^<]*?: [^<]*?0,'),
+                                                     name='lectures.html')),
+        ('the lectures write a decimal point in German',
+         in_page(lambda page: re.sub(r'(<span lang="de">[^<]*? 0),', r'\1.', page, count=1), name='lectures.html')),
     ],
 }
 

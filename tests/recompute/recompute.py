@@ -3,7 +3,7 @@
 
     tests/recompute/recompute.py [--need-all] DIR ...
 
-DIR is what compare, sweep, motion or energy wrote. Prints how many figures of each kind are right; exit code 1 where
+DIR is what compare, sweep, motion, energy, growth, a study or report wrote. Prints how many figures of each kind are right; exit code 1 where
 one is not, or, with --need-all, where there is none of a kind.
 """
 import argparse
@@ -20,14 +20,18 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 from pages import NONE, headed, number, shows, tables  # noqa: E402
 from pictures import read_exr  # noqa: E402
 from planes import REACH, Geometry, light_errors, picture_figures, telling_points  # noqa: E402
+from growths import grown, growth_page  # noqa: E402
 from statistics_anew import interval, median, ratio, student_bound, upper_share  # noqa: E402
+import values as script  # noqa: E402
+from studies import biased, exchanged, judged_alike, lectures, shaded, traced  # noqa: E402
 
 
 KINDS = ('errors', 'coverage', 'pictures', 'times', 'labels', 'scene pages', 'ratios of pages', 'index',
         'sweep metrics',
          'sweep worst views', 'sweep bounds', 'sweep cells', 'sweep costs', 'sweep fronts', 'trade pages',
          'trade findings', 'trade at fixed errors', 'motion', 'motion winners', 'motion break-even', 'motion pages',
-         'energy', 'recommendations', 'ladders', 'ladder pages')
+         'energy', 'recommendations', 'ladders', 'ladder pages', 'growth', 'growth pages', 'bias', 'bias as compare',
+         'shading', 'whitted', 'radiosity', 'lectures', 'values')
 
 
 class Tally:
@@ -103,7 +107,7 @@ def tone_of(source):
 
 def compared(folder, record, tally):
     """results.json of compare, from reference.exr and the methods' planes."""
-    reference, geometry = None, None
+    reference, geometry, columns = None, None, []
     names = [l['name'] for l in record['lights']]
     if len({m['text'] for m in record['methods']}) != len(record['methods']):
         tally.fault(folder, 'two methods have one text')
@@ -145,6 +149,8 @@ def compared(folder, record, tally):
         if (picture.width, picture.height) != (record['size']['width'], record['size']['height']):
             tally.fault(where, 'the planes are of another size')
             continue
+        title = method['title'] or method['name'].replace('_', ' ')
+        columns.append((f'{title} ({settings})' if settings else title, picture))
         asked = given = 0
         for light, error in zip(record['lights'], errors):
             faults = []
@@ -167,6 +173,17 @@ def compared(folder, record, tally):
                     tally.notes['pictures whose scene file is not there: RMSE alone'] += 1
                 tally.same('pictures', f'{where}.image', {k: method['image'][k] for k in (anew if tone else ('rmse',))},
                            {k: anew[k] for k in (anew if tone else ('rmse',))}, 2e-5)
+    path = os.path.join(folder, record.get('values') or '')
+    if reference is None or not os.path.isfile(path):
+        return
+    values, where = script.planes(path), f'{folder}: values.js'
+    if values is None:
+        tally.fault(where, 'is no call with JSON alone')
+        return
+    classes = [text.split(' ', 1)[1] for text in columns[0][1].attributes['umbra:class'].split(', ')]
+    script.surfaces('values', where, values, reference, record['facts']['objects'], tally)
+    for who, picture in [('Reference', reference), *columns]:
+        script.column('values', where, values, who, picture, names, classes, tally)
 
 
 SHARES = {'interior': ('false_shadow.interior', 'false_light.interior'), 'edge': ('false_shadow.edge',
@@ -571,7 +588,7 @@ def moved(folder, scene, limit, tally):
     rest = {m['text']: m['at_rest'] for m in scene['methods'] if m['text'] in complete}
     ms = lambda text, *phases: sum(rest[text][p]['median'] for p in phases)
     noise, pairs = 1 + (math.inf if scene['noise_bar'] is None else scene['noise_bar']), []
-    for slow in complete:
+    for slow in complete if noise <= 1 + MOST_NOISE else ():
         for fast in complete:
             start, frame = [tuple(ms(t, *phases) for t in (slow, fast)) for phases in (PHASES[:2], PHASES[2:])]
             if start[0] > start[1] * noise and frame[1] > frame[0] * noise:
@@ -617,14 +634,13 @@ def summed(folder, record, tally):
 # Pages.
 
 def labels(methods):
-    """What pages call the settings: the title, with settings where one method has several."""
-    names = Counter(m['name'] for m in methods)
+    """What pages call the settings: the title, with the settings that are not the defaults."""
     texts = Counter(m['text'] for m in methods)
     found = {}
     for m in methods:
         title, settings = m['title'] or m['name'].replace('_', ' '), m['text'].partition(':')[2]
         if texts[m['text']] == 1:
-            found[f'{title} ({settings})' if names[m['name']] > 1 and settings else title] = m
+            found[f'{title} ({settings})' if settings else title] = m
     return found
 
 
@@ -768,6 +784,9 @@ def scene_page(page, record, tally):
                     cell(kind, f'{page}: {row[0][0]}, {head}', text, OF_METHODS[head](method, None), tally)
             who = [m for m in record['methods'] if ran(m)] if times else [m for m in judged if m.get('image')]
             fixed_rows(kind, page, got, [label_of.get(id(m)) for m in who], tally)
+        elif heads == ['Method', 'S', 'Difference', 'Class']:
+            if rows:  # a script fills it, from values.js
+                tally.fault(page, 'values under the cursor that nobody asked for')
         elif heads == ['Method', 'Object', 'Light', 'Camera']:
             found['ratios'] += 1
             ratios(page, record, known, rows, tally)
@@ -1288,8 +1307,12 @@ def ladder_page(page, record, tally):
         tally.fault(page, f'{overview} tables of all ladders')
 
 
+# What only one kind of record has: the command, and who reads it.
+STUDIES = {'models': ('shading', shaded), 'depths': ('whitted', traced), 'unshot': ('radiosity', exchanged)}
+
+
 def check(folder, tally):
-    records, sweeps = [], []
+    records, sweeps, studies, biases = [], [], {}, []
     for place, folders, files in os.walk(folder):
         folders.sort()
         if 'recommendation.json' in files:
@@ -1314,6 +1337,17 @@ def check(folder, tally):
                 ladder_page(page, record, tally)
         elif 'frames' in record and 'mean' in record:
             summed(place, record, tally)
+        elif 'growth' in record:
+            grown(place, record, tally)
+            growth_page(page, record, tally)
+        elif 'bias' in record:
+            biased(place, record, tally)
+            biases.append((place, record))
+        elif any(of in record for of in STUDIES):
+            command = next(of for of in STUDIES if of in record)
+            name, study = STUDIES[command]
+            study(place, record, tally)
+            studies[name, record['scene']['name']] = record
         elif 'methods' in record and 'reference' in record and 'scene' in record:
             if not os.path.isfile(os.path.join(place, record['reference'].get('files', {}).get('exr',
                     ' '))) and place == folder:
@@ -1322,6 +1356,13 @@ def check(folder, tally):
             records.append(record)
             if os.path.isfile(page):
                 scene_page(page, record, tally)
+    studies.update({('', r['scene']['name']): r for r in records})
+    for place, record in biases:
+        judged_alike(place, record, records, tally)
+    page = os.path.join(folder, 'lectures.html')
+    if os.path.isfile(page) and records:
+        with open(page, encoding='utf-8') as f:
+            lectures(page, re.search('<html lang="(..)"', f.read())[1], studies, tally)
     page = os.path.join(folder, 'index.html')
     if os.path.isfile(page):
         if records:

@@ -53,3 +53,18 @@ run('recommended', *choice)
 quieten('recommended')
 with open(os.path.join(folder, 'recommended', 'recommendation.json'), 'w', encoding='utf-8') as f:
     run('recommended', *choice, out=f)
+
+run('grown', 'growth', '--over', 'triangles', '--max', '20000', '--methods', 'shadow_zbuffer', 'ray_traced',
+    'shadow_volumes')
+# The same settings by two commands, which have to count the same: curved bodies have points at the terminator.
+curved = os.path.join(top, 'scenes', 'self_shadow.json')
+tiny = ['--size', '48x27']
+run('biased/bias', 'bias', curved, scenes[0], *tiny)
+run('biased/compared', 'compare', curved, scenes[0], *tiny, '--methods', 'shadow_zbuffer',
+    'shadow_zbuffer:bias=receiver_plane', 'shadow_zbuffer:bias=manual,constant=0,slope=0,normal_offset=0',
+    'shadow_zbuffer:bias=manual,constant=2,slope=0.5,normal_offset=1')
+studies = {'compare': ['self_shadow', '--methods', 'shadow_zbuffer', *tiny], 'shading': ['self_shadow', *tiny],
+           'whitted': ['mirror_and_glass', *tiny], 'radiosity': ['closed_room', '--patch', '0.25']}
+for command, (scene, *options) in studies.items():
+    run(f'studied/{command}', command, os.path.join(top, 'scenes', f'{scene}.json'), *options)
+run('lectured', 'report', *(os.path.join(folder, 'studied', command) for command in studies), '--lang', 'de')

@@ -55,12 +55,16 @@ def upper_share(wrong, of):
     return 1.0 if of == 0 or wrong >= of else _where(lambda p: _beta_part(wrong + 1, of - wrong, p) >= 0.95, 0.0, 1.0)
 
 
+def student_t(degrees, below=0.975):
+    """The value that Student's t with so many degrees of freedom stays below with this probability."""
+    return _where(lambda t: 1 - 0.5 * _beta_part(degrees / 2, 0.5, degrees / (degrees + t * t)) >= below, 0.0, 1000.0)
+
+
 def student_bound(values):
     """The one-sided 95 % prediction bound of one more value: of logarithms where all values are above 0."""
     logarithms = min(values) > 0
     v, n = [math.log(x) if logarithms else x for x in values], len(values)
     mean = sum(v) / n
     spread = math.sqrt(sum((x - mean) ** 2 for x in v) / (n - 1))
-    t = _where(lambda t: 1 - 0.5 * _beta_part((n - 1) / 2, 0.5, (n - 1) / (n - 1 + t * t)) >= 0.95, 0.0, 1000.0)
-    bound = mean + t * spread * math.sqrt(1 + 1 / n)
+    bound = mean + student_t(n - 1, 0.95) * spread * math.sqrt(1 + 1 / n)
     return math.exp(bound) if logarithms else bound
