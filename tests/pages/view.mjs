@@ -49,16 +49,17 @@ function view(scene, ...methods) {
 }
 const frames = (page) => page.evaluate(() => Number(document.body.dataset.frames || 0));
 const after = (page, before) => page.waitForFunction((n) => Number(document.body.dataset.frames) > n, before, { timeout: 30000, polling: 5 });
-/** Until the truth of what is shown now is there. */
+/** Until the truth of what is shown now is there, and no further picture comes. */
 async function rest(page) {
-  let said = "";
-  for (let k = 0; k < 300; ++k) {
+  let quiet = 0, shown = -1, said = "";
+  for (let k = 0; k < 600 && quiet < 10; ++k) {
     await page.waitForTimeout(100);
-    const now = await page.textContent("#errors");
-    if (now.includes("RMSE") && now === said) return now;
-    said = now;
+    const now = await frames(page);
+    said = await page.textContent("#errors");
+    quiet = now === shown && said.includes("RMSE") ? quiet + 1 : 0;
+    shown = now;
   }
-  check("the truth comes to rest", false, said);
+  check("the truth comes to rest", quiet === 10, said);
   return said;
 }
 const lit = (page) => page.evaluate(() => [...new Set([...document.querySelectorAll(".phases td.lit")].map((e) => e.dataset.phase))].join(" "));
