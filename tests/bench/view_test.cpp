@@ -296,6 +296,11 @@ TEST(ViewRequests, AreReadWithCare) {
     refused("picture", "../../etc/passwd");
     refused("\"truth\":0", "\"truth\":7");
     refused("}", "");
+    // Numbers that are left out are none.
+    refused("\"width\":64,", "");
+    refused("\"height\":36,", "");
+    refused("\"objects\":[]", R"("objects":[{"object":0,"move":[0,0,0]}])");
+    refused("\"lights\":[]", R"("lights":[{"light":0,"position":[0,0,0],"direction":[0,1,0]}])");
     refused("\"width\":64,\"height\":36", "\"width\":1900,\"height\":1900");
 }
 

@@ -84,7 +84,7 @@ TEST_F(Failures, CompareRecordsMethodLightAndMessageAndGoesOn) {
         EXPECT_EQ(second["methods"][0]["errors"].size(), 2u);
         for (const char* page : {"out/first/index.html", "out/index.html"}) {
             const std::string html = text_of(file(page));
-            EXPECT_TRUE(contains(html, "Shadow z-buffer failed")) << page;
+            EXPECT_TRUE(contains(html, "Shadow z-buffer (resolution=16,bias=manual) failed")) << page;
             EXPECT_FALSE(contains(html, "<planted>")) << page << ": a message is text, not markup";
         }
         EXPECT_FALSE(contains(text_of(file("out/second/index.html")), " failed"));

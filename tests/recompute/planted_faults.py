@@ -335,9 +335,10 @@ FAULTS = {
         ('a piece of an edge too many', in_json(edges_without_lost, True)),
         ('two methods have one another\'s text', in_json(lambda r: exchanged_text(r), True)),
         ('coverage counts as whole', in_json(lambda r: [m.update(coverage=0.5) for m in r['methods'][:1]], True)),
-        ('what a page shows under the cursor is of two settings in one another\'s rows',
-         in_page(lambda script: script.replace('resolution=64)"', '\0', 1).replace('resolution=256)"', 'resolution=64)"',
-                 1).replace('\0', 'resolution=256)"'), True, 'values.js')),
+        ('what a page shows under the cursor is in the row of another method',
+         in_page(lambda script: script.replace('"Planar projection"', '"\0"', 1).replace(
+             '"Shadow z-buffer (resolution=64)"', '"Planar projection"', 1).replace(
+             '\0', 'Shadow z-buffer (resolution=64)'), True, 'values.js')),
         ('heads of two columns of a scene page are exchanged', in_page(heads_exchanged('MAE', 'RMSE'), True)),
         ('a scene page names the last light above the rows of the first', in_page(light_renamed, True)),
         ('a scene page shows percentages without their tenths', in_page(coverage_rounded, True)),
