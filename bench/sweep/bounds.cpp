@@ -79,15 +79,22 @@ double share_beyond(int views, std::size_t tried) {
     return 1 - std::pow((1 - kConfidence) / static_cast<double>(tried), 1.0 / views);
 }
 
-std::string why_unfit(std::span<const Json> views) {
+double most_undefined(std::span<const Json> views) {
     double undefined = 0;
+    for (const Json& cell : views)
+        if (cell.contains("undefined") && cell.at("undefined").is_number())
+            undefined = std::max(undefined, cell.at("undefined").get<double>());
+    return undefined;
+}
+
+std::string why_unfit(std::span<const Json> views) {
     for (const Json& cell : views) {
         if (cell.contains("failed")) return "it failed";
         if (cell.at("serves").at("how") == "not") return cell.at("serves").at("why").get<std::string>();
-        if (cell.contains("undefined") && cell.at("undefined").is_number())
-            undefined = std::max(undefined, cell.at("undefined").get<double>());
     }
-    return undefined > kMostLeftOut ? fmt::format("it leaves {:.3g} % of the points undefined", 100 * undefined) : "";
+    const double undefined = most_undefined(views);
+    return undefined > kMostLeftOut ? fmt::format("it leaves {:.3g} % of a view's points undefined", 100 * undefined)
+                                    : "";
 }
 
 std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views) {

@@ -16,6 +16,9 @@ inline constexpr double kConfidence = 0.95;
 /// has no error.
 inline constexpr double kMostLeftOut = 0.01;
 
+/// The largest fraction of the points that a view of them has left undefined; 0 of cells that do not say.
+[[nodiscard]] double most_undefined(std::span<const Json> views);
+
 /// Why a setting is on no front and not recommended, from cells of some of its views; empty where it may be.
 [[nodiscard]] std::string why_unfit(std::span<const Json> views);
 

@@ -50,6 +50,8 @@ Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
     for (const char* member :
          {"parameters", "serves", "failed", "measures", "compared_with", "memory_bytes", "points_bytes", "coverage"})
         if (cell.contains(member)) entry[member] = cell.at(member);
+    // As the errors, of the worst view.
+    if (entry.contains("coverage") && entry["coverage"].is_number()) entry["coverage"] = 1 - most_undefined(s.views);
     entry["excluded"] = why.empty() ? Json() : Json(why);
     entry["views"]    = Json::array();
     for (const Json& view : s.views) entry["views"].push_back(view_json(view));

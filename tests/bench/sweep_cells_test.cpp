@@ -549,7 +549,7 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
     const Json record = sweep_json(settings, 1, {60, 0, 0}, {});
     EXPECT_EQ(record["fronts"]["rmse"], (Json{"ray_traced:samples=1", "ray_traced:samples=4"}));
     EXPECT_EQ(record["settings"][0]["cost_ms"], 3 + 1);
-    EXPECT_EQ(record["settings"][3]["excluded"], "it leaves 50 % of the points undefined");
+    EXPECT_EQ(record["settings"][3]["excluded"], "it leaves 50 % of a view's points undefined");
     EXPECT_TRUE(record["settings"][0]["excluded"].is_null());
     // Half of the frames have a light that moved: aim is paid in half of them.
     EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0}, {})["settings"][1]["cost_ms"].get<double>(), 3 + 2 + 0.5 * 10,

@@ -427,7 +427,7 @@ TEST_F(RecommendByHand, EveryMethodThatWasTriedHasALine) {
                              "    ray_traced             9.000 ms  rmse at most 0.008\n",
                              "    shadow_volumes        18.000 ms  rmse at most 0.001\n",
                              "    brute_force           36.000 ms  rmse at most 0.001\n",
-                             "    planar_projection  left out: it leaves 40 % of the points undefined\n",
+                             "    planar_projection  left out: it leaves 40 % of a view's points undefined\n",
                              "  Costs that differ by less than 10 % are not told apart on this machine now.\n",
                              "  6 of 6 settings were looked at, in 2 views each.\n"})
         EXPECT_NE(words.find(line), std::string::npos) << line << words;
@@ -435,7 +435,7 @@ TEST_F(RecommendByHand, EveryMethodThatWasTriedHasALine) {
     ASSERT_EQ(json["methods"].size(), 5u);
     EXPECT_EQ(json["methods"][0]["best"]["method"], "shadow_zbuffer");
     EXPECT_NEAR(json["methods"][0]["factor"].get<double>(), 2, 1e-9);
-    EXPECT_EQ(json["methods"][4]["unfit"], "it leaves 40 % of the points undefined");
+    EXPECT_EQ(json["methods"][4]["unfit"], "it leaves 40 % of a view's points undefined");
     EXPECT_EQ(json["candidates"].size(), 5u);
     EXPECT_EQ(json["candidates"][4]["cost"], 2.5);
 }
