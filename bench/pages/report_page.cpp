@@ -27,7 +27,7 @@ SceneFiles::SceneFiles(const ScenePage& scene, StagedFiles& staged) : scene_(sce
 
 fs::path SceneFiles::found(const FileName& file) const {
     const fs::path name = file.name;
-    const fs::path path = scene_.data / name;
+    fs::path path       = scene_.data / name;
     if (name.is_absolute() || *path.lexically_normal().lexically_relative(scene_.data).begin() == "..")
         file.at.refuse("a file in the same folder");
     if (!is_file(path)) file.at.refuse("an existing file");
