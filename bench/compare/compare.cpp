@@ -187,11 +187,13 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
     }
     results.turns = time_methods(staging, prepared, listed, answered, options.repeats, options.budget, tell);
     for (Answered& a : answered) results.methods.push_back(std::move(a.entry));
-    results.times  = {{"load_ms", prepared.load_ms},
-                      {"facts_ms", prepared.facts_ms},
-                      {"rays_build_ms", prepared.rays_build_ms},
-                      {"gbuffer_ms", prepared.gbuffer_ms},
-                      {"shade_ms", shade_ms}};
+    results.times = {{"load_ms", prepared.load_ms},
+                     {"facts_ms", prepared.facts_ms},
+                     {"rays_build_ms", prepared.rays_build_ms},
+                     {"gbuffer_ms", prepared.gbuffer_ms},
+                     {"shade_ms", shade_ms}};
+    for (const MethodRecord& method : results.methods)
+        if (method.failed) values.remove(label_of(method));
     results.values = {"values.js"};
     write_text(staging / results.values.name, values.text());
     write_text(staging / "results.json", record_text(results));

@@ -72,6 +72,10 @@ void ValuesScript::add(const std::string& who, const MethodRun& run, std::span<c
     columns_.push_back({who, other.empty() ? kReference : other, planes_of(run, explained)});
 }
 
+void ValuesScript::remove(const std::string& who) {
+    std::erase_if(columns_, [&](const Column& column) { return column.who == who; });
+}
+
 std::string ValuesScript::text() const {
     Json columns = Json::array(), lights = Json::array(), objects = Json::array();
     for (const Column& column : columns_) {

@@ -24,6 +24,9 @@ public:
     void add(const std::string& who, const MethodRun& run, std::span<const Explained> explained,
              const MethodRun* truth);
 
+    /// Takes a method's column away, which has failed since; nothing where there is none.
+    void remove(const std::string& who);
+
     [[nodiscard]] std::string text() const;
 
 private:

@@ -271,6 +271,37 @@ public:
     }
 };
 
+int builds = 0;
+
+/// Fails when it is timed, after its answers have been written.
+class FailsAgain final : public Method {
+public:
+    explicit FailsAgain(const Settings&) {}
+    [[nodiscard]] Service serves(const SceneFacts&) const override { return {How::approximately, "once"}; }
+    [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
+        if (++builds > 1) throw std::runtime_error("not again");
+        return Method::build(scene, facts);
+    }
+    void visibility(const Aimed&, const Looked&, Visibility) const override {}
+};
+
+TEST_F(Compare, AMethodThatFailsWhenItIsTimedLeavesNoValues) {
+    MethodInfo info;
+    info.name        = "once";
+    info.title       = "Only once";
+    info.create      = create<FailsAgain>;
+    options_.methods = {"shadow_zbuffer"};
+    options_.choices.emplace_back(info);
+    options_.repeats = {3, 1000};
+    builds           = 0;
+    ASSERT_EQ(compare_scenes({scene_}, options_).stopped.size(), 1u);
+    EXPECT_GT(builds, 1);
+    EXPECT_FALSE(fs::exists(options_.out / "lamp_over_box/once.exr"));
+    const std::string values = text_of(options_.out / "lamp_over_box/values.js");
+    EXPECT_EQ(values.find("Only once"), std::string::npos);
+    EXPECT_NE(values.find("\"Shadow z-buffer\""), std::string::npos);
+}
+
 TEST_F(Compare, AMethodThatFailsLosesNoOther) {
     MethodInfo info;
     info.name       = "failing";
