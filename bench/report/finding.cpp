@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "umbra/bench/pages/error_palette.h"
@@ -37,27 +38,46 @@ double sum_of(const MethodRecord& method, DirectionRecord ErrorRecord::*object, 
     return sum;
 }
 
-/// The classes of a method's wrong interior points: "6 acne, 3 other false shadow".
-std::string classes_in_words(const MethodRecord& method) {
-    std::vector<std::string> parts;
-    for (const std::string& group : error_groups()) {
-        double rest = sum_of(method, group, "interior") - sum_of(method, &ErrorRecord::penumbra_error, group) -
-                      sum_of(method, &ErrorRecord::noise_error, group);
-        bool any = false;
-        for (const ErrorColour& entry : kErrorPalette) {
-            if (entry.group != group || entry.member.empty()) continue;
-            const double n = sum_of(method, group, entry.member);
-            if (n > 0) parts.push_back(fmt::format("{} {}", count(n), in_words(std::string(entry.key))));
-            any |= n > 0;
-            rest -= n;
-        }
-        if (rest > 0) parts.push_back(fmt::format("{}{} {}", count(rest), any ? " other" : "", in_words(group)));
-    }
-    for (const auto& [object, name] :
-         {std::pair{&ErrorRecord::penumbra_error, "in penumbrae"}, std::pair{&ErrorRecord::noise_error, "by noise"}}) {
+/// How many of a method's wrong interior points are of a class, in the order of the palette; classes without any are
+/// left out.
+std::vector<std::pair<const ErrorColour*, double>> interior_classes(const MethodRecord& method) {
+    std::vector<std::pair<const ErrorColour*, double>> counts;
+    for (const ErrorColour& entry : kErrorPalette) {
+        if (!entry.interior) continue;
         double n = 0;
-        for (const std::string& group : error_groups()) n += sum_of(method, object, group);
-        if (n > 0) parts.push_back(fmt::format("{} {}", count(n), name));
+        if (!entry.member.empty()) {
+            n = sum_of(method, entry.group, entry.member);
+        } else if (!entry.group.empty()) {  // the rest of its group
+            n = sum_of(method, entry.group, "interior") - sum_of(method, &ErrorRecord::penumbra_error, entry.group) -
+                sum_of(method, &ErrorRecord::noise_error, entry.group);
+            for (const ErrorColour& named : kErrorPalette)
+                if (named.group == entry.group && !named.member.empty()) n -= sum_of(method, named.group, named.member);
+        } else {
+            for (const std::string& group : error_groups())
+                n += sum_of(
+                    method,
+                    entry.error_class == ErrorClass::noise ? &ErrorRecord::noise_error : &ErrorRecord::penumbra_error,
+                    group);
+        }
+        if (n > 0) counts.emplace_back(&entry, n);
+    }
+    return counts;
+}
+
+/// "6 acne, 3 other false shadow".
+std::string classes_in_words(const MethodRecord& method) {
+    const auto counts = interior_classes(method);
+    std::vector<std::string> parts;
+    for (const auto& [entry, n] : counts) {
+        const bool any = std::ranges::any_of(counts, [&, &of = entry](const auto& other) {
+            return other.first->group == of->group && !other.first->member.empty();
+        });
+        parts.push_back(fmt::format("{} {}", count(n),
+                                    !entry->member.empty() ? in_words(std::string(entry->key))
+                                    : !entry->group.empty()
+                                        ? (any ? "other " : "") + in_words(std::string(entry->group))
+                                    : entry->error_class == ErrorClass::noise ? "by noise"
+                                                                              : "in penumbrae"));
     }
     return fmt::format("{}", fmt::join(parts, ", "));
 }
@@ -69,33 +89,6 @@ std::string right_in_words(const std::vector<Compared>& right) {
     return fmt::format("all {} other methods: none{}", right.size(), partial ? " where they answer" : "");
 }
 
-/// What most of a method's wrong interior points have in common; null where there is none.
-const ErrorColour* most_frequent(const MethodRecord& method) {
-    const ErrorColour* found = nullptr;
-    double most              = 0;
-    const auto take          = [&](const ErrorColour& entry, double n) {
-        if (n > most) found = &entry, most = n;
-    };
-    for (const ErrorColour& entry : kErrorPalette) {
-        if (!entry.interior) continue;
-        double n = 0;
-        for (const std::string& group : error_groups()) {
-            if (entry.error_class == ErrorClass::penumbra) n += sum_of(method, &ErrorRecord::penumbra_error, group);
-            if (entry.error_class == ErrorClass::noise) n += sum_of(method, &ErrorRecord::noise_error, group);
-            if (entry.group != group) continue;
-            n += sum_of(method, group, entry.member.empty() ? "interior" : entry.member);
-            if (entry.member.empty())
-                n -= sum_of(method, &ErrorRecord::penumbra_error, group) +
-                     sum_of(method, &ErrorRecord::noise_error, group);
-            for (const ErrorColour& named : kErrorPalette)
-                if (entry.member.empty() && named.group == group && !named.member.empty())
-                    n -= sum_of(method, group, named.member);
-        }
-        take(entry, n);
-    }
-    return found;
-}
-
 }  // namespace
 
 std::string first_finding(const Results& results, const MethodRecord& method) {
@@ -104,10 +97,11 @@ std::string first_finding(const Results& results, const MethodRecord& method) {
     const Totals found      = totals(method);
     if (found.interior == 0)
         return fmt::format("{}Away from shadow edges, all of {} points are right.", sides, count(found.points));
-    const ErrorColour* most = most_frequent(method);
-    return fmt::format("{}Away from shadow edges, {} of {} points are wrong on the left. {}", sides,
+    const auto classes = interior_classes(method);
+    const auto most    = std::ranges::max_element(classes, {}, [](const auto& c) { return c.second; });
+    return fmt::format("{}Away from shadow edges, {} of {} points are wrong on the left.{}", sides,
                        count(found.interior), count(found.points),
-                       most == nullptr ? "" : fmt::format("Most of them: {}.", most->in_short));
+                       most == classes.end() ? "" : fmt::format(" Most often: {}.", most->first->in_short));
 }
 
 std::string finding(const Results& results) {

@@ -13,7 +13,7 @@ namespace umbra {
 [[nodiscard]] std::string finding(const Results& results);
 
 /// The same of one method, for those who see it for the first time: how many points away from shadow edges are wrong,
-/// and what most of them have in common.
+/// and the most frequent fault among them.
 [[nodiscard]] std::string first_finding(const Results& results, const MethodRecord& method);
 
 }  // namespace umbra

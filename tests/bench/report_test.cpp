@@ -181,7 +181,7 @@ TEST_F(Report, BeginsWithTheSceneAndTheMethodThatAreMostWrong) {
     EXPECT_TRUE(contains(
         front,
         "<a href=\"z/index.html\"><b>The grave</b></a>: left the shadows of “The ray_traced”, right those of the "
-        "reference. Away from shadow edges, 28 of 460\u202f800 points are wrong on the left. Most of them: lit points in "
+        "reference. Away from shadow edges, 28 of 460\u202f800 points are wrong on the left. Most often: lit points in "
         "the shadow of another surface.</p>"))
         << front;
     // The slider's pair, and the class picture of the light with the most wrong points.
@@ -297,7 +297,7 @@ TEST_F(Report, PenumbraAndNoiseAreNoOtherFalseShadow) {
     put(out / "court", results);
     write_report({out}, out);
     EXPECT_TRUE(contains(read(out / "court/index.html"), "(2 false shadow, 18 in penumbrae, 4 by noise)"));
-    EXPECT_TRUE(contains(read(out / "index.html"), "Most of them: a penumbra, which is missing or noisy on the left."));
+    EXPECT_TRUE(contains(read(out / "index.html"), "Most often: a penumbra, which is missing or noisy on the left."));
 }
 
 TEST_F(Report, WritesTheSameBytesAgain) {
