@@ -58,8 +58,8 @@ struct ViewRequest {
 template <class Fields>
 void describe(Fields& of, Is<ViewRequest>) {
     of.must("page", &ViewRequest::page, "a name that the page has given itself");
-    of("width", &ViewRequest::width, "pixels", {.least = 16, .most = 1920});
-    of("height", &ViewRequest::height, "pixels", {.least = 16, .most = 1920});
+    of.must("width", &ViewRequest::width, "pixels", {.least = 16, .most = 1920});
+    of.must("height", &ViewRequest::height, "pixels", {.least = 16, .most = 1920});
     of("frame", &ViewRequest::frame, "of the file's animation", {.least = 0, .most = 1e6});
     of("eye", &ViewRequest::eye, "world space", kThreeNumbers);
     of("target", &ViewRequest::target, "world space", kThreeNumbers);
