@@ -7,20 +7,13 @@
 // Needs playwright-core (where node finds it, or in the folder that PLAYWRIGHT names) and chromium (CHROMIUM, by default
 // /usr/bin/chromium); checks accessibility too where axe-core lies beside playwright-core. Exit codes: 0 passed,
 // 1 failed, 77 skipped since something is missing.
-import { createRequire } from "node:module";
 import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
 import { inflateSync } from "node:zlib";
+import { axe, launch, skip } from "./browser.mjs";
 
-const skip = (why) => { console.log(`skipped: ${why}`); process.exit(77); };
-const chromiumPath = process.env.CHROMIUM || "/usr/bin/chromium";
-const require = createRequire(join(resolve(process.env.PLAYWRIGHT || "."), "x.js"));
-let chromium, axe = "";
-try { ({ chromium } = require("playwright-core")); } catch { skip("playwright-core is not installed"); }
-try { axe = readFileSync(require.resolve("axe-core/axe.min.js"), "utf8"); } catch { console.log("axe-core is not installed: accessibility is not checked"); }
-if (!existsSync(chromiumPath)) skip(`${chromiumPath} is not there`);
 const report = resolve(process.argv[2] || "results");
 const withValues = existsSync(report) ? readdirSync(report).filter((name) => existsSync(join(report, name, "values.js"))).sort() : [];
 const scenes = process.argv.length > 3 ? process.argv.slice(3) : withValues.slice(0, 2);
@@ -65,15 +58,16 @@ function readValues(file) {
     const p = picture(data.columns.find((c) => c.who === who).planes[data.lights.indexOf(light)]);
     return { s: p[3 * i], class: p[3 * i + 1], answered: p[3 * i + 2] === 255 };
   };
+  const truthOf = (who) => data.columns.find((c) => c.who === who).truth;  // a reference has none
   return {
-    ...data, at, whos: data.columns.map((c) => c.who),
+    ...data, at, truthOf, whos: data.columns.map((c) => c.who), methods: data.columns.filter((c) => c.truth).map((c) => c.who),
     face: (i) => (faces[3 * i] << 16 | faces[3 * i + 1] << 8 | faces[3 * i + 2]) - 1,
     /** The compared points of a rectangle: their differences, in 255ths, and classes. */
     compared(who, light, box = { x: 0, y: 0, w: data.width, h: data.height }) {
       const found = [];
       for (let y = box.y; y < box.y + box.h; ++y) {
         for (let x = box.x; x < box.x + box.w; ++x) {
-          const a = at(who, light, y * data.width + x), b = at("Reference", light, y * data.width + x);
+          const a = at(who, light, y * data.width + x), b = at(truthOf(who) || who, light, y * data.width + x);
           if (a.class >= 6 && a.class !== 18 && a.answered && b.answered) found.push({ d: a.s - b.s, class: a.class });
         }
       }
@@ -84,10 +78,7 @@ function readValues(file) {
 const isWrong = (c) => c >= 8 && c <= 17;
 const signed = (d) => (Math.abs(d) < 0.0005 ? "0.000" : (d < 0 ? "−" : "+") + Math.abs(d).toFixed(3));
 
-const browser = await chromium.launch({
-  executablePath: chromiumPath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch();
 
 /** The section on a page: what a person does there, and what it then shows. */
 class Section {
@@ -137,13 +128,12 @@ async function checkPixel(section, v, light, p) {
   const on = face < 0 ? null : v.objects.find(([, n]) => (face < first + n) || ((first += n), false));
   check(`the surface at ${p.x}, ${p.y}`, said === `Pixel ${p.x}, ${p.y}: ${on ? `triangle ${face - first} of ${on[0]}` : "no surface"}.`, said);
   check("a row a method", rows.length === v.whos.length, rows.length);
-  const truth = v.at("Reference", light, i);
   for (const [k, who] of v.whos.entries()) {
     const a = v.at(who, light, i), given = a.answered && a.class > 0;
     check(`S of ${who} at ${p.x}, ${p.y}`, rows[k][0] === who && rows[k][1] === (given ? (a.s / 255).toFixed(3) : a.class ? "no answer" : "–"), rows[k]);
-    const difference = given && who !== "Reference" && truth.answered;
+    const isMethod = v.methods.includes(who), truth = v.at(v.truthOf(who) || who, light, i), difference = given && isMethod && truth.answered;
     check(`difference of ${who} at ${p.x}, ${p.y}`, rows[k][2] === (difference ? signed((a.s - truth.s) / 255) : "–"), rows[k]);
-    if (who !== "Reference") check(`class of ${who} at ${p.x}, ${p.y}`, await section.page.evaluate(([name, word]) => kClasses[name][0] === word, [v.classes[a.class], rows[k][3]]), rows[k]);
+    if (isMethod) check(`class of ${who} at ${p.x}, ${p.y}`, await section.page.evaluate(([name, word]) => kClasses[name][0] === word, [v.classes[a.class], rows[k][3]]), rows[k]);
   }
 }
 
@@ -154,7 +144,7 @@ function worst(v) {
 }
 
 async function checkWide(section, folder, v) {
-  const { page } = section, { who, light } = worst(v), other = v.whos.find((w) => w !== who && w !== "Reference");
+  const { page } = section, { who, light } = worst(v), other = v.methods.find((w) => w !== who);
   await section.open(folder);
   check("the address is left alone", !(await page.evaluate(() => location.hash)));
   await section.values();

@@ -5,23 +5,11 @@
 // REPORT is a folder that `umbra report` wrote, SCENE one of its folders (default: the first). Needs playwright-core
 // (where node finds it, or in the folder that PLAYWRIGHT names) and chromium (CHROMIUM, by default
 // /usr/bin/chromium). Exit codes: 0 passed, 1 failed, 77 skipped since one of the two is missing.
-import { createRequire } from "node:module";
 import { existsSync, readdirSync } from "node:fs";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
+import { launch } from "./browser.mjs";
 
-const chromiumPath = process.env.CHROMIUM || "/usr/bin/chromium";
-let chromium;
-try {
-  ({ chromium } = createRequire(join(resolve(process.env.PLAYWRIGHT || "."), "x.js"))("playwright-core"));
-} catch {
-  console.log("skipped: playwright-core is not installed");
-  process.exit(77);
-}
-if (!existsSync(chromiumPath)) {
-  console.log(`skipped: ${chromiumPath} is not there`);
-  process.exit(77);
-}
 const report = resolve(process.argv[2] || "results");
 const scene = process.argv[3] || readdirSync(report).filter((name) => existsSync(join(report, name, "index.html")) && name !== "ladders").sort()[0];
 
@@ -91,10 +79,7 @@ async function checkSlider(page, context, where, touch) {
   }
 }
 
-const browser = await chromium.launch({
-  executablePath: chromiumPath,
-  args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
-});
+const browser = await launch();
 for (const [width, height, touch] of [[1280, 720], [1366, 768], [1440, 900], [1536, 864], [1920, 1080], [390, 844, true]]) {
   const context = await browser.newContext({ viewport: { width, height }, hasTouch: Boolean(touch), isMobile: Boolean(touch) });
   const page = await context.newPage();

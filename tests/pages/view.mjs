@@ -7,25 +7,12 @@
 // folder that PLAYWRIGHT names; with axe-core beside it, accessibility is checked) and chromium (CHROMIUM, by default
 // /usr/bin/chromium). Exit codes: 0 passed, 1 failed, 77 skipped since one of the two is missing.
 import { spawn } from "node:child_process";
-import { existsSync, mkdirSync, readFileSync } from "node:fs";
-import { createRequire } from "node:module";
-import { join, resolve } from "node:path";
+import { mkdirSync } from "node:fs";
+import { join } from "node:path";
+import { axe, launch } from "./browser.mjs";
 
-const chromiumPath = process.env.CHROMIUM || "/usr/bin/chromium", modules = resolve(process.env.PLAYWRIGHT || ".");
-let chromium;
-try {
-  ({ chromium } = createRequire(join(modules, "x.js"))("playwright-core"));
-} catch {
-  console.log("skipped: playwright-core is not installed");
-  process.exit(77);
-}
-if (!existsSync(chromiumPath)) {
-  console.log(`skipped: ${chromiumPath} is not there`);
-  process.exit(77);
-}
 const [program, pictures] = process.argv.slice(2);
 if (pictures) mkdirSync(pictures, { recursive: true });
-const axe = join(modules, "node_modules/axe-core/axe.min.js");
 
 let failed = 0;
 function check(what, ok, found = "") {
@@ -124,7 +111,7 @@ async function clicksAWrongPoint(page, name) {
   await picture(page, `${name}-why`);
 }
 
-const browser = await chromium.launch({ executablePath: chromiumPath, args: ["--no-sandbox"] });
+const browser = await launch();
 const steps = [["umbra_penumbra", ["ray_traced"], dragsALight], ["sun_on_plane", ["shadow_zbuffer:bias=manual,constant=4"], turnsABias],
   ["real_dragon", ["shadow_zbuffer:resolution=256"], clicksAWrongPoint], ["umbra_penumbra", ["shadow_volumes"], clicksAWrongPoint]];
 for (const [scene, methods, step] of steps) {
@@ -142,8 +129,8 @@ for (const [scene, methods, step] of steps) {
     await page.waitForFunction(() => Number(document.body.dataset.frames || 0) >= 1, null, { timeout: 30000 });
     await step(page, name);
     check(`${name}: the page is as wide as the window`, await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth));
-    if (existsSync(axe)) {
-      await page.evaluate(readFileSync(axe, "utf8"));
+    if (axe) {
+      await page.evaluate(axe);
       const faults = await page.evaluate(() => globalThis.axe.run());
       check(`${name}: axe`, faults.violations.length === 0, faults.violations.map((v) => `${v.id} ${v.nodes[0].html}`).join("; "));
     }
