@@ -115,6 +115,7 @@ TEST_F(Report, SaysThatTheReferenceIsSampled) {
     write_report({out}, out);
     for (const fs::path& page : files_below(out, ".html"))
         EXPECT_TRUE(contains(read(page), "<strong>not exact</strong>. It is sampled.")) << page;
+    EXPECT_TRUE(contains(read(out / "court/index.html"), "compared with the inexact reference"));
     results["reference"]["exact"] = true;
     put(out / "court", results);
     write_report({out}, out);

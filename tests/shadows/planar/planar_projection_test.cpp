@@ -67,6 +67,27 @@ TEST(PlanarProjection, SaysHowItServes) {
     EXPECT_EQ(how(ball, "planar_projection").how, How::not_at_all);
 }
 
+/// Two triangles of 10^12, the second 1 above the first, at one corner where they slope: those are taken for one plane,
+/// which cannot hold the shadow of the one on the other. Level ones are told apart.
+TEST(PlanarProjection, SaysToRoundingOfExactPlanesOnly) {
+    const float far = 1e12f;
+    for (const bool slopes : {false, true}) {
+        Mesh floor{{{-far, 0, -far}, {far, 0, -far}, {0, 0, far}}, {}, {{0, 2, 1}}};
+        if (slopes)
+            for (vec3& x : floor.positions) x.y = x.x;
+        Scene scene;
+        add(scene, "floor", floor);
+        floor.positions[2].y = std::nextafter(floor.positions[2].x + 1, far);
+        if (!slopes)
+            for (vec3& x : floor.positions) x.y = 1;
+        add(scene, "other", floor);
+        scene.lights.push_back(light_at({0, 5, 0}));
+        const Service service = MethodCase("planar_projection", scene).serves();
+        EXPECT_EQ(service.how, slopes ? How::approximately : How::to_rounding);
+        EXPECT_EQ(service.why.find("flat up to the rounding of floats only") != std::string::npos, slopes);
+    }
+}
+
 TEST(PlanarProjection, LeavesSmallerPlanesOpenWhereTheShareIsRaised) {
     const Scene scene       = known_scene("box_from_front").scene;
     const PointBatch points = primary(scene);
