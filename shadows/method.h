@@ -6,7 +6,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -87,6 +90,12 @@ template <class Own>
     return static_cast<const Own&>(value);
 }
 
+/// What a method from outside says its phases took: every sample, milliseconds.
+struct OwnTimes {
+    std::vector<double> build{}, look{};
+    std::map<LightId, std::vector<double>> aim{}, visibility{};
+};
+
 class Method;
 
 /// Method::serves, but `not_at_all` where occluders let a part of the light through and the method does not compute
@@ -123,6 +132,10 @@ public:
 
     /// Which fraction it answers. A method is compared with the truth of the same measure.
     [[nodiscard]] virtual Measure measures() const { return Measure::area; }
+
+    /// What a method from outside says its phases took on this scene, so far, with these settings; nothing where there
+    /// is no clock but ours.
+    [[nodiscard]] virtual std::optional<OwnTimes> own_times(const Scene& /*scene*/) const { return std::nullopt; }
 
     /// Called before each `build`, outside the clock: for preparations that are not the method's own work, as starting
     /// a program, or writing the scene to a file for it.
@@ -226,7 +239,9 @@ struct MethodInfo {
                                 ///< (scenes/canonical.txt), and on ladders
     bool needs_raster = false;  ///< it serves only batches that have a raster
     std::string_view seed{};    ///< the parameter that seeds its noise; empty: it has none
-    std::unique_ptr<const Method> (*create)(const Settings& settings) = nullptr;  ///< create<T>
+    std::function<std::unique_ptr<const Method>(const Settings& settings)> create{};  ///< create<T>
+    std::string outside{};  ///< of a method from outside: what it is ("program", "file of answers"); else empty
+    bool is_timed = true;   ///< false: its phases only hand out what was computed elsewhere
 
     /// Whether reports show it, on all scenes or on some.
     [[nodiscard]] bool is_shown() const { return by_default || shown; }
@@ -237,9 +252,13 @@ struct MethodInfo {
     [[nodiscard]] std::unique_ptr<const Method> make() const { return make(Settings(parameters)); }
 };
 
-/// All methods, in report order: those of methods.def, then those of plugins (shadows/plugin.h). Throws InputError at
-/// the first call, where a plugin cannot be had.
+/// All methods, in report order: those of methods.def, then those of plugins (shadows/plugin.h), then those that were
+/// added. Throws InputError at the first call, where a plugin cannot be had.
 [[nodiscard]] std::span<const MethodInfo* const> methods();
+
+/// Adds a method, which must outlive all calls; before other threads look at the list. Throws UsageError where there is
+/// one of its name.
+void add_method(const MethodInfo& method);
 
 /// Throws UsageError, naming the methods that there are.
 [[nodiscard]] const MethodInfo& find_method(std::string_view name);

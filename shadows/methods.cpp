@@ -60,8 +60,8 @@ KnownMethods::KnownMethods() {
     }
 }
 
-const KnownMethods& known_methods() {
-    static const KnownMethods known;
+KnownMethods& known_methods() {
+    static KnownMethods known;
     return known;
 }
 
@@ -125,6 +125,13 @@ std::string_view to_string(How how) {
 }
 
 std::span<const MethodInfo* const> methods() { return known_methods().all; }
+
+void add_method(const MethodInfo& method) {
+    auto& all = known_methods().all;
+    if (std::ranges::find(all, method.name, &MethodInfo::name) != all.end())
+        throw UsageError(fmt::format("there is already a method \"{}\"", method.name));
+    all.push_back(&method);
+}
 
 std::string plugin_file(const MethodInfo& method) {
     const auto found = known_methods().files.find(&method);

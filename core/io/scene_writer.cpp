@@ -147,7 +147,9 @@ std::vector<std::string> exceptions_in(const Scene& scene, const Light& light) {
     return names;
 }
 
-std::string light_text(const Scene& scene, const Light& light) {
+}  // namespace
+
+std::string native_light_text(const Scene& scene, const Light& light) {
     Members m;
     m.add("type", json_string(name_of(light.kind)));
     m.add("name", json_string(light.name));
@@ -167,6 +169,8 @@ std::string light_text(const Scene& scene, const Light& light) {
     }
     return m.text();
 }
+
+namespace {
 
 std::string object_text(const Scene& scene, const Object& object, const std::string& material) {
     const auto first = scene.triangles.begin() + object.first_triangle;
@@ -260,7 +264,7 @@ std::string native_text(const Scene& scene) {
                             return fmt::format("{}: {}", json_string(names[i]), material_text(scene.materials[i]));
                         }));
     text += fmt::format("  \"lights\": [{}\n  ],\n",
-                        lines(scene.lights, [&](const Light& light) { return light_text(scene, light); }));
+                        lines(scene.lights, [&](const Light& light) { return native_light_text(scene, light); }));
     text += fmt::format("  \"objects\": [{}\n  ]\n}}\n", lines(scene.objects, [&](const Object& object) {
                             return object_text(scene, object, names[object.material]);
                         }));

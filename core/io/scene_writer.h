@@ -13,4 +13,7 @@ namespace umbra {
 /// The reader takes files of up to 32 MB, which is some 300,000 triangles.
 [[nodiscard]] std::string native_text(const Scene& scene);
 
+/// One of its lights as an entry of `lights` there.
+[[nodiscard]] std::string native_light_text(const Scene& scene, const Light& light);
+
 }  // namespace umbra
