@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 
+#include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/memory.h"
@@ -68,6 +69,7 @@ int parse_and_run(int argc, const char* const* argv, std::string& help) {
     for (int i = 1; i < argc; ++i) common.command += fmt::format(" {}", argv[i]);
 
     check_command(argc, argv);
+    for (const std::string& problem : add_contenders()) print_error("warning: {}\n", problem);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -1,4 +1,5 @@
 #include "umbra/bench/cli/options.h"
+#include "umbra/bench/contenders/contender.h"
 
 #include <fmt/format.h>
 
@@ -48,6 +49,18 @@ void add_pixel_samples(CLI::App& app, int& samples, const std::string& about) {
 void add_methods(CLI::App& app, std::vector<std::string>& methods, const std::string& about) {
     app.add_option("--methods", methods, about)->type_name("METHOD");
     app.add_option("--method", methods, about)->type_name("METHOD")->group("");  // not in the help
+}
+
+void add_answer_files(CLI::App& app, std::vector<MethodChoice>& choices) {
+    app.add_option_function<std::vector<std::string>>(
+           "--answers",
+           [&choices](const std::vector<std::string>& files) {
+               for (const std::string& file : files) choices.push_back(add_answers(file));
+           },
+           "S_j that was made elsewhere, as a method of that name (.npy, .exr; FILE:measure=irradiance)")
+        ->type_name("NAME=FILE")
+        ->allow_extra_args(false)
+        ->take_all();
 }
 
 void add_method(CLI::App& app, std::string& method, const std::string& about) {

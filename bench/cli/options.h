@@ -37,6 +37,9 @@ void add_methods(CLI::App& app, std::vector<std::string>& methods,
 /// --method METHOD, for which --methods may be typed too.
 void add_method(CLI::App& app, std::string& method, const std::string& about);
 
+/// --answers NAME=FILE, several times: adds each as a method (add_answers) and its choice to `choices`.
+void add_answer_files(CLI::App& app, std::vector<MethodChoice>& choices);
+
 /// The method of S_j in a command that is about something else.
 struct ShadowMethod {
     std::string text = "ray_traced";

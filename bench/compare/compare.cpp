@@ -62,11 +62,13 @@ TurnsRecord time_methods(const std::filesystem::path& folder, const PreparedScen
                          const Budget& budget, const std::function<void(const std::string&)>& tell) {
     std::vector<MethodChoice> timed;
     std::vector<std::size_t> which;
+    std::vector<OwnTimes> cold;  // by the clocks of programs from outside
     TurnOptions turn_options;
     for (std::size_t k = 0; k < choices.size(); ++k) {
         if (!answered[k].first) continue;
         timed.push_back(choices[k]);
         which.push_back(k);
+        cold.push_back(choices[k].make()->own_times(prepared.scene).value_or(OwnTimes{}));
         turn_options.first.push_back(answered[k].first);
     }
     constexpr double phases = 4;
@@ -80,6 +82,8 @@ TurnsRecord time_methods(const std::filesystem::path& folder, const PreparedScen
         MethodRecord& entry = answered[which[t]].entry;
         if (turns.settings[t].failed.empty()) {
             set_times(entry, prepared.scene, turns.settings[t]);
+            if (const auto own = timed[t].make()->own_times(prepared.scene))
+                entry.own_times = own_times_record(*own, cold[t]);
             continue;
         }
         // What throws when it runs again has no answers that anybody could rely on.
@@ -180,7 +184,8 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
             remove_files_of(staging, id);
             answered.push_back({failed_record(id, choice, scene, *found.failed)});
         } else if (found.run.service) {
-            answered.push_back({std::move(entry), times_of(found.run)});
+            answered.push_back({std::move(entry)});
+            if (choice.info->is_timed) answered.back().first = times_of(found.run);
         } else {
             answered.push_back({unserved_record(id, choice, found.run.service)});
         }

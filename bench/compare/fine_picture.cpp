@@ -36,9 +36,10 @@ std::vector<VisibilityPlane> fine_planes(const PreparedScene& prepared, const Me
     return planes;
 }
 
-/// Whether a picture may have several points a pixel: they are prepared, and the method has answered the picture whole.
+/// Whether a picture may have several points a pixel: they are prepared, the method has answered the picture whole, and
+/// is no file, which has answers at the centres of pixels alone.
 bool is_fine(const PreparedScene& prepared, const MethodRun& run) {
-    return prepared.pixel_side > 1 && run.judged.empty();
+    return prepared.pixel_side > 1 && run.judged.empty() && run.choice.info->is_timed;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/bench/statistics/statistics.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {
@@ -65,7 +66,8 @@ MethodRecord head_of(const std::string& id, const MethodChoice& choice, const Se
             .summary    = std::string(info.summary),
             .text       = choice.text(),
             .parameters = parameter_records(choice.settings),
-            .serves     = service_record(service)};
+            .serves     = service_record(service),
+            .outside    = info.outside};
 }
 
 FailureRecord failure_record(const Failure& failure, const Scene& scene) {
@@ -109,6 +111,23 @@ MethodRecord served_record(const std::string& id, const PreparedScene& prepared,
     for (LightId j = 0; j < prepared.scene.lights.size(); ++j)
         record.errors.push_back(error_record(prepared.scene.lights[j].name, found.explained[j]));
     return record;
+}
+
+OwnTimesRecord own_times_record(const OwnTimes& times, const OwnTimes& before) {
+    const auto of = [](const std::vector<double>& all, std::size_t known) {
+        const std::span samples = std::span(all).subspan(known < all.size() ? known : 0);
+        return samples.empty() ? kUnknown : median(samples);
+    };
+    const auto sum_of = [&](const std::map<LightId, std::vector<double>> OwnTimes::*phase) {
+        double sum = (times.*phase).empty() ? kUnknown : 0;
+        for (const auto& [light, samples] : times.*phase) {
+            const auto known = (before.*phase).find(light);
+            sum += of(samples, known == (before.*phase).end() ? 0 : known->second.size());
+        }
+        return sum;
+    };
+    return {of(times.build, before.build.size()), sum_of(&OwnTimes::aim), of(times.look, before.look.size()),
+            sum_of(&OwnTimes::visibility)};
 }
 
 void set_times(MethodRecord& record, const Scene& scene, const TurnTimes& times) {

@@ -24,6 +24,9 @@ namespace umbra {
 [[nodiscard]] MethodRecord failed_record(const std::string& id, const MethodChoice& choice, const Scene& scene,
                                          const Failure& failure);
 
+/// Medians of what a method from outside says of the runs behind those of `before`; of all where there are none.
+[[nodiscard]] OwnTimesRecord own_times_record(const OwnTimes& times, const OwnTimes& before);
+
 /// Sets the times of a method: all samples, the cold run, the order.
 void set_times(MethodRecord& record, const Scene& scene, const TurnTimes& times);
 

@@ -172,11 +172,20 @@ json cause_view(const Results& results) {
 }
 
 json time_view(const Results& results) {
-    json rows = json::array(), by_light = json::array(), shared = json::array();
+    json rows = json::array(), by_light = json::array(), shared = json::array(), outside = json::array();
     for (const MethodRecord& method : results.methods) {
         if (!serves(method)) continue;
         const Totals t          = totals(method);
         const std::string label = method_label(method, results.methods);
+        if (const auto& own = method.own_times)
+            outside.push_back({{"label", label},
+                               {"own",
+                                {{"build", milliseconds(known(own->build_ms))},
+                                 {"aim", milliseconds(known(own->aim_ms))},
+                                 {"look", milliseconds(known(own->look_ms))},
+                                 {"visibility", milliseconds(known(own->visibility_ms))}}}});
+        else if (!method.outside.empty())
+            outside.push_back({{"label", label}, {"file", method.outside == "file of answers"}});
         const TimesRecord times = method.times ? method.times->phases : TimesRecord{};
         rows.push_back({{"label", label},
                         {"coverage", percent(method.coverage)},
@@ -201,11 +210,8 @@ json time_view(const Results& results) {
                                     {"shade_ms", "shading"}})
         if (const double* ms = results.times.find(key)) shared.push_back({{"name", name}, {"ms", score(known(*ms))}});
     const bool several = results.lights.size() > 1 && !by_light.empty();
-    return {{"rows", std::move(rows)},
-            {"ratios", time_ratio_view(results)},
-            {"several_lights", several},
-            {"by_light", std::move(by_light)},
-            {"shared", std::move(shared)}};
+    return {{"rows", std::move(rows)},       {"ratios", time_ratio_view(results)}, {"several_lights", several},
+            {"outside", std::move(outside)}, {"by_light", std::move(by_light)},    {"shared", std::move(shared)}};
 }
 
 json fact_view(const FactsRecord& facts) {

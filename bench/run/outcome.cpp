@@ -27,11 +27,6 @@ std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, L
     return who;
 }
 
-/// Spread, since methods may take their seed as an offset into one sequence.
-double other_seed(double own, int run) {
-    return static_cast<double>((static_cast<std::int64_t>(own) + 1000003LL * (run + 1)) % 2147483647LL);
-}
-
 }  // namespace
 
 Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
@@ -57,6 +52,17 @@ Explained explain(const Scene& scene, const PointBatch& points, LightId light, c
     return e;
 }
 
+MethodChoice with_seed(MethodChoice choice, std::int64_t step) {
+    const std::string_view seed = choice.info->seed;
+    const auto& parameters      = choice.info->parameters;
+    const auto of               = std::ranges::find(parameters, seed, &Parameter::name);
+    const auto least = static_cast<std::int64_t>(of->min), count = static_cast<std::int64_t>(of->max) - least + 1;
+    std::int64_t value = (static_cast<std::int64_t>(choice.settings.value(seed)) + step) % 2147483647LL;
+    if (value < least || value - least >= count) value = least + ((value - least) % count + count) % count;
+    choice.settings.set(seed, static_cast<double>(value));
+    return choice;
+}
+
 std::vector<std::optional<NoiseMeter>> noise_runs(const MethodAtWork& work, const Scene& scene,
                                                   const PointBatch& points, int runs) {
     std::vector<std::optional<NoiseMeter>> meters(scene.lights.size());
@@ -69,9 +75,8 @@ std::vector<std::optional<NoiseMeter>> noise_runs(const MethodAtWork& work, cons
 
     MethodAtWork other = work;
     for (int run = 0; run < runs; ++run) {
-        MethodChoice seeded = choice;
-        seeded.settings.set(seed, other_seed(choice.settings.value(seed), run));
-        other.set(seeded);
+        // Spread, since methods may take their seed as an offset into one sequence.
+        other.set(with_seed(choice, 1000003LL * (run + 1)));
         if (!other.looks_at(points)) other.look(points);
         for (LightId j = 0; j < scene.lights.size(); ++j) {
             if (!meters[j]) continue;

@@ -29,6 +29,9 @@ struct Explained {
 [[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
                                 const MethodRun& reference, const NoiseMeter* meter = nullptr);
 
+/// The setting with another seed, `step` farther, which must be one that the method has: within the range of its seed.
+[[nodiscard]] MethodChoice with_seed(MethodChoice choice, std::int64_t step);
+
 /// Runs of a method with other seeds than its own, for its noise. The relative error of a variance from K runs is
 /// sqrt(2 / (K - 1)) at one point, and nothing over the thousands of a penumbra.
 inline constexpr int kNoiseRuns = 8;

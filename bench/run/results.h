@@ -251,12 +251,27 @@ void describe(Fields& of, Is<ImageRecord>) {
     of("flip_hdr", &ImageRecord::flip_hdr, "");
 }
 
+/// What a program from outside says its phases took: medians, milliseconds, aim and visibility summed over the lights.
+struct OwnTimesRecord {
+    double build_ms = kUnknown, aim_ms = kUnknown, look_ms = kUnknown, visibility_ms = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<OwnTimesRecord>) {
+    of.name("own_times", "what a program from outside says its phases took: medians; null where it says nothing");
+    of("build_ms", &OwnTimesRecord::build_ms, "");
+    of("aim_ms", &OwnTimesRecord::aim_ms, "of all lights");
+    of("look_ms", &OwnTimesRecord::look_ms, "");
+    of("visibility_ms", &OwnTimesRecord::visibility_ms, "of all lights");
+}
+
 /// A method with its settings, and what it answered.
 struct MethodRecord {
     std::string id{}, name{}, title{}, paper{}, summary{}, text{};
     Members<Scalar> parameters{};
     ServiceRecord serves{};
+    std::string outside{};
     std::optional<TurnTimesRecord> times{};
+    std::optional<OwnTimesRecord> own_times{};
     std::vector<LightTimesRecord> light_times{};
     std::optional<std::uint64_t> memory_bytes{}, points_bytes{}, device_bytes{};
     std::optional<double> coverage{};
@@ -278,7 +293,10 @@ void describe(Fields& of, Is<MethodRecord>) {
     of("text", &MethodRecord::text, "method and settings, as typed");
     of("parameters", &MethodRecord::parameters, "all of them, by name");
     of("serves", &MethodRecord::serves, "");
-    of.may("times", &MethodRecord::times, "");
+    of.may("outside", &MethodRecord::outside, "what a method from outside is; absent of those of this program",
+           one_of({"program", "file of answers"}));
+    of.may("times", &MethodRecord::times, "of the program's own clock; absent of a file of answers");
+    of.may("own_times", &MethodRecord::own_times, "");
     of.where(&MethodRecord::ran, "light_times", &MethodRecord::light_times, "");
     of.may("memory_bytes", &MethodRecord::memory_bytes, "of geometry and of the last light");
     of.may("points_bytes", &MethodRecord::points_bytes, "of the surface points, for all lights");

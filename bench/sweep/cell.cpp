@@ -35,12 +35,8 @@ std::string code_of_truth(const std::optional<std::string>& reference) {
 }
 
 /// The setting with another seed in views other than the scene's own.
-MethodChoice seeded(MethodChoice choice, int view) {
-    const std::string_view seed = choice.info->seed;
-    if (view == 0 || seed.empty()) return choice;
-    const double own = choice.settings.value(seed);
-    choice.settings.set(seed, static_cast<double>((static_cast<std::int64_t>(own) + 7919LL * view) % 2147483647LL));
-    return choice;
+MethodChoice seeded(const MethodChoice& choice, int view) {
+    return view == 0 || choice.info->seed.empty() ? choice : with_seed(choice, 7919LL * view);
 }
 
 }  // namespace

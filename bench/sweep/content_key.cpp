@@ -1,4 +1,5 @@
 #include "umbra/bench/sweep/content_key.h"
+#include "umbra/bench/contenders/contender.h"
 
 #include <fmt/format.h>
 
@@ -134,6 +135,7 @@ std::string code_key(const MethodInfo& method) {
     for (const auto& [name, key] : kCodeVersions)
         if (name == method.name) return std::string(key);
     if (const std::string file = plugin_file(method); !file.empty()) return combined_key({"plugin", bytes_of(file)});
+    if (const std::string text = text_of_outside(method); !text.empty()) return combined_key({"outside", text});
     throw std::logic_error(fmt::format("{} has no line in methods.def", method.name));
 }
 

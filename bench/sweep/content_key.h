@@ -17,8 +17,8 @@ namespace umbra {
 /// lights, camera, names, options; neither the file it came from nor its warnings.
 [[nodiscard]] std::string scene_key(const Scene& scene);
 
-/// 32 hexadecimal digits for the sources of a method: its room, what all methods share, and what counts errors. Throws
-/// std::logic_error for a method that is not in methods.def.
+/// 32 hexadecimal digits for the sources of a method: its room, what all methods share, and what counts errors; of one
+/// from outside for what it is made of (text_of_outside). Throws std::logic_error for a method of neither kind.
 [[nodiscard]] std::string code_key(const MethodInfo& method);
 
 /// One key for several texts in their order.

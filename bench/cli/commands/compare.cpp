@@ -34,6 +34,7 @@ Action compare_command(CLI::App& app, const Common& common) {
     CompareOptions& options = line->options;
     add_scenes(app, line->scenes);
     add_methods(app, options.methods);
+    add_answer_files(app, options.choices);
     add_reference(app, options.reference, options.points, "exact, or ray tracing where exact does not serve the scene");
     add_size(app, options.size);
     add_pixel_samples(app, options.pixel_samples,

@@ -1,0 +1,130 @@
+#include "umbra/bench/contenders/contender.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/options.h"
+#include "umbra/bench/contenders/gate.h"
+#include "umbra/bench/contenders/program_session.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/out/staged_folder.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace fs = std::filesystem;
+namespace {
+
+struct ContenderLine {
+    std::string action;
+    std::vector<std::string> words;
+    std::string save;
+    double timeout_s = 120;
+    fs::path out;
+    Size size;
+};
+
+/// What is to be checked: a contender that is known, its file, or a command; and the file that says so then, if any.
+struct Checked {
+    ContenderRecord record{};
+    fs::path folder{}, file{};
+};
+
+Checked asked_for(const ContenderLine& line) {
+    if (line.words.size() == 1)
+        if (const auto file = contender_file(line.words[0])) {
+            Checked found{.record = read_contender(*file), .file = *file};
+            found.folder = fs::absolute(*file).parent_path() / found.record.folder;
+            return found;
+        }
+    Checked typed{.record = {.command = line.words, .folder = "..", .timeout_s = line.timeout_s},
+                  .folder = fs::current_path()};
+    if (!line.save.empty()) typed.file = fs::path("contenders") / (line.save + ".json");
+    return typed;
+}
+
+int check(const ContenderLine& line, const Common& common) {
+    if (line.words.empty())
+        throw UsageError(
+            "contender check: expected a command (umbra contender check -- python3 mine.py), or the name or "
+            "the file of a contender");
+    if (!line.save.empty()) check_method_name(line.save);
+    auto [record, folder, file] = asked_for(line);
+    record.says                 = introduction(record.command, folder, record.timeout_s);
+    const MethodInfo& info      = program_method("contender", record, folder);
+    const std::vector<GateRow> rows =
+        on_terminal(common, [&](const std::function<void(const std::string&)>& tell) { return gate(info, tell); });
+    std::string text = fmt::format("{} {}\n", record.says.name, record.says.version);
+    for (const GateRow& row : rows)
+        text += fmt::format("{}  {}: {}\n", row.passed ? "passed" : "FAILED", row.question, row.found);
+    const bool passed = std::ranges::all_of(rows, &GateRow::passed);
+    if (passed && !file.empty()) {
+        record.checked = record.says.version;
+        make_folder(file.parent_path());
+        StagedFiles staged;
+        staged.write(file, json_text(to_record(record)));
+        staged.commit();
+        text += fmt::format("{} says so: it is a method now, --methods {}\n", file.string(), file.stem().string());
+    }
+    print_out("{}", without_controls(text));
+    return passed ? kDone : kNo;
+}
+
+int show(const ContenderLine& line, const Common& common) {
+    if (line.words.size() != 1) throw UsageError("contender show: one SCENE is expected");
+    if (line.out.empty()) throw UsageError("contender show: -o DIR is required");
+    const PreparedScene prepared = prepare_scene(scene_file(line.words[0], common.up), line.size);
+    const Scene& scene           = prepared.scene;
+    StagedFolder stage(line.out);
+    const fs::path& folder = stage.folder();
+    const Json settings    = Json::object();
+    std::vector<Json> messages{hello_message(fs::absolute(line.out)), scene_message(folder, scene, settings),
+                               build_message(settings), points_message(folder, scene, prepared.points, settings)};
+    for (LightId j = 0; j < scene.lights.size(); ++j) {
+        messages.push_back(aim_message(scene, j, settings));
+        Json visibility = visibility_message(folder, prepared.points, j, settings);
+        // Of one run after the other these are the same files; here they stand side by side.
+        visibility["asked"] = fmt::format("asked-{}.npy", j), visibility["answers"] = fmt::format("answers-{}.npy", j);
+        fs::rename(folder / "asked.npy", folder / visibility["asked"].get<std::string>());
+        messages.push_back(visibility);
+    }
+    messages.push_back({{"message", "end"}});
+    std::string lines;
+    for (const Json& message : messages) lines += message.dump() + "\n";
+    write_text(folder / "messages.jsonl", lines);
+    Json record        = to_record(head_record(common.command));  // which makes the folder one of ours
+    record["files"]    = {"messages.jsonl"};
+    record["messages"] = messages;
+    write_text(folder / "results.json", json_text(record));
+    stage.commit();
+    if (!common.quiet)
+        print_out("{}", without_controls(fmt::format(
+                            "{}: {} messages (messages.jsonl), {} points, {} triangles, {} light{}\n",
+                            line.out.string(), messages.size(), prepared.points.size(), scene.triangles.size(),
+                            scene.lights.size(), scene.lights.size() == 1 ? "" : "s")));
+    return kDone;
+}
+
+}  // namespace
+
+Action contender_command(CLI::App& app, const Common& common) {
+    const auto line = std::make_shared<ContenderLine>();
+    app.add_option("ACTION", line->action,
+                   "check: ask a program from outside questions with known answers; show: write what it would be asked")
+        ->check(CLI::IsMember({"check", "show"}))
+        ->type_name("")
+        ->required();
+    app.add_option("WORDS", line->words, "check: -- COMMAND WORD..., or a contender's name or file; show: a scene")
+        ->type_name("");
+    app.add_option("--save", line->save, "check: write contenders/NAME.json where it passes")->type_name("NAME");
+    app.add_option("--timeout", line->timeout_s, "check: seconds that an answer may take (120)")
+        ->check(number_in(0.1, 86400, "seconds, 0.1 to 86400"))
+        ->type_name("S");
+    add_size(app, line->size);
+    app.add_option("-o", line->out, "show: folder to write to")->type_name("DIR");
+    return [line, &common] { return line->action == "check" ? check(*line, common) : show(*line, common); };
+}
+
+}  // namespace umbra

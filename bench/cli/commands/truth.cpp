@@ -1,0 +1,40 @@
+#include "umbra/bench/truth/truth_set.h"
+
+#include <fmt/format.h>
+
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/options.h"
+
+namespace umbra {
+
+Action truth_command(CLI::App& app, const Common& common) {
+    struct Line {
+        std::vector<std::string> scenes;
+        TruthOrder order;
+    };
+    const auto line = std::make_shared<Line>();
+    add_scenes(app, line->scenes);
+    add_size(app, line->order.size);
+    app.add_option("--withhold", line->order.withhold, "Folder for the answers: the set then holds the questions alone")
+        ->type_name("DIR");
+    app.add_option("--license", line->order.license, "License of the set, for its metadata")->type_name("TEXT");
+    add_output(app, line->order.out);
+    return [line, &common] {
+        TruthOrder order         = line->order;
+        order.scenes             = scene_files(line->scenes, common.up);
+        order.command            = common.command;
+        const TruthSetRecord set = on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
+            order.progress = tell;
+            return write_truth(order);
+        });
+        std::uint64_t asked      = 0;
+        for (const TruthSceneRecord& scene : set.scenes) asked += scene.asked;
+        if (!common.quiet)
+            print_out("{}",
+                      without_controls(fmt::format("{}: {} scene{}, {} pairs of point and light\n", order.out.string(),
+                                                   set.scenes.size(), set.scenes.size() == 1 ? "" : "s", asked)));
+        return static_cast<int>(kDone);
+    };
+}
+
+}  // namespace umbra

@@ -1,0 +1,149 @@
+#include "umbra/bench/contenders/contender.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <deque>
+#include <memory>
+
+#include "umbra/bench/contenders/answers_file.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/core/base/error.h"
+
+namespace umbra {
+namespace fs = std::filesystem;
+namespace {
+
+/// S_j from a file: one a scene's raster.
+class Answers final : public Method {
+public:
+    Answers(fs::path file, Measure measure) : file_(std::move(file)), measure_(measure) {}
+    [[nodiscard]] Service serves(const SceneFacts&) const override {
+        return {How::approximately, fmt::format("its answers are those of the file {}", file_.filename().string())};
+    }
+    [[nodiscard]] Measure measures() const override { return measure_; }
+    void visibility(const Aimed& aimed, const Looked& looked, Visibility out) const override {
+        read_answers(file_, aimed.scene(), looked.points, aimed.light, false, out);
+    }
+
+private:
+    fs::path file_;
+    Measure measure_;
+};
+
+/// What the views of a MethodInfo look into.
+struct AnswersFile {
+    std::string name, title, summary, file;
+    MethodInfo info{};
+};
+
+std::deque<AnswersFile>& all_answers() {
+    static std::deque<AnswersFile> all;
+    return all;
+}
+
+std::vector<fs::path> folders_of_contenders() {
+    std::vector<fs::path> folders{"contenders"};
+    const char* const config = std::getenv("XDG_CONFIG_HOME");
+    const char* const home   = std::getenv("HOME");
+    if (config != nullptr && *config != '\0')
+        folders.push_back(fs::path(config) / "umbra/contenders");
+    else if (home != nullptr && *home != '\0')
+        folders.push_back(fs::path(home) / ".config/umbra/contenders");
+    return folders;
+}
+
+}  // namespace
+
+std::optional<fs::path> contender_file(const std::string& name) {
+    if (fs::path(name).extension() == ".json" && fs::is_regular_file(name)) return name;
+    for (const fs::path& folder : folders_of_contenders())
+        if (const fs::path file = folder / (name + ".json"); fs::is_regular_file(file)) return file;
+    return std::nullopt;
+}
+
+std::string text_of_outside(const MethodInfo& method) {
+    for (const AnswersFile& answers : all_answers())
+        if (&answers.info == &method) return answers.summary + bytes_of(answers.file);
+    return text_of_program(method);
+}
+
+ContenderRecord read_contender(const fs::path& file) {
+    if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is no regular file", file.string()));
+    constexpr std::uintmax_t most = 1u << 20;
+    if (fs::file_size(file) > most) throw InputError(fmt::format("{}: has more than 1 MiB", file.string()));
+    auto record = from_record<ContenderRecord>(parse_json(bytes_of(file), file.string()));
+    if (record.command.empty()) throw InputError(fmt::format("{}: \"command\" is missing or empty", file.string()));
+    check_introduction(record.says, file.string());
+    return record;
+}
+
+std::vector<std::string> add_contenders() {
+    std::vector<std::string> problems;
+    for (const fs::path& folder : folders_of_contenders()) {
+        std::error_code none;
+        std::vector<fs::path> files;
+        for (const auto& entry : fs::directory_iterator(folder, none))
+            if (entry.path().extension() == ".json") files.push_back(entry.path());
+        std::ranges::sort(files);
+        for (const fs::path& file : files) {
+            const std::string name = file.stem().string();
+            if (std::ranges::any_of(methods(),
+                                    [&](const MethodInfo* m) { return m->name == name && !m->outside.empty(); }))
+                continue;  // of the folder before
+            try {
+                const ContenderRecord record = read_contender(file);
+                if (record.checked != record.says.version)
+                    throw InputError(
+                        fmt::format("{}: the program has not passed the gate, which writes this file: "
+                                    "umbra contender check --save {} -- COMMAND",
+                                    file.string(), name));
+                add_method(program_method(name, record, fs::absolute(folder) / record.folder));
+            } catch (const std::exception& e) {
+                problems.emplace_back(e.what());
+            }
+        }
+    }
+    return problems;
+}
+
+MethodChoice add_answers(const std::string& text) {
+    const std::size_t eq = text.find('=');
+    if (eq == std::string::npos || eq == 0)
+        throw UsageError(fmt::format("--answers {}: expected NAME=FILE, or NAME=FILE:measure=irradiance", text));
+    std::string file           = text.substr(eq + 1);
+    Measure measure            = Measure::area;
+    const std::size_t measured = file.rfind(":measure=");
+    if (measured != std::string::npos) {
+        const std::string named = file.substr(measured + 9);
+        if (named != "area" && named != "irradiance")
+            throw UsageError(fmt::format("--answers {}: measure={}, expected area or irradiance", text, named));
+        measure = named == "area" ? Measure::area : Measure::irradiance;
+        file.resize(measured);
+    }
+    const std::string name = text.substr(0, eq);
+    check_method_name(name);
+    if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no regular file", file));
+    AnswersFile& made = all_answers().emplace_back();
+    made.name         = name;
+    made.file         = file;
+    made.title        = fmt::format("{} (a file)", name);
+    made.summary      = fmt::format("S_j as the file {} has it, of the share of {}. Not timed.",
+                                    fs::path(file).filename().string(), to_string(measure));
+    made.info         = {.name         = made.name,
+                         .title        = made.title,
+                         .paper        = "Answers in a file, which were made elsewhere",
+                         .summary      = made.summary,
+                         .by_default   = false,
+                         .needs_raster = true,
+                         .create       = [file, measure](const Settings&) -> std::unique_ptr<const Method> {
+                     return std::make_unique<Answers>(file, measure);
+                 },
+                         .outside  = "file of answers",
+                         .is_timed = false};
+    add_method(made.info);
+    return MethodChoice(made.info);
+}
+
+}  // namespace umbra

@@ -1,0 +1,91 @@
+// Contenders: methods from outside the program (docs/contenders.md). Each becomes a method as all others are.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/record/record.h"
+#include "umbra/bench/run/describe.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// What a program says of itself (its answer to `hello`).
+struct IntroductionRecord {
+    std::string name{}, version{}, summary{}, measure{}, takes{}, seed{};
+    std::vector<std::string> lights{};
+    std::vector<ParameterRecord> parameters{};
+};
+template <class Fields>
+void describe(Fields& of, Is<IntroductionRecord>) {
+    of.name("introduction", "what a program from outside says of itself");
+    of.must("name", &IntroductionRecord::name, "");
+    of.must("version", &IntroductionRecord::version, "");
+    of.may("summary", &IntroductionRecord::summary, "one sentence");
+    of.may("measure", &IntroductionRecord::measure, "which share of an area light it answers",
+           one_of({"area", "irradiance"}));
+    of.may("takes", &IntroductionRecord::takes, "any points, or whole pictures alone", one_of({"points", "raster"}));
+    of.may("seed", &IntroductionRecord::seed, "the parameter that seeds its noise");
+    of("lights", &IntroductionRecord::lights, "the kinds that it serves");
+    of("parameters", &IntroductionRecord::parameters, "");
+}
+
+/// A program from outside, as a file of its own holds it: contenders/NAME.json.
+struct ContenderRecord {
+    std::vector<std::string> command{};
+    std::string folder{};
+    double timeout_s = kUnknown;
+    std::string checked{};
+    IntroductionRecord says{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ContenderRecord>) {
+    of.name("contender", "a program from outside");
+    of("command", &ContenderRecord::command, "the program and its arguments");
+    of.may("folder", &ContenderRecord::folder, "where it is started, from the folder of this file; that folder itself");
+    of.may("timeout_s", &ContenderRecord::timeout_s, "seconds that an answer may take; 120 where it is not given");
+    of.may("checked", &ContenderRecord::checked, "the version of the program that passed `umbra contender check`");
+    of("says", &ContenderRecord::says, "its own answer to `hello`");
+}
+
+/// Throws InputError where the members contradict the protocol; `from` names their source in messages.
+void check_introduction(const IntroductionRecord& says, const std::string& from);
+
+/// A program as a method, called `name`, in a list of those that live as long as the process. Commands are started in
+/// `folder`. Throws InputError where what it says cannot be a method.
+[[nodiscard]] const MethodInfo& program_method(const std::string& name, const ContenderRecord& contender,
+                                               const std::filesystem::path& folder);
+
+/// Everything that the answers of a method from outside depend on and that can be seen from here: what its file says, and
+/// the bytes of the files that its command names (of a file of answers: that file). Empty of all other methods.
+[[nodiscard]] std::string text_of_outside(const MethodInfo& method);
+
+/// The same of programs alone.
+[[nodiscard]] std::string text_of_program(const MethodInfo& method);
+
+/// Starts the program and asks what it is. Throws MethodError.
+[[nodiscard]] IntroductionRecord introduction(const std::vector<std::string>& command,
+                                              const std::filesystem::path& folder, double timeout_s = kUnknown);
+
+/// The file of a contender of that name, in the folders that add_contenders looks into, or itself where it is a .json
+/// file; nothing where there is none.
+[[nodiscard]] std::optional<std::filesystem::path> contender_file(const std::string& name);
+
+/// Throws InputError.
+[[nodiscard]] ContenderRecord read_contender(const std::filesystem::path& file);
+
+/// Adds (add_method) what `contenders/*.json` of the working folder and of the user's configuration folder
+/// ($XDG_CONFIG_HOME/umbra, ~/.config/umbra) describe; of two of one name the first. No program is started. Returns a
+/// message for each file that cannot be read, which is left out.
+[[nodiscard]] std::vector<std::string> add_contenders();
+
+/// "NAME=FILE" or "NAME=FILE:measure=irradiance": adds the answers of a file as a method and returns its choice. Throws
+/// UsageError; the file is read when a scene is compared.
+[[nodiscard]] MethodChoice add_answers(const std::string& text);
+
+/// Letters, digits and underscores, no digit first: what a method's name may be. Throws UsageError.
+void check_method_name(const std::string& name);
+
+}  // namespace umbra

@@ -1,0 +1,136 @@
+#include "umbra/bench/contenders/program_session.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "umbra/bench/contenders/answers_file.h"
+#include "umbra/bench/exchange/scene_files.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_writer.h"
+
+namespace umbra {
+namespace fs = std::filesystem;
+
+RunFolder::RunFolder() {
+    std::string name = (fs::temp_directory_path() / "umbra-contender-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+        throw MethodError(fmt::format("{}: cannot be made: {}", name, std::strerror(errno)));
+    path_ = name;
+}
+
+RunFolder::~RunFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+}
+
+Json hello_message(const fs::path& folder) {
+    return {{"message", "hello"}, {"protocol", 1}, {"folder", folder.string()}};
+}
+
+Json scene_message(const fs::path& folder, const Scene& scene, const Json& settings) {
+    const SceneFiles files;
+    write_scene_files(folder, scene, files);
+    return {{"message", "scene"},      {"scene", files.json},    {"glb", files.glb},    {"triangles", files.triangles},
+            {"objects", files.object}, {"blocks", files.blocks}, {"settings", settings}};
+}
+
+Json build_message(const Json& settings) { return {{"message", "build"}, {"settings", settings}}; }
+
+Json points_message(const fs::path& folder, const Scene& scene, const PointBatch& points, const Json& settings) {
+    write_points(folder / "points.npy", scene, points);
+    const Json raster = points.raster ? Json{points.raster->width, points.raster->height} : Json(nullptr);
+    return {{"message", "points"}, {"points", "points.npy"}, {"raster", raster}, {"settings", settings}};
+}
+
+Json aim_message(const Scene& scene, LightId light, const Json& settings) {
+    Light placed = scene.lights[light];
+    placed.camera_pose.reset();  // where it is now, in world space
+    return {{"message", "aim"},
+            {"light", light},
+            {"description", Json::parse(native_light_text(scene, placed))},
+            {"settings", settings}};
+}
+
+Json visibility_message(const fs::path& folder, const PointBatch& points, LightId light, const Json& settings) {
+    write_asked(folder / "asked.npy", points, light);
+    return {{"message", "visibility"},
+            {"light", light},
+            {"asked", "asked.npy"},
+            {"answers", "answers.npy"},
+            {"settings", settings}};
+}
+
+ProgramSession::ProgramSession(const std::vector<std::string>& command, const fs::path& where, double timeout_s)
+    : timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s), process_(command, where) {
+    hello_ = ask(hello_message(folder()));
+}
+
+ProgramSession::~ProgramSession() {
+    try {
+        if (is_alive()) process_.tell(Json{{"message", "end"}}.dump());
+    } catch (...) {  // it is ended all the same
+        process_.end();
+    }
+}
+
+void ProgramSession::fail(const std::string& what) {
+    const std::string words = process_.last_words();
+    process_.end();
+    throw MethodError(what + words);
+}
+
+Field ProgramSession::ask(const Json& message) {
+    const std::string kind = message["message"];
+    const std::string text = process_.ask(message.dump(-1, ' ', false, Json::error_handler_t::replace), timeout_s_);
+    Field answer;
+    try {
+        answer = parse_json(text, "answer to " + kind);
+        if (!answer.is_object()) answer.refuse("an object");
+        if (const std::string error = answer["error"].text(); !error.empty())
+            throw MethodError(fmt::format("the program answers \"{}\" with the error: {}", kind, error));
+    } catch (const InputError& e) {
+        fail(fmt::format("the program wrote {:?} to stdout, where one line of JSON is expected ({}).",
+                         text.substr(0, 200), e.what()));
+    }
+    return answer;
+}
+
+double ProgramSession::time_of(const Field& answer) {
+    const std::optional<double> ms = answer["ms"].number();
+    if (ms && *ms < 0) answer["ms"].refuse("milliseconds, 0 or more");
+    return ms.value_or(std::nan(""));
+}
+
+double ProgramSession::send(const Json& message) {
+    const Field answer = ask(message);
+    try {
+        return time_of(answer);
+    } catch (const InputError& e) {
+        fail(e.what() + std::string("."));
+    }
+}
+
+double ProgramSession::answers(const Json& message, const Scene& scene, const PointBatch& points, LightId light,
+                               const Visibility& out) {
+    const std::string expected = message["answers"];
+    std::error_code ignored;
+    fs::remove(folder() / expected, ignored);  // those of the call before are no answer
+    const Field answer = ask(message);
+    try {
+        const std::string named = answer["answers"].text();
+        const fs::path file     = folder() / (named.empty() ? expected : named);
+        if (!fs::is_regular_file(file))
+            fail(fmt::format("the program answered, but wrote no file {}.", named.empty() ? expected : named));
+        read_answers(file, scene, points, light, true, out);
+        return time_of(answer);
+    } catch (const InputError& e) {
+        fail(e.what() + std::string("."));
+    }
+}
+
+}  // namespace umbra

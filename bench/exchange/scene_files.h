@@ -1,0 +1,33 @@
+// A scene and its surface points as files that programs in other languages read (docs/contenders.md).
+#pragma once
+
+#include <filesystem>
+
+#include "umbra/core/render/points.h"
+#include "umbra/core/scene/scene.h"
+
+namespace umbra {
+
+/// Names below the folder that the files are written to.
+struct SceneFiles {
+    std::string json      = "scene.json";     ///< the native scene, whole
+    std::string glb       = "scene.glb";      ///< the same triangles, the camera and the lights as glTF binary
+    std::string triangles = "triangles.npy";  ///< float32, triangles x 3 x 3: corners in world space
+    std::string object    = "objects.npy";    ///< uint32 a triangle: index into "objects" of the JSON
+    std::string blocks    = "blocks.npy";     ///< uint8 a triangle: 1 where it takes all light that meets it, else 0
+};
+
+/// Throws InputError where a file cannot be written.
+void write_scene_files(const std::filesystem::path& folder, const Scene& scene, const SceneFiles& names = {});
+
+/// One record a point: position (float64, rounded from the exact point once more), normal, triangle (2^32 - 1 where there
+/// is none), u, v, column and row of the pixel (-1 in a batch without a raster).
+void write_points(const std::filesystem::path& file, const Scene& scene, const PointBatch& points);
+
+/// uint8 a point: 1 where S_j of the light is asked for.
+void write_asked(const std::filesystem::path& file, const PointBatch& points, LightId light);
+
+/// Triangles, camera and lights (points, suns and spots; others are nodes without a light) as glTF binary.
+[[nodiscard]] std::string glb_text(const Scene& scene);
+
+}  // namespace umbra

@@ -1,0 +1,265 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <thread>
+
+#include "umbra/bench/compare/compare.h"
+#include "umbra/bench/contenders/answers_file.h"
+#include "umbra/bench/contenders/contender.h"
+#include "umbra/bench/contenders/gate.h"
+#include "umbra/bench/contenders/program_session.h"
+#include "umbra/bench/exchange/npy.h"
+#include "umbra/bench/exchange/scene_files.h"
+#include "umbra/bench/run/run.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+#include "umbra/tests/support/temporary_folder.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The planted contender as a method, which answers within two seconds.
+const MethodInfo& planted(const std::string& fault) {
+    const std::vector<std::string> command{UMBRA_PLANTED_CONTENDER, fault};
+    return program_method("planted", {.command = command, .timeout_s = 2, .says = introduction(command, ".", 2)}, ".");
+}
+
+/// What fails of the gate.
+std::string failures_of(const std::string& fault) {
+    std::string text;
+    for (const GateRow& row : gate(planted(fault)))
+        if (!row.passed) text += row.question + ": " + row.found + "\n";
+    return text;
+}
+
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(Gate, IsPassedByTheRight) {
+    EXPECT_EQ(failures_of("none"), "");
+    EXPECT_EQ(failures_of("raster"), "");
+    const std::vector<GateRow> rows = gate(planted("none"));
+    EXPECT_EQ(rows.size(), 6u) << "two kinds of hard lights, again, a floor alone, two lights, a rectangle";
+    for (const GateRow& row : rows) EXPECT_NE(row.found, "");
+}
+
+TEST(Gate, SaysWhatIsWrong) {
+    for (const auto& [fault, why] : std::vector<std::pair<std::string, std::string>>{
+             {"lit", "every point is lit"},
+             {"exchanged", "0 and 1 are exchanged"},
+             {"srgb", "encoded as sRGB"},
+             {"irradiance", "\"measure\": \"irradiance\""},
+             {"upside_down", "upside down"},
+             {"mirrored", "left and right"},
+             {"beside", "a pixel beside"},
+             {"other_light", "of the other light"},
+             {"both_lights", "of both lights together"},
+             {"self_shadow", "does the surface that a point lies on"},
+             {"random", "no parameter is named as its \"seed\""},
+             {"first_points", "in another order"},
+             {"keeps_the_scene", "wrong away from edges"},
+             {"nan", "too few are answered"},
+             {"beyond", "expected 0 (in shadow) to 1 (lit)"},
+             {"few", "holds 3072 values, expected 6144"},
+             {"no_file", "wrote no file answers.npy"},
+             {"error", "no such light here"},
+             {"not_json", "one line of JSON is expected"},
+             {"negative_time", "milliseconds, 0 or more"},
+             {"crashes", "Its last lines on stderr: out of luck"},
+             {"ends", "ended with exit code 3 before it answered. Its last lines on stderr: bye"},
+             {"floods", "without the end of a line"},
+         })
+        EXPECT_TRUE(contains(failures_of(fault), why)) << fault << "\n" << failures_of(fault);
+    EXPECT_THROW(static_cast<void>(planted("no_measure")), MethodError);
+    EXPECT_THROW(static_cast<void>(planted("no_lights")), MethodError);
+}
+
+class Contenders : public testing::Test {
+protected:
+    [[nodiscard]] PreparedScene prepared(Size size = {64, 36}) const {
+        return prepare_scene(std::string(UMBRA_SCENES) + "/light_inside_view.json", size);
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Contenders, AnswerAsBruteForce) {
+    const PreparedScene p     = prepared();
+    const MethodChoice choice = MethodChoice(planted("none"));
+    const MethodRun run       = run_method(choice, p.scene, p.facts, p.points, {2, 1e9});
+    const MethodRun force     = run_method(parse_method("brute_force"), p.scene, p.facts, p.points, kOnce);
+    std::size_t asked = 0, differ = 0;
+    for (LightId j = 0; j < p.scene.lights.size(); ++j)
+        for (std::size_t i = 0; i < p.points.size(); ++i) {
+            asked += p.points.asks(j, i);
+            differ += p.points.asks(j, i) && run.planes[j].s[i] != force.planes[j].s[i];
+        }
+    EXPECT_GT(asked, 500u);
+    EXPECT_EQ(differ, 0u);
+    const OwnTimes own = run.work->method().own_times(p.scene).value();
+    EXPECT_EQ(own.build, (std::vector<double>{2.5, 2.5}));
+    EXPECT_EQ(own.aim.at(0), (std::vector<double>{2.5, 2.5}));
+    EXPECT_EQ(own.visibility.at(0), (std::vector<double>{2.5, 2.5}));
+}
+
+TEST_F(Contenders, ThatHangAreEndedWithAllThatTheyStarted) {
+    const PreparedScene p = prepared({16, 9});
+    const auto start      = std::chrono::steady_clock::now();
+    EXPECT_THROW(static_cast<void>(run_method(MethodChoice(planted("hangs")), p.scene, p.facts, p.points, kOnce)),
+                 MethodError);
+    const std::string running = std::string("pgrep -f '[p]lanted_contender children' > /dev/null");
+    {
+        const LineProcess process({UMBRA_PLANTED_CONTENDER, "children"}, ".");
+        EXPECT_EQ(std::system(running.c_str()), 0);
+    }
+    EXPECT_NE(std::system(running.c_str()), 0);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    EXPECT_THROW(LineProcess({"/no/such/program"}, "."), MethodError);
+}
+
+TEST_F(Contenders, CostTheirOwnCellOnly) {
+    CompareOptions options;
+    options.size          = {32, 18};
+    options.out           = folder_.path() / "out";
+    options.methods       = {"ray_traced"};
+    options.choices       = {MethodChoice(planted("none")), MethodChoice(planted("crashes"))};
+    const Results results = compare_scene(std::string(UMBRA_SCENES) + "/light_inside_view.json", options);
+    ASSERT_EQ(results.methods.size(), 3u);
+    EXPECT_TRUE(results.methods[0].ran);
+    EXPECT_EQ(results.methods[0].outside, "");
+    const MethodRecord& right = results.methods[1];
+    EXPECT_TRUE(right.ran);
+    EXPECT_EQ(right.outside, "program");
+    EXPECT_EQ(right.title, "Planted 1");
+    const double lights = static_cast<double>(results.lights.size());
+    ASSERT_TRUE(right.own_times);
+    EXPECT_EQ(right.own_times->build_ms, 2.5);
+    EXPECT_EQ(right.own_times->aim_ms, 2.5 * lights);
+    EXPECT_EQ(right.own_times->visibility_ms, 2.5 * lights);
+    EXPECT_EQ(right.own_times->look_ms, 2.5);
+    ASSERT_TRUE(right.times);
+    ASSERT_TRUE(results.methods[2].failed);
+    EXPECT_TRUE(contains(results.methods[2].failed->message, "out of luck"));
+}
+
+TEST_F(Contenders, AnswersInAFileAreJudged) {
+    const PreparedScene p = prepared({32, 18});
+    const MethodRun force = run_method(parse_method("brute_force"), p.scene, p.facts, p.points, kOnce);
+    const std::size_t n = p.points.size(), lights = p.scene.lights.size();
+    std::vector<float> values;
+    for (const VisibilityPlane& plane : force.planes) values.insert(values.end(), plane.s.begin(), plane.s.end());
+    std::size_t undefined = 0;
+    while (!p.points.asks(0, undefined)) ++undefined;
+    values[undefined]   = std::nanf("");
+    const fs::path file = folder_.path() / "mine.npy";
+    write_npy(file, std::span<const float>(values), {lights, 18, 32});
+    CompareOptions options;
+    options.size             = {32, 18};
+    options.out              = folder_.path() / "out";
+    options.pixel_samples    = 4;  // of which a file has one
+    options.choices          = {add_answers("mine=" + file.string() + ":measure=irradiance")};
+    const Results results    = compare_scene(std::string(UMBRA_SCENES) + "/light_inside_view.json", options);
+    const MethodRecord& mine = results.methods.at(0);
+    EXPECT_EQ(mine.outside, "file of answers");
+    EXPECT_EQ(mine.measures, "irradiance");
+    EXPECT_FALSE(mine.times) << "copying a file is no time of a method";
+    EXPECT_EQ(mine.errors[0].undefined, 1u);
+    EXPECT_EQ(*mine.errors[0].false_light->interior + *mine.errors[0].false_shadow->interior, 0u);
+    EXPECT_THROW(static_cast<void>(add_answers("mine=" + file.string())), UsageError) << "the name is taken";
+    for (const std::string& text :
+         std::vector<std::string>{"mine", "=x", "a b=" + file.string(), "b=" + file.string() + ":measure=colour"})
+        EXPECT_THROW(static_cast<void>(add_answers(text)), UsageError) << text;
+    EXPECT_THROW(static_cast<void>(add_answers("c=/no/such.npy")), InputError);
+
+    VisibilityPlane plane(n);
+    const auto refused = [&](const std::vector<float>& all, const Shape& shape) -> std::string {
+        write_npy(file, std::span<const float>(all), shape);
+        try {
+            read_answers(file, p.scene, p.points, 0, false, plane.out());
+        } catch (const InputError& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(
+        contains(refused(std::vector<float>(n / 2), {n / 2}), fmt::format("holds {} values, expected {}", n / 2, n)));
+    EXPECT_TRUE(contains(refused(std::vector<float>(lights * n, 1.5f), {lights, n}), "is 1.5, expected 0"));
+    EXPECT_EQ(refused(std::vector<float>(lights * n, 1.0005f), {lights, n}), "");
+    EXPECT_EQ(plane.s[undefined], 1.0f) << "clamped";
+}
+
+TEST(Messages, SayWhereALightIsInTheWorld) {
+    const PreparedScene p = prepare_scene(std::string(UMBRA_SCENES) + "/warnock.json", {16, 9});
+    ASSERT_TRUE(p.scene.lights[0].camera_pose);
+    const Json light = aim_message(p.scene, 0, Json::object())["description"];
+    EXPECT_FALSE(light.contains("fixed_to"));
+    for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(light["position"][axis].get<float>(), p.scene.lights[0].position[axis]);
+}
+
+TEST(Npy, ReadsWhatNumPyWrites) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "a.npy";
+    const auto write    = [&](const std::string& header, const std::string& bytes) {
+        std::ofstream out(file, std::ios::binary);
+        out << std::string("\x93NUMPY\x01\x00", 8) << static_cast<char>(header.size()) << '\0' << header << bytes;
+    };
+    write("{'descr': '<f8', 'fortran_order': True, 'shape': (2, 3), }", [] {
+        const double values[]{0, 3, 1, 4, 2, 5};
+        return std::string(reinterpret_cast<const char*>(values), sizeof values);
+    }());
+    EXPECT_EQ(read_npy(file).values, (std::vector<float>{0, 1, 2, 3, 4, 5})) << "columns first";
+    write("{'descr': '>i2', 'fortran_order': False, 'shape': (2,), }", std::string("\x01\x00\xff\xff", 4));
+    EXPECT_EQ(read_npy(file).values, (std::vector<float>{256, -1}));
+    write("{'shape': (3,), 'fortran_order': False, 'descr': '<f2'}", std::string("\x00\x3c\x00\xb8\x01\x00", 6));
+    EXPECT_EQ(read_npy(file).values, (std::vector<float>{1, -0.5f, 0x1p-24f}));
+    write("{'descr': '|b1', 'fortran_order': False, 'shape': (), }", std::string("\x01", 1));
+    EXPECT_EQ(read_npy(file).shape, Shape{});
+    for (const auto& [header, bytes] : std::vector<std::pair<std::string, std::string>>{
+             {"{'descr': '<f4', 'fortran_order': False, 'shape': (2,), }", "1234567"},
+             {"{'descr': '<f4', 'fortran_order': False, 'shape': (2,), }", "123456789"},
+             {"{'descr': '<f4', 'fortran_order': False, 'shape': (999999999999, 999999999999), }", "1234"},
+             {"{'descr': '<c8', 'fortran_order': False, 'shape': (1,), }", "12345678"},
+             {"{'descr': [('u', '<f4')], 'fortran_order': False, 'shape': (1,), }", "1234"},
+             {"{'descr': '<f4', 'shape': (1,), }", "1234"},
+             {"", "1234"}}) {
+        write(header, bytes);
+        EXPECT_THROW(static_cast<void>(read_npy(file)), InputError) << header;
+    }
+    EXPECT_THROW(static_cast<void>(read_npy("/dev/zero")), InputError);
+}
+
+TEST(SceneFiles, HoldTheSceneInThreeForms) {
+    const TemporaryFolder folder;
+    const PreparedScene p = prepare_scene(std::string(UMBRA_SCENES) + "/spot_stage.json", {32, 18});
+    write_scene_files(folder.path(), p.scene);
+    const Numbers corners = read_npy(folder.path() / "triangles.npy");
+    ASSERT_EQ(corners.shape, (Shape{p.scene.triangles.size(), 3, 3}));
+    for (TriangleId t = 0; t < p.scene.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_EQ(corners.values[9 * t + 3 * static_cast<std::size_t>(k) + static_cast<std::size_t>(axis)],
+                          p.scene.vertex(t, k)[axis]);
+    for (const char* name : {"scene.json", "scene.glb"}) {
+        const Scene again = load_scene(folder.path() / name);
+        ASSERT_EQ(again.triangles.size(), p.scene.triangles.size()) << name;
+        for (TriangleId t = 0; t < again.triangles.size(); ++t)
+            for (int k = 0; k < 3; ++k) EXPECT_EQ(again.vertex(t, k), p.scene.vertex(t, k)) << name;
+        EXPECT_EQ(again.lights.size(), p.scene.lights.size()) << name;
+        for (std::size_t j = 0; j < again.lights.size(); ++j) {
+            EXPECT_EQ(again.lights[j].kind, p.scene.lights[j].kind) << name;
+            EXPECT_EQ(again.lights[j].position, p.scene.lights[j].position) << name;
+            if (again.lights[j].kind != LightKind::point) {
+                EXPECT_LT(glm::length(glm::normalize(again.lights[j].direction) -
+                                      glm::normalize(p.scene.lights[j].direction)),
+                          1e-6f)
+                    << name;
+            }
+        }
+        EXPECT_EQ(again.camera.eye, p.scene.camera.eye) << name;
+        EXPECT_NEAR(again.camera.fov_y, p.scene.camera.fov_y, 1e-4) << name;
+    }
+}
+
+}  // namespace
+}  // namespace umbra
