@@ -122,7 +122,7 @@ OwnTimesRecord own_times_record(const OwnTimes& times, const OwnTimes& before) {
         double sum = (times.*phase).empty() ? kUnknown : 0;
         for (const auto& [light, samples] : times.*phase) {
             const auto known = (before.*phase).find(light);
-            sum += of(samples, known == (before.*phase).end() ? 0 : known->second.size());
+            sum              = sum + of(samples, known == (before.*phase).end() ? 0 : known->second.size());
         }
         return sum;
     };

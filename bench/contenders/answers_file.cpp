@@ -14,8 +14,6 @@ namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr float kSlack = 1e-3f;
-
 std::string expected(const Scene& scene, const PointBatch& points, bool only) {
     std::string shapes = fmt::format("{}", points.size());
     if (points.raster) shapes += fmt::format(" or {} x {}", points.raster->height, points.raster->width);
@@ -94,7 +92,7 @@ void read_answers(const fs::path& file, const Scene& scene, const PointBatch& po
             out.answer[i] = Answer::undefined;
             continue;
         }
-        if (!(s >= -kSlack && s <= 1 + kSlack))
+        if (!(s >= -kAnswerSlack && s <= 1 + kAnswerSlack))
             throw InputError(
                 fmt::format("{}: the answer at point {} is {}, expected 0 (in shadow) to 1 (lit), or NaN for "
                             "undefined",

@@ -10,10 +10,13 @@
 
 namespace umbra {
 
+/// How far an answer may lie outside of [0, 1] by its own rounding.
+inline constexpr float kAnswerSlack = 1e-3f;
+
 /// Writes the answers of one light into `out`, where they are asked for; NaN is `undefined`. `.npy`: a value a point; or
 /// over the raster height x width; or lights x either. Other endings: a picture, whose channel is `S.<light>`; or, where
 /// it has none of these and the scene one light (or `only` says that the file is of this one), its only channel or R.
-/// Values within 0.001 of [0, 1] are clamped. Throws InputError: the file, what was found, what is expected.
+/// Values within kAnswerSlack of [0, 1] are clamped. Throws InputError: the file, what was found, what is expected.
 void read_answers(const std::filesystem::path& file, const Scene& scene, const PointBatch& points, LightId light,
                   bool only, const Visibility& out);
 

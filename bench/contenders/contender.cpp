@@ -75,6 +75,8 @@ ContenderRecord read_contender(const fs::path& file) {
     if (fs::file_size(file) > most) throw InputError(fmt::format("{}: has more than 1 MiB", file.string()));
     auto record = from_record<ContenderRecord>(parse_json(bytes_of(file), file.string()));
     if (record.command.empty()) throw InputError(fmt::format("{}: \"command\" is missing or empty", file.string()));
+    if (record.timeout_s <= 0)
+        throw InputError(fmt::format("{}: \"timeout_s\" is {}, expected more than 0", file.string(), record.timeout_s));
     check_introduction(record.says, file.string());
     return record;
 }

@@ -233,6 +233,7 @@ Parameter parameter_of(Contender& contender, const ParameterRecord& from) {
     p.max             = from.max.value_or(most);
     if (p.type == Parameter::Type::choice && p.choices.empty()) throw fail("no choices, expected \"a|b|c\"");
     const std::string fallback = text_of(from.fallback);
+    if (fallback.empty() && p.type != Parameter::Type::text) throw fail("\"default\" is missing");
     if (p.type == Parameter::Type::text)
         p.fallback_text = kept(contender, fallback);
     else
@@ -261,6 +262,10 @@ void check_method_name(const std::string& name) {
 }
 
 void check_introduction(const IntroductionRecord& says, const std::string& from) {
+    for (const std::string& text : {says.name, says.version, says.summary})
+        if (text.size() > 500 || std::ranges::any_of(text, [](unsigned char c) { return c < 32; }))
+            throw InputError(
+                fmt::format("{}: \"name\", \"version\" and \"summary\" are one line of at most 500 bytes", from));
     if (says.lights.empty())
         throw InputError(
             fmt::format("{}: \"lights\" is missing or empty, expected kinds of lights that the program takes", from));

@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +20,15 @@ namespace umbra {
 namespace fs = std::filesystem;
 
 RunFolder::RunFolder() {
-    std::string name = (fs::temp_directory_path() / "umbra-contender-XXXXXX").string();
+    const std::string start = "umbra-contender-";
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {  // of runs that were killed
+        const std::string old = entry.path().filename().string();
+        if (!old.starts_with(start)) continue;
+        const int owner = std::atoi(old.c_str() + start.size());
+        if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+    }
+    std::string name = (fs::temp_directory_path() / fmt::format("{}{}-XXXXXX", start, getpid())).string();
     if (::mkdtemp(name.data()) == nullptr)
         throw MethodError(fmt::format("{}: cannot be made: {}", name, std::strerror(errno)));
     path_ = name;
@@ -33,7 +44,7 @@ Json hello_message(const fs::path& folder) {
 }
 
 Json scene_message(const fs::path& folder, const Scene& scene, const Json& settings) {
-    const SceneFiles files;
+    const SceneExport files;
     write_scene_files(folder, scene, files);
     return {{"message", "scene"},      {"scene", files.json},    {"glb", files.glb},    {"triangles", files.triangles},
             {"objects", files.object}, {"blocks", files.blocks}, {"settings", settings}};
@@ -91,8 +102,9 @@ Field ProgramSession::ask(const Json& message) {
     try {
         answer = parse_json(text, "answer to " + kind);
         if (!answer.is_object()) answer.refuse("an object");
-        if (const std::string error = answer["error"].text(); !error.empty())
-            throw MethodError(fmt::format("the program answers \"{}\" with the error: {}", kind, error));
+        if (answer.has("error"))
+            throw MethodError(
+                fmt::format("the program answers \"{}\" with the error: {}", kind, answer["error"].text()));
     } catch (const InputError& e) {
         fail(fmt::format("the program wrote {:?} to stdout, where one line of JSON is expected ({}).",
                          text.substr(0, 200), e.what()));
@@ -124,7 +136,9 @@ double ProgramSession::answers(const Json& message, const Scene& scene, const Po
     try {
         const std::string named = answer["answers"].text();
         const fs::path file     = folder() / (named.empty() ? expected : named);
-        if (!fs::is_regular_file(file))
+        if (named.find('/') != std::string::npos)
+            fail(fmt::format("the program names the file {}, expected one in its folder.", named));
+        if (fs::symlink_status(file).type() != fs::file_type::regular)
             fail(fmt::format("the program answered, but wrote no file {}.", named.empty() ? expected : named));
         read_answers(file, scene, points, light, true, out);
         return time_of(answer);

@@ -185,7 +185,7 @@ std::string glb_text(const Scene& scene) {
     return std::string(reinterpret_cast<const char*>(header), sizeof header) + chunks;
 }
 
-void write_scene_files(const fs::path& folder, const Scene& scene, const SceneFiles& names) {
+void write_scene_files(const fs::path& folder, const Scene& scene, const SceneExport& names) {
     write_text(folder / names.json, native_text(scene));
     write_text(folder / names.glb, glb_text(scene));
     const std::size_t n = scene.triangles.size();

@@ -9,7 +9,7 @@
 namespace umbra {
 
 /// Names below the folder that the files are written to.
-struct SceneFiles {
+struct SceneExport {
     std::string json      = "scene.json";     ///< the native scene, whole
     std::string glb       = "scene.glb";      ///< the same triangles, the camera and the lights as glTF binary
     std::string triangles = "triangles.npy";  ///< float32, triangles x 3 x 3: corners in world space
@@ -18,7 +18,7 @@ struct SceneFiles {
 };
 
 /// Throws InputError where a file cannot be written.
-void write_scene_files(const std::filesystem::path& folder, const Scene& scene, const SceneFiles& names = {});
+void write_scene_files(const std::filesystem::path& folder, const Scene& scene, const SceneExport& names = {});
 
 /// One record a point: position (float64, rounded from the exact point once more), normal, triangle (2^32 - 1 where there
 /// is none), u, v, column and row of the pixel (-1 in a batch without a raster).

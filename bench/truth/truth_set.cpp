@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/exchange/npy.h"
 #include "umbra/bench/exchange/scene_files.h"
 #include "umbra/bench/out/files.h"
@@ -78,7 +79,7 @@ TruthSceneRecord write_scene(const ChosenScene& chosen, const TruthOrder& order,
                             .height    = h,
                             .measures  = {"area"}};
     make_folder(questions), make_folder(answers);
-    const SceneFiles files;
+    const SceneExport files;
     write_scene_files(questions, scene, files);
     write_points(questions / "points.npy", scene, prepared.points);
     std::vector<std::uint8_t> asked;
@@ -183,6 +184,10 @@ std::vector<float> answers_of(const Answering& answering, const TruthSceneRecord
     if (shape != Shape{scene.lights.size(), scene.height, scene.width} || numbers.values.size() != n)
         throw InputError(fmt::format("{}: holds {} values, expected {} (lights) x {} x {}", file.string(),
                                      in_words(numbers.shape), scene.lights.size(), scene.height, scene.width));
+    for (std::size_t i = 0; i < n; ++i)
+        if (numbers.values[i] < -kAnswerSlack || numbers.values[i] > 1 + kAnswerSlack)
+            throw InputError(fmt::format("{}: value {} is {}, expected 0 (in shadow) to 1 (lit), or NaN for undefined",
+                                         file.string(), i, numbers.values[i]));
     return std::move(numbers.values);
 }
 

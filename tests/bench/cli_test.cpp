@@ -460,6 +460,51 @@ std::string completed(const std::string& script, const std::string& line) {
         .output;
 }
 
+/// From the gate to a row of a table, in a folder of its own; and what else the two commands refuse.
+TEST_F(Cli, ProgramsFromOutsideAreCheckedAndThenNamed) {
+    const auto here = [&](const std::string& arguments) {
+        return run("cd " + folder_.string() + " && " + UMBRA_PROGRAM + " " + arguments);
+    };
+    const std::string planted = UMBRA_PLANTED_CONTENDER;
+    const Answer wrong        = here("contender check --save mine -- " + planted + " exchanged");
+    EXPECT_EQ(wrong.exit_code, 1) << wrong.output;
+    EXPECT_TRUE(contains(wrong.output, "0 and 1 are exchanged")) << wrong.output;
+    EXPECT_FALSE(fs::exists(file("contenders/mine.json")));
+    EXPECT_EQ(here("compare " + kScene + " --methods mine -o out").exit_code, 64) << "it has not passed";
+    EXPECT_EQ(here("contender check --save exact -- " + planted + " none").exit_code, 64) << "the name is taken";
+    EXPECT_EQ(here("contender check").exit_code, 64);
+    EXPECT_EQ(here("contender check -- /no/such/program").exit_code, 5);
+    EXPECT_EQ(here("contender show " + kScene).exit_code, 64) << "no folder";
+    const Answer right = here("contender check --json --save mine -- " + planted + " none");
+    EXPECT_EQ(right.exit_code, 0) << right.output;
+    EXPECT_EQ(nlohmann::json::parse(right.output)["passed"], true);
+    EXPECT_EQ(nlohmann::json::parse(right.output)["rows"].size(), 6u);
+    EXPECT_TRUE(contains(here("list mine").output, "Planted 1"));
+    const std::string small =
+        std::string(UMBRA_SOURCE) + "/scenes/light_inside_view.json --size 32x18 --pixel-samples 1";
+    const Answer compared = here("compare " + small + " --methods mine ray_traced --json -o out");
+    ASSERT_EQ(compared.exit_code, 0) << compared.output;
+    const auto record = nlohmann::json::parse(compared.output);
+    EXPECT_EQ(record["methods"][0]["outside"], "program");
+    EXPECT_EQ(record["methods"][0]["errors"][0]["rmse"], 0);
+    EXPECT_EQ(record["methods"][0]["own_times"]["build_ms"], 2.5);
+    std::ifstream in(file("out/light_inside_view/index.html"));
+    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_TRUE(contains(page,
+                         "By its own clock: <em>build</em> 2.50 ms, <em>aim</em> 2.50 ms, <em>look</em> 2.50 ms, "
+                         "<em>visibility</em> 2.50 ms"));
+    std::ofstream(file("contenders/mine.json")) << "{}";
+    const Answer broken = here("list methods");
+    EXPECT_TRUE(contains(broken.output, "\"command\" is missing")) << broken.output;
+    EXPECT_EQ(here("truth -o set").exit_code, 64);
+    EXPECT_EQ(here("truth " + kScene + " -o set --withhold set").exit_code, 64);
+    EXPECT_EQ(here("score set").exit_code, 64);
+    EXPECT_EQ(here("score set a=b").exit_code, 4);
+    EXPECT_EQ(
+        here("compare " + kScene + " " + kScene + " --answers a=" + file("contenders/mine.json") + " -o o").exit_code,
+        64);
+}
+
 TEST_F(Cli, BashCompletes) {
     ASSERT_EQ(run(std::string(UMBRA_PROGRAM) + " completion bash > " + file("umbra.bash")).exit_code, 0);
     const std::string script = file("umbra.bash");

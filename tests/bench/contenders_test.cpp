@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
+#include <set>
 #include <thread>
 
 #include "umbra/bench/compare/compare.h"
@@ -10,6 +12,8 @@
 #include "umbra/bench/contenders/program_session.h"
 #include "umbra/bench/exchange/npy.h"
 #include "umbra/bench/exchange/scene_files.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/run/outcome.h"
 #include "umbra/bench/run/run.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
@@ -20,10 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The planted contender as a method, which answers within two seconds.
+/// The planted contender as a method, which is given a minute for an answer, and two seconds where it hangs.
 const MethodInfo& planted(const std::string& fault) {
     const std::vector<std::string> command{UMBRA_PLANTED_CONTENDER, fault};
-    return program_method("planted", {.command = command, .timeout_s = 2, .says = introduction(command, ".", 2)}, ".");
+    const double timeout_s = fault == "hangs" ? 2 : 60;
+    return program_method("planted",
+                          {.command = command, .timeout_s = timeout_s, .says = introduction(command, ".", 60)}, ".");
 }
 
 /// What fails of the gate.
@@ -63,6 +69,8 @@ TEST(Gate, SaysWhatIsWrong) {
              {"beyond", "expected 0 (in shadow) to 1 (lit)"},
              {"few", "holds 3072 values, expected 6144"},
              {"no_file", "wrote no file answers.npy"},
+             {"another_folder", "expected one in its folder"},
+             {"link", "wrote no file answers.npy"},
              {"error", "no such light here"},
              {"not_json", "one line of JSON is expected"},
              {"negative_time", "milliseconds, 0 or more"},
@@ -73,6 +81,7 @@ TEST(Gate, SaysWhatIsWrong) {
         EXPECT_TRUE(contains(failures_of(fault), why)) << fault << "\n" << failures_of(fault);
     EXPECT_THROW(static_cast<void>(planted("no_measure")), MethodError);
     EXPECT_THROW(static_cast<void>(planted("no_lights")), MethodError);
+    EXPECT_THROW(static_cast<void>(planted("two_lines")), MethodError);
 }
 
 class Contenders : public testing::Test {
@@ -96,10 +105,53 @@ TEST_F(Contenders, AnswerAsBruteForce) {
         }
     EXPECT_GT(asked, 500u);
     EXPECT_EQ(differ, 0u);
+    // Other points in between, and back.
+    const std::vector<std::uint32_t> some{5, 900, 17};
+    const PointBatch few = pick(p.points, some);
+    static_cast<void>(run.work->ask(few, 0));
+    VisibilityPlane again(p.points.size());
+    run.work->visibility(0, again.out());
+    EXPECT_EQ(again.s, run.planes[0].s);
     const OwnTimes own = run.work->method().own_times(p.scene).value();
     EXPECT_EQ(own.build, (std::vector<double>{2.5, 2.5}));
     EXPECT_EQ(own.aim.at(0), (std::vector<double>{2.5, 2.5}));
-    EXPECT_EQ(own.visibility.at(0), (std::vector<double>{2.5, 2.5}));
+    EXPECT_EQ(own.visibility.at(0), std::vector<double>(4, 2.5));
+}
+
+TEST_F(Contenders, AreAimedAnewWhereTheirLastAimWasAnother) {
+    const PreparedScene p = prepare_scene(std::string(UMBRA_SCENES) + "/three_reasons.json", {64, 36});
+    Scene scene           = p.scene;
+    Light other           = scene.lights[0];
+    other.name = "other", other.kind = LightKind::point, other.position = {-3, 4, 2};
+    scene.lights             = {other, other};
+    scene.lights[1].position = {3, 4, 2}, scene.lights[1].name = "another";
+    const SceneFacts facts = find_facts(scene);
+    PointBatch points      = p.points;
+    face_lights(points, scene);
+    MethodAtWork work(MethodChoice(planted("none")), scene, facts);
+    MethodAtWork force(parse_method("brute_force"), scene, facts);
+    for (MethodAtWork* each : {&work, &force}) each->look(points), each->aim(0), each->aim(1);
+    VisibilityPlane ours(points.size()), theirs(points.size());
+    for (const LightId light : {0u, 1u, 0u}) {
+        ours.clear(), theirs.clear();
+        work.visibility(light, ours.out()), force.visibility(light, theirs.out());
+        EXPECT_EQ(ours.s, theirs.s) << light;
+    }
+}
+
+TEST(Seeds, StayWithinTheRangeOfTheMethod) {
+    MethodInfo info{.name = "noisy", .title = "", .paper = "", .summary = ""};
+    info.parameters = {{.name = "seed", .min = 3, .max = 10, .type = Parameter::Type::integer, .fallback = 9}};
+    info.seed       = "seed";
+    const MethodChoice choice(info);
+    std::set<double> seeds;
+    for (int run = 0; run < 8; ++run) {
+        const double seed = with_seed(choice, 1000003LL * (run + 1)).settings.value("seed");
+        EXPECT_TRUE(seed >= 3 && seed <= 10) << seed;
+        seeds.insert(seed);
+    }
+    EXPECT_EQ(seeds.size(), 8u);
+    EXPECT_EQ(with_seed(parse_method("ray_traced:seed=5"), 1000003).settings.value("seed"), 1000008);
 }
 
 TEST_F(Contenders, ThatHangAreEndedWithAllThatTheyStarted) {
@@ -118,12 +170,18 @@ TEST_F(Contenders, ThatHangAreEndedWithAllThatTheyStarted) {
 }
 
 TEST_F(Contenders, CostTheirOwnCellOnly) {
+    const fs::path scene = folder_.path() / "two.json";
+    std::ofstream(scene) << R"({"camera": {"eye": [0, 4, 6], "target": [0, 0, 0]},
+        "lights": [{"type": "point", "name": "a", "position": [2, 5, 0]},
+                   {"type": "directional", "name": "b", "direction": [1, -2, 0]}],
+        "objects": [{"type": "plane", "size": 9},
+                    {"type": "box", "transform": [{"translate": [0, 1, 0]}]}]})";
     CompareOptions options;
     options.size          = {32, 18};
     options.out           = folder_.path() / "out";
     options.methods       = {"ray_traced"};
     options.choices       = {MethodChoice(planted("none")), MethodChoice(planted("crashes"))};
-    const Results results = compare_scene(std::string(UMBRA_SCENES) + "/light_inside_view.json", options);
+    const Results results = compare_scene(scene, options);
     ASSERT_EQ(results.methods.size(), 3u);
     EXPECT_TRUE(results.methods[0].ran);
     EXPECT_EQ(results.methods[0].outside, "");
@@ -143,8 +201,9 @@ TEST_F(Contenders, CostTheirOwnCellOnly) {
 }
 
 TEST_F(Contenders, AnswersInAFileAreJudged) {
-    const PreparedScene p = prepared({32, 18});
-    const MethodRun force = run_method(parse_method("brute_force"), p.scene, p.facts, p.points, kOnce);
+    const std::string file_of_scene = std::string(UMBRA_SCENES) + "/six_lights.json";
+    const PreparedScene p           = prepare_scene(file_of_scene, {32, 18});
+    const MethodRun force           = run_method(parse_method("brute_force"), p.scene, p.facts, p.points, kOnce);
     const std::size_t n = p.points.size(), lights = p.scene.lights.size();
     std::vector<float> values;
     for (const VisibilityPlane& plane : force.planes) values.insert(values.end(), plane.s.begin(), plane.s.end());
@@ -158,13 +217,14 @@ TEST_F(Contenders, AnswersInAFileAreJudged) {
     options.out              = folder_.path() / "out";
     options.pixel_samples    = 4;  // of which a file has one
     options.choices          = {add_answers("mine=" + file.string() + ":measure=irradiance")};
-    const Results results    = compare_scene(std::string(UMBRA_SCENES) + "/light_inside_view.json", options);
+    const Results results    = compare_scene(file_of_scene, options);
     const MethodRecord& mine = results.methods.at(0);
     EXPECT_EQ(mine.outside, "file of answers");
     EXPECT_EQ(mine.measures, "irradiance");
     EXPECT_FALSE(mine.times) << "copying a file is no time of a method";
     EXPECT_EQ(mine.errors[0].undefined, 1u);
-    EXPECT_EQ(*mine.errors[0].false_light->interior + *mine.errors[0].false_shadow->interior, 0u);
+    for (const ErrorRecord& error : mine.errors)
+        EXPECT_EQ(*error.false_light->interior + *error.false_shadow->interior, 0u) << error.light;
     EXPECT_THROW(static_cast<void>(add_answers("mine=" + file.string())), UsageError) << "the name is taken";
     for (const std::string& text :
          std::vector<std::string>{"mine", "=x", "a b=" + file.string(), "b=" + file.string() + ":measure=colour"})
@@ -227,6 +287,31 @@ TEST(Npy, ReadsWhatNumPyWrites) {
         EXPECT_THROW(static_cast<void>(read_npy(file)), InputError) << header;
     }
     EXPECT_THROW(static_cast<void>(read_npy("/dev/zero")), InputError);
+}
+
+TEST(SceneFiles, HoldPointsInDouble) {
+    const TemporaryFolder folder;
+    const PreparedScene p = prepare_scene(std::string(UMBRA_SCENES) + "/spot_stage.json", {32, 18});
+    write_points(folder.path() / "points.npy", p.scene, p.points);
+    const std::string bytes = bytes_of(folder.path() / "points.npy");
+    ASSERT_EQ(bytes.size() % 64, (56 * p.points.size()) % 64) << "a header of a multiple of 64 bytes";
+    const char* const begin = bytes.data() + bytes.size() - 56 * p.points.size();
+    std::size_t finer       = 0;
+    for (std::size_t i = 0; i < p.points.size(); ++i) {
+        dvec3 position;
+        std::int32_t pixel[2];
+        std::uint32_t triangle = 0;
+        std::memcpy(&position, begin + 56 * i, sizeof position);
+        std::memcpy(&triangle, begin + 56 * i + 36, sizeof triangle);
+        std::memcpy(pixel, begin + 56 * i + 48, sizeof pixel);
+        EXPECT_EQ(triangle, p.points.triangle[i]);
+        EXPECT_EQ(pixel[0], static_cast<int>(i % 32));
+        EXPECT_EQ(pixel[1], static_cast<int>(i / 32));
+        if (triangle == kNoTriangle) continue;
+        EXPECT_EQ(position, exact_position(p.scene, p.points, i));
+        finer += position != dvec3(p.points.position(i));
+    }
+    EXPECT_GT(finer, 100u);
 }
 
 TEST(SceneFiles, HoldTheSceneInThreeForms) {

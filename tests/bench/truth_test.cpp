@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -105,6 +106,39 @@ TEST_F(Truth, ScorerInNumPyGivesTheSameFigures) {
                 EXPECT_NEAR(t["max"], s.max, 1e-12);
             }
         }
+}
+
+TEST_F(Truth, CountsWhatIsPlanted) {
+    write_truth(order());
+    answer("exact");
+    const fs::path there = set_ / "light_inside_view", mine = answers_ / "light_inside_view.npy";
+    const auto truth = read_npy(there / "area.npy").values, edge = read_npy(there / "area_edge.npy").values,
+               boundary = read_npy(there / "area_boundary.npy").values;
+    Numbers given       = read_npy(mine);
+    int darkened = 0, lit = 0, at_edge = 0, left = 0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        float& s = given.values[i];
+        if (std::isnan(truth[i]) || boundary[i] != 0) continue;
+        if (edge[i] == 0 && truth[i] == 1 && darkened < 5)
+            s = 0, ++darkened;
+        else if (edge[i] == 0 && truth[i] == 0 && lit < 3)
+            s = 1, ++lit;
+        else if (edge[i] != 0 && truth[i] == 1 && at_edge < 2)
+            s = 0, ++at_edge;
+        else if (left < 4)
+            s = std::nanf(""), ++left;
+    }
+    ASSERT_EQ(darkened + lit + at_edge + left, 14);
+    write_npy(mine, std::span<const float>(given.values), given.shape);
+    const ScoreRecord s = scores()[1];
+    EXPECT_EQ(s.false_shadow, 5u);
+    EXPECT_EQ(s.false_light, 3u);
+    EXPECT_EQ(s.edge, 2u);
+    EXPECT_EQ(s.undefined, 4u);
+    EXPECT_NEAR(s.bias, -4.0 / static_cast<double>(s.points), 1e-12);
+    EXPECT_NEAR(s.mae, 10.0 / static_cast<double>(s.points), 1e-12);
+    EXPECT_NEAR(s.rmse, std::sqrt(10.0 / static_cast<double>(s.points)), 1e-12);
+    EXPECT_EQ(s.max, 1);
 }
 
 TEST_F(Truth, MayBeGivenAwayWithoutItsAnswers) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -92,7 +93,7 @@ struct World {
         double sum = 0, all = 0;
         for (int k = 0; k < kSide * kSide; ++k) {
             const Vec to = vec(of["position"]) + ((k % kSide + 0.5) / kSide - 0.5) * edge_u +
-                           ((k / kSide + 0.5) / kSide - 0.5) * edge_v - at.position;
+                           ((static_cast<double>(k / kSide) + 0.5) / kSide - 0.5) * edge_v - at.position;
             const double front = dot(normal, to), d = dot(to, to);
             const double weight = fault == "irradiance" ? std::max(front, 0.0) * std::abs(dot(face, to)) / (d * d) : 1;
             all += weight;
@@ -140,6 +141,7 @@ struct World {
                       {"measure", "area"},
                       {"takes", "points"},
                       {"lights", {"point", "directional", "rectangle"}}};
+            if (fault == "two_lines") says["version"] = "1\n2";
             if (fault == "no_measure") says.erase("measure");
             if (fault == "no_lights") says["lights"] = json::array();
             if (fault == "raster" || fault == "upside_down" || fault == "mirrored" || fault == "beside")
@@ -166,6 +168,10 @@ struct World {
             if (fault == "ends") std::cerr << "bye\n", std::exit(3);
             if (fault == "error") return {{"error", "no such light here"}};
             if (fault == "no_file") return {{"ms", 1}};
+            if (fault == "another_folder") return {{"answers", "/etc/hostname"}};
+            if (fault == "link")
+                std::filesystem::create_symlink("/etc/hostname", folder + message["answers"].get<std::string>());
+            if (fault == "link") return {{"ms", 1}};
             if (fault == "not_json") return "Rendering ...";
             if (fault == "floods")
                 while (true) std::cout << "............................................................";

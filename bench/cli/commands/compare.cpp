@@ -1,5 +1,9 @@
 #include "umbra/bench/compare/compare.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
@@ -19,6 +23,9 @@ struct CompareLine {
 int compare(CompareLine line, const Common& common) {
     return_scenes(line.options.methods, line.scenes);
     if (line.scenes.empty()) throw UsageError("compare: SCENE is required");
+    if (line.scenes.size() > 1 &&
+        std::ranges::any_of(line.options.choices, [](const auto& c) { return !c.info->is_timed; }))
+        throw UsageError(fmt::format("--answers: a file is of one scene, and there are {}", line.scenes.size()));
     check_writable_beside(line.options.out);
     const PlaceLock lock = PlaceLock::inside(line.options.out);
     const ScenesDone done =

@@ -22,6 +22,7 @@ struct ContenderLine {
     std::vector<std::string> words;
     std::string save;
     double timeout_s = 120;
+    bool as_json     = false;
     fs::path out;
     Size size;
 };
@@ -51,24 +52,36 @@ int check(const ContenderLine& line, const Common& common) {
             "contender check: expected a command (umbra contender check -- python3 mine.py), or the name or "
             "the file of a contender");
     if (!line.save.empty()) check_method_name(line.save);
+    for (const MethodInfo* known : methods())
+        if (known->name == line.save && known->outside.empty())
+            throw UsageError(
+                fmt::format("--save {}: that is a method of this program, expected another name", line.save));
     auto [record, folder, file] = asked_for(line);
     record.says                 = introduction(record.command, folder, record.timeout_s);
     const MethodInfo& info      = program_method("contender", record, folder);
     const std::vector<GateRow> rows =
         on_terminal(common, [&](const std::function<void(const std::string&)>& tell) { return gate(info, tell); });
-    std::string text = fmt::format("{} {}\n", record.says.name, record.says.version);
-    for (const GateRow& row : rows)
-        text += fmt::format("{}  {}: {}\n", row.passed ? "passed" : "FAILED", row.question, row.found);
     const bool passed = std::ranges::all_of(rows, &GateRow::passed);
-    if (passed && !file.empty()) {
+    const bool saved  = passed && !file.empty();
+    if (saved) {
         record.checked = record.says.version;
         make_folder(file.parent_path());
         StagedFiles staged;
         staged.write(file, json_text(to_record(record)));
         staged.commit();
-        text += fmt::format("{} says so: it is a method now, --methods {}\n", file.string(), file.stem().string());
     }
-    print_out("{}", without_controls(text));
+    Json found       = to_record(head_record(common.command));
+    found["program"] = record.says.name, found["program_version"] = record.says.version, found["passed"] = passed;
+    for (const GateRow& row : rows)
+        found["rows"].push_back({{"question", row.question}, {"passed", row.passed}, {"found", row.found}});
+    print_record(line.as_json, common, found, [&] {
+        std::string text = fmt::format("{} {}\n", record.says.name, record.says.version);
+        for (const GateRow& row : rows)
+            text += fmt::format("{}  {}: {}\n", row.passed ? "passed" : "FAILED", row.question, row.found);
+        if (saved)
+            text += fmt::format("{} says so: it is a method now, --methods {}\n", file.string(), file.stem().string());
+        return text;
+    });
     return passed ? kDone : kNo;
 }
 
@@ -116,14 +129,16 @@ Action contender_command(CLI::App& app, const Common& common) {
         ->check(CLI::IsMember({"check", "show"}))
         ->type_name("")
         ->required();
-    app.add_option("WORDS", line->words, "check: -- COMMAND WORD..., or a contender's name or file; show: a scene")
+    app.add_option("WORDS", line->words,
+                   "check: a command and its arguments, or a contender's name or file; show: a scene")
         ->type_name("");
     app.add_option("--save", line->save, "check: write contenders/NAME.json where it passes")->type_name("NAME");
     app.add_option("--timeout", line->timeout_s, "check: seconds that an answer may take (120)")
         ->check(number_in(0.1, 86400, "seconds, 0.1 to 86400"))
         ->type_name("S");
+    add_json(app, line->as_json, "the rows");
     add_size(app, line->size);
-    app.add_option("-o", line->out, "show: folder to write to")->type_name("DIR");
+    app.add_option("-o,--output", line->out, "show: folder to write to")->type_name("DIR");
     return [line, &common] { return line->action == "check" ? check(*line, common) : show(*line, common); };
 }
 

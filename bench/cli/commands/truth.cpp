@@ -4,6 +4,7 @@
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
+#include "umbra/core/base/error.h"
 
 namespace umbra {
 
@@ -20,7 +21,11 @@ Action truth_command(CLI::App& app, const Common& common) {
     app.add_option("--license", line->order.license, "License of the set, for its metadata")->type_name("TEXT");
     add_output(app, line->order.out);
     return [line, &common] {
-        TruthOrder order         = line->order;
+        TruthOrder order = line->order;
+        if (line->scenes.empty()) throw UsageError("truth: SCENE is required");
+        if (!order.withhold.empty() &&
+            std::filesystem::weakly_canonical(order.withhold) == std::filesystem::weakly_canonical(order.out))
+            throw UsageError("--withhold: is the folder of -o, expected another one for the answers");
         order.scenes             = scene_files(line->scenes, common.up);
         order.command            = common.command;
         const TruthSetRecord set = on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
