@@ -92,8 +92,9 @@ struct World {
         const Vec face = cross(edge_u, edge_v), normal{at.normal[0], at.normal[1], at.normal[2]};
         double sum = 0, all = 0;
         for (int k = 0; k < kSide * kSide; ++k) {
-            const Vec to = vec(of["position"]) + ((k % kSide + 0.5) / kSide - 0.5) * edge_u +
-                           ((static_cast<double>(k / kSide) + 0.5) / kSide - 0.5) * edge_v - at.position;
+            const int column = k % kSide, row = k / kSide;
+            const Vec to = vec(of["position"]) + ((column + 0.5) / kSide - 0.5) * edge_u +
+                           ((row + 0.5) / kSide - 0.5) * edge_v - at.position;
             const double front = dot(normal, to), d = dot(to, to);
             const double weight = fault == "irradiance" ? std::max(front, 0.0) * std::abs(dot(face, to)) / (d * d) : 1;
             all += weight;

@@ -56,9 +56,11 @@ int check(const ContenderLine& line, const Common& common) {
         if (known->name == line.save && known->outside.empty())
             throw UsageError(
                 fmt::format("--save {}: that is a method of this program, expected another name", line.save));
-    auto [record, folder, file] = asked_for(line);
-    record.says                 = introduction(record.command, folder, record.timeout_s);
-    const MethodInfo& info      = program_method("contender", record, folder);
+    Checked checked         = asked_for(line);
+    ContenderRecord& record = checked.record;
+    const fs::path &folder = checked.folder, &file = checked.file;
+    record.says            = introduction(record.command, folder, record.timeout_s);
+    const MethodInfo& info = program_method("contender", record, folder);
     const std::vector<GateRow> rows =
         on_terminal(common, [&](const std::function<void(const std::string&)>& tell) { return gate(info, tell); });
     const bool passed = std::ranges::all_of(rows, &GateRow::passed);

@@ -168,9 +168,10 @@ class Contender:
         return {}
 
     def aim(self, message):
+        of = {lamp.data for lamp in self.lamps}  # two lamps may share one
         for lamp in self.lamps:
-            data = lamp.data
             bpy.data.objects.remove(lamp)
+        for data in of:
             bpy.data.lights.remove(data)
         self.lamps, light = [], message['description']
         if light.get('fixed_to') == 'camera':
