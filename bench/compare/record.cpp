@@ -102,8 +102,10 @@ MethodRecord served_record(const std::string& id, const PreparedScene& prepared,
     const MethodRun& run = found.run;
     MethodRecord record  = head_of(id, run.choice, run.service);
     record.ran           = true;
-    record.memory_bytes  = run.memory_bytes;
-    record.points_bytes  = run.points_bytes;
+    if (run.choice.info->outside.empty()) {  // nobody knows what a program from outside holds
+        record.memory_bytes = run.memory_bytes;
+        record.points_bytes = run.points_bytes;
+    }
     if (run.device_bytes > 0) record.device_bytes = run.device_bytes;
     record.coverage      = run.coverage(prepared.points);
     record.measures      = to_string(run.work->method().measures());

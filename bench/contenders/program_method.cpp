@@ -164,8 +164,9 @@ public:
         if (session.looked != &looked) take_points(there, looked);
         const double ms = session.answers(visibility_message(session.folder(), looked.points, aimed.light, settings_),
                                           there.scene, looked.points, aimed.light, out);
-        note(
-            there.scene, ms, [&](OwnTimes & all) -> auto& { return all.visibility[aimed.light]; });
+        if (looked.points.raster)  // a few points, asked to explain errors, are no sample
+            note(
+                there.scene, ms, [&](OwnTimes & all) -> auto& { return all.visibility[aimed.light]; });
     }
 
 private:
@@ -184,8 +185,9 @@ private:
     void take_points(const ProgramBuilt& there, const Looked& looked) const {
         const double ms =
             there.session->send(points_message(there.session->folder(), there.scene, looked.points, settings_));
-        note(
-            there.scene, ms, [](OwnTimes & all) -> auto& { return all.look; });
+        if (looked.points.raster)
+            note(
+                there.scene, ms, [](OwnTimes & all) -> auto& { return all.look; });
         there.session->looked = &looked;
     }
 

@@ -298,7 +298,8 @@ void describe(Fields& of, Is<MethodRecord>) {
     of.may("times", &MethodRecord::times, "of the program's own clock; absent of a file of answers");
     of.may("own_times", &MethodRecord::own_times, "");
     of.where(&MethodRecord::ran, "light_times", &MethodRecord::light_times, "");
-    of.may("memory_bytes", &MethodRecord::memory_bytes, "of geometry and of the last light");
+    of.may("memory_bytes", &MethodRecord::memory_bytes,
+           "of geometry and of the last light; absent of methods from outside");
     of.may("points_bytes", &MethodRecord::points_bytes, "of the surface points, for all lights");
     of.may("device_bytes", &MethodRecord::device_bytes, "in the memory of a device; absent where there is none");
     of.where(&MethodRecord::ran, "coverage", &MethodRecord::coverage,
