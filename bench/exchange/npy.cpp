@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little);
 
 constexpr std::string_view kMagic("\x93NUMPY", 6);
-constexpr std::size_t kMaxHeader = 1u << 16;
+constexpr std::size_t kMaxHeader = 4096;  // NumPy's have 118; a pattern matches within a bounded stack
 constexpr std::size_t kMaxItems  = std::size_t{1} << 32;
 
 std::string shape_text(const Shape& shape) {
@@ -166,7 +166,9 @@ Numbers read_npy(const fs::path& file) {
         length += (std::size_t{static_cast<unsigned char>(more[0])} << 16) +
                   (std::size_t{static_cast<unsigned char>(more[1])} << 24);
     }
-    if (length > kMaxHeader) throw InputError(fmt::format("{}: has a header of {} bytes", file.string(), length));
+    if (length > kMaxHeader)
+        throw InputError(
+            fmt::format("{}: has a header of {} bytes, expected at most {}", file.string(), length, kMaxHeader));
     std::string text(length, '\0');
     if (!in.read(text.data(), static_cast<std::streamsize>(length)))
         throw InputError(fmt::format("{}: ends within its header", file.string()));

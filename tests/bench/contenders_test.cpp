@@ -287,6 +287,12 @@ TEST(Npy, ReadsWhatNumPyWrites) {
         write(header, bytes);
         EXPECT_THROW(static_cast<void>(read_npy(file)), InputError) << header;
     }
+    const std::string long_header =
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::string(60000, ' ') + "1,), }";
+    std::ofstream(file, std::ios::binary)
+        << std::string("\x93NUMPY\x01\x00", 8) << static_cast<char>(long_header.size() & 255)
+        << static_cast<char>(long_header.size() >> 8) << long_header << "1234";
+    EXPECT_THROW(static_cast<void>(read_npy(file)), InputError) << "a header without end";
     EXPECT_THROW(static_cast<void>(read_npy("/dev/zero")), InputError);
 }
 
