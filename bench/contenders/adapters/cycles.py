@@ -19,7 +19,6 @@ import json
 import os
 import shutil
 import sys
-import time
 import traceback
 
 if 'bpy' not in sys.modules:
@@ -38,6 +37,9 @@ if 'bpy' not in sys.modules:
 import bpy
 import numpy as np
 from mathutils import Matrix, Vector
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))  # Blender does not
+from protocol import serve
 
 HELLO = {'name': 'Cycles', 'version': bpy.app.version_string, 'measure': 'irradiance', 'takes': 'raster',
          'seed': 'seed', 'lights': ['directional', 'point', 'spot', 'rectangle', 'disk', 'sphere'],
@@ -241,26 +243,10 @@ class Contender:
         return {}
 
 
-def main(requests, answers):
-    contender = Contender()
-    for line in requests:
-        message = json.loads(line)
-        if message['message'] == 'end':
-            break
-        begin = time.perf_counter()
-        try:
-            answer = getattr(contender, message['message'])(message)
-            if message['message'] not in ('hello', 'scene'):
-                answer['ms'] = 1000 * (time.perf_counter() - begin)
-        except Exception as e:
-            answer = {'error': f'{type(e).__name__}: {e}'}
-        print(json.dumps(answer), file=answers, flush=True)
-
-
 first, second = (int(end) for end in sys.argv[sys.argv.index('--') + 1:][:2])
 os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # thousands of lines of progress; what fails is said on stderr
 try:
-    main(open(first, encoding='utf-8'), open(second, 'w', encoding='utf-8'))
+    serve(Contender(), open(first, encoding='utf-8'), open(second, 'w', encoding='utf-8'))
 except BaseException:
     traceback.print_exc()
     os._exit(1)

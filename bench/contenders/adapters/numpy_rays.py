@@ -9,12 +9,10 @@ Traps: the point's own triangle and what the segment meets at its two ends do no
 triangles at both sides, or light leaks between them; a sphere light is the disk that the point sees of it; the part of
 a light behind the point's plane is not seen, though the share is of the whole light.
 """
-import json
 import os
-import sys
-import time
 
 import numpy as np
+from protocol import serve
 
 HELLO = {'name': 'NumPy', 'version': np.__version__, 'measure': 'area', 'takes': 'points', 'seed': 'seed',
          'lights': ['directional', 'point', 'spot', 'rectangle', 'disk', 'sphere'],
@@ -121,20 +119,4 @@ class Contender:
         return {}
 
 
-def main():
-    contender = Contender()
-    for line in sys.stdin:
-        message = json.loads(line)
-        if message['message'] == 'end':
-            break
-        begin = time.perf_counter()
-        try:
-            answer = getattr(contender, message['message'])(message)
-            if message['message'] not in ('hello', 'scene'):
-                answer['ms'] = 1000 * (time.perf_counter() - begin)
-        except Exception as e:
-            answer = {'error': f'{type(e).__name__}: {e}'}
-        print(json.dumps(answer), flush=True)
-
-
-main()
+serve(Contender())

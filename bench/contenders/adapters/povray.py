@@ -13,14 +13,12 @@ Traps:
   the files.
 - Each question starts POV-Ray anew and parses the mesh again; its time has both.
 """
-import json
 import os
 import re
 import subprocess
-import sys
-import time
 
 import numpy as np
+from protocol import serve
 
 POVRAY = os.environ.get('POVRAY', 'povray')
 HELLO = {'name': 'POV-Ray', 'measure': 'area', 'takes': 'points', 'seed': 'seed',
@@ -157,20 +155,4 @@ class Contender:
         return {}
 
 
-def main():
-    contender = Contender()
-    for line in sys.stdin:
-        message = json.loads(line)
-        if message['message'] == 'end':
-            break
-        begin = time.perf_counter()
-        try:
-            answer = getattr(contender, message['message'])(message)
-            if message['message'] not in ('hello', 'scene'):
-                answer['ms'] = 1000 * (time.perf_counter() - begin)
-        except Exception as e:
-            answer = {'error': f'{type(e).__name__}: {e}'}
-        print(json.dumps(answer), flush=True)
-
-
-main()
+serve(Contender())
