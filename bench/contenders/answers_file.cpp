@@ -81,6 +81,20 @@ std::vector<float> of_picture(const fs::path& file, const Scene& scene, const Po
 
 }  // namespace
 
+NamedAnswers parse_answers(const std::string& text) {
+    constexpr std::string_view kMeasured = ":measure=";
+    const std::size_t eq                 = text.find('=');
+    if (eq == std::string::npos || eq == 0 || eq + 1 == text.size())
+        throw UsageError(fmt::format("{}: expected NAME=PATH, or NAME=PATH:measure=irradiance", text));
+    const std::string where    = text.substr(eq + 1);
+    const std::size_t measured = where.rfind(kMeasured);
+    if (measured == std::string::npos) return {text.substr(0, eq), where};
+    const std::string measure = where.substr(measured + kMeasured.size());
+    for (const Measure known : {Measure::area, Measure::irradiance})
+        if (measure == to_string(known)) return {text.substr(0, eq), where.substr(0, measured), known};
+    throw UsageError(fmt::format("{}: measure={}, expected area or irradiance", text, measure));
+}
+
 void read_answers(const fs::path& file, const Scene& scene, const PointBatch& points, LightId light, bool only,
                   const Visibility& out) {
     const std::vector<float> values = file.extension() == ".npy" ? of_array(file, scene, points, light, only)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <string_view>
+#include <string>
 
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
@@ -12,6 +12,15 @@ namespace umbra {
 
 /// How far an answer may lie outside of [0, 1] by its own rounding.
 inline constexpr float kAnswerSlack = 1e-3f;
+
+/// Answers that have a name: a file of them, or a folder.
+struct NamedAnswers {
+    std::string name;
+    std::filesystem::path where;
+    Measure measure = Measure::area;
+};
+/// "NAME=PATH" or "NAME=PATH:measure=irradiance". Throws UsageError.
+[[nodiscard]] NamedAnswers parse_answers(const std::string& text);
 
 /// Writes the answers of one light into `out`, where they are asked for; NaN is `undefined`. `.npy`: a value a point; or
 /// over the raster height x width; or lights x either. Other endings: a picture, whose channel is `S.<light>`; or, where

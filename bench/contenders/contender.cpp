@@ -111,20 +111,9 @@ std::vector<std::string> add_contenders() {
 }
 
 MethodChoice add_answers(const std::string& text) {
-    const std::size_t eq = text.find('=');
-    if (eq == std::string::npos || eq == 0)
-        throw UsageError(fmt::format("--answers {}: expected NAME=FILE, or NAME=FILE:measure=irradiance", text));
-    std::string file           = text.substr(eq + 1);
-    Measure measure            = Measure::area;
-    const std::size_t measured = file.rfind(":measure=");
-    if (measured != std::string::npos) {
-        const std::string named = file.substr(measured + 9);
-        if (named != "area" && named != "irradiance")
-            throw UsageError(fmt::format("--answers {}: measure={}, expected area or irradiance", text, named));
-        measure = named == "area" ? Measure::area : Measure::irradiance;
-        file.resize(measured);
-    }
-    const std::string name = text.substr(0, eq);
+    const NamedAnswers given = parse_answers(text);
+    const std::string name = given.name, file = given.where.string();
+    const Measure measure = given.measure;
     check_method_name(name);
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no regular file", file));
     AnswersFile& made = all_answers().emplace_back();

@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/exchange/npy.h"
 #include "umbra/bench/exchange/scene_files.h"
 #include "umbra/bench/out/files.h"
@@ -98,9 +97,10 @@ TruthSceneRecord write_scene(const ChosenScene& chosen, const TruthOrder& order,
     if (!prepared.facts.hard_lights_only) record.measures.emplace_back("irradiance");
     for (const std::string& measure : record.measures) {
         if (order.progress) order.progress(fmt::format("{}: {}", chosen.name, measure));
-        const Answered all =
-            answered(prepared, measure == "area" ? reference : default_reference(prepared.facts, Measure::irradiance));
-        const auto write = [&](const std::string& name, auto values) {
+        const Reference of = measure == "area" ? reference : default_reference(prepared.facts, Measure::irradiance);
+        record.exact       = record.exact && of.exact;
+        const Answered all = answered(prepared, of);
+        const auto write   = [&](const std::string& name, auto values) {
             const fs::path file = answers / fmt::format("{}{}.npy", measure, name);
             write_npy(file, values, shape);
             add_file(record, file);
@@ -174,7 +174,7 @@ std::vector<float> array_of(const fs::path& set, const TruthSceneRecord& scene, 
     return std::move(numbers.values);
 }
 
-std::vector<float> answers_of(const Answering& answering, const TruthSceneRecord& scene, std::size_t scenes) {
+std::vector<float> answers_of(const NamedAnswers& answering, const TruthSceneRecord& scene, std::size_t scenes) {
     const bool one      = scenes == 1 && fs::is_regular_file(answering.where);
     const fs::path file = one ? answering.where : answering.where / (scene.folder + ".npy");
     Numbers numbers     = read_npy(file);
@@ -220,32 +220,17 @@ TruthSetRecord write_truth(const TruthOrder& order) {
     return set;
 }
 
-Answering parse_answering(const std::string& text) {
-    const std::size_t eq = text.find('=');
-    if (eq == std::string::npos || eq == 0 || eq + 1 == text.size())
-        throw UsageError(fmt::format("{}: expected NAME=FOLDER, or NAME=FOLDER:measure=irradiance", text));
-    Answering answering{text.substr(0, eq), text.substr(eq + 1)};
-    const std::string where    = text.substr(eq + 1);
-    const std::size_t measured = where.rfind(":measure=");
-    if (measured == std::string::npos) return answering;
-    answering.where   = where.substr(0, measured);
-    answering.measure = where.substr(measured + 9);
-    if (answering.measure != "area" && answering.measure != "irradiance")
-        throw UsageError(fmt::format("{}: measure={}, expected area or irradiance", text, answering.measure));
-    return answering;
-}
-
-std::vector<ScoreRecord> score(const fs::path& set, std::span<const Answering> answers) {
+std::vector<ScoreRecord> score(const fs::path& set, std::span<const NamedAnswers> answers) {
     const auto record = from_record<TruthSetRecord>(read_results(set / "results.json"));
     if (record.scenes.empty())
         throw InputError(
             fmt::format("{}: has no scenes: it is no set that `umbra truth` wrote", (set / "results.json").string()));
     std::vector<ScoreRecord> scores;
-    for (const Answering& answering : answers)
+    for (const NamedAnswers& answering : answers)
         for (const TruthSceneRecord& scene : record.scenes) {
             // Lights without an area have one truth, whatever is measured.
             const bool both           = scene.measures.size() > 1;
-            const std::string measure = both ? answering.measure : "area";
+            const std::string measure = both ? std::string(to_string(answering.measure)) : "area";
             const auto truth          = array_of(set, scene, measure + ".npy"),
                        half           = array_of(set, scene, measure + "_half_width.npy"),
                        edge           = array_of(set, scene, measure + "_edge.npy"),

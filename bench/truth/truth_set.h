@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/record/record.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
@@ -119,18 +120,9 @@ void describe(Fields& of, Is<ScoreRecord>) {
     of("max", &ScoreRecord::max, "");
 }
 
-/// Answers to a set: NAME, and a folder with SCENE.npy (or .exr of one light) for each scene, or one file where the set
-/// has one scene.
-struct Answering {
-    std::string name;
-    std::filesystem::path where;
-    std::string measure = "area";
-};
-/// "NAME=FOLDER" or "NAME=FOLDER:measure=irradiance". Throws UsageError.
-[[nodiscard]] Answering parse_answering(const std::string& text);
-
-/// One entry a contender, scene and light. Throws InputError where files do not fit the set, or differ from its
+/// One entry a contender, scene and light. Each names a folder with SCENE.npy for each scene, or one file where the set has
+/// one scene. Throws InputError where files do not fit the set, or differ from its
 /// checksums.
-[[nodiscard]] std::vector<ScoreRecord> score(const std::filesystem::path& set, std::span<const Answering> answers);
+[[nodiscard]] std::vector<ScoreRecord> score(const std::filesystem::path& set, std::span<const NamedAnswers> answers);
 
 }  // namespace umbra

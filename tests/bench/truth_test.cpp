@@ -44,7 +44,8 @@ protected:
         }
     }
     [[nodiscard]] std::vector<ScoreRecord> scores(const std::string& measure = "area") const {
-        const std::vector<Answering> answers{{"mine", answers_, measure}};
+        const std::vector<NamedAnswers> answers{
+            parse_answers(fmt::format("mine={}:measure={}", answers_.string(), measure))};
         return score(set_, answers);
     }
 
@@ -153,7 +154,7 @@ TEST_F(Truth, MayBeGivenAwayWithoutItsAnswers) {
     EXPECT_EQ(bytes_of(set_ / "croissant.json").find("area.npy"), std::string::npos);
     answer("exact");
     EXPECT_THROW(static_cast<void>(scores()), InputError);
-    const std::vector<Answering> answers{{"mine", answers_, "area"}};
+    const std::vector<NamedAnswers> answers{{"mine", answers_}};
     EXPECT_EQ(score(folder_.path() / "held", answers).at(0).max, 0);
     write_truth(withheld);  // both folders are ours: they are replaced
 }
@@ -177,8 +178,8 @@ TEST_F(Truth, RefusesWhatDoesNotFit) {
     bytes.back()      = static_cast<char>(bytes.back() ^ 1);
     std::ofstream(set_ / "umbra_penumbra/area.npy", std::ios::binary) << bytes;
     EXPECT_NE(message().find("differs from its checksum"), std::string::npos);
-    EXPECT_THROW(static_cast<void>(parse_answering("mine")), UsageError);
-    EXPECT_THROW(static_cast<void>(parse_answering("mine=x:measure=light")), UsageError);
+    EXPECT_THROW(static_cast<void>(parse_answers("mine")), UsageError);
+    EXPECT_THROW(static_cast<void>(parse_answers("mine=x:measure=light")), UsageError);
 }
 
 }  // namespace

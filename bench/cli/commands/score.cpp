@@ -20,8 +20,8 @@ Action score_command(CLI::App& app, const Common& common) {
         ->required();
     add_json(app, line->as_json);
     return [line, &common] {
-        std::vector<Answering> answers;
-        for (const std::string& text : line->answers) answers.push_back(parse_answering(text));
+        std::vector<NamedAnswers> answers;
+        for (const std::string& text : line->answers) answers.push_back(parse_answers(text));
         const std::vector<ScoreRecord> scores = score(line->set, answers);
         Json record                           = to_record(head_record(common.command));
         for (const ScoreRecord& each : scores) record["scores"].push_back(to_record(each));
