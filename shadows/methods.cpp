@@ -45,19 +45,22 @@ struct KnownMethods {
     };
     std::map<const MethodInfo*, std::string> files{};
     KnownMethods();
+    void add(const std::string& plugin);
 };
 
 KnownMethods::KnownMethods() {
     const char* const plugins = std::getenv("UMBRA_PLUGINS");
     std::istringstream list(plugins != nullptr ? plugins : "");
-    for (std::string file; std::getline(list, file, ':');) {
-        if (file.empty()) continue;
-        const MethodInfo* const method = method_of_plugin(file);
-        if (std::ranges::find(all, method->name, &MethodInfo::name) != all.end())
-            throw InputError(fmt::format("{}: there is already a method \"{}\"", file, method->name));
-        all.push_back(method);
-        files[method] = file;
-    }
+    for (std::string file; std::getline(list, file, ':');)
+        if (!file.empty()) add(file);
+}
+
+void KnownMethods::add(const std::string& plugin) {
+    const MethodInfo* const method = method_of_plugin(plugin);
+    if (std::ranges::find(all, method->name, &MethodInfo::name) != all.end())
+        throw InputError(fmt::format("{}: there is already a method \"{}\"", plugin, method->name));
+    all.push_back(method);
+    files[method] = plugin;
 }
 
 KnownMethods& known_methods() {
@@ -132,6 +135,8 @@ void add_method(const MethodInfo& method) {
         throw UsageError(fmt::format("there is already a method \"{}\"", method.name));
     all.push_back(&method);
 }
+
+void add_plugin(const std::string& file) { known_methods().add(file); }
 
 std::string plugin_file(const MethodInfo& method) {
     const auto found = known_methods().files.find(&method);

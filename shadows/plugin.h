@@ -1,5 +1,5 @@
 // A method in a shared library: UMBRA_PLUGIN(NAME) at the end of its file, outside of namespaces, and the file's path
-// in the environment variable UMBRA_PLUGINS (several with ':' between) when the program starts.
+// in --plugin of a command, or in the environment variable UMBRA_PLUGINS (several with ':' between).
 //
 // A plugin is C++ and is compiled with the program's own compiler, options and headers: the stamp refuses others. It is
 // code that runs in the program, with all of its rights.
@@ -19,6 +19,9 @@ struct PluginStamp {
                                  sizeof(Scene),      sizeof(SceneFacts), sizeof(Visibility)};
     [[nodiscard]] bool operator==(const PluginStamp&) const = default;
 };
+
+/// Loads a plugin and adds its method; before other threads look at the list. Throws InputError: the file, what was found.
+void add_plugin(const std::string& file);
 
 /// The file that the method came from; empty for those of methods.def.
 [[nodiscard]] std::string plugin_file(const MethodInfo& method);

@@ -23,16 +23,16 @@ constexpr std::array kCommands = {
 #undef COMMAND
 };
 
-/// Throws UsageError where the first word that is no option names no command.
-void check_command(int argc, const char* const* argv) {
+/// The first word that is no option, empty where that is for CLI11 to say. Throws UsageError where it names no command.
+std::string check_command(int argc, const char* const* argv) {
     std::vector<std::string> known;
     for (const Command& command : kCommands) known.emplace_back(command.name);
     for (int i = 1; i < argc; ++i) {
-        const std::string word = argv[i];
-        if (word == "--help" || word == "-h" || word == "--version") return;
-        if (word == "--threads") ++i;
+        std::string word = argv[i];
+        if (word == "--help" || word == "-h" || word == "--version") return "";
+        if (word == "--threads" || word == "--plugin") ++i;
         if (word.starts_with("-")) continue;
-        if (std::find(known.begin(), known.end(), word) != known.end()) return;
+        if (std::find(known.begin(), known.end(), word) != known.end()) return word;
         throw UsageError(fmt::format("unknown command \"{}\"{}", word, did_you_mean(word, known)));
     }
     throw UsageError("no command given");
@@ -61,6 +61,13 @@ void refuse_empty_values(const CLI::App& app) {
                 if (value.empty()) throw UsageError(fmt::format("{}: the value is empty", option->get_name()));
 }
 
+/// Whether its words may name methods: no other command reads the files of contenders, or warns of them.
+bool names_methods(const CLI::App& app, const std::string& command) {
+    constexpr std::array kOthers{"list", "inspect", "contender", "completion"};
+    return !command.empty() && (app.get_subcommand(command)->get_option_no_throw("--methods") != nullptr ||
+                                std::ranges::find(kOthers, command) != kOthers.end());
+}
+
 int parse_and_run(int argc, const char* const* argv, std::string& help) {
     CLI::App app;
     Common common;
@@ -68,8 +75,9 @@ int parse_and_run(int argc, const char* const* argv, std::string& help) {
     common.command                    = "umbra";
     for (int i = 1; i < argc; ++i) common.command += fmt::format(" {}", argv[i]);
 
-    check_command(argc, argv);
-    for (const std::string& problem : add_contenders()) print_error("warning: {}\n", problem);
+    const std::string command = check_command(argc, argv);
+    if (names_methods(app, command))
+        for (const std::string& problem : add_contenders()) print_error("warning: {}\n", problem);
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
@@ -103,6 +111,15 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
         ->check(CLI::Range(1, 1024))
         ->type_name("N");
     app.add_flag("--quiet", common.quiet, "Print results and errors only");
+    app.add_option_function<std::vector<std::string>>(
+           "--plugin",
+           [](const std::vector<std::string>& files) {
+               for (const std::string& file : files) add_library_method(file);
+           },
+           "A shared library with a method (docs/contenders.md), whose code runs in this program")
+        ->type_name("FILE.so")
+        ->allow_extra_args(false)
+        ->trigger_on_parse();
     std::vector<Action> actions;
     for (const Command& command : kCommands)
         actions.push_back(

@@ -101,7 +101,8 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
     const auto tell = [&](const std::string& what) {
         if (options.progress) options.progress(fmt::format("{}: {}", scene_name(file), what));
     };
-    const std::vector<MethodChoice> choices = chosen_methods(options.methods, options.choices, {&file, 1});
+    std::vector<MethodChoice> choices = chosen_methods(options.methods, options.choices, {&file, 1});
+    choices.insert(choices.end(), options.with.begin(), options.with.end());
 
     tell("loading");
     const PreparedScene prepared = prepare_scene(file, options.size, options.pixel_samples);

@@ -17,6 +17,7 @@ namespace umbra {
 struct CompareOptions {
     std::vector<std::string> methods;      ///< as typed
     std::vector<MethodChoice> choices;     ///< after those; where both are empty: all methods with their defaults
+    std::vector<MethodChoice> with;        ///< after all of these
     std::optional<std::string> reference;  ///< as typed; none: `default_reference`
     int pixel_samples = 1;                 ///< surface points a pixel in pictures; planes and errors stay at centres
     std::optional<std::uint64_t> points;   ///< at which area lights are scored; none: all, if affordable

@@ -95,10 +95,8 @@ NamedAnswers parse_answers(const std::string& text) {
     throw UsageError(fmt::format("{}: measure={}, expected area or irradiance", text, measure));
 }
 
-void read_answers(const fs::path& file, const Scene& scene, const PointBatch& points, LightId light, bool only,
+void take_answers(std::span<const float> values, const PointBatch& points, LightId light, const std::string& from,
                   const Visibility& out) {
-    const std::vector<float> values = file.extension() == ".npy" ? of_array(file, scene, points, light, only)
-                                                                 : of_picture(file, scene, points, light, only);
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (!points.asks(light, i)) continue;
         const float s = values[i];
@@ -110,10 +108,17 @@ void read_answers(const fs::path& file, const Scene& scene, const PointBatch& po
             throw InputError(
                 fmt::format("{}: the answer at point {} is {}, expected 0 (in shadow) to 1 (lit), or NaN for "
                             "undefined",
-                            file.string(), i, s));
+                            from, i, s));
         out.s[i] = std::clamp(s, 0.0f, 1.0f);
         if (!out.colour.empty()) out.colour[i] = vec3(out.s[i]);
     }
+}
+
+void read_answers(const fs::path& file, const Scene& scene, const PointBatch& points, LightId light, bool only,
+                  const Visibility& out) {
+    const std::vector<float> values = file.extension() == ".npy" ? of_array(file, scene, points, light, only)
+                                                                 : of_picture(file, scene, points, light, only);
+    take_answers(values, points, light, file.string(), out);
 }
 
 }  // namespace umbra

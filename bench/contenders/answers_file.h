@@ -22,10 +22,15 @@ struct NamedAnswers {
 /// "NAME=PATH" or "NAME=PATH:measure=irradiance". Throws UsageError.
 [[nodiscard]] NamedAnswers parse_answers(const std::string& text);
 
-/// Writes the answers of one light into `out`, where they are asked for; NaN is `undefined`. `.npy`: a value a point; or
+/// Writes `values`, one a point, into `out` where they are asked for: NaN is `undefined`, values within kAnswerSlack of
+/// [0, 1] are clamped. Throws InputError for others; `from` names their source.
+void take_answers(std::span<const float> values, const PointBatch& points, LightId light, const std::string& from,
+                  const Visibility& out);
+
+/// The same of the answers of one light in a file. `.npy`: a value a point; or
 /// over the raster height x width; or lights x either. Other endings: a picture, whose channel is `S.<light>`; or, where
 /// it has none of these and the scene one light (or `only` says that the file is of this one), its only channel or R.
-/// Values within kAnswerSlack of [0, 1] are clamped. Throws InputError: the file, what was found, what is expected.
+/// Throws InputError: the file, what was found, what is expected.
 void read_answers(const std::filesystem::path& file, const Scene& scene, const PointBatch& points, LightId light,
                   bool only, const Visibility& out);
 

@@ -66,7 +66,8 @@ std::optional<fs::path> contender_file(const std::string& name) {
 std::string text_of_outside(const MethodInfo& method) {
     for (const AnswersFile& answers : all_answers())
         if (&answers.info == &method) return answers.summary + bytes_of(answers.file);
-    return text_of_program(method);
+    const std::string text = text_of_library(method);
+    return text.empty() ? text_of_program(method) : text;
 }
 
 ContenderRecord read_contender(const fs::path& file) {
@@ -92,7 +93,7 @@ std::vector<std::string> add_contenders() {
         for (const fs::path& file : files) {
             const std::string name = file.stem().string();
             if (std::ranges::any_of(methods(),
-                                    [&](const MethodInfo* m) { return m->name == name && !m->outside.empty(); }))
+                                    [&](const MethodInfo* m) { return m->name == name && m->outside == "program"; }))
                 continue;  // of the folder before
             try {
                 const ContenderRecord record = read_contender(file);

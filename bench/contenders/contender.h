@@ -6,31 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/contenders/introduction.h"
 #include "umbra/bench/record/record.h"
-#include "umbra/bench/run/describe.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
-
-/// What a program says of itself (its answer to `hello`).
-struct IntroductionRecord {
-    std::string name{}, version{}, summary{}, measure{}, takes{}, seed{};
-    std::vector<std::string> lights{};
-    std::vector<ParameterRecord> parameters{};
-};
-template <class Fields>
-void describe(Fields& of, Is<IntroductionRecord>) {
-    of.name("introduction", "what a program from outside says of itself");
-    of.must("name", &IntroductionRecord::name, "");
-    of.must("version", &IntroductionRecord::version, "");
-    of.may("summary", &IntroductionRecord::summary, "one sentence");
-    of.may("measure", &IntroductionRecord::measure, "which share of an area light it answers",
-           one_of({"area", "irradiance"}));
-    of.may("takes", &IntroductionRecord::takes, "any points, or whole pictures alone", one_of({"points", "raster"}));
-    of.may("seed", &IntroductionRecord::seed, "the parameter that seeds its noise");
-    of("lights", &IntroductionRecord::lights, "the kinds that it serves");
-    of("parameters", &IntroductionRecord::parameters, "");
-}
 
 /// A program from outside, as a file of its own holds it: contenders/NAME.json.
 struct ContenderRecord {
@@ -50,20 +30,23 @@ void describe(Fields& of, Is<ContenderRecord>) {
     of("says", &ContenderRecord::says, "its own answer to `hello`");
 }
 
-/// Throws InputError where the members contradict the protocol; `from` names their source in messages.
-void check_introduction(const IntroductionRecord& says, const std::string& from);
-
 /// A program as a method, called `name`, in a list of those that live as long as the process. Commands are started in
 /// `folder`. Throws InputError where what it says cannot be a method.
 [[nodiscard]] const MethodInfo& program_method(const std::string& name, const ContenderRecord& contender,
                                                const std::filesystem::path& folder);
 
 /// Everything that the answers of a method from outside depend on and that can be seen from here: what its file says, and
-/// the bytes of the files that its command names (of a file of answers: that file). Empty of all other methods.
+/// the bytes of the files that its command names, of a script those of the scripts beside it, too (of a library or a file of
+/// answers: that file). Empty of all other methods.
 [[nodiscard]] std::string text_of_outside(const MethodInfo& method);
 
-/// The same of programs alone.
+/// The same of programs alone, and of libraries in C alone.
 [[nodiscard]] std::string text_of_program(const MethodInfo& method);
+[[nodiscard]] std::string text_of_library(const MethodInfo& method);
+
+/// Loads a shared library that exports umbra_contender() (include/umbra/contender.h) and makes a method of it, called as it
+/// says. Throws InputError: the file, what was found, what is expected.
+[[nodiscard]] const MethodInfo& library_method(const std::filesystem::path& file);
 
 /// Starts the program and asks what it is. Throws MethodError.
 [[nodiscard]] IntroductionRecord introduction(const std::vector<std::string>& command,
@@ -81,11 +64,12 @@ void check_introduction(const IntroductionRecord& says, const std::string& from)
 /// message for each file that cannot be read, which is left out.
 [[nodiscard]] std::vector<std::string> add_contenders();
 
+/// Adds the method of a shared library: one in C (library_method), or one of shadows/plugin.h. Throws InputError, and
+/// UsageError where its name is taken.
+void add_library_method(const std::filesystem::path& file);
+
 /// "NAME=FILE" or "NAME=FILE:measure=irradiance": adds the answers of a file as a method and returns its choice. Throws
 /// UsageError; the file is read when a scene is compared.
 [[nodiscard]] MethodChoice add_answers(const std::string& text);
-
-/// Letters, digits and underscores, no digit first: what a method's name may be. Throws UsageError.
-void check_method_name(const std::string& name);
 
 }  // namespace umbra

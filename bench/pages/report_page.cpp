@@ -247,6 +247,26 @@ json slider_view(const SceneFiles& files, const MethodRecord* method, const fs::
     return view;
 }
 
+json class_picture_view(const SceneFiles& files, const MethodRecord& method, const std::string& label,
+                        const fs::path& from) {
+    std::string light;
+    FileName picture;
+    double most = -1;
+    for (const ErrorRecord& error : method.errors) {
+        double wrong = 0;
+        for (const std::string& group : error_groups()) wrong += wrong_points(error, group, "interior").value_or(0);
+        const LightFilesRecord* of = files_of(method.files, error.light);
+        if (wrong > most && of != nullptr && of->classes) light = error.light, picture = of->classes, most = wrong;
+    }
+    if (!picture) return false;
+    json view       = files.figure(picture, label, "errors of " + light,
+                                   fmt::format("Classes of the wrong points of {} by {}", light, label), from);
+    view["caption"] = fmt::format("Wrong points of {}, light “{}”. Right points are grey.", label, light);
+    view["rings"]   = files.rings(picture);
+    view["legend"]  = files.legend(picture);
+    return view;
+}
+
 json run_view(const HeadRecord& head, const MachineRecord& machine) {
     std::vector<std::string> parts;
     if (!machine.cpu.empty()) parts.push_back(machine.cpu);

@@ -118,6 +118,11 @@ struct Totals {
 [[nodiscard]] nlohmann::json slider_view(const SceneFiles& files, const MethodRecord* method,
                                          const std::filesystem::path& from = {});
 
+/// The class picture of the light under which the method, called `label`, has the most wrong points in the interior, with its
+/// caption, rings and legend; false where there is none. `from` is the folder of the page that shows it.
+[[nodiscard]] nlohmann::json class_picture_view(const SceneFiles& files, const MethodRecord& method,
+                                                const std::string& label, const std::filesystem::path& from);
+
 /// Commands (one here), machine and version; title, text, exact and note of the reference. Of absolute paths the
 /// command shows only the last part.
 [[nodiscard]] nlohmann::json run_view(const HeadRecord& head, const MachineRecord& machine);

@@ -104,6 +104,23 @@ std::string first_finding(const Results& results, const MethodRecord& method) {
                        most == classes.end() ? "" : fmt::format(" Most often: {}.", most->first->in_short));
 }
 
+std::string finding_of(const MethodRecord& method) {
+    const Totals found = totals(method);
+    double undefined   = 0;
+    for (const ErrorRecord& error : method.errors) undefined += static_cast<double>(error.undefined);
+    const std::string gaps =
+        undefined > 0 ? fmt::format(" It leaves {} without an answer.", counted(undefined, "point")) : "";
+    if (found.points == 0) return "No point is judged." + gaps;
+    const std::string of = counted(found.points, "point");
+    if (found.interior == 0 && found.edge == 0) return fmt::format("Right at all {}.{}", of, gaps);
+    const auto are = [](double n) { return n == 1 ? "is" : "are"; };
+    if (found.interior == 0)
+        return fmt::format("{} of {} {} wrong, all at edges of shadows.{}", count(found.edge), of, are(found.edge),
+                           gaps);
+    return fmt::format("{} of {} {} wrong away from the edges of shadows ({}), {} at edges.{}", count(found.interior),
+                       of, are(found.interior), classes_in_words(method), count(found.edge), gaps);
+}
+
 std::string finding(const Results& results) {
     const std::vector<MethodRecord>& methods = results.methods;
     std::vector<Compared> wrong, right;

@@ -22,6 +22,7 @@
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/lecture_page.h"
+#include "umbra/bench/report/renderers_page.h"
 #include "umbra/bench/report/report_index.h"
 #include "umbra/bench/report/report_scene.h"
 #include "umbra/bench/report/study_page.h"
@@ -221,6 +222,18 @@ json lectures_section(const std::vector<SceneFiles>& files, const std::vector<St
     return {{"page", "lectures.html"}};
 }
 
+/// The page of methods from outside; false where there are none.
+json renderers_section(const std::vector<ScenePage>& scenes, const std::vector<SceneFiles>& files, const fs::path& out,
+                       StagedFiles& staged) {
+    json view = renderers_view(scenes, files, out);
+    if (!view.is_object()) return false;
+    json section = {{"page", "renderers.html"}, {"lines", view["contenders"]}};
+    staged.write(
+        out / "renderers.html",
+        render_page(assets::renderers_html, {"Renderers against the truth", "", {"pictures.js"}}, std::move(view)));
+    return section;
+}
+
 /// Everything that failed, in words, for the first page.
 void add_failures(json& index, const std::vector<std::string>& scenes_failed, const std::vector<ScenePage>& scenes,
                   const std::vector<LadderFolder>& ladders) {
@@ -297,6 +310,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     index["stability"] = ladder_sections(found.ladders, root, staged);
     index["trade"]     = trade_section(found.sweeps, root, staged);
     index["studies"]   = studies_section(found.studies, root);
+    index["renderers"] = renderers_section(scenes, files, root, staged);
     index["lectures"]  = lectures_section(files, found.studies, root, options, staged);
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",

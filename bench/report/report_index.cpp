@@ -52,26 +52,6 @@ std::optional<double> noise_of(const Results& results) {
     return results.turns->noise_bar.value_or(noise_bar({}));
 }
 
-/// The class picture of the light under which a method has the most wrong interior points; false where there is none.
-json front_classes(const SceneFiles& files, const MethodRecord& method, const std::string& label, const fs::path& out) {
-    std::string light;
-    FileName picture;
-    double most = -1;
-    for (const ErrorRecord& error : method.errors) {
-        double wrong = 0;
-        for (const std::string& group : error_groups()) wrong += wrong_points(error, group, "interior").value_or(0);
-        const LightFilesRecord* of = files_of(method.files, error.light);
-        if (wrong > most && of != nullptr && of->classes) light = error.light, picture = of->classes, most = wrong;
-    }
-    if (!picture) return false;
-    json view       = files.figure(picture, label, "errors of " + light,
-                                   fmt::format("Classes of the wrong points of {} by {}", light, label), out);
-    view["caption"] = fmt::format("Wrong points of {}, light “{}”. Right points are grey.", label, light);
-    view["rings"]   = files.rings(picture);
-    view["legend"]  = files.legend(picture);
-    return view;
-}
-
 bool has_soft_light(const Results& results) {
     return std::ranges::any_of(results.lights, [](const LightRecord& light) {
         return light.kind == "rectangle" || light.kind == "disk" || light.kind == "sphere";
@@ -99,7 +79,7 @@ json front_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
     view["href"]           = url((scene.page / "index.html").lexically_relative(out));
     view["title"]          = scene.title;
     view["finding"]        = first_finding(scene.results, *method);
-    view["classes"]        = front_classes(files[*shown], *method, method_label(*method, scene.results.methods), out);
+    view["classes"] = class_picture_view(files[*shown], *method, method_label(*method, scene.results.methods), out);
     return view;
 }
 

@@ -294,7 +294,7 @@ void describe(Fields& of, Is<MethodRecord>) {
     of("parameters", &MethodRecord::parameters, "all of them, by name");
     of("serves", &MethodRecord::serves, "");
     of.may("outside", &MethodRecord::outside, "what a method from outside is; absent of those of this program",
-           one_of({"program", "file of answers"}));
+           one_of({"program", "library", "file of answers"}));
     of.may("times", &MethodRecord::times, "of the program's own clock; absent of a file of answers");
     of.may("own_times", &MethodRecord::own_times, "");
     of.where(&MethodRecord::ran, "light_times", &MethodRecord::light_times, "");

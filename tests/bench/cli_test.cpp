@@ -505,6 +505,48 @@ TEST_F(Cli, ProgramsFromOutsideAreCheckedAndThenNamed) {
         64);
 }
 
+TEST_F(Cli, LibrariesFromOutsideAreNamedOnEachLine) {
+    if (std::system("command -v gcc > /dev/null") != 0) GTEST_SKIP() << "there is no gcc";
+    const std::string source = UMBRA_SOURCE;
+    const auto compiled      = [&](const std::string& from, const char* to) {
+        return run("gcc -std=c11 -O2 -shared -fPIC -I " + source + "/bench/contenders/include " + from + " -lm -o " +
+                        file(to));
+    };
+    ASSERT_EQ(compiled(source + "/bench/contenders/libraries/rays.c", "rays.so").exit_code, 0);
+    const std::string plugin = " --plugin " + file("rays.so");
+    const Answer right       = umbra("contender check --json rays" + plugin);
+    EXPECT_EQ(right.exit_code, 0) << right.output;
+    EXPECT_EQ(nlohmann::json::parse(right.output)["passed"], true);
+    EXPECT_EQ(umbra("contender check --save mine rays" + plugin).exit_code, 64);
+    const std::string small = source + "/scenes/light_inside_view.json --size 32x18 --pixel-samples 1 --json";
+    const Answer compared   = umbra("compare " + small + plugin + " --methods rays -o " + file("out"));
+    ASSERT_EQ(compared.exit_code, 0) << compared.output;
+    const auto method = nlohmann::json::parse(compared.output)["methods"][0];
+    EXPECT_EQ(method["outside"], "library");
+    EXPECT_EQ(method["errors"][0]["rmse"], 0);
+    EXPECT_EQ(umbra("compare " + small + " --methods rays -o " + file("out")).exit_code, 64) << "named on no line";
+    EXPECT_EQ(umbra("list --plugin " + file("none.so")).exit_code, 4);
+    EXPECT_EQ(umbra("report " + file("out") + plugin + " --with rays").exit_code, 64) << "only pages are rebuilt";
+
+    // One that breaks takes the program with it, which says whose fault that is.
+    std::ofstream(file("breaks.c")) << R"(#include "umbra/contender.h"
+static int answer(const umbra_question* q, size_t begin, size_t end, float* s, char* why) {
+    (void)q, (void)begin, (void)end, (void)why;
+    *(volatile float*)(size_t)(end - end) = 1;
+    return 1;
+}
+const umbra_contender_info* umbra_contender(void) {
+    static const umbra_contender_info info = {.version = UMBRA_CONTENDER_VERSION, .lights = UMBRA_HARD, .name = "breaks",
+        .title = "Breaks", .release = "1", .visibility = answer};
+    return &info;
+}
+)";
+    ASSERT_EQ(compiled(file("breaks.c"), "breaks.so").exit_code, 0);
+    const std::string broken =
+        errors_of("compare " + small + " --plugin " + file("breaks.so") + " --methods breaks -o " + file("out"));
+    EXPECT_TRUE(contains(broken, "a fault within the library " + file("breaks.so"))) << broken;
+}
+
 TEST_F(Cli, BashCompletes) {
     ASSERT_EQ(run(std::string(UMBRA_PROGRAM) + " completion bash > " + file("umbra.bash")).exit_code, 0);
     const std::string script = file("umbra.bash");

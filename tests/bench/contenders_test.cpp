@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -137,6 +138,21 @@ TEST_F(Contenders, AreAimedAnewWhereTheirLastAimWasAnother) {
         work.visibility(light, ours.out()), force.visibility(light, theirs.out());
         EXPECT_EQ(ours.s, theirs.s) << light;
     }
+}
+
+TEST_F(Contenders, AreOthersWhereAScriptBesideTheirsIs) {
+    const fs::path script = folder_.path() / "mine.py", module = folder_.path() / "shared.py";
+    write_text(script, "import shared");
+    write_text(module, "pass");
+    ContenderRecord record{.command = {UMBRA_PLANTED_CONTENDER, "none", "mine.py"}};
+    record.says              = introduction(record.command, folder_.path());
+    const MethodInfo& method = program_method("scripted", record, folder_.path());
+    const std::string before = text_of_outside(method);
+    EXPECT_EQ(text_of_outside(method), before);
+    write_text(folder_.path() / "notes.txt", "of no matter");
+    EXPECT_EQ(text_of_outside(method), before);
+    write_text(module, "print()");
+    EXPECT_NE(text_of_outside(method), before);
 }
 
 TEST(Seeds, StayWithinTheRangeOfTheMethod) {
@@ -351,6 +367,83 @@ TEST(SceneFiles, HoldTheSceneInThreeForms) {
         EXPECT_EQ(again.camera.eye, p.scene.camera.eye) << name;
         EXPECT_NEAR(again.camera.fov_y, p.scene.camera.fov_y, 1e-4) << name;
     }
+}
+
+/// Compiles a source in C to a shared library; empty where there is no such compiler.
+fs::path compiled(const std::string& compiler, const fs::path& source, const fs::path& folder) {
+    fs::path library = folder / (source.stem().string() + "-" + compiler + ".so");
+    if (std::system(("command -v " + compiler + " > /dev/null").c_str()) != 0) return {};
+    const std::string command = fmt::format(
+        "{} -std=c11 -O2 -Wall -Wpedantic -Werror -shared -fPIC -I {}/bench/contenders/include {} -lm -o {}", compiler,
+        UMBRA_SOURCE, source.string(), library.string());
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+    return library;
+}
+
+TEST_F(Contenders, LibrariesInCOfAnyCompilerPassTheGate) {
+    const fs::path source = fs::path(UMBRA_SOURCE) / "bench/contenders/libraries/rays.c";
+    std::size_t tried     = 0;
+    for (const char* const compiler : {"gcc", "clang"}) {
+        const fs::path file = compiled(compiler, source, folder_.path());
+        if (file.empty()) continue;
+        ++tried;
+        const MethodInfo& info = library_method(file);
+        EXPECT_EQ(info.outside, "library");
+        for (const GateRow& row : gate(info))
+            EXPECT_TRUE(row.passed) << compiler << ", " << row.question << ": " << row.found;
+        const PreparedScene p = prepared();
+        const MethodRun ours  = run_method(MethodChoice(info), p.scene, p.facts, p.points, {2, 1e9});
+        const MethodRun force = run_method(parse_method("brute_force"), p.scene, p.facts, p.points, kOnce);
+        EXPECT_EQ(ours.planes[0].s, force.planes[0].s);
+        EXPECT_EQ(text_of_outside(info), bytes_of(file));
+    }
+    if (tried == 0) GTEST_SKIP() << "there is neither gcc nor clang";
+}
+
+TEST_F(Contenders, LibrariesThatCannotBeMethodsAreRefused) {
+    const std::string begin = R"(#include "umbra/contender.h"
+static int answer(const umbra_question* q, size_t begin, size_t end, float* s, char* why) {
+    for (size_t i = begin; i < end; ++i) s[i] = q->points->count > 0 ? 2 : 0;
+    return FAILS ? umbra_fail(why, "no luck") : 1;
+}
+const umbra_contender_info* umbra_contender(void) {
+    static const umbra_contender_info info = {.version = UMBRA_CONTENDER_VERSION, .lights = UMBRA_HARD, .name = "mine",
+        .title = "Mine", .release = "1", .visibility = answer, )";
+    const auto library      = [&](const std::string& name, const std::string& members, bool fails = false) {
+        const fs::path source = folder_.path() / (name + ".c");
+        write_text(source,
+                        fmt::format("#define FAILS {}\n{}{}}};\n    return &info;\n}}\n", fails ? 1 : 0, begin, members));
+        return compiled("gcc", source, folder_.path());
+    };
+    if (library("fine", "").empty()) GTEST_SKIP() << "there is no gcc";
+    const auto refused = [&](const std::string& name, const std::string& members) -> std::string {
+        try {
+            static_cast<void>(library_method(library(name, "." + members)));
+        } catch (const std::exception& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(contains(refused("later", "version = 7"), "for version 7"));
+    EXPECT_TRUE(contains(refused("nameless", "name = NULL"), "name is missing"));
+    EXPECT_TRUE(contains(refused("blind", "visibility = NULL"), "visibility is NULL"));
+    EXPECT_TRUE(contains(refused("dark", "lights = 0"), "\"lights\" is missing"));
+    EXPECT_TRUE(contains(refused("other", "lights = 64"), "expected bits"));
+    EXPECT_TRUE(contains(refused("short", "parameter_count = 2"), "parameters is NULL"));
+    const PreparedScene p = prepared();
+    const auto fault_of   = [&](const fs::path& file) -> std::string {
+        try {
+            static_cast<void>(run_method(MethodChoice(library_method(file)), p.scene, p.facts, p.points, kOnce));
+        } catch (const std::exception& e) {
+            return e.what();
+        }
+        return "";
+    };
+    EXPECT_TRUE(contains(fault_of(library("beyond", "")), "the answer at point"));
+    EXPECT_TRUE(contains(fault_of(library("fails", "", true)), "visibility: no luck"));
+    EXPECT_THROW(static_cast<void>(library_method("/nowhere.so")), InputError);
+    write_text(folder_.path() / "text.so", "no library");
+    EXPECT_THROW(static_cast<void>(library_method(folder_.path() / "text.so")), InputError);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Plants one fault at a time in copies of small reports: recompute.py has to find each.
 
-    tests/recompute/planted_faults.py COMPARED SWEPT MOVED SUMMED RECOMMENDED LADDERED GROWN BIASED LECTURED
+    tests/recompute/planted_faults.py COMPARED SWEPT MOVED SUMMED RECOMMENDED LADDERED GROWN BIASED LECTURED OUTSIDE
 
 The folders are what compare (of a scene with several lights, with two settings of one method), sweep,
-motion, energy, recommend, ladder, growth, bias (beside a comparison of its settings) and report (of studies, with the
-lectures in German) wrote; small_reports.py writes such folders.
+motion, energy, recommend, ladder, growth, bias (beside a comparison of its settings), report (of studies, with the
+lectures in German) and compare (with contenders from outside) wrote; small_reports.py writes such folders.
 """
 import json
 import os
@@ -424,7 +424,25 @@ FAULTS = {
         ('the lectures write a decimal point in German',
          in_page(lambda page: re.sub(r'(<span lang="de">[^<]*? 0),', r'\1.', page, count=1), name='lectures.html')),
     ],
+    'outside': [
+        ('heads of false shadow and false light are exchanged',
+         in_page(heads_exchanged('False shadow', 'False light'), name='renderers.html')),
+        ('a contender has other points', in_page(figure_raised(r'<td>2 of 4</td><td>'), name='renderers.html')),
+        ('a contender answers on one scene less',
+         in_page(lambda page: page.replace('<td>2 of 4<', '<td>1 of 4<', 1), name='renderers.html')),
+        ('the page shows another own time', in_page(lambda page: page.replace('<td>20.0</td></tr>', '<td>25.0</td></tr>', 1),
+                                                    name='renderers.html')),
+        ('a record has another own time',
+         in_json(lambda r: outsider(r)['own_times'].update(look_ms=outsider(r)['own_times']['look_ms'] + 1),
+                 name='three_reasons/results.json')),
+        ('a contender is called one of ours',
+         in_json(lambda r: outsider(r).update(outside=''), name='three_reasons/results.json')),
+    ],
 }
+
+
+def outsider(record):
+    return next(m for m in record['methods'] if m.get('outside'))
 
 
 def exchanged_text(record):

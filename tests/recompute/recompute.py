@@ -21,6 +21,7 @@ from pages import NONE, headed, number, shows, tables  # noqa: E402
 from pictures import read_exr  # noqa: E402
 from planes import REACH, Geometry, light_errors, picture_figures, telling_points  # noqa: E402
 from growths import grown, growth_page  # noqa: E402
+from renderers import of_report  # noqa: E402
 from statistics_anew import interval, median, ratio, student_bound, upper_share  # noqa: E402
 import values as script  # noqa: E402
 from studies import biased, exchanged, judged_alike, lectures, shaded, traced  # noqa: E402
@@ -31,7 +32,7 @@ KINDS = ('errors', 'coverage', 'pictures', 'times', 'labels', 'scene pages', 'ra
          'sweep worst views', 'sweep bounds', 'sweep cells', 'sweep costs', 'sweep fronts', 'trade pages',
          'trade findings', 'trade at fixed errors', 'motion', 'motion winners', 'motion break-even', 'motion pages',
          'energy', 'recommendations', 'ladders', 'ladder pages', 'growth', 'growth pages', 'bias', 'bias as compare',
-         'shading', 'whitted', 'radiosity', 'lectures', 'values')
+         'shading', 'whitted', 'radiosity', 'lectures', 'values', 'renderers')
 
 
 class Tally:
@@ -673,7 +674,7 @@ def image(name, unit='score'):
 
 
 COVERAGE = lambda m, e: [('percent', m['coverage'])]
-MEMORY = lambda m, e: [('score', m['memory_bytes'] / 2**20)]
+MEMORY = lambda m, e: [('score', m['memory_bytes'] / 2**20 if m.get('memory_bytes') is not None else None)]
 COLUMNS = {
     'False shadow / Interior': of_error('false_shadow.interior', 'count'),
             'False shadow / Edge band': of_error('false_shadow.edge', 'count'),
@@ -809,7 +810,8 @@ def scene_page(page, record, tally):
                 if not method:
                     tally.fault(page, f'a row of "{row[0][0]}", which the record does not have')
                     continue
-                tally.text(kind, f'{page}: {row[0][0]}, serves', row[1][0].replace(' ', '_'), method['serves']['how'])
+                tally.text(kind, f'{page}: {row[0][0]}, serves', row[1][0].replace(' ', '_'),
+                           {'not': 'not_served'}.get(method['serves']['how'], method['serves']['how']))
                 written = dict(p.partition('=')[::2] for p in row[3][0].split() if '=' in p)
                 for key, value in method['parameters'].items():
                     shown_value = str(value).lower() if isinstance(value, bool) else str(value)
@@ -1367,6 +1369,7 @@ def check(folder, tally):
     if os.path.isfile(page):
         if records:
             index_page(page, records, tally)
+            of_report(folder, records, labels, tally)
         if sweeps and not records:
             trade_page(page, sweeps, tally)
 

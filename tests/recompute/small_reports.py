@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Writes the small reports that the standing check reads.
 
-    tests/recompute/small_reports.py PROGRAM FOLDER
+    tests/recompute/small_reports.py PROGRAM PLANTED_CONTENDER FOLDER
 """
 import json
 import os
@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 
-program, folder = sys.argv[1:]
+program, planted, folder = sys.argv[1:]
 top = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 scenes = [os.path.join(top, 'scenes', f'{name}.json') for name in ('three_reasons', 'light_sizes', 'spot_stage')]
 maps = ['shadow_zbuffer:resolution=64', 'shadow_zbuffer:resolution=256', 'planar_projection']
@@ -18,7 +18,19 @@ os.makedirs(folder)
 
 
 def run(name, *arguments, out=subprocess.DEVNULL):
-    subprocess.run([program, *arguments, '--quiet', '-o', os.path.join(folder, name)], check=True, stdout=out)
+    subprocess.run([program, *arguments, '--quiet', '-o', os.path.join(folder, name)], check=True, stdout=out, cwd=folder)
+
+
+def contender(name, fault):
+    """A program that passes the gate, and from then on has a fault."""
+    subprocess.run([program, 'contender', 'check', '--save', name, '--', planted, 'none'], check=True, cwd=folder,
+                   stdout=subprocess.DEVNULL)
+    path = os.path.join(folder, 'contenders', f'{name}.json')
+    with open(path, encoding='utf-8') as f:
+        written = json.load(f)
+    written['command'][1] = fault
+    with open(path, 'w', encoding='utf-8') as f:
+        json.dump(written, f)
 
 
 def quieten(name):
@@ -38,6 +50,9 @@ def quieten(name):
 small = ['--size', '48x27']
 run('compared', 'compare', *scenes, '--methods', *maps, 'ray_traced:samples=4', '--size', '64x36')
 run('planted', 'compare', *scenes[:2], '--methods', *maps, *small)
+contender('right', 'none')
+contender('wrong', 'exchanged')
+run('outside', 'compare', *scenes, os.path.join(top, 'scenes', 'six_lights.json'), '--methods', 'right', 'wrong', 'ray_traced', *small)
 run('moved', 'motion', scenes[0], '--methods', *maps, 'ray_traced', '--frames', '6', *small)
 run('summed', 'energy', scenes[0], '--method', 'shadow_volumes', '--points', '8000')
 run('laddered', 'ladder', 'needles', 'growing_light', '--methods', 'shadow_zbuffer:resolution=256', 'shadow_zbuffer',

@@ -46,45 +46,56 @@ Checked asked_for(const ContenderLine& line) {
     return typed;
 }
 
+/// Prints the rows of the gate, and calls save(), which returns a sentence for people, where all are passed.
+int print_gate(const MethodInfo& method, const ContenderLine& line, const Common& common,
+               const std::function<std::string()>& save) {
+    const std::vector<GateRow> rows =
+        on_terminal(common, [&](const std::function<void(const std::string&)>& tell) { return gate(method, tell); });
+    const bool passed       = std::ranges::all_of(rows, &GateRow::passed);
+    const std::string saved = passed ? save() : "";
+    Json found              = to_record(head_record(common.command));
+    found["contender"] = method.title, found["passed"] = passed;
+    for (const GateRow& row : rows)
+        found["rows"].push_back({{"question", row.question}, {"passed", row.passed}, {"found", row.found}});
+    print_record(line.as_json, common, found, [&] {
+        std::string text = fmt::format("{}\n", method.title);
+        for (const GateRow& row : rows)
+            text += fmt::format("{}  {}: {}\n", row.passed ? "passed" : "FAILED", row.question, row.found);
+        return text + saved;
+    });
+    return passed ? kDone : kNo;
+}
+
 int check(const ContenderLine& line, const Common& common) {
     if (line.words.empty())
         throw UsageError(
             "contender check: expected a command (umbra contender check -- python3 mine.py), or the name or "
             "the file of a contender");
     if (!line.save.empty()) check_method_name(line.save);
-    for (const MethodInfo* known : methods())
-        if (known->name == line.save && known->outside.empty())
+    for (const MethodInfo* known : methods()) {
+        if (known->outside == "program") continue;
+        if (known->name == line.save)
             throw UsageError(
                 fmt::format("--save {}: that is a method of this program, expected another name", line.save));
+        if (line.words.size() == 1 && known->name == line.words[0]) {
+            if (!line.save.empty())
+                throw UsageError("--save: is for programs, expected none; --plugin names a library on each line");
+            return print_gate(*known, line, common, [] { return ""; });
+        }
+    }
     Checked checked         = asked_for(line);
     ContenderRecord& record = checked.record;
-    const fs::path &folder = checked.folder, &file = checked.file;
-    record.says            = introduction(record.command, folder, record.timeout_s);
-    const MethodInfo& info = program_method("contender", record, folder);
-    const std::vector<GateRow> rows =
-        on_terminal(common, [&](const std::function<void(const std::string&)>& tell) { return gate(info, tell); });
-    const bool passed = std::ranges::all_of(rows, &GateRow::passed);
-    const bool saved  = passed && !file.empty();
-    if (saved) {
+    const fs::path& file    = checked.file;
+    record.says             = introduction(record.command, checked.folder, record.timeout_s);
+    return print_gate(program_method("contender", record, checked.folder), line, common, [&]() -> std::string {
+        if (file.empty()) return "";
         record.checked = record.says.version;
         make_folder(file.parent_path());
         StagedFiles staged;
         staged.write(file, json_text(to_record(record)));
         staged.commit();
-    }
-    Json found       = to_record(head_record(common.command));
-    found["program"] = record.says.name, found["program_version"] = record.says.version, found["passed"] = passed;
-    for (const GateRow& row : rows)
-        found["rows"].push_back({{"question", row.question}, {"passed", row.passed}, {"found", row.found}});
-    print_record(line.as_json, common, found, [&] {
-        std::string text = fmt::format("{} {}\n", record.says.name, record.says.version);
-        for (const GateRow& row : rows)
-            text += fmt::format("{}  {}: {}\n", row.passed ? "passed" : "FAILED", row.question, row.found);
-        if (saved)
-            text += fmt::format("{} says so: it is a method now, --methods {}\n", file.string(), file.stem().string());
-        return text;
+        return fmt::format("{} says so: it is a method now, --methods {}\n", file.string(), file.stem().string());
     });
-    return passed ? kDone : kNo;
 }
 
 int show(const ContenderLine& line, const Common& common) {
@@ -131,8 +142,9 @@ Action contender_command(CLI::App& app, const Common& common) {
         ->check(CLI::IsMember({"check", "show"}))
         ->type_name("")
         ->required();
-    app.add_option("WORDS", line->words,
-                   "check: a command and its arguments, or a contender's name or file; show: a scene")
+    app.add_option(
+           "WORDS", line->words,
+           "check: a command and its arguments, a contender's name or file, or a plugin's method; show: a scene")
         ->type_name("");
     app.add_option("--save", line->save, "check: write contenders/NAME.json where it passes")->type_name("NAME");
     app.add_option("--timeout", line->timeout_s, "check: seconds that an answer may take (120)")

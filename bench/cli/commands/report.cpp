@@ -31,6 +31,7 @@ struct ReportLine {
     std::string out;
     std::string language = "en";
     bool without_exr     = false;
+    std::vector<std::string> with;
     Budget budget{.seconds = 300};  // one slow method holds up no report
 };
 
@@ -124,7 +125,8 @@ std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& commo
 }
 
 /// All canonical scenes, all ladders, the trade on some scenes, and studies of the lectures' other topics.
-int run_everything(const fs::path& out, Language language, const Budget& budget, const Common& common) {
+int run_everything(const fs::path& out, Language language, const Budget& budget, const std::vector<MethodChoice>& with,
+                   const Common& common) {
     LadderOptions ladders;
     ladders.out             = out / "ladders";
     ladders.only_by_default = true;
@@ -145,6 +147,7 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     options.pixel_samples = kPictureSamples;
     options.repeats       = kReportRepeats;
     options.budget        = budget;
+    options.with          = with;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
     const ScenesDone done =
         compare_on_terminal(compared_scenes(), options, common, {.also = also, .language = language});
@@ -168,8 +171,12 @@ int report(const ReportLine& line, const Common& common) {
     fs::path out = line.out;
     if (out.empty()) out = line.folders.size() == 1 ? line.folders[0] : "results";
     check_writable_beside(out);
+    if (!line.with.empty() && !line.folders.empty())
+        throw UsageError("report: --with: compares anew, expected no DIR, whose pages would only be rebuilt");
+    const std::vector<MethodChoice> with =
+        line.with.empty() ? std::vector<MethodChoice>() : chosen_methods(line.with, {}, {});
     const PlaceLock lock = PlaceLock::inside(out);
-    if (line.folders.empty()) return run_everything(out, *language, line.budget, common);
+    if (line.folders.empty()) return run_everything(out, *language, line.budget, with, common);
     write_report({line.folders.begin(), line.folders.end()}, out,
                  {.language = *language, .with_exr = !line.without_exr});
     if (!common.quiet) print_out("{}\n", (out / "index.html").string());
@@ -187,6 +194,9 @@ Action report_command(CLI::App& app, const Common& common) {
         ->type_name("DIR");
     app.add_option("--lang", line->language, "Language of the page of the lectures: " + codes() + " (default: en)")
         ->type_name("LANG");
+    app.add_option("--with", line->with,
+                   "Methods that run on each scene beside ours, such as renderers from outside (docs/contenders.md)")
+        ->type_name("METHOD");
     add_budget(app, line->budget);
     app.add_flag("--no-exr", line->without_exr, "Leave out the EXRs of results that are copied to the output folder");
     return [line, &common] { return report(*line, common); };

@@ -1,0 +1,56 @@
+// What a contender says of itself, and a method made of that.
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/record/record.h"
+#include "umbra/bench/run/describe.h"
+#include "umbra/shadows/method.h"
+
+namespace umbra {
+
+/// What a program says of itself (its answer to `hello`).
+struct IntroductionRecord {
+    std::string name{}, version{}, summary{}, measure{}, takes{}, seed{};
+    std::vector<std::string> lights{};
+    std::vector<ParameterRecord> parameters{};
+};
+template <class Fields>
+void describe(Fields& of, Is<IntroductionRecord>) {
+    of.name("introduction", "what a program from outside says of itself");
+    of.must("name", &IntroductionRecord::name, "");
+    of.must("version", &IntroductionRecord::version, "");
+    of.may("summary", &IntroductionRecord::summary, "one sentence");
+    of.may("measure", &IntroductionRecord::measure, "which share of an area light it answers",
+           one_of({"area", "irradiance"}));
+    of.may("takes", &IntroductionRecord::takes, "any points, or whole pictures alone", one_of({"points", "raster"}));
+    of.may("seed", &IntroductionRecord::seed, "the parameter that seeds its noise");
+    of("lights", &IntroductionRecord::lights, "the kinds that it serves");
+    of("parameters", &IntroductionRecord::parameters, "");
+}
+
+/// Throws InputError where the members contradict the protocol; `from` names their source in messages.
+void check_introduction(const IntroductionRecord& says, const std::string& from);
+
+/// Letters, digits and underscores, no digit first: what a method's name may be. Throws UsageError.
+void check_method_name(const std::string& name);
+
+/// A method from outside and the texts that the views of `info` look into: stays at its place.
+struct OutsideMethod {
+    std::string name{}, title{}, paper{}, summary{};
+    std::deque<std::string> texts{};  ///< of parameters
+    MethodInfo info{};
+
+    OutsideMethod()                                = default;
+    OutsideMethod(const OutsideMethod&)            = delete;
+    OutsideMethod& operator=(const OutsideMethod&) = delete;
+    /// All of `info` but `create`; the title names `as` where another method has it. `kind` as in MethodInfo::outside. Throws InputError where what it says cannot be a method.
+    void introduce(const std::string& as, const IntroductionRecord& says, const std::string& kind);
+};
+
+/// Whether it serves the lights of a scene, by the kinds that it names.
+[[nodiscard]] Service serves_by_kind(const IntroductionRecord& says, const std::string& kind, const SceneFacts& facts);
+
+}  // namespace umbra
