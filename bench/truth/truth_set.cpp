@@ -159,6 +159,17 @@ void write_records(const fs::path& folder, TruthSetRecord set) {
     write_text(folder / "results.json", json_text(to_record(set)));
 }
 
+/// A set may have come from anywhere. Throws InputError where a member cannot be what `umbra truth` writes.
+void check_scene(const TruthSceneRecord& scene, const std::string& where) {
+    if (const fs::path folder = scene.folder; folder.filename() != folder || folder == ".." || folder == ".")
+        throw InputError(fmt::format("{}: folder {:?} is none beside results.json", where, scene.folder));
+    if (scene.lights.empty()) throw InputError(fmt::format("{}: has no lights", where));
+    for (const TruthLightRecord& light : scene.lights)
+        if (!(light.tolerance >= 0 && light.tolerance <= 1))
+            throw InputError(
+                fmt::format("{}: tolerance of {:?} is {}, expected 0 to 1", where, light.name, light.tolerance));
+}
+
 /// One array of a scene of the set, of lights x height x width, whose bytes have the checksum of the record.
 std::vector<float> array_of(const fs::path& set, const TruthSceneRecord& scene, const std::string& name) {
     const fs::path file = set / scene.folder / name;
@@ -225,6 +236,8 @@ std::vector<ScoreRecord> score(const fs::path& set, std::span<const NamedAnswers
     if (record.scenes.empty())
         throw InputError(
             fmt::format("{}: has no scenes: it is no set that `umbra truth` wrote", (set / "results.json").string()));
+    for (std::size_t k = 0; k < record.scenes.size(); ++k)
+        check_scene(record.scenes[k], fmt::format("{}: /scenes/{}", (set / "results.json").string(), k));
     std::vector<ScoreRecord> scores;
     for (const NamedAnswers& answering : answers)
         for (const TruthSceneRecord& scene : record.scenes) {

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "umbra/bench/exchange/npy.h"
 #include "umbra/bench/out/files.h"
@@ -178,6 +179,17 @@ TEST_F(Truth, RefusesWhatDoesNotFit) {
     bytes.back()      = static_cast<char>(bytes.back() ^ 1);
     std::ofstream(set_ / "umbra_penumbra/area.npy", std::ios::binary) << bytes;
     EXPECT_NE(message().find("differs from its checksum"), std::string::npos);
+    const std::string whole = bytes_of(set_ / "results.json");
+    for (const auto& [what, becomes, why] : std::vector<std::tuple<std::string, std::string, std::string>>{
+             {R"("folder": "umbra_penumbra")", R"("folder": "../umbra_penumbra")", "/scenes/0: folder"},
+             {R"("folder": "umbra_penumbra")", R"("folder": "..")", "/scenes/0: folder"},
+             {R"("tolerance": )", R"("tolerance": -)", "/scenes/0: tolerance of"}}) {
+        std::string changed    = whole;
+        const std::size_t from = changed.find(what);
+        ASSERT_NE(from, std::string::npos) << what;
+        write_text(set_ / "results.json", changed.replace(from, what.size(), becomes));
+        EXPECT_NE(message().find(why), std::string::npos) << message();
+    }
     EXPECT_THROW(static_cast<void>(parse_answers("mine")), UsageError);
     EXPECT_THROW(static_cast<void>(parse_answers("mine=x:measure=light")), UsageError);
 }
