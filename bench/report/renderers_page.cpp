@@ -38,7 +38,8 @@ struct Sums {
                 {"false_shadow", any ? count(false_shadow) : kNone},
                 {"false_light", any ? count(false_light) : kNone},
                 {"edge", any ? count(edge) : kNone},
-                {"wrong", false_shadow + false_light > 0},
+                {"any_false_shadow", false_shadow > 0},
+                {"any_false_light", false_light > 0},
                 {"rmse", score(any ? std::optional(std::sqrt(squares / points)) : std::nullopt)},
                 {"bias", score(any ? std::optional(errors / points) : std::nullopt)}};
     }
