@@ -14,6 +14,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 #include <thread>
 
 #include "umbra/core/base/error.h"
@@ -43,7 +44,8 @@ void close_one(int& file) {
 
 }  // namespace
 
-LineProcess::LineProcess(const std::vector<std::string>& command, const std::filesystem::path& folder) {
+LineProcess::LineProcess(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                         const std::filesystem::path& scratch) {
     if (command.empty()) throw MethodError("the command has no words");
     // A socket, since writing to one whose other end is closed need not raise SIGPIPE.
     std::array<int, 2> in{}, out{}, error{}, started{};
@@ -53,6 +55,12 @@ LineProcess::LineProcess(const std::vector<std::string>& command, const std::fil
     std::vector<char*> words;
     for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
+    std::string temporary = "TMPDIR=" + scratch.string();
+    std::vector<char*> environment;
+    for (char** entry = environ; *entry != nullptr; ++entry)
+        if (scratch.empty() || !std::string_view(*entry).starts_with("TMPDIR=")) environment.push_back(*entry);
+    if (!scratch.empty()) environment.push_back(temporary.data());
+    environment.push_back(nullptr);
     const std::string where = folder.string();
     const pid_t parent      = getpid();
     pid_                    = fork();
@@ -64,7 +72,7 @@ LineProcess::LineProcess(const std::vector<std::string>& command, const std::fil
         sigset_t none;
         sigemptyset(&none);
         sigprocmask(SIG_SETMASK, &none, nullptr);
-        if (chdir(where.c_str()) == 0) execvp(words[0], words.data());
+        if (chdir(where.c_str()) == 0) execvpe(words[0], words.data(), environment.data());
         const int why = errno;
         if (write(started[1], &why, sizeof why) < 0) _exit(126);
         _exit(127);

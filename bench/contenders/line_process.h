@@ -11,9 +11,10 @@ namespace umbra {
 /// libraries that start programs none bounds what is read and ends the whole group.
 class LineProcess {
 public:
-    /// Starts `command` (its first word is looked up in PATH) in `folder`, as the head of a process group of its own.
-    /// Throws MethodError where it cannot be started.
-    LineProcess(const std::vector<std::string>& command, const std::filesystem::path& folder);
+    /// Starts `command` (its first word is looked up in PATH) in `folder`, as the head of a process group of its own, with
+    /// `scratch`, if given, as its TMPDIR: what is ended cannot tidy up. Throws MethodError where it cannot be started.
+    LineProcess(const std::vector<std::string>& command, const std::filesystem::path& folder,
+                const std::filesystem::path& scratch = {});
     /// Closes its stdin, waits a moment for it to end, and ends what is left of its group.
     ~LineProcess();
     LineProcess(const LineProcess&)            = delete;

@@ -76,8 +76,17 @@ Json visibility_message(const fs::path& folder, const PointBatch& points, LightI
             {"settings", settings}};
 }
 
+namespace {
+
+fs::path made(const fs::path& folder) {
+    fs::create_directory(folder);
+    return folder;
+}
+
+}  // namespace
+
 ProgramSession::ProgramSession(const std::vector<std::string>& command, const fs::path& where, double timeout_s)
-    : timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s), process_(command, where) {
+    : timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s), process_(command, where, made(folder() / "temporary")) {
     hello_ = ask(hello_message(folder()));
 }
 

@@ -185,6 +185,11 @@ TEST_F(Contenders, ThatHangAreEndedWithAllThatTheyStarted) {
     EXPECT_THROW(LineProcess({"/no/such/program"}, "."), MethodError);
 }
 
+TEST_F(Contenders, LeaveNothingBehindInTheFolderForTemporaryFiles) {
+    static_cast<void>(planted("litters"));
+    EXPECT_FALSE(fs::exists(fs::temp_directory_path() / "umbra-litter"));
+}
+
 TEST_F(Contenders, CostTheirOwnCellOnly) {
     const fs::path scene = folder_.path() / "two.json";
     std::ofstream(scene) << R"({"camera": {"eye": [0, 4, 6], "target": [0, 0, 0]},

@@ -190,6 +190,8 @@ struct World {
 
 int main(int argc, char** argv) {
     World world{.folder = {}, .fault = argc > 1 ? argv[1] : "none"};
+    if (world.fault == "litters")
+        std::ofstream(std::filesystem::temp_directory_path() / "umbra-litter") << "left behind";
     if (world.fault == "children" && fork() == 0) std::this_thread::sleep_for(std::chrono::seconds(3600));
     for (std::string line; std::getline(std::cin, line);) {
         const json message = json::parse(line);
