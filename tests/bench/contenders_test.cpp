@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <set>
@@ -403,6 +404,17 @@ TEST_F(Contenders, LibrariesInCOfAnyCompilerPassTheGate) {
         EXPECT_EQ(text_of_outside(info), bytes_of(file));
     }
     if (tried == 0) GTEST_SKIP() << "there is neither gcc nor clang";
+}
+
+TEST_F(Contenders, TheLibraryOfTheGuideCompilesAndIsRefusedAsItSays) {
+    const std::string page  = bytes_of(fs::path(UMBRA_SOURCE) / "docs/contenders.md");
+    const std::size_t begin = page.find("```c\n") + 5, end = page.find("```", begin);
+    write_text(folder_.path() / "mine.c", page.substr(begin, end - begin));
+    const fs::path file = compiled("gcc", folder_.path() / "mine.c", folder_.path());
+    if (file.empty()) GTEST_SKIP() << "there is no gcc";
+    const std::vector<GateRow> rows = gate(library_method(file));
+    EXPECT_TRUE(std::ranges::any_of(
+        rows, [](const GateRow& row) { return !row.passed && contains(row.found, "every point is lit"); }));
 }
 
 TEST_F(Contenders, LibrariesThatCannotBeMethodsAreRefused) {
