@@ -402,6 +402,13 @@ TEST_F(Contenders, LibrariesInCOfAnyCompilerPassTheGate) {
         const MethodRun force = run_method(parse_method("brute_force"), p.scene, p.facts, p.points, kOnce);
         EXPECT_EQ(ours.planes[0].s, force.planes[0].s);
         EXPECT_EQ(text_of_outside(info), bytes_of(file));
+        const PreparedScene area = prepare_scene(std::string(UMBRA_SCENES) + "/umbra_penumbra.json", {32, 18});
+        const auto seeded        = [&](long long seed) {
+            return run_method(with_seed(MethodChoice(info), seed), area.scene, area.facts, area.points, kOnce)
+                .planes[0]
+                .s;
+        };
+        EXPECT_NE(seeded(1), seeded(2)) << "the second setting is its own";
     }
     if (tried == 0) GTEST_SKIP() << "there is neither gcc nor clang";
 }
