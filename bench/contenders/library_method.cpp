@@ -241,7 +241,11 @@ public:
             else
                 ask(0, points.size());
         }
-        take_answers(s, points, aimed.light, "visibility", out);
+        try {
+            take_answers(s, points, aimed.light, "visibility", out);
+        } catch (const InputError& e) {
+            throw MethodError(e.what());  // costs its own cell
+        }
     }
 
 private:

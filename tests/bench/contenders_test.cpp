@@ -458,7 +458,7 @@ const umbra_contender_info* umbra_contender(void) {
     const auto fault_of   = [&](const fs::path& file) -> std::string {
         try {
             static_cast<void>(run_method(MethodChoice(library_method(file)), p.scene, p.facts, p.points, kOnce));
-        } catch (const std::exception& e) {
+        } catch (const MethodError& e) {
             return e.what();
         }
         return "";
