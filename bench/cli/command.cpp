@@ -64,8 +64,11 @@ void refuse_empty_values(const CLI::App& app) {
 /// Whether its words may name methods: no other command reads the files of contenders, or warns of them.
 bool names_methods(const CLI::App& app, const std::string& command) {
     constexpr std::array kOthers{"list", "inspect", "contender", "completion"};
-    return !command.empty() && (app.get_subcommand(command)->get_option_no_throw("--methods") != nullptr ||
-                                std::ranges::find(kOthers, command) != kOthers.end());
+    const auto has = [&](const char* option) {
+        return app.get_subcommand(command)->get_option_no_throw(option) != nullptr;
+    };
+    return !command.empty() &&
+           (has("--methods") || has("--with") || std::ranges::find(kOthers, command) != kOthers.end());
 }
 
 int parse_and_run(int argc, const char* const* argv, std::string& help) {

@@ -480,6 +480,9 @@ TEST_F(Cli, ProgramsFromOutsideAreCheckedAndThenNamed) {
     EXPECT_EQ(nlohmann::json::parse(right.output)["passed"], true);
     EXPECT_EQ(nlohmann::json::parse(right.output)["rows"].size(), 6u);
     EXPECT_TRUE(contains(here("list mine").output, "Planted 1"));
+    const Answer with = here("report out --with mine 2>&1");
+    EXPECT_EQ(with.exit_code, 64);
+    EXPECT_TRUE(contains(with.output, "expected no DIR")) << "the name is known: " << with.output;
     const std::string small =
         std::string(UMBRA_SOURCE) + "/scenes/light_inside_view.json --size 32x18 --pixel-samples 1";
     const Answer compared = here("compare " + small + " --methods mine ray_traced --json -o out");
@@ -518,6 +521,10 @@ TEST_F(Cli, LibrariesFromOutsideAreNamedOnEachLine) {
     EXPECT_EQ(right.exit_code, 0) << right.output;
     EXPECT_EQ(nlohmann::json::parse(right.output)["passed"], true);
     EXPECT_EQ(umbra("contender check --save mine rays" + plugin).exit_code, 64);
+    EXPECT_TRUE(contains(errors_of("contender check other" + plugin), "that of the library is \"rays\""));
+    std::ofstream(file("empty.c")) << "int nothing;";
+    ASSERT_EQ(compiled(file("empty.c"), "empty.so").exit_code, 0);
+    EXPECT_TRUE(contains(errors_of("list --plugin " + file("empty.so")), "exports no umbra_contender()"));
     const std::string small = source + "/scenes/light_inside_view.json --size 32x18 --pixel-samples 1 --json";
     const Answer compared   = umbra("compare " + small + plugin + " --methods rays -o " + file("out"));
     ASSERT_EQ(compared.exit_code, 0) << compared.output;

@@ -40,6 +40,11 @@ Checked asked_for(const ContenderLine& line) {
             found.folder = fs::absolute(*file).parent_path() / found.record.folder;
             return found;
         }
+    const auto& known = methods();
+    if (const auto plugin = std::ranges::find(known, "library", &MethodInfo::outside);
+        plugin != known.end() && line.words.size() == 1)
+        throw UsageError(fmt::format("contender check: no method is called {:?}, that of the library is \"{}\"",
+                                     line.words[0], (*plugin)->name));
     Checked typed{.record = {.command = line.words, .folder = "..", .timeout_s = line.timeout_s},
                   .folder = fs::current_path()};
     if (!line.save.empty()) typed.file = fs::path("contenders") / (line.save + ".json");

@@ -171,10 +171,10 @@ int report(const ReportLine& line, const Common& common) {
     fs::path out = line.out;
     if (out.empty()) out = line.folders.size() == 1 ? line.folders[0] : "results";
     check_writable_beside(out);
-    if (!line.with.empty() && !line.folders.empty())
-        throw UsageError("report: --with: compares anew, expected no DIR, whose pages would only be rebuilt");
     const std::vector<MethodChoice> with =
         line.with.empty() ? std::vector<MethodChoice>() : chosen_methods(line.with, {}, {});
+    if (!with.empty() && !line.folders.empty())
+        throw UsageError("report: --with: compares anew, expected no DIR, whose pages would only be rebuilt");
     const PlaceLock lock = PlaceLock::inside(out);
     if (line.folders.empty()) return run_everything(out, *language, line.budget, with, common);
     write_report({line.folders.begin(), line.folders.end()}, out,
