@@ -201,7 +201,7 @@ GateRow judge(const Asked& asked, const std::string& question) {
         bool bad       = wrong > (area ? kMostWrongArea : kMostWrong) ||
                    (area && (e.mae > kMostMean || std::abs(e.bias) > kMostBias));
         if (few) found += ": too few are answered";
-        if (bad || asked.error(light) > kWorthAReason)
+        if (e.points > 0 && (bad || asked.error(light) > kWorthAReason))
             if (const std::string why = reason(asked, light); !why.empty()) {
                 bad = true;
                 found += ": " + why;
@@ -217,14 +217,15 @@ GateRow ask_again(const MethodInfo& info, const MethodRun& run, const PreparedSc
                   const std::string& question) {
     GateRow row{question + ", again", "the same answers"};
     const VisibilityPlane& before = run.planes[0];
-    const auto differing          = [&](const VisibilityPlane& now, const std::vector<std::uint32_t>& which) {
-        std::size_t n = 0;
-        for (std::size_t k = 0; k < which.size(); ++k)
-            n += prepared.points.asks(0, which[k]) && before.defined(which[k]) && now.s[k] != before.s[which[k]];
-        return n;
-    };
+    const auto has_answer         = [&](std::size_t i) { return prepared.points.asks(0, i) && before.defined(i); };
     std::vector<std::uint32_t> all(prepared.points.size()), some;
     for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    if (std::ranges::none_of(all, has_answer)) return {row.question, "no answers to compare", false};
+    const auto differing = [&](const VisibilityPlane& now, const std::vector<std::uint32_t>& which) {
+        std::size_t n = 0;
+        for (std::size_t k = 0; k < which.size(); ++k) n += has_answer(which[k]) && now.s[k] != before.s[which[k]];
+        return n;
+    };
     VisibilityPlane again(prepared.points.size());
     run.work->visibility(0, again.out());
     if (const std::size_t n = differing(again, all); n > 0) {

@@ -94,6 +94,13 @@ protected:
     TemporaryFolder folder_;
 };
 
+TEST(Gate, HasNoWordOfLightWhereNothingIsAnswered) {
+    const std::string found = failures_of("silent");
+    EXPECT_TRUE(contains(found, "0 points answered, 0 % wrong away from edges")) << found;
+    EXPECT_FALSE(contains(found, "lit")) << found;
+    EXPECT_TRUE(contains(found, "again: no answers to compare")) << found;
+}
+
 TEST_F(Contenders, AnswerAsBruteForce) {
     const PreparedScene p     = prepared();
     const MethodChoice choice = MethodChoice(planted("none"));

@@ -115,6 +115,7 @@ struct World {
             if (fault == "srgb") value = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
             if (fault == "random" && value > 0) value *= 1 - 1e-6 * asked;
             if (fault == "nan" && at.column % 4 != 0) value = std::nan("");
+            if (fault == "silent") value = std::nan("");
             if (fault == "beyond") value *= 2;
             s[i] = static_cast<float>(value);
         }
