@@ -46,7 +46,8 @@ struct OutsideMethod {
     OutsideMethod()                                = default;
     OutsideMethod(const OutsideMethod&)            = delete;
     OutsideMethod& operator=(const OutsideMethod&) = delete;
-    /// All of `info` but `create`; the title names `as` where another method has it. `kind` as in MethodInfo::outside. Throws InputError where what it says cannot be a method.
+    /// All of `info` but `create`; the title names `as` where another method has it. `kind` as in MethodInfo::outside.
+    /// Throws InputError where what it says cannot be a method.
     void introduce(const std::string& as, const IntroductionRecord& says, const std::string& kind);
 };
 

@@ -347,10 +347,10 @@ std::string text_of_library(const MethodInfo& method) {
 }
 
 void add_library_method(const fs::path& file) {
-    if (entry_of(file) != nullptr)
-        add_method(library_method(file));
-    else
+    if (dlsym(loaded(file), "umbra_plugin") != nullptr)
         add_plugin(file.string());
+    else
+        add_method(library_method(file));
 }
 
 }  // namespace umbra

@@ -191,10 +191,6 @@ std::deque<Contender>& all_programs() {
     return all;
 }
 
-}  // namespace
-
-namespace {
-
 bool is_script(const fs::path& file) {
     return fs::is_regular_file(file) && (file.extension() == ".py" || file.extension() == ".js");
 }

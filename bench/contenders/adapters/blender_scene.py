@@ -180,8 +180,6 @@ class Contender:
         for data in of:
             bpy.data.lights.remove(data)
         self.lamps, light = [], message['description']
-        if light.get('fixed_to') == 'camera':
-            raise ValueError('the light is fixed to the camera')
         kind = light['type']
         self.hard = kind in ('directional', 'point', 'spot')
         at, direction = Vector(light.get('position', [0, 0, 0])), Vector(light.get('direction', [0, -1, 0]))

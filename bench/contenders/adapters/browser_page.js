@@ -143,7 +143,6 @@ async function answer(m, library, now) {
   }
   if (m.message === 'aim') {
     const light = {...m.description};
-    if (light.fixed_to === 'camera') throw new Error('the light is fixed to the camera');
     if (light.type === 'spot') light.cutoff = Math.min(light.cutoff ?? 45, WIDEST);
     const tangent = light.type === 'spot' ? Math.tan(light.cutoff * Math.PI / 180) : 1;
     if (light.direction) light.direction = unit(light.direction);

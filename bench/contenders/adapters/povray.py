@@ -109,8 +109,6 @@ class Contender:
 
     def aim(self, message):
         self.light = light = message['description']
-        if light.get('fixed_to') == 'camera':
-            raise ValueError('the light is fixed to the camera')
         kind = light['type']
         at = vector(self.scale * np.array(light.get('position', [0, 0, 0]), float))
         if kind == 'directional':

@@ -85,8 +85,8 @@ typedef struct umbra_points {
     const float *x, *y, *z;
     const float *nx, *ny, *nz;
     const size_t* number; /* what random numbers of a point depend on; NULL: its place here */
-    uint32_t width,
-        height;          /* of a picture whose point i is pixel (i % width, i / width), rows from the top; 0: of none */
+    /* Of a picture whose point i is pixel (i % width, i / width), rows from the top; 0: of none. */
+    uint32_t width, height;
     umbra_camera camera; /* of that picture */
 } umbra_points;
 
