@@ -66,15 +66,15 @@ json row_of(const ScenePage& scene, const MethodRecord& method) {
     return row;
 }
 
-/// "Answers on 9 of 10 scenes; on 7 no point is wrong ..." of one contender.
+/// "Answers on 9 of 10 scenes. Of 142 909 points, 26 are wrong away from the edges of shadows, ..." of one contender.
 std::string finding_over(const Sums& sums, std::size_t served, std::size_t right, std::size_t scenes) {
     std::string text = fmt::format("Answers on {} of {}", served, counted(static_cast<double>(scenes), "scene"));
     if (sums.points == 0) return text + ".";
-    text += fmt::format("; on {} no point is wrong away from the edges of shadows", right);
     const double wrong = sums.false_shadow + sums.false_light;
-    text += fmt::format(". Of {}, {} {} wrong there and {} at edges", counted(sums.points, "point"), count(wrong),
-                        wrong == 1 ? "is" : "are", count(sums.edge));
-    return text + ".";
+    return text + fmt::format(
+                      ". Of {}, {} {} wrong away from the edges of shadows, and {} at edges. Scenes without a wrong "
+                      "point away from edges: {}.",
+                      counted(sums.points, "point"), count(wrong), wrong == 1 ? "is" : "are", count(sums.edge), right);
 }
 
 }  // namespace
