@@ -8,6 +8,7 @@
 
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/shell.h"
 #include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/steps.h"
@@ -132,18 +133,13 @@ std::vector<PlannedCell> planned_cells(const SweepPlan& plan) {
 }
 
 std::string plan_arguments(const SweepPlan& plan) {
-    const auto quoted = [](const std::string& text) {
-        std::string out = "'";
-        for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-        return out + "'";
-    };
     std::string line;
-    for (const fs::path& scene : plan.scenes) line += " " + quoted(fs::absolute(scene).string());
+    for (const fs::path& scene : plan.scenes) line += " " + shell_quoted(fs::absolute(scene).string());
     if (!plan.settings.empty()) line += " --methods";
-    for (const std::string& setting : plan.settings) line += " " + quoted(setting);
+    for (const std::string& setting : plan.settings) line += " " + shell_quoted(setting);
     line += fmt::format(" --views {}", plan.views);
     if (plan.size.width > 0) line += fmt::format(" --size {}x{}", plan.size.width, plan.size.height);
-    if (plan.reference) line += " --reference " + quoted(*plan.reference);
+    if (plan.reference) line += " --reference " + shell_quoted(*plan.reference);
     if (plan.points) line += fmt::format(" --reference-points {}", *plan.points);
     if (std::isfinite(plan.budget.seconds)) line += fmt::format(" --budget {}", plan.budget.seconds);
     if (std::isfinite(plan.budget.bytes)) line += fmt::format(" --memory-budget {}", plan.budget.bytes / (1 << 20));
