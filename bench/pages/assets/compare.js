@@ -224,7 +224,7 @@ class Compare {
       this.$("value-rows").replaceChildren(...rows);
       this.refresh();
     };
-    const script = Object.assign(document.createElement("script"), { src: "values.js" });
+    const script = Object.assign(document.createElement("script"), { src: this.section.dataset.src });
     for (const type of ["load", "error"]) script.addEventListener(type, () => { this.$("no-values").hidden = Boolean(this.values); });
     document.head.append(script);
   }

@@ -1,0 +1,230 @@
+#include "umbra/bench/pages/embed.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string base64(const std::string& bytes) {
+    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock ends it with a zero
+    constexpr std::size_t kBlock = 3u << 20;                   // its lengths are int
+    std::size_t length           = 0;
+    for (std::size_t at = 0; at < bytes.size(); at += kBlock)
+        length += std::size_t(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data() + length),
+                                              reinterpret_cast<const unsigned char*>(bytes.data() + at),
+                                              int(std::min(kBlock, bytes.size() - at))));
+    text.resize(length);
+    return text;
+}
+
+std::string_view media_type(const fs::path& file) {
+    constexpr std::array kTypes = {std::pair{".css", "text/css"},          std::pair{".js", "text/javascript"},
+                                   std::pair{".png", "image/png"},         std::pair{".jpg", "image/jpeg"},
+                                   std::pair{".jpeg", "image/jpeg"},       std::pair{".svg", "image/svg+xml"},
+                                   std::pair{".webp", "image/webp"},       std::pair{".gif", "image/gif"},
+                                   std::pair{".json", "application/json"}, std::pair{".woff2", "font/woff2"}};
+    for (const auto& [ending, type] : kTypes)
+        if (file.extension() == ending) return type;
+    return "application/octet-stream";
+}
+
+/// "https:", "data:", "mailto:", or "//": not a file beside the page.
+bool has_scheme(std::string_view address) {
+    if (address.starts_with("//")) return true;
+    const std::size_t colon = address.find(':');
+    return colon != std::string_view::npos && address.substr(0, colon).find_first_of("/?#") == std::string_view::npos;
+}
+
+bool is_local_file(std::string_view address) {
+    return !address.empty() && address.front() != '#' && !has_scheme(address);
+}
+
+/// The attribute's value as a browser reads it.
+std::string without_entities(std::string_view value) {
+    std::string text;
+    for (std::size_t at = 0; at < value.size();) {
+        const std::size_t end = value[at] == '&' ? value.find(';', at) : std::string_view::npos;
+        if (end == std::string_view::npos) {
+            text += value[at++];
+            continue;
+        }
+        const std::string_view name = value.substr(at + 1, end - at - 1);
+        int code                    = 0;
+        for (const auto& [entity, c] : {std::pair{"amp", '&'}, std::pair{"lt", '<'}, std::pair{"gt", '>'},
+                                        std::pair{"quot", '"'}, std::pair{"apos", '\''}})
+            if (name == entity) code = c;
+        if (name.starts_with("#")) {
+            const bool hex = name.size() > 1 && (name[1] == 'x' || name[1] == 'X');
+            std::from_chars(name.data() + (hex ? 2 : 1), name.data() + name.size(), code, hex ? 16 : 10);
+        }
+        if (code > 0 && code < 0x80)
+            text += char(code);
+        else
+            text += value.substr(at, end + 1 - at);
+        at = end + 1;
+    }
+    return text;
+}
+
+class Embedder {
+public:
+    explicit Embedder(const fs::path& page) : page_(page) {
+        if (!is_file(page)) throw InputError(fmt::format("{}: cannot be opened, expected a page", page.string()));
+        html_ = bytes_of(page);
+    }
+
+    std::string embedded() {
+        while (at_ < html_.size()) {
+            if (here("<!--")) {
+                copy_through("-->");
+            } else if (html_[at_] == '<' && at_ + 1 < html_.size() &&
+                       std::isalpha(static_cast<unsigned char>(html_[at_ + 1]))) {
+                const std::string tag = start_tag();
+                if (tag == "script") copy_through("</script");
+                if (tag == "style") {
+                    const std::size_t begin = at_;
+                    at_                     = std::min(html_.find("</style", at_), html_.size());
+                    out_ += style(html_.substr(begin, at_ - begin), page_);
+                }
+            } else {
+                out_ += html_[at_++];
+            }
+        }
+        return out_;
+    }
+
+private:
+    [[nodiscard]] bool here(std::string_view text) const { return html_.compare(at_, text.size(), text) == 0; }
+    void copy_through(std::string_view text) {
+        const std::size_t found = html_.find(text, at_);
+        const std::size_t end   = found == std::string::npos ? html_.size() : found + text.size();
+        out_ += html_.substr(at_, end - at_);
+        at_ = end;
+    }
+    /// Copies what belongs to one of these kinds of characters.
+    std::string take_while(bool (*belongs)(char)) {
+        const std::size_t begin = at_;
+        while (at_ < html_.size() && belongs(html_[at_])) ++at_;
+        return html_.substr(begin, at_ - begin);
+    }
+
+    /// From "<" through ">"; returns the name of the element.
+    std::string start_tag() {
+        const auto is_space = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
+        const auto is_name  = [](char c) {
+            return c != ' ' && c != '\n' && c != '\t' && c != '\r' && c != '=' && c != '>' && c != '/';
+        };
+        ++at_;
+        const std::string tag = take_while(is_name);
+        out_ += "<" + tag;
+        while (at_ < html_.size() && html_[at_] != '>') {
+            const std::string space = take_while(is_space);
+            if (at_ < html_.size() && !is_name(html_[at_]) && html_[at_] != '>') {
+                out_ += space + html_[at_++];
+                continue;
+            }
+            const std::string name = take_while(is_name);
+            if (name.empty()) {
+                out_ += space;
+                continue;
+            }
+            if (!here("=")) {
+                out_ += space + name;
+                continue;
+            }
+            ++at_;
+            std::string value;
+            if (here("\"") || here("'")) {
+                const char quote      = html_[at_];
+                const std::size_t end = std::min(html_.find(quote, at_ + 1), html_.size());
+                value                 = html_.substr(at_ + 1, end - at_ - 1);
+                at_                   = std::min(end + 1, html_.size());
+                if (quote == '\'') value = with_double_quotes(value);
+            } else {
+                const auto is_value = [](char c) {
+                    return c != ' ' && c != '\n' && c != '\t' && c != '\r' && c != '>';
+                };
+                value = take_while(is_value);
+            }
+            if (const auto kept = attribute(tag, name, value)) out_ += fmt::format("{}{}=\"{}\"", space, name, *kept);
+        }
+        if (at_ < html_.size()) out_ += html_[at_++];
+        return tag;
+    }
+    static std::string with_double_quotes(const std::string& value) {
+        std::string text;
+        for (const char c : value) text += c == '"' ? std::string("&quot;") : std::string(1, c);
+        return text;
+    }
+
+    /// The attribute's value in the embedded page; nothing where the attribute is dropped.
+    std::optional<std::string> attribute(std::string_view tag, std::string_view name, const std::string& value) {
+        if (name == "style") return with_double_quotes(style(value, page_));
+        const std::string address = without_entities(value);
+        if (!is_local_file(address)) return value;
+        if (name == "src" || name == "poster" || (name == "href" && tag == "link")) return data_of(address, page_);
+        if (name == "data-src")
+            return is_file(file_of(address, page_)) ? std::optional(data_of(address, page_)) : std::nullopt;
+        if (name == "href" && (tag == "a" || tag == "area")) {
+            const std::size_t fragment = address.find('#');
+            if (fragment != std::string::npos && path_of_url(address.substr(0, fragment)) == page_.filename())
+                return value.substr(value.find('#'));
+            return std::nullopt;
+        }
+        return value;
+    }
+
+    static fs::path file_of(const std::string& address, const fs::path& beside) {
+        return beside.parent_path() / path_of_url(address.substr(0, address.find_first_of("?#")));
+    }
+    static std::string data_of(const std::string& address, const fs::path& beside) {
+        const fs::path file = file_of(address, beside);
+        if (!is_file(file))
+            throw InputError(
+                fmt::format("{}: cannot be opened, expected a file that {} shows", file.string(), beside.string()));
+        std::string bytes = bytes_of(file);
+        if (file.extension() == ".css") bytes = style(bytes, file);
+        return fmt::format("data:{};base64,{}", media_type(file), base64(bytes));
+    }
+
+    /// A style with the files behind its url() in it.
+    static std::string style(const std::string& css, const fs::path& beside) {
+        std::string text;
+        for (std::size_t at = 0; at < css.size();) {
+            if (css.compare(at, 4, "url(") != 0) {
+                text += css[at++];
+                continue;
+            }
+            const std::size_t end = std::min(css.find(')', at), css.size());
+            std::string address   = without_entities(css.substr(at + 4, end - at - 4));
+            std::erase_if(address, [](char c) { return c == '"' || c == '\'' || c == ' '; });
+            text += is_local_file(address) ? "url(" + data_of(address, beside) : css.substr(at, end - at);
+            at = end;
+        }
+        return text;
+    }
+
+    fs::path page_;
+    std::string html_, out_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace
+
+std::string embedded_page(const fs::path& page) { return Embedder(page).embedded(); }
+
+}  // namespace umbra

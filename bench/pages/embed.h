@@ -1,0 +1,15 @@
+// A page with everything that it shows inside one file: to be sent, uploaded or kept without its folder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace umbra {
+
+/// The page with the local files that src=, data-src= (which scripts load) and links to styles name as data URIs, also
+/// those behind url() in styles. Links to other local files are dropped, their text stays; addresses with a scheme and
+/// within the page are left as they are. For pages that this program wrote: any file that the page names is read.
+/// Throws InputError where the page or such a file cannot be read; a data-src that is missing is dropped.
+[[nodiscard]] std::string embedded_page(const std::filesystem::path& page);
+
+}  // namespace umbra
