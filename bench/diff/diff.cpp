@@ -8,7 +8,9 @@
 #include <cmath>
 
 #include "umbra/bench/diff/difference_map.h"
+#include "umbra/bench/out/shell.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/paths.h"
 
 namespace umbra {
 namespace {
@@ -185,13 +187,29 @@ void measure(DiffResult& result, const Image& a, const Image& b, double fail) {
                                            fmt::join(unseen, " ")));
 }
 
-/// Same, close or differs; and why.
+bool is_same(const DiffResult& result, double warn) {
+    return result.error.unlike_not_finite == 0 && result.error.max <= warn &&
+           std::none_of(result.integers.begin(), result.integers.end(), [](const auto& d) { return d.differing > 0; });
+}
+
+/// Close or differs by the rules of a tolerance file.
+void judge_by_rules(DiffResult& result, const Tolerance& tolerance, std::size_t rule, const ComparedImages& images) {
+    result.rule_name = tolerance.images[rule].name;
+    try {
+        result.rules = rule_outcomes(tolerance, rule, images);
+    } catch (const InputError& error) {
+        result.reasons.emplace_back(error.what());
+        result.verdict = Verdict::unreadable;
+        return;
+    }
+    result.reasons = missed_rules(result.rules);
+    result.verdict = result.rules.front().holds ? Verdict::close : Verdict::differs;
+}
+
+/// Close or differs; and why.
 void judge(DiffResult& result, const DiffOptions& options, double fail, bool asks_fail) {
     const ImageError& e = result.error;
-    if (e.unlike_not_finite == 0 && e.max <= options.warn &&
-        std::none_of(result.integers.begin(), result.integers.end(), [](const auto& d) { return d.differing > 0; }))
-        return;  // same
-    const auto limit = [&](bool missed, std::string reason) {
+    const auto limit    = [&](bool missed, std::string reason) {
         if (missed) result.reasons.push_back(std::move(reason));
     };
     for (const IntegerDiff& d : result.integers)
@@ -255,9 +273,15 @@ std::string_view to_string(Verdict verdict) {
     return "";
 }
 
+std::string accept_by_copying(const std::filesystem::path& a, const std::filesystem::path& b) {
+    const std::filesystem::path folder = a.parent_path();
+    return (folder.empty() || is_folder(folder) ? "" : "mkdir -p -- " + shell_quoted(folder.string()) + " && ") +
+           fmt::format("cp -- {} {}", shell_quoted(b.string()), shell_quoted(a.string()));
+}
+
 DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path& file_b, const DiffOptions& options) {
     DiffResult result;
-    result.name = file_a.filename().string();
+    result.name = options.name.empty() ? file_a.filename().string() : options.name;
     result.a    = file_a.string();
     result.b    = file_b.string();
 
@@ -271,6 +295,7 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
     }
     if (!result.reasons.empty()) {
         result.verdict = Verdict::unreadable;
+        if (b.image.width > 0) result.accept = accept_by_copying(file_a, file_b);
         return result;
     }
     for (Image* image : {&a.image, &b.image})  // integers that are floats as well are compared as integers
@@ -278,9 +303,11 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
     if (!options.channels.empty())
         if (std::string reason = keep_matching(a, b, options.channels); !reason.empty())
             result.reasons.push_back(std::move(reason));
-    if (result.reasons.empty()) result.reasons = find_unlike(a, b);
+    const bool is_chosen = result.reasons.empty();
+    if (is_chosen) result.reasons = find_unlike(a, b);
     if (!result.reasons.empty()) {
         result.verdict = Verdict::unlike;
+        if (is_chosen) result.accept = accept_by_copying(file_a, file_b);
         return result;
     }
     if (a.encoding != b.encoding) {
@@ -296,10 +323,25 @@ DiffResult diff(const std::filesystem::path& file_a, const std::filesystem::path
     for (LoadedImage* loaded : {&a, &b}) spread_integers(loaded->image);
     result.hdr = a.encoding == Encoding::linear && b.encoding == Encoding::linear;
 
-    const bool asks_else = options.fail_rmse || options.fail_flip || options.fail_psnr || options.fail_ssim;
-    const double fail    = options.fail.value_or(kDefaultFail);
+    const bool asks_else   = options.fail_rmse || options.fail_flip || options.fail_psnr || options.fail_ssim;
+    const Tolerance* rules = options.tolerance.get();
+    const std::size_t rule = rules ? rules->rule_of(result.name) : 0;
+    const bool has_rule    = rules && rule < rules->images.size();
+    const double fail =
+        has_rule ? rules->first_limit(rule).value_or(kDefaultFail) : options.fail.value_or(kDefaultFail);
     measure(result, a.image, b.image, fail);
-    judge(result, options, fail, options.fail || !asks_else);
+    std::size_t unlike = result.error.unlike_not_finite;
+    for (const IntegerDiff& d : result.integers) unlike += d.differing;
+    if (!is_same(result, options.warn) && has_rule)
+        judge_by_rules(result, *rules, rule,
+                       {a.image, b.image, file_a, result.name, result.error.rmse, result.error.psnr, result.ssim,
+                        result.flip.mean, unlike});
+    else if (!is_same(result, options.warn))
+        judge(result, options, fail, options.fail || !asks_else);
+    if (rules && !has_rule && result.verdict != Verdict::same)
+        result.notes.push_back(fmt::format("no name in {} matches: no difference above {} is allowed",
+                                           rules->file.string(), kDefaultFail));
+    if (result.verdict == Verdict::differs) result.accept = accept_by_copying(file_a, file_b);
     write_pictures(result, a.image, b.image, options);
     return result;
 }

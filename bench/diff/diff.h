@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "umbra/bench/diff/tolerance.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
 
@@ -31,6 +33,9 @@ struct DiffOptions {
     std::optional<double> fail_psnr{};  ///< dB against a peak of 1; less is too little
     std::optional<double> fail_ssim{};  ///< of any layer; less is too little
     double warn = 0;                    ///< largest difference of a value that still counts as the same
+    /// Instead of the limits above, except `warn`; an image without a rule in it is judged by kDefaultFail.
+    std::shared_ptr<const Tolerance> tolerance{};
+    std::string name{};  ///< DiffResult::name; empty: A's file name
     /// Compare only channels of these names, shell patterns allowed ("S.*"); empty: all.
     std::vector<std::string> channels{};
     /// .png: difference_map (bench/diff/difference_map.h); .exr: FLIP, and B - A of every channel. Empty: none.
@@ -61,6 +66,10 @@ struct DiffResult {
     std::string a, b;                  ///< file names
     std::vector<std::string> reasons;  ///< which limits were missed; what is unlike; why a file is unreadable
     std::vector<std::string> notes;    ///< what was assumed
+    std::string accept;  ///< a command of sh that makes A what B is; empty where there is nothing to accept
+    /// Of the tolerance file, where the images are comparable and not the same: the pattern, and what its rules say.
+    std::string rule_name;
+    std::vector<RuleOutcome> rules;
 
     // Only where the images are comparable:
     int width = 0, height = 0;
@@ -86,6 +95,9 @@ struct DiffResult {
                std::any_of(integers.begin(), integers.end(), [](const IntegerDiff& d) { return d.differing > 0; });
     }
 };
+
+/// A command that puts B in A's place: mkdir, where A's folder is missing, and cp.
+[[nodiscard]] std::string accept_by_copying(const std::filesystem::path& a, const std::filesystem::path& b);
 
 /// Compares all parts and channels value by value as the files store them (integer formats scaled to [0, 1]), channels
 /// by name. Where one file holds sRGB and the other linear light, the linear one is clamped and encoded first, and a

@@ -30,7 +30,16 @@ json image_view(const DiffResult& image, std::size_t index, const fs::path& pict
                  {"notes", utf8(fmt::format("{}", fmt::join(image.notes, "; ")))},
                  {"worst", worst_pixel(image)},
                  {"measured", false},
+                 {"conceded", all_concessions(image)},
+                 {"accept", utf8(image.accept)},
+                 {"rule_name", utf8(image.rule_name)},
+                 {"rules", json::array()},
                  {"pictures", false}};
+    for (const RuleOutcome& rule : image.rules)
+        view["rules"].push_back({{"rule", rule.rule},
+                                 {"inside", fmt::format("{}", rule.depth)},
+                                 {"holds", rule.holds},
+                                 {"says", utf8(rule.says)}});
     if (!image.comparable()) return view;
     const ImageError& e = image.error;
     view["measured"]    = json{{"max", score(e.max)},
@@ -65,6 +74,9 @@ void write_diff_page(const fs::path& file, const DiffSet& set) {
     const fs::path pictures = diff_pictures_folder(file).filename();
     json images             = json::array();
     for (std::size_t i = 0; i < set.images.size(); ++i) images.push_back(image_view(set.images[i], i, pictures));
+    std::string accept;
+    for (const DiffResult& image : set.images)
+        if (!image.accept.empty()) accept += image.accept + "\n";
     const std::size_t fine = set.count(Verdict::same) + set.count(Verdict::close);
     StagedFiles staged;
     staged.write(file, render_page(assets::diff_html, {},
@@ -73,6 +85,7 @@ void write_diff_page(const fs::path& file, const DiffSet& set) {
                                     {"verdict", to_string(set.worst())},
                                     {"count", count(double(set.images.size()))},
                                     {"bad", count(double(set.images.size() - fine))},
+                                    {"accept", utf8(accept)},
                                     {"many", set.images.size() != 1},
                                     {"images", std::move(images)}}));
     staged.commit();

@@ -9,7 +9,7 @@
 namespace umbra {
 namespace {
 
-std::string number(double x) { return fmt::format("{:.6g}", x); }
+std::string digits(double x) { return fmt::format("{:.6g}", x); }
 
 }  // namespace
 
@@ -21,13 +21,21 @@ std::string worst_pixel(const DiffResult& result) {
         return fmt::format("({}, {}), channel {}: A {}, B {}", d.x, d.y, d.name, d.a, d.b);
     }
     const auto& w = result.worst;
-    return fmt::format("({}, {}), channel {}: A {}, B {}", w.x, w.y, result.channels[w.channel], number(w.a),
-                       number(w.b));
+    return fmt::format("({}, {}), channel {}: A {}, B {}", w.x, w.y, result.channels[w.channel], digits(w.a),
+                       digits(w.b));
 }
 
 std::string layer_of_flip(const DiffResult& result) {
     if (result.layers.size() < 2) return "";
     return fmt::format("{}, worst of {} layers", result.layers[result.worst_layer].name, result.layers.size());
+}
+
+std::string all_concessions(const DiffResult& result) {
+    if (result.verdict != Verdict::close) return "";
+    std::vector<std::string> each;
+    for (const RuleOutcome& rule : result.rules)
+        if (rule.holds && rule.conceded && rule.conceded->sum() > 0) each.push_back(concessions(*rule.conceded));
+    return fmt::format("{}", fmt::join(each, "; "));
 }
 
 std::vector<std::string> all_channels(const DiffResult& result) {
@@ -47,17 +55,17 @@ std::string diff_text(const DiffResult& result) {
         const double pixels = double(result.flip.map.size());
         line("{} against {}: {}x{}, {}", result.a, result.b, result.width, result.height,
              fmt::join(all_channels(result), " "));
-        line("  MAE     {}", number(e.mae));
-        line("  RMSE    {}", number(e.rmse));
-        line("  PSNR    {}", std::isfinite(e.psnr) ? number(e.psnr) + " dB" : "infinite");
-        line("  max     {}", number(e.max));
+        line("  MAE     {}", digits(e.mae));
+        line("  RMSE    {}", digits(e.rmse));
+        line("  PSNR    {}", std::isfinite(e.psnr) ? digits(e.psnr) + " dB" : "infinite");
+        line("  max     {}", digits(e.max));
         if (const std::string worst = worst_pixel(result); !worst.empty()) line("  worst   {}", worst);
         const std::string of_layer = layer_of_flip(result);
-        line("  SSIM    {}{}", number(result.ssim),
+        line("  SSIM    {}{}", digits(result.ssim),
              of_layer.empty() ? "" : fmt::format(" (least of {} layers)", result.layers.size()));
-        line("  FLIP    {} (mean, {}{}), weighted median {}, quartiles {} and {}, max {}", number(result.flip.mean),
-             result.hdr ? "HDR" : "LDR", of_layer.empty() ? "" : "; " + of_layer, number(result.flip.weighted_median),
-             number(result.flip.first_quartile), number(result.flip.third_quartile), number(result.flip.max));
+        line("  FLIP    {} (mean, {}{}), weighted median {}, quartiles {} and {}, max {}", digits(result.flip.mean),
+             result.hdr ? "HDR" : "LDR", of_layer.empty() ? "" : "; " + of_layer, digits(result.flip.weighted_median),
+             digits(result.flip.first_quartile), digits(result.flip.third_quartile), digits(result.flip.max));
         line("  pixels  {} differ ({:.3g} %), {} beyond the limit ({:.3g} %)", e.differing,
              100 * double(e.differing) / pixels, e.over, 100 * double(e.over) / pixels);
         if (e.not_finite > 0)
@@ -65,12 +73,12 @@ std::string diff_text(const DiffResult& result) {
         if (result.channels.size() > 3 && e.differing > 0)
             for (std::size_t c = 0; c < result.channels.size(); ++c)
                 if (const ImageError& of = result.channel_error[c]; of.differing > 0)
-                    line("  {}: MAE {}, RMSE {}, max {} at ({}, {})", result.channels[c], number(of.mae),
-                         number(of.rmse), number(of.max), of.worst.x, of.worst.y);
+                    line("  {}: MAE {}, RMSE {}, max {} at ({}, {})", result.channels[c], digits(of.mae),
+                         digits(of.rmse), digits(of.max), of.worst.x, of.worst.y);
         if (result.layers.size() > 1)
             for (const LayerDiff& layer : result.layers)
                 if (layer.flip > 0 || layer.ssim < 1)
-                    line("  layer {}: SSIM {}, FLIP {}", layer.name, number(layer.ssim), number(layer.flip));
+                    line("  layer {}: SSIM {}, FLIP {}", layer.name, digits(layer.ssim), digits(layer.flip));
     }
     if (result.map_range > 0)
         line(
@@ -78,6 +86,9 @@ std::string diff_text(const DiffResult& result) {
             "pixels "
             "are ringed",
             result.map_range);
+    if (!result.rules.empty()) line("  rules for {}:", result.rule_name);
+    for (const RuleOutcome& rule : result.rules)
+        line("    {:{}}{}: {}, {}", "", 2 * rule.depth, rule.rule, rule.holds ? "holds" : "does not hold", rule.says);
     for (const std::string& note : result.notes) line("  note: {}", note);
     line("{}{}{}", to_string(result.verdict), result.reasons.empty() ? "" : ": ", fmt::join(result.reasons, "; "));
     return text;
@@ -86,6 +97,7 @@ std::string diff_text(const DiffResult& result) {
 std::string diff_line(const DiffResult& result) {
     std::string line = fmt::format("{:<10} {}", to_string(result.verdict), result.name);
     if (!result.reasons.empty()) line += fmt::format(": {}", fmt::join(result.reasons, "; "));
+    if (const std::string by = all_concessions(result); !by.empty()) line += "; " + by;
     if (const std::string worst = worst_pixel(result); !worst.empty()) line += "; worst " + worst;
     return line;
 }
@@ -97,7 +109,13 @@ nlohmann::json diff_json(const DiffResult& result) {
                         {"a", result.a},
                         {"b", result.b},
                         {"reasons", result.reasons},
-                        {"notes", result.notes}};
+                        {"notes", result.notes},
+                        {"accept", result.accept}};
+    if (!result.rules.empty()) {
+        json["rules"] = {{"name", result.rule_name}, {"outcomes", nlohmann::json::array()}};
+        for (const RuleOutcome& rule : result.rules)
+            json["rules"]["outcomes"].push_back(nlohmann::json(to_record(rule)));
+    }
     if (!result.comparable()) return json;
     const ImageError& e       = result.error;
     json["size"]              = {result.width, result.height};

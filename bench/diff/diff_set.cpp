@@ -9,6 +9,7 @@
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/out/shell.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
@@ -40,19 +41,22 @@ std::set<fs::path> images_in(const fs::path& folder) {
     return names;
 }
 
-DiffResult missing(const fs::path& a, const fs::path& b, const std::string& where) {
+DiffResult missing(const fs::path& a, const fs::path& b, const fs::path& name, const std::string& where) {
     DiffResult result;
+    result.name    = name.string();
     result.verdict = Verdict::differs;
     result.a       = a.string();
     result.b       = b.string();
     result.reasons = {fmt::format("missing in {}", where)};
+    result.accept  = is_there(b) ? accept_by_copying(a, b) : "rm -- " + shell_quoted(a.string());
     return result;
 }
 
 DiffResult pair_of_folders(const fs::path& a, const fs::path& b, const fs::path& name, const DiffOptions& options) {
-    if (!is_there(a / name)) return missing(a / name, b / name, a.string());
-    if (!is_there(b / name)) return missing(a / name, b / name, b.string());
+    if (!is_there(a / name)) return missing(a / name, b / name, name, a.string());
+    if (!is_there(b / name)) return missing(a / name, b / name, name, b.string());
     DiffOptions of = options;
+    of.name        = name.string();
     if (!options.map.empty()) of.map = (options.map / name) += ".png";
     if (!options.pictures.empty()) of.pictures = options.pictures / name;
     for (const fs::path& file : {of.map, of.pictures})
@@ -80,7 +84,7 @@ std::size_t DiffSet::count(Verdict verdict) const {
 
 DiffSet diff_set(const fs::path& a, const fs::path& b, const DiffOptions& options,
                  const std::function<void(const std::string&)>& progress) {
-    DiffSet set{a.string(), b.string(), is_folder(a), {}};
+    DiffSet set{a.string(), b.string(), is_folder(a) || (!is_there(a) && is_folder(b)), {}};
     if (is_there(a) && is_there(b) && is_folder(b) != set.folders)
         throw UsageError(fmt::format("{} is a folder and {} is not, expected two files or two folders",
                                      set.folders ? set.a : set.b, set.folders ? set.b : set.a));
@@ -93,19 +97,23 @@ DiffSet diff_set(const fs::path& a, const fs::path& b, const DiffOptions& option
         set.images.push_back(diff(a, b, of));
         return set;
     }
-    std::set<fs::path> names = images_in(a);
+    std::set<fs::path> names;
+    if (is_there(a)) names = images_in(a);
     if (is_there(b)) names.merge(images_in(b));
     if (names.empty()) throw InputError(fmt::format("{}: holds no images, nor does {}", set.a, set.b));
     for (const fs::path& name : names) {
         if (progress) progress(name.string());
         set.images.push_back(pair_of_folders(a, b, name, options));
-        set.images.back().name = name.string();
     }
     return set;
 }
 
 std::string diff_set_text(const DiffSet& set) {
-    if (!set.folders) return diff_text(set.images.at(0));
+    std::string accept;
+    for (const DiffResult& image : set.images)
+        if (!image.accept.empty()) accept += image.accept + "\n";
+    if (!accept.empty()) accept = "to accept:\n" + accept;
+    if (!set.folders) return diff_text(set.images.at(0)) + accept;
     std::string text;
     for (const DiffResult& image : set.images) text += diff_line(image) + "\n";
     text += fmt::format("{} images", set.images.size());
@@ -115,7 +123,7 @@ std::string diff_set_text(const DiffSet& set) {
         text += fmt::format("{} {} {}", separator, set.count(v), to_string(v));
         separator = ',';
     }
-    return text + "\n";
+    return text + "\n" + accept;
 }
 
 nlohmann::json diff_set_json(const DiffSet& set) {

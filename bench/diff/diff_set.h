@@ -20,14 +20,15 @@ struct DiffSet {
 };
 
 /// Two files are compared by diff(). Of two folders, each image file in either, however deep, is compared with the file
-/// of the same relative path in the other; one that is missing there differs. With folders, `options.map` is a folder
-/// for a NAME.png of each pair that is not the same, and `options.pictures` a folder for NAME.a.png and so on; with
-/// files, `options.pictures` is such a folder too. `progress` receives each name; may be empty. Throws UsageError where
-/// one is a folder and the other is not, InputError where a folder has no images or pictures cannot be written.
+/// of the same relative path in the other; one that is missing there differs, also where A itself is missing. With
+/// folders, `options.map` is a folder for a NAME.png of each pair that is not the same, and `options.pictures` a folder
+/// for NAME.a.png and so on; with files, `options.pictures` is such a folder too. `progress` receives each name; may be
+/// empty. Throws UsageError where one is a folder and the other is not, InputError where a folder has no images or
+/// pictures cannot be written.
 [[nodiscard]] DiffSet diff_set(const std::filesystem::path& a, const std::filesystem::path& b,
                                const DiffOptions& options, const std::function<void(const std::string&)>& progress);
 
-/// One line an image and one with the counts; a single pair as diff_text.
+/// One line an image and one with the counts; a single pair as diff_text. Then the commands that accept the changes.
 [[nodiscard]] std::string diff_set_text(const DiffSet& set);
 
 /// {verdict, exit_code, a, b, counts, images: [...]}; a single pair as diff_json.

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <limits>
@@ -7,9 +8,11 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/diff/diff_markdown.h"
 #include "umbra/bench/diff/diff_page.h"
 #include "umbra/bench/diff/diff_set.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/pages/embed.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 
@@ -18,9 +21,29 @@ namespace {
 
 struct DiffLine {
     std::string a, b;
-    std::filesystem::path html, junit;
+    std::filesystem::path html, junit, markdown, tolerance;
     DiffOptions options;
-    bool as_json = false;
+    bool embed = false, as_json = false;
+};
+
+/// Where a page and its pictures are until they are one file.
+class PageWorkshop {
+public:
+    PageWorkshop() {
+        std::string name = (std::filesystem::temp_directory_path() / "umbra-diff-XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be made, expected a temporary folder");
+        folder_ = name;
+    }
+    ~PageWorkshop() {
+        std::error_code ignored;
+        std::filesystem::remove_all(folder_, ignored);
+    }
+    PageWorkshop(const PageWorkshop&)            = delete;
+    PageWorkshop& operator=(const PageWorkshop&) = delete;
+    [[nodiscard]] std::filesystem::path page() const { return folder_ / "page.html"; }
+
+private:
+    std::filesystem::path folder_;
 };
 
 int diff(DiffLine line, const Common& common) {
@@ -29,7 +52,12 @@ int diff(DiffLine line, const Common& common) {
     if (!is_folder(line.a) && !options.map.empty() && ending != ".png" && ending != ".exr")
         throw UsageError(
             fmt::format("-o {}: not a picture format, expected FILE.png or FILE.exr", options.map.string()));
-    if (!line.html.empty()) options.pictures = diff_pictures_folder(line.html);
+    if (line.embed && line.html.empty()) throw UsageError("--embed needs --html FILE");
+    if (!line.tolerance.empty()) options.tolerance = std::make_shared<Tolerance>(read_tolerance(line.tolerance));
+    std::optional<PageWorkshop> workshop;
+    if (line.embed) workshop.emplace();
+    const std::filesystem::path page = workshop ? workshop->page() : line.html;
+    if (!line.html.empty()) options.pictures = diff_pictures_folder(page);
     DiffSet set;
     {
         const Terminal terminal(common.quiet);
@@ -37,8 +65,10 @@ int diff(DiffLine line, const Common& common) {
     }
     StagedFiles staged;
     if (!line.junit.empty()) staged.write(line.junit, diff_set_junit(set));
+    if (!line.markdown.empty()) staged.write(line.markdown, diff_set_markdown(set));
+    if (!line.html.empty()) write_diff_page(page, set);
+    if (line.embed) staged.write(line.html, embedded_page(page));
     staged.commit();
-    if (!line.html.empty()) write_diff_page(line.html, set);
     const auto replace = nlohmann::json::error_handler_t::replace;
     print_out("{}", line.as_json ? diff_set_json(set).dump(1, ' ', false, replace) + "\n" : diff_set_text(set));
     return static_cast<int>(set.worst());
@@ -58,8 +88,12 @@ Action diff_command(CLI::App& app, const Common& common) {
         ->allow_extra_args(false)
         ->type_name("NAMES");
     const CLI::Validator positive = number_in(0, kMany, "a number, 0 or larger");
-    const auto limit              = [&](const char* name, auto& value, const char* about, const CLI::Validator& check) {
-        app.add_option(name, value, about)->check(check)->type_name("X");
+    CLI::Option* tolerance =
+        app.add_option("--tolerance", line->tolerance, "Rules for each image, instead of the limits (docs/gate.md)")
+            ->type_name("FILE.json");
+    const auto limit = [&](const char* name, auto& value, const char* about, const CLI::Validator& check) {
+        CLI::Option* option = app.add_option(name, value, about)->check(check)->type_name("X");
+        if (std::string_view(name) != "--warn") option->excludes(tolerance);
     };
     limit("--fail", options.fail, "Largest difference of a value that is allowed (default: 1e-6)", positive);
     limit("--fail-percent", options.fail_percent, "Percentage of pixels that may differ by more than --fail",
@@ -76,6 +110,9 @@ Action diff_command(CLI::App& app, const Common& common) {
                    "folders, a folder")
         ->type_name("FILE");
     app.add_option("--html", line->html, "Write a page: A, B, difference map and figures side by side")
+        ->type_name("FILE");
+    app.add_flag("--embed", line->embed, "Write the page as one file, its pictures inside");
+    app.add_option("--markdown", line->markdown, "Write a table in Markdown, for a comment on a pull request")
         ->type_name("FILE");
     app.add_option("--junit", line->junit, "Write JUnit XML, one test case per image")->type_name("FILE");
     app.add_flag("--json", line->as_json, "Print JSON");
