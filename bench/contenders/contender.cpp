@@ -7,7 +7,6 @@
 #include <deque>
 #include <memory>
 
-#include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/core/base/error.h"
 
@@ -111,8 +110,7 @@ std::vector<std::string> add_contenders() {
     return problems;
 }
 
-MethodChoice add_answers(const std::string& text) {
-    const NamedAnswers given = parse_answers(text);
+const MethodInfo& answers_method(const NamedAnswers& given) {
     const std::string name = given.name, file = given.where.string();
     const Measure measure = given.measure;
     check_method_name(name);
@@ -134,8 +132,13 @@ MethodChoice add_answers(const std::string& text) {
                  },
                          .outside  = "file of answers",
                          .is_timed = false};
-    add_method(made.info);
-    return MethodChoice(made.info);
+    return made.info;
+}
+
+MethodChoice add_answers(const std::string& text) {
+    const MethodInfo& made = answers_method(parse_answers(text));
+    add_method(made);
+    return MethodChoice(made);
 }
 
 }  // namespace umbra

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/contenders/answers_file.h"
 #include "umbra/bench/contenders/introduction.h"
 #include "umbra/bench/record/record.h"
 #include "umbra/shadows/method.h"
@@ -23,7 +24,8 @@ struct ContenderRecord {
 template <class Fields>
 void describe(Fields& of, Is<ContenderRecord>) {
     of.name("contender", "a program from outside");
-    of("command", &ContenderRecord::command, "the program and its arguments");
+    of("command", &ContenderRecord::command,
+       "the program and its arguments; {run} in a word stands for the folder of files that is exchanged");
     of.may("folder", &ContenderRecord::folder, "where it is started, from the folder of this file; that folder itself");
     of.may("timeout_s", &ContenderRecord::timeout_s, "seconds that an answer may take; 120 where it is not given");
     of.may("checked", &ContenderRecord::checked, "the version of the program that passed `umbra contender check`");
@@ -34,6 +36,13 @@ void describe(Fields& of, Is<ContenderRecord>) {
 /// `folder`. Throws InputError where what it says cannot be a method.
 [[nodiscard]] const MethodInfo& program_method(const std::string& name, const ContenderRecord& contender,
                                                const std::filesystem::path& folder);
+
+/// Ends the programs of all such methods that wait for a question.
+void end_idle_programs();
+
+/// The answers of a file as a method, in a list of those that live as long as the process. Throws InputError where there
+/// is no such file, and UsageError where its name is none of a method.
+[[nodiscard]] const MethodInfo& answers_method(const NamedAnswers& given);
 
 /// Everything that the answers of a method from outside depend on and that can be seen from here: what its file says, and
 /// the bytes of the files that its command names, of a script those of the scripts beside it, too (of a library or a file of

@@ -234,6 +234,13 @@ const MethodInfo& program_method(const std::string& name, const ContenderRecord&
     return info;
 }
 
+void end_idle_programs() {
+    for (Contender& contender : all_programs()) {
+        const std::lock_guard lock(contender.mutex);
+        contender.idle.clear();
+    }
+}
+
 IntroductionRecord introduction(const std::vector<std::string>& command, const fs::path& folder, double timeout_s) {
     const ProgramSession session(command, folder, timeout_s);
     IntroductionRecord says;

@@ -83,10 +83,20 @@ fs::path made(const fs::path& folder) {
     return folder;
 }
 
+/// The command with the folder of the run where it says {run}.
+std::vector<std::string> placed(std::vector<std::string> command, const fs::path& run) {
+    constexpr std::string_view kRun = "{run}";
+    for (std::string& word : command)
+        for (std::size_t at = word.find(kRun); at != std::string::npos; at = word.find(kRun, at))
+            word.replace(at, kRun.size(), run.string()), at += run.string().size();
+    return command;
+}
+
 }  // namespace
 
 ProgramSession::ProgramSession(const std::vector<std::string>& command, const fs::path& where, double timeout_s)
-    : timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s), process_(command, where, made(folder() / "temporary")) {
+    : timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s),
+      process_(placed(command, folder()), where, made(folder() / "temporary")) {
     hello_ = ask(hello_message(folder()));
 }
 

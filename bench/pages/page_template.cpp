@@ -61,6 +61,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
                                         {"failures_note", assets::failures_note_html},
                                         {"picture", assets::picture_html},
                                         {"slider", assets::slider_html},
+                                        {"found_picture", assets::found_picture_html},
                                         {"why_point", assets::why_point_html},
                                         {"classes", assets::classes_html},
                                         {"ladder_table", assets::ladder_table_html},

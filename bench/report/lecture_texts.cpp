@@ -1,12 +1,44 @@
 #include "umbra/bench/report/lecture_texts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "report_assets.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/record/field.h"
+#include "umbra/core/base/error.h"
 
 namespace umbra {
+namespace {
+
+using nlohmann::json;
+
+std::map<std::string, json, std::less<>>& all_texts() {
+    static std::map<std::string, json, std::less<>> all = [] {
+        std::map<std::string, json, std::less<>> texts;
+        for (const auto& entry : assets::lecture_languages) texts.emplace(entry.code, json::parse(entry.texts));
+        return texts;
+    }();
+    return all;
+}
+
+/// `names` aside, a translation has no member that English has not, and the same types. Lists may have other lengths.
+void check_translation(const json& given, const json& english, const std::string& at, const std::string& file) {
+    if (given.type() != english.type())
+        throw InputError(fmt::format("{}: {} is {}, expected {} as in English", file, at.empty() ? "/" : at,
+                                     given.type_name(), english.type_name()));
+    if (!given.is_object()) return;
+    for (const auto& [key, value] : given.items()) {
+        if (at.empty() && key == "names") continue;
+        if (!english.contains(key)) throw InputError(fmt::format("{}: {}/{}: English has no such text", file, at, key));
+        check_translation(value, english.at(key), at + "/" + key, file);
+    }
+}
+
+}  // namespace
 
 const std::vector<Language>& languages() {
     static const std::vector<Language> all = [] {
@@ -22,14 +54,18 @@ std::optional<Language> language_named(std::string_view code) {
     return found == languages().end() ? std::nullopt : std::optional(*found);
 }
 
-const nlohmann::json& lecture_words(Language language) {
-    static const std::map<std::string_view, nlohmann::json> all = [] {
-        std::map<std::string_view, nlohmann::json> texts;
-        for (const auto& entry : assets::lecture_languages) texts[entry.code] = nlohmann::json::parse(entry.texts);
-        return texts;
-    }();
-    return all.at(language.code);
+Language add_language(const std::filesystem::path& folder) {
+    const std::string file = (folder / "texts.json").string();
+    static_cast<void>(parse_json(bytes_of(file), file));  // says where it is no JSON
+    const json given = json::parse(bytes_of(file));
+    json texts       = all_texts().at("en");
+    check_translation(given, texts, "", file);
+    texts.merge_patch(given);
+    const std::string code = std::filesystem::weakly_canonical(std::filesystem::absolute(folder)).filename().string();
+    return {all_texts().insert_or_assign(code, std::move(texts)).first->first};
 }
+
+const json& lecture_words(Language language) { return all_texts().find(language.code)->second; }
 
 std::string lecture_name(const std::string& english, Language language) {
     const nlohmann::json& words = lecture_words(language);

@@ -1,6 +1,7 @@
 // The languages of the page of the lectures, with the lectures' own terms: a folder each in bench/report/lectures/.
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -22,8 +23,12 @@ inline constexpr Language Language::english{"en"};
 /// Nothing for one without a folder.
 [[nodiscard]] std::optional<Language> language_named(std::string_view code);
 
+/// The language of FOLDER/texts.json, called as the folder; what the file does not translate stays English. Throws InputError
+/// where it says what English has not, or in another type.
+[[nodiscard]] Language add_language(const std::filesystem::path& folder);
+
 /// Its texts.json: {decimal_comma, phrases, chapters: {A: {title, exercises: [{question, answer}]}}, topics: {A1: {topic,
-/// proves}}, names}. `proves` is what the picture of a topic's scene shows; absent where no scene shows it. `names`
+/// proves}}, course, names}. `proves` is what the picture of a topic's scene shows; absent where no scene shows it. `names`
 /// translates what topics.json calls pictures and figures; English has none.
 [[nodiscard]] const nlohmann::json& lecture_words(Language language);
 

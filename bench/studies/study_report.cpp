@@ -50,6 +50,9 @@ std::vector<Thing> shown(const std::vector<Thing>& all, Shown where) {
     return here;
 }
 
+/// A section of the page, or another page.
+std::string address_of(const std::string& link) { return link.find('/') == std::string::npos ? "#" + link : link; }
+
 Json part(const std::string& text, const std::string& code = "", const std::string& sub = "") {
     return {{"text", text}, {"code", code}, {"sub", sub}, {"link", ""}};
 }
@@ -173,7 +176,8 @@ Json table_view(const StudyTable& table) {
         for (const Column& column : columns) {
             const std::string cell = written(value_of(row, column.key), column.notation, true);
             Json shown_part        = column.notation.kind == Notation::Kind::code ? part("", cell) : part(cell);
-            if (const Json link = value_of(row, column.link); !link.is_null()) shown_part["link"] = link;
+            if (const Json link = value_of(row, column.link); link.is_string())
+                shown_part["link"] = address_of(link.get<std::string>());
             cells.push_back({{"parts", Json::array({std::move(shown_part)})}});
         }
         Json label = cells.front();

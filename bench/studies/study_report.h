@@ -36,7 +36,7 @@ struct Column {
     std::string unit{};
     std::string group{};  ///< a head over neighbouring columns of the same group
     Shown shown = Shown::everywhere;
-    std::string link{};  ///< key of the id of the section of the page that a cell leads to; empty: none
+    std::string link{};  ///< key of what a cell leads to: a section's id, or, with a "/", a page; empty: none
 };
 
 struct StudyTable {

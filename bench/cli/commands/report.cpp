@@ -9,6 +9,7 @@
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
+#include "umbra/bench/course/course_report.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/report/lecture_page.h"
@@ -20,6 +21,7 @@
 #include "umbra/bench/studies/whitted/whitted_study.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -28,7 +30,7 @@ namespace fs = std::filesystem;
 
 struct ReportLine {
     std::vector<std::string> folders;
-    std::string out;
+    std::string out, course;
     std::string language = "en";
     bool without_exr     = false;
     std::vector<std::string> with;
@@ -156,6 +158,27 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
+/// A lecturer's own report.
+int report_course(const ReportLine& line, const Common& common) {
+    if (!line.folders.empty()) throw UsageError("report: --course: compares anew, expected no DIR");
+    if (line.out.empty()) throw UsageError("report: --course: -o DIR is required");
+    const Course course = read_course(line.course, [](const std::string& name) { return scene_file(name); });
+    CompareOptions options;
+    options.out = line.out, options.command = common.command, options.threads = thread_count();
+    options.pixel_samples             = kPictureSamples;
+    options.repeats                   = kReportRepeats;
+    options.budget                    = line.budget;
+    std::vector<std::string> problems = on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
+        options.progress = tell;
+        return write_course(course, options);
+    });
+    for (const std::string& problem : problems) print_error("{}\n", problem);
+    const std::string no_pdf = print_course(line.out);
+    if (!no_pdf.empty()) print_error("no course.pdf: {}\n", no_pdf);
+    if (!common.quiet) print_out("{}\n", (fs::path(line.out) / "index.html").string());
+    return problems.empty() ? kDone : kUnreadable;
+}
+
 /// Of the languages of the page of the lectures.
 std::string codes() {
     std::string all;
@@ -164,8 +187,13 @@ std::string codes() {
 }
 
 int report(const ReportLine& line, const Common& common) {
-    const std::optional<Language> language = language_named(line.language);
-    if (!language) throw UsageError(fmt::format("report: --lang {}: expected one of {}", line.language, codes()));
+    if (!line.course.empty()) return report_course(line, common);
+    std::optional<Language> language = language_named(line.language);
+    if (!language && fs::is_regular_file(fs::path(line.language) / "texts.json"))
+        language = add_language(line.language);
+    if (!language)
+        throw UsageError(fmt::format("report: --lang {}: expected one of {}, or a folder that holds texts.json",
+                                     line.language, codes()));
     if (line.without_exr && line.folders.empty())
         throw UsageError("report: --no-exr: no DIR given, expected a folder whose results to copy without EXRs");
     fs::path out = line.out;
@@ -192,7 +220,11 @@ Action report_command(CLI::App& app, const Common& common) {
         ->type_name("");
     app.add_option("-o,--output", line->out, "Folder to write to (default: results; given one DIR, that folder)")
         ->type_name("DIR");
-    app.add_option("--lang", line->language, "Language of the page of the lectures: " + codes() + " (default: en)")
+    app.add_option("--course", line->course,
+                   "A report of your own: chapters, scenes, exercises (docs/course.md); as a page and a PDF")
+        ->type_name("FILE");
+    app.add_option("--lang", line->language,
+                   "Language of the page of the lectures: " + codes() + ", or a folder with texts.json (default: en)")
         ->type_name("LANG");
     app.add_option("--with", line->with,
                    "Methods that run on each scene beside ours, such as renderers from outside (docs/contenders.md)")

@@ -1,0 +1,251 @@
+#include "umbra/bench/course/course_report.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "report_assets.h"
+#include "umbra/bench/contenders/line_process.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/out/own_files.h"
+#include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/report_page.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/record/strict_record.h"
+#include "umbra/bench/report/report.h"
+#include "umbra/bench/run/chosen.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// A scene of a chapter, compared.
+struct ChapterScene {
+    std::string title{}, folder{};
+    Results results{};
+};
+
+std::vector<std::string> paragraphs(const std::string& text) {
+    std::vector<std::string> all;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find("\n\n", at), text.size());
+        if (end > at) all.push_back(text.substr(at, end - at));
+        at = end + 2;
+    }
+    return all;
+}
+
+/// A row a method, in words of the language.
+json methods_view(const Results& results, Language language) {
+    const bool comma  = lecture_words(language).value("decimal_comma", false);
+    const auto figure = [&](const std::string& text) { return comma ? with_decimal_comma(text) : text; };
+    json rows         = json::array();
+    for (const MethodRecord& method : results.methods) {
+        if (is_reference(results, method)) continue;
+        const Totals sums = totals(method);
+        const bool known  = serves(method) && sums.points > 0;
+        rows.push_back({{"method", method_label(method, results.methods)},
+                        {"interior", known ? figure(count(sums.interior)) : kNone},
+                        {"edge", known ? figure(count(sums.edge)) : kNone},
+                        {"points", known ? figure(count(sums.points)) : kNone},
+                        {"mae", known ? figure(score(sums.mae)) : kNone},
+                        {"ms", serves(method) ? figure(milliseconds(sums.object_ms)) : kNone},
+                        {"why", method.failed    ? method.failed->message
+                                : serves(method) ? ""
+                                                 : method.serves.why}});
+    }
+    return rows;
+}
+
+json scene_section(const ChapterScene& scene, const SceneFiles& files, const json& words, Language language,
+                   std::size_t number) {
+    const fs::path root       = files.scene().page.parent_path();
+    const MethodRecord* worst = worst_method(scene.results);
+    json view{{"id", fmt::format("scene-{}", number)},
+              {"title", scene.title},
+              {"href", url(fs::path(scene.folder) / "index.html")},
+              {"rows", methods_view(scene.results, language)},
+              {"pair", slider_view(files, worst, root)},
+              {"classes", false},
+              {"words", words}};
+    if (worst == nullptr || totals(*worst).interior == 0) return view;
+    const std::string label = method_label(*worst, scene.results.methods);
+    json picture            = class_picture_view(files, *worst, label, root);
+    if (picture.is_boolean()) return view;
+    picture["caption"] = fmt::format("{}: {}", words.at("wrong_points").get<std::string>(), label);
+    picture["rings"]   = false;  // their words are English
+    view["classes"]    = std::move(picture);
+    return view;
+}
+
+json exercises_view(const ChapterRecord& chapter, bool with_answers) {
+    json all = json::array();
+    for (const ExerciseRecord& exercise : chapter.exercises)
+        all.push_back({{"question", exercise.question}, {"answer", with_answers ? exercise.answer : ""}});
+    return all;
+}
+
+/// The program of that name in PATH.
+bool is_in_path(const std::string& name) {
+    const char* path = std::getenv("PATH");
+    const std::string all(path != nullptr ? path : "");
+    for (std::size_t at = 0; at <= all.size();) {
+        const std::size_t end = std::min(all.find(':', at), all.size());
+        if (access((fs::path(all.substr(at, end - at)) / name).c_str(), X_OK) == 0) return true;
+        at = end + 1;
+    }
+    return false;
+}
+
+}  // namespace
+
+Course read_course(const fs::path& file, const FindScene& find) {
+    if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no file", file.string()));
+    Course course{.file = file};
+    const Field root           = parse_json(bytes_of(file), file.string());
+    const CourseRecord& record = course.record = from_strict_record<CourseRecord>(root);
+    if (record.chapters.empty()) root["chapters"].refuse("a list of chapters");
+    if (!record.language.empty()) {
+        const fs::path folder = file.parent_path() / record.language;
+        const auto known      = language_named(record.language);
+        if (!known && !fs::is_regular_file(folder / "texts.json"))
+            root["language"].refuse("a language of this program, or a folder that holds texts.json");
+        course.language = known ? *known : add_language(folder);
+    }
+    try {
+        if (!record.size.empty()) course.size = parse_size(record.size);
+    } catch (const UsageError&) {
+        root["size"].refuse("WIDTHxHEIGHT");
+    }
+    check_methods(root["methods"]);
+    for (const Field& chapter : root["chapters"].items()) {
+        check_methods(chapter["methods"]);
+        course.scenes.push_back(scenes_beside(chapter["scenes"], file, find));
+    }
+    return course;
+}
+
+std::vector<std::string> write_course(const Course& course, CompareOptions options) {
+    const fs::path root = fs::weakly_canonical(fs::absolute(options.out));
+    check_writable_beside(root, {"course.pdf"});
+    const PlaceLock lock = PlaceLock::inside(root);
+    options.size         = course.size;
+    options.add_page     = write_scene_page;
+    std::map<std::pair<fs::path, std::vector<std::string>>, ChapterScene> compared;
+    std::set<std::string> folders;
+    std::vector<std::string> problems;
+    std::vector<std::vector<const ChapterScene*>> chapters;
+    for (std::size_t c = 0; c < course.scenes.size(); ++c) {
+        const ChapterRecord& chapter = course.record.chapters[c];
+        options.methods              = chapter.methods.empty() ? course.record.methods : chapter.methods;
+        chapters.emplace_back();
+        for (const fs::path& file : course.scenes[c]) {
+            auto [at, is_new] = compared.try_emplace({file, options.methods});
+            if (is_new) {
+                const std::string name = folder_name(scene_name(file));
+                options.folder         = name;
+                for (int k = 2; !folders.insert(options.folder).second; ++k)
+                    options.folder = fmt::format("{}-{}", name, k);
+                try {
+                    at->second       = {.folder = options.folder, .results = compare_scene(file, options)};
+                    at->second.title = at->second.results.scene.title.empty() ? name : at->second.results.scene.title;
+                } catch (const InputError& e) {
+                    problems.emplace_back(e.what());
+                }
+                for (const MethodRecord& method : at->second.results.methods)
+                    if (method.failed)
+                        problems.push_back(fmt::format("{}: {}: {}", name, method.text, method.failed->message));
+            }
+            if (!at->second.folder.empty()) chapters.back().push_back(&at->second);
+        }
+    }
+
+    StagedFiles staged;
+    std::vector<ScenePage> pages;
+    for (const auto& chapter : chapters)
+        for (const ChapterScene* scene : chapter)
+            pages.push_back({.root    = {},
+                             .results = scene->results,
+                             .data    = root / scene->folder,
+                             .page    = root / scene->folder,
+                             .name    = scene->folder,
+                             .title   = scene->title});
+    const json words = lecture_words(course.language).at("course");
+    json views       = json::array();
+    std::size_t k    = 0;
+    std::vector<SceneFiles> files;
+    files.reserve(pages.size());
+    for (std::size_t c = 0; c < chapters.size(); ++c) {
+        const ChapterRecord& chapter = course.record.chapters[c];
+        json scenes                  = json::array();
+        for (const ChapterScene* scene : chapters[c]) {
+            files.emplace_back(pages[k], staged);
+            scenes.push_back(scene_section(*scene, files.back(), words, course.language, ++k));
+        }
+        views.push_back({{"id", fmt::format("chapter-{}", c + 1)},
+                         {"title", chapter.title},
+                         {"paragraphs", paragraphs(chapter.text)},
+                         {"scenes", std::move(scenes)},
+                         {"has_exercises", !chapter.exercises.empty()},
+                         {"exercises", exercises_view(chapter, course.record.answers)},
+                         {"words", words}});
+    }
+    const PageHead head{course.record.title, "", {"slider.js", "pictures.js"}, std::string(course.language.code)};
+    staged.write(root / "index.html", render_page(assets::course_html, head,
+                                                  {{"title", course.record.title},
+                                                   {"paragraphs", paragraphs(course.record.text)},
+                                                   {"chapters", std::move(views)},
+                                                   {"has_failures", !problems.empty()},
+                                                   {"failures", problems},
+                                                   {"words", words},
+                                                   {"version", version()}}));
+    for (const char* script : {"slider.js", "compare.js", "finder.js", "pictures.js"})
+        write_page_assets(root, {script}, staged);
+    Json record      = to_record(head_record(options.command));
+    record["course"] = to_record(course.record);
+    record["scenes"] = folders, record["files"] = {"course.pdf"};
+    staged.write(root / "results.json", json_text(record));
+    staged.commit();
+    return problems;
+}
+
+std::string print_course(const fs::path& out) {
+    const fs::path root = fs::weakly_canonical(fs::absolute(out));
+    for (const char* browser : {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"}) {
+        if (!is_in_path(browser)) continue;
+        const fs::path made = root / ".course.pdf.umbra-new";
+        std::vector<std::string> command{"sh",
+                                         "-c",
+                                         "\"$@\" >&2; echo $?",
+                                         "sh",
+                                         browser,
+                                         "--headless",
+                                         "--disable-gpu",
+                                         "--no-pdf-header-footer",
+                                         "--virtual-time-budget=20000",
+                                         "--print-to-pdf=" + made.string()};
+        if (geteuid() == 0) command.emplace_back("--no-sandbox");  // Chromium has none for root
+        command.push_back("file://" + url(root / "index.html"));
+        try {
+            const std::string code = LineProcess(command, root).ask("", 300);
+            if (code != "0" || !fs::is_regular_file(made))
+                return fmt::format("{} ended with exit code {} and wrote no PDF", browser, code);
+        } catch (const MethodError& e) {
+            return fmt::format("{}: {}", browser, e.what());
+        }
+        fs::rename(made, root / "course.pdf");
+        return "";
+    }
+    return "no Chromium was found in PATH, which prints the page";
+}
+
+}  // namespace umbra

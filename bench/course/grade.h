@@ -1,0 +1,116 @@
+// The points of a shadow method that was handed in, from its comparisons: by cause of error, with a sentence for each
+// point that is lost.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/course/rubric.h"
+#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/results.h"
+
+namespace umbra {
+
+/// What an item found on one scene.
+struct GradedSceneRecord {
+    std::string scene{}, light{}, why{};
+    std::optional<double> figure{};
+    double credit = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<GradedSceneRecord>) {
+    of.name("graded_scene", "what an item found on one scene");
+    of("scene", &GradedSceneRecord::scene, "its folder");
+    of.may("light", &GradedSceneRecord::light, "the one with the largest figure");
+    of("figure", &GradedSceneRecord::figure, "of the rubric's kind; a part of 1 where that is of points; null: none");
+    of("credit", &GradedSceneRecord::credit, "null: nothing on this scene asks for it, and it does not count",
+       kFraction);
+    of.may("why", &GradedSceneRecord::why, "why there is no figure");
+}
+
+struct GradedItemRecord {
+    std::string name{}, about{}, of{}, sentence{};
+    double points = kUnknown, max = kUnknown;
+    std::vector<GradedSceneRecord> scenes{};
+};
+template <class Fields>
+void describe(Fields& of, Is<GradedItemRecord>) {
+    of.name("graded_item", "points for one cause of error");
+    of.must("name", &GradedItemRecord::name, "");
+    of.may("about", &GradedItemRecord::about, "");
+    of("of", &GradedItemRecord::of, "the figure");
+    of("points", &GradedItemRecord::points, "");
+    of("max", &GradedItemRecord::max, "");
+    of("sentence", &GradedItemRecord::sentence, "what was found, and why points are lost");
+    of("scenes", &GradedItemRecord::scenes, "");
+}
+
+/// What kept a program apart while it ran.
+struct ApartRecord {
+    std::string by{};
+    bool network      = false;
+    double memory_mib = kUnknown, answer_s = kUnknown, scene_s = kUnknown;
+};
+template <class Fields>
+void describe(Fields& of, Is<ApartRecord>) {
+    of.name("apart", "what kept the program apart");
+    of("by", &ApartRecord::by, "what kept files and network from it", one_of({"bwrap", "nothing"}));
+    of("network", &ApartRecord::network, "true: it could use the network");
+    of("memory_mib", &ApartRecord::memory_mib, "null: any");
+    of("answer_s", &ApartRecord::answer_s, "");
+    of("scene_s", &ApartRecord::scene_s, "");
+}
+
+struct GradeRecord {
+    HeadRecord head{};
+    std::string rubric{}, handed_in{}, method{}, failed{}, key{};
+    double points = kUnknown, max = kUnknown, seconds = kUnknown;
+    std::optional<ApartRecord> apart{};
+    std::vector<GradedItemRecord> items{};
+    std::vector<std::string> scenes{}, not_compared{}, files{};
+};
+template <class Fields>
+void describe(Fields& of, Is<GradeRecord>) {
+    of.all(&GradeRecord::head);
+    of("rubric", &GradeRecord::rubric, "its title");
+    of("handed_in", &GradeRecord::handed_in, "the folder's name, or the method");
+    of("method", &GradeRecord::method, "what its records call it");
+    of.may("failed", &GradeRecord::failed, "why nothing could be asked of it");
+    of("points", &GradeRecord::points, "");
+    of("max", &GradeRecord::max, "");
+    of("seconds", &GradeRecord::seconds, "that judging it took");
+    of.may("apart", &GradeRecord::apart, "of a program");
+    of("items", &GradeRecord::items, "");
+    of("scenes", &GradeRecord::scenes, "folders that hold the results.json of each scene");
+    of.may("not_compared", &GradeRecord::not_compared, "scenes that could not be read, in words");
+    of("files", &GradeRecord::files, "beside this record");
+    of.may("key", &GradeRecord::key, "equal keys: nothing that the points depend on has changed");
+}
+
+/// A scene's comparison, in which the method handed in is the one of this id.
+struct Compared {
+    std::string asked;  ///< as the rubric names it
+    std::string folder;
+    Results results{};
+    std::string method{};  ///< empty: it has no answers here
+    std::string why{};     ///< why not
+};
+
+/// The figure that a rubric names, under the light where it is largest; nothing where no light tells. `against`: of time.
+struct Figure {
+    double value = 0;
+    std::string light{};
+};
+[[nodiscard]] std::optional<Figure> figure_of(const Results& results, const MethodRecord& method, const std::string& of,
+                                              const std::string& against);
+
+/// "1.3 %", "2 px", "0.012", "3.1 times": a figure as sentences have it.
+[[nodiscard]] std::string figure_in_words(const std::string& of, double figure);
+
+/// Items, points and sentences. `failed`: why there are no comparisons; all points are lost then. The credit of a scene
+/// falls evenly from `full` to `none`; a scene that is not answered has none; an item's points are those of the mean over
+/// the scenes that tell, in steps of the rubric, and all where nothing on the scenes asks for it.
+void grade(GradeRecord& record, const RubricRecord& rubric, const std::vector<Compared>& scenes);
+
+}  // namespace umbra

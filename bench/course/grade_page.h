@@ -1,0 +1,62 @@
+// The page of a grade, and the table of a class.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/course/grade.h"
+#include "umbra/bench/course/rubric.h"
+#include "umbra/bench/out/staged_files.h"
+
+namespace umbra {
+
+/// FOLDER/index.html, its style and scripts. The folders of the scenes lie in `folder`.
+void write_grade_page(const GradeRecord& grade, const RubricRecord& rubric, const std::vector<Compared>& scenes,
+                      const std::filesystem::path& folder, StagedFiles& staged);
+
+/// Points and a sentence an item, as a terminal shows them.
+[[nodiscard]] std::string grade_text(const GradeRecord& grade);
+
+struct ClassRowRecord {
+    std::string handed_in{}, folder{}, failed{};
+    double points = kUnknown;
+    std::vector<double> items{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ClassRowRecord>) {
+    of.name("class_row", "one that was handed in");
+    of("handed_in", &ClassRowRecord::handed_in, "");
+    of("folder", &ClassRowRecord::folder, "its results");
+    of.may("failed", &ClassRowRecord::failed, "why nothing could be asked of it");
+    of("points", &ClassRowRecord::points, "");
+    of("items", &ClassRowRecord::items, "points of each, in the order of the record's `items`");
+}
+
+struct ClassRecord {
+    HeadRecord head{};
+    std::string rubric{};
+    double max = kUnknown;
+    std::vector<std::string> items{};
+    std::vector<ClassRowRecord> rows{};
+    std::vector<std::string> csv{};
+};
+template <class Fields>
+void describe(Fields& of, Is<ClassRecord>) {
+    of.all(&ClassRecord::head);
+    of("rubric", &ClassRecord::rubric, "its title");
+    of("max", &ClassRecord::max, "points that there are");
+    of("items", &ClassRecord::items, "");
+    of("rows", &ClassRecord::rows, "");
+    of("csv", &ClassRecord::csv, "");
+}
+
+/// OUT/index.html, grades.csv, results.json. `folders`: of each grade, in `out`.
+ClassRecord write_class(const RubricRecord& rubric, const std::vector<GradeRecord>& grades,
+                        const std::vector<std::string>& folders, const std::string& command,
+                        const std::filesystem::path& out);
+
+/// The table, as a terminal shows it.
+[[nodiscard]] std::string class_text(const ClassRecord& record);
+
+}  // namespace umbra

@@ -1,0 +1,102 @@
+// What a course asks of a shadow method: scenes, methods to stand beside, limits, and points by cause of error.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "umbra/bench/record/record.h"
+#include "umbra/bench/run/prepare.h"
+
+namespace umbra {
+
+/// What a figure of a rubric is, and how a sentence says it.
+struct Cause {
+    std::string_view name;  ///< as rubrics have it: "acne"
+    std::string_view unit;  ///< "%": a fraction; "px"; "": a plain number; "x": a ratio
+    std::string_view says;  ///< "{} of the points are acne"
+};
+/// All that a rubric may ask for.
+[[nodiscard]] const std::vector<Cause>& causes();
+
+struct RubricItemRecord {
+    std::string name{}, about{}, of{}, against{};
+    double points = kUnknown, full = kUnknown, none = kUnknown;
+    std::vector<std::string> scenes{};
+};
+template <class Fields>
+void describe(Fields& of, Is<RubricItemRecord>) {
+    of.name("rubric_item", "points for one cause of error");
+    of.must("name", &RubricItemRecord::name, "");
+    of.may("about", &RubricItemRecord::about, "a sentence for the student");
+    of.must("of", &RubricItemRecord::of, "the figure: acne, leak, time, ... (docs/course.md)");
+    of.may("against", &RubricItemRecord::against, "time: the method whose time is 1");
+    of("points", &RubricItemRecord::points, "", at_least(0));
+    of.may("full", &RubricItemRecord::full, "up to this figure all points are given; 0");
+    of.may("none", &RubricItemRecord::none, "from this figure on none; failed and refused: 1");
+    of.may("scenes", &RubricItemRecord::scenes, "those of the rubric that count here; all");
+}
+
+struct LimitsRecord {
+    double answer_s = kUnknown, scene_s = kUnknown, memory_mib = kUnknown;
+    bool network = false;
+};
+template <class Fields>
+void describe(Fields& of, Is<LimitsRecord>) {
+    of.name("limits", "of a program that was handed in");
+    of.may("answer_s", &LimitsRecord::answer_s, "seconds an answer; 60", at_least(0));
+    of.may("scene_s", &LimitsRecord::scene_s, "seconds a scene; 300", at_least(0));
+    of.may("memory_mib", &LimitsRecord::memory_mib, "MiB of address space of each of its processes; 4096; 0: any",
+           at_least(0));
+    of.may("network", &LimitsRecord::network, "true: it may use the network");
+}
+
+struct RubricRecord {
+    std::string title{}, text{}, size{};
+    std::vector<std::string> scenes{}, methods{}, run{};
+    LimitsRecord limits{};
+    double step = kUnknown;
+    std::vector<RubricItemRecord> items{};
+};
+template <class Fields>
+void describe(Fields& of, Is<RubricRecord>) {
+    of.name("rubric", "what a course asks of a shadow method");
+    of.must("title", &RubricRecord::title, "");
+    of.may("text", &RubricRecord::text, "a sentence for students");
+    of("scenes", &RubricRecord::scenes, "names of scenes, or files beside the rubric");
+    of.may("size", &RubricRecord::size, "WIDTHxHEIGHT of all scenes; their own");
+    of.may("methods", &RubricRecord::methods, "methods of ours that stand beside");
+    of.may("run", &RubricRecord::run, "the command of a program, started in the folder that is handed in; ./run");
+    of("limits", &RubricRecord::limits, "");
+    of.may("step", &RubricRecord::step, "points are rounded to multiples of this; 0.1");
+    of("items", &RubricRecord::items, "");
+}
+
+struct Rubric {
+    RubricRecord record{};
+    std::filesystem::path file{};  ///< empty: the one that this program has
+    std::string text{};            ///< its bytes
+    std::vector<std::filesystem::path> scenes{};
+    Size size{};
+};
+
+/// The file of a scene that no file beside the rubric is called by. Throws InputError.
+using FindScene = std::function<std::filesystem::path(const std::string& name)>;
+
+/// The files of a list of names. Throws InputError with its position.
+[[nodiscard]] std::vector<std::filesystem::path> scenes_beside(const Field& names, const std::filesystem::path& file,
+                                                               const FindScene& find);
+
+/// Throws InputError with the position of a name that is no method's.
+void check_methods(const Field& names);
+
+/// Reads and checks it: names of figures, methods and scenes, ranges, what an item needs. Throws InputError with the
+/// file and the position.
+[[nodiscard]] Rubric read_rubric(const std::filesystem::path& file, const FindScene& find);
+
+/// Without points: these scenes, beside the z-buffer and rays.
+[[nodiscard]] Rubric rubric_of(std::vector<std::filesystem::path> scenes);
+
+}  // namespace umbra
