@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -36,6 +37,11 @@ protected:
 
     fs::path folder_;
 };
+
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
 
 bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -95,6 +101,8 @@ TEST_F(Cli, UsageErrorsEndWithSixtyFour) {
                                   diff + "--fail-rmse x",
                                   diff + "--warn -1",
                                   diff + "-o map.bmp",
+                                  diff + "--embed",
+                                  diff + "--tolerance x.json --fail 1",
                                   "diff " + file("") + " " + kScene,
                                   "accept moon"}) {
         const Answer answer = umbra(arguments);
@@ -680,6 +688,19 @@ TEST_F(Cli, DiffOfFoldersAndChosenChannels) {
     EXPECT_TRUE(fs::exists(file("page.html")) && fs::exists(file("junit.xml")));
     answer = umbra(folders + " --channels 'R,G,B,S.*'");
     EXPECT_EQ(answer.exit_code, 0) << answer.output;
+
+    // One file instead of a page with a folder; rules from a file.
+    ASSERT_EQ(umbra(render + file("new/a.exr") + " --method shadow_zbuffer:resolution=16").exit_code, 0);
+    fs::remove_all(file("page.files"));
+    std::ofstream(file("rules.json")) << R"({"images": [{"name": "a.*", "passes": {"flip": 1}}]})";
+    answer = umbra(folders + " --channels 'R,G,B,S.*' --tolerance " + file("rules.json") + " --html " +
+                   file("page.html") + " --embed --markdown " + file("summary.md"));
+    EXPECT_EQ(answer.exit_code, 1) << answer.output;
+    EXPECT_FALSE(fs::exists(file("page.files")));
+    EXPECT_TRUE(contains(text_of(file("page.html")), "<img src=\"data:image/png;base64,iVBORw0KGgo"));
+    EXPECT_FALSE(contains(text_of(file("page.html")), "src=\"page"));
+    EXPECT_TRUE(contains(text_of(file("summary.md")), "| a.exr | close |"));
+    EXPECT_EQ(umbra(folders + " --tolerance " + file("none.json")).exit_code, 4);
     answer = umbra("diff --channels R,G,B " + file("old/b.exr") + " " + file("new/b.exr"));
     EXPECT_EQ(answer.exit_code, 0) << answer.output;
     fs::remove(file("new/b.exr"));
