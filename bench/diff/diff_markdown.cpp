@@ -39,7 +39,7 @@ std::string table_row(const DiffResult& image) {
     const bool measured = image.comparable();
     const auto figure   = [&](double value) { return measured ? score(value) : kNone; };
     std::string why     = fmt::format("{}", fmt::join(image.reasons, "; "));
-    if (const std::string by = all_concessions(image); !by.empty()) why += (why.empty() ? "" : "; ") + by;
+    if (const std::string by = needed_concessions(image.rules); !by.empty()) why += (why.empty() ? "" : "; ") + by;
     const bool fine = image.verdict <= Verdict::close;
     return fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {} |\n", cell_text(image.name),
                        fine ? std::string(to_string(image.verdict)) : fmt::format("**{}**", to_string(image.verdict)),

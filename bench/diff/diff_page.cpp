@@ -30,7 +30,7 @@ json image_view(const DiffResult& image, std::size_t index, const fs::path& pict
                  {"notes", utf8(fmt::format("{}", fmt::join(image.notes, "; ")))},
                  {"worst", worst_pixel(image)},
                  {"measured", false},
-                 {"conceded", all_concessions(image)},
+                 {"conceded", needed_concessions(image.rules)},
                  {"accept", utf8(image.accept)},
                  {"rule_name", utf8(image.rule_name)},
                  {"rules", json::array()},

@@ -30,14 +30,6 @@ std::string layer_of_flip(const DiffResult& result) {
     return fmt::format("{}, worst of {} layers", result.layers[result.worst_layer].name, result.layers.size());
 }
 
-std::string all_concessions(const DiffResult& result) {
-    if (result.verdict != Verdict::close) return "";
-    std::vector<std::string> each;
-    for (const RuleOutcome& rule : result.rules)
-        if (rule.holds && rule.conceded && rule.conceded->sum() > 0) each.push_back(concessions(*rule.conceded));
-    return fmt::format("{}", fmt::join(each, "; "));
-}
-
 std::vector<std::string> all_channels(const DiffResult& result) {
     std::vector<std::string> names = result.channels;
     for (const IntegerDiff& integer : result.integers)
@@ -97,7 +89,7 @@ std::string diff_text(const DiffResult& result) {
 std::string diff_line(const DiffResult& result) {
     std::string line = fmt::format("{:<10} {}", to_string(result.verdict), result.name);
     if (!result.reasons.empty()) line += fmt::format(": {}", fmt::join(result.reasons, "; "));
-    if (const std::string by = all_concessions(result); !by.empty()) line += "; " + by;
+    if (const std::string by = needed_concessions(result.rules); !by.empty()) line += "; " + by;
     if (const std::string worst = worst_pixel(result); !worst.empty()) line += "; worst " + worst;
     return line;
 }

@@ -20,9 +20,6 @@ namespace umbra {
 /// "spec, worst of 2 layers": what SSIM and FLIP are of; empty where there is one layer.
 [[nodiscard]] std::string layer_of_flip(const DiffResult& result);
 
-/// Pixels of a close image that rules let pass only by a shift, an edge band or a mask; empty where there are none.
-[[nodiscard]] std::string all_concessions(const DiffResult& result);
-
 /// Names of the channels, those of whole numbers last.
 [[nodiscard]] std::vector<std::string> all_channels(const DiffResult& result);
 

@@ -304,6 +304,35 @@ std::vector<std::string> missed_rules(const std::vector<RuleOutcome>& outcomes) 
     return missed;
 }
 
+std::string needed_concessions(const std::vector<RuleOutcome>& outcomes) {
+    struct Needed {
+        std::size_t pixels = 0;
+        std::vector<std::string> says{};
+    };
+    std::size_t at    = 0;
+    const auto needed = [&](const auto& again) -> Needed {  // of the rule at `at`, which it passes with its parts
+        const RuleOutcome& rule = outcomes[at++];
+        const bool is_any       = rule.rule == "any";
+        Needed sum;
+        if (rule.conceded && rule.conceded->sum() > 0) sum = {rule.conceded->sum(), {concessions(*rule.conceded)}};
+        bool is_first = true;
+        while (at < outcomes.size() && outcomes[at].depth > rule.depth) {
+            const bool holds = outcomes[at].holds;
+            Needed part      = again(again);
+            if (!is_any) {
+                sum.pixels += part.pixels;
+                sum.says.insert(sum.says.end(), part.says.begin(), part.says.end());
+            } else if (holds && (is_first || part.pixels < sum.pixels)) {
+                sum      = std::move(part);
+                is_first = false;
+            }
+        }
+        return sum;
+    };
+    if (outcomes.empty() || !outcomes.front().holds) return "";
+    return fmt::format("{}", fmt::join(needed(needed).says, "; "));
+}
+
 std::string concessions(const Conceded& conceded) {
     std::vector<std::string> each;
     const auto add = [&](std::size_t pixels, const char* by) {

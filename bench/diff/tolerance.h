@@ -155,4 +155,8 @@ struct ComparedImages {
 /// "12 pixels pass only by the mask": each such count; empty where there is none.
 [[nodiscard]] std::string concessions(const Conceded& conceded);
 
+/// The same of all rules that the root needs to hold: of an `any`, the one that concedes the fewest pixels. Empty where
+/// the root does not hold.
+[[nodiscard]] std::string needed_concessions(const std::vector<RuleOutcome>& outcomes);
+
 }  // namespace umbra

@@ -231,6 +231,24 @@ TEST_F(ToleranceFile, AllAndAny) {
                               {"says", "0 pixels (0 %) differ by more than 0.3 (allowed: 0 %)"}}));
 }
 
+/// A line names what an image needed to pass, and not what it would have needed elsewhere.
+TEST_F(ToleranceFile, ConcessionsAreThoseThatWereNeeded) {
+    for (int y = 0; y < 4; ++y) set(a, 10, y, 1), set(b, 11, y, 1);
+    Image mask(kWidth, kHeight, {"R", "G", "B"});
+    std::fill(mask.data.begin(), mask.data.end(), 1.0f);
+    write_image(folder.path() / "mask.png", mask);
+    const std::string by_mask  = R"({"pixels": {"limit": 0.1, "mask": "mask.png"}})";
+    const std::string by_shift = R"({"pixels": {"limit": 0.1, "shift": 1}})", fails = R"({"pixels": {"limit": 0.1}})";
+    const auto needed = [&](const std::string& rule) { return needed_concessions(under(rule).rules); };
+    EXPECT_EQ(needed(by_mask), "8 pixels pass only by the mask");
+    EXPECT_EQ(needed(R"({"all": [)" + by_mask + ", " + by_shift + "]}"),
+              "8 pixels pass only by the mask; 8 pixels pass only by the shift");
+    EXPECT_EQ(needed(R"({"any": [)" + by_mask + R"(, {"flip": 1}]})"), "");
+    EXPECT_EQ(needed(R"({"any": [)" + fails + ", " + by_shift + ", " + by_mask + "]}"),
+              "8 pixels pass only by the shift");
+    EXPECT_EQ(needed(R"({"all": [)" + fails + ", " + by_shift + "]}"), "");
+}
+
 TEST_F(ToleranceFile, FirstNameThatMatchesCounts) {
     set(b, 3, 4, 0.75f);
     const std::string loose = R"({"pixels": {"limit": 1}})", tight = R"({"pixels": {"limit": 0}})";
