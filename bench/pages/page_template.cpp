@@ -67,6 +67,7 @@ std::string render_page(std::string_view page, const PageHead& head, json view) 
                                         {"ladder_table", assets::ladder_table_html},
                                         {"textbook_table", assets::textbook_table_html},
                                         {"break_pictures", assets::break_pictures_html},
+                                        {"formula_chart", assets::formula_chart_html},
                                         {"setup", assets::setup_html},
                                         {"scales", assets::scales_html},
                                         {"study_table", assets::study_table_html},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/pages/chart_parts.h"
@@ -21,6 +22,45 @@ struct PlacedMark {
     double camera_x, x, y;
     double line_from;  ///< where the line that leads to the mark begins: at the axis, or at the mark itself
 };
+
+/// Coordinates between two ends; a range of a single value is widened.
+struct LinearAxis {
+    double low, high, from, to;
+
+    LinearAxis(double low_, double high_, double from_, double to_)
+        : low(low_), high(high_ > low_ ? high_ : low_ + 1), from(from_), to(to_) {}
+    double operator()(double value) const { return from + (value - low) / (high - low) * (to - from); }
+    /// At multiples of 1, 2 or 5 times a power of ten, at most 7.
+    [[nodiscard]] json ticks() const {
+        const double decade = std::pow(10, std::floor(std::log10((high - low) / 6)));
+        double step         = 10 * decade;
+        for (const double part : {5.0, 2.0, 1.0})
+            if ((high - low) / (part * decade) <= 6.5) step = part * decade;
+        json all = json::array();
+        for (double k = std::ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; ++k)
+            all.push_back({{"at", coordinate((*this)(k * step))}, {"label", fmt::format("{:g}", k * step + 0.0)}});
+        return all;
+    }
+};
+
+/// Every fourth point, the ends, and both sides of a jump of more than 3; the pen is lifted where a value is not finite.
+std::string formula_path(const FormulaSeries& of, const LinearAxis& x, const LinearAxis& y) {
+    std::string path;
+    bool down         = false;
+    const auto height = [&](std::size_t k) { return y(of.formula[k]); };
+    const auto jumps  = [&](std::size_t k) { return std::abs(height(k) - height(k - 1)) > 3; };
+    for (std::size_t k = 0; k < of.x.size(); ++k) {
+        if (!std::isfinite(of.formula[k])) {
+            down = false;
+            continue;
+        }
+        const bool at_end = !down || k + 1 == of.x.size() || !std::isfinite(of.formula[k + 1]);
+        if (!at_end && k % 4 != 0 && !jumps(k) && !jumps(k + 1)) continue;
+        path += fmt::format("{}{:.1f} {:.1f}", down ? 'L' : 'M', x(of.x[k]), height(k));
+        down = true;
+    }
+    return path;
+}
 
 }  // namespace
 
@@ -127,6 +167,36 @@ json rung_chart(const std::vector<std::string>& rungs, const std::vector<RungSer
     view["x_ticks"]    = std::move(x_ticks);
     view["y_ticks"]    = y.ticks();
     view["lines"]      = std::move(lines);
+    return view;
+}
+
+json formula_chart(const std::vector<FormulaSeries>& series) {
+    constexpr double bottom = 220, kDots = 40;
+    double least_x = HUGE_VAL, most_x = -HUGE_VAL, least = 0, most = 0;
+    for (const FormulaSeries& s : series) {
+        for (const double at : s.x) least_x = std::min(least_x, at), most_x = std::max(most_x, at);
+        for (const auto* values : {&s.measured, &s.formula})
+            for (const double value : *values)
+                if (std::isfinite(value)) least = std::min(least, value), most = std::max(most, value);
+    }
+    const LinearAxis x(least_x, most_x, kLeft, kRight), y(least, most, bottom, kTop);
+    json lines = json::array();
+    for (std::size_t i = 0; i < series.size(); ++i) {
+        const FormulaSeries& s = series[i];
+        std::string dots;
+        const auto stride = static_cast<std::size_t>(std::ceil(static_cast<double>(s.measured.size()) / kDots));
+        for (std::size_t k = 0; k < s.measured.size(); k += stride)
+            if (std::isfinite(s.measured[k])) dots += fmt::format("M{:.1f} {:.1f}h0", x(s.x[k]), y(s.measured[k]));
+        lines.push_back({{"colour", std::to_string(mark_style(i).colour)},
+                         {"label", s.label},
+                         {"path", formula_path(s, x, y)},
+                         {"dots", dots},
+                         {"dashed", s.measured.empty()}});
+    }
+    json view       = frame(bottom + 46, bottom);
+    view["x_ticks"] = x.ticks();
+    view["y_ticks"] = y.ticks();
+    view["lines"]   = std::move(lines);
     return view;
 }
 

@@ -1,5 +1,5 @@
-// Small charts, as coordinates for the pages' templates to draw: error against time, and wrong points against the
-// rungs of a ladder. Both are 440 wide; their heights follow from what they show.
+// Small charts, as coordinates for the pages' templates to draw: error against time, wrong points against the rungs of a
+// ladder, and what was measured beside its formula. All are 440 wide.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -40,5 +40,14 @@ struct RungSeries {
 /// their method below the axis; `limit` is the share above which a method breaks.
 [[nodiscard]] nlohmann::json rung_chart(const std::vector<std::string>& rungs, const std::vector<RungSeries>& series,
                                         double limit);
+
+/// Values at the same x: measured ones as dots, their formula as a line, which is dashed where nothing was measured.
+struct FormulaSeries {
+    std::string label;
+    std::vector<double> x, measured, formula;  ///< not finite in `formula`: left open there
+};
+
+/// Both axes are linear; that of values begins at 0 unless some are negative.
+[[nodiscard]] nlohmann::json formula_chart(const std::vector<FormulaSeries>& series);
 
 }  // namespace umbra

@@ -85,7 +85,7 @@ std::vector<Field> Field::items() const {
     if (!value_) return all;
     if (!value_->is_array()) refuse("an array");
     for (std::size_t i = 0; i < value_->size(); ++i)
-        all.push_back({document_, &(*value_)[i], fmt::format("{}/{}", pointer_, i)});
+        all.push_back({document_, (*value_)[i].is_null() ? nullptr : &(*value_)[i], fmt::format("{}/{}", pointer_, i)});
     return all;
 }
 

@@ -32,7 +32,7 @@ public:
     [[nodiscard]] Json json() const;  ///< whatever it is; null where absent
     [[nodiscard]] std::optional<double> number() const;
     [[nodiscard]] bool flag() const;                 ///< false where absent
-    [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent
+    [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent; null items are absent, too
     [[nodiscard]] std::vector<std::pair<std::string, Field>> members() const;
 
     /// "FILE:/POINTER: found WHAT, expected EXPECTED".

@@ -1,13 +1,15 @@
 #include "umbra/bench/report/lecture_page.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
-#include "umbra/bench/report/lecture_shows.h"
+#include "umbra/bench/report/lecture_experiments.h"
 
 namespace umbra {
 namespace {
@@ -29,64 +31,160 @@ const SceneFiles* page_of(const LectureSources& sources, std::string_view study,
     return found == sources.pages.end() ? nullptr : found->second;
 }
 
-json pictures_of(const LectureShow* show, const SceneFiles& files, const fs::path& out, Language language) {
-    json pictures  = json::array();
-    const auto add = [&](const FileName& file, const std::string& caption) {
-        json picture = files.figure(file, "", "", caption.empty() ? files.scene().title : caption, out);
-        if (!picture.is_object()) return;
-        picture["caption"] = caption.empty() ? json(false) : json(caption);
-        pictures.push_back(std::move(picture));
-    };
-    if (show != nullptr)
-        for (const LectureValue& value : show->pictures)
-            add(from_record<FileName>(value_at(files.scene().root, value.path)), lecture_name(value.name, language));
-    else
-        add(picture_of(files.scene().results.reference.files), "");
-    return pictures;
+json caption_of(const std::string& name, Language language) {
+    return name.empty() ? json(false) : json(lecture_name(name, language));
 }
 
-json row_view(const LectureRow& row, const LectureSources& sources, const fs::path& out, Language language) {
-    const json& words       = lecture_words(language)["topics"][row.id];
-    const LectureShow* show = lecture_show(row.id);
-    json view               = {{"id", row.id},
-                               {"topic", words["topic"]},
-                               {"source", row.source},
-                               {"state", state_in_words(row.state, language)},
-                               {"unfinished", !row.state.starts_with("works")},
-                               {"shown", false}};
-    const SceneFiles* files = page_of(sources, show == nullptr ? "" : show->study, row.scene);
-    if (row.scene.empty() || files == nullptr) return view;
-    json pictures = pictures_of(show, *files, out, language);
-    json measured = json::array();
-    if (show != nullptr)
-        for (const LectureFigure& figure : show->figures)
-            if (const std::string figures = figure_in_words(figure, files->scene().root, language); !figures.empty())
-                measured.push_back({{"text", figures}, {"lang", std::string(language.code)}});
-    if (show == nullptr || show->study.empty())
-        if (const std::string found = finding(files->scene().results); !found.empty())
-            measured.push_back({{"text", found}, {"lang", "en"}});
-    view["shown"] = {{"href", url((files->scene().page / "index.html").lexically_relative(out))},
-                     {"scene", files->scene().title},
-                     {"proves", words.value("proves", "")},
-                     {"several", pictures.size() > 1},
-                     {"pictures", std::move(pictures)},
-                     {"is_measured", !measured.empty()},
-                     {"measured", std::move(measured)}};
+void add_shown(const LectureShow* show, const SceneFiles& files, const fs::path& out, Language language,
+               json& pictures) {
+    const auto add = [&](const FileName& file, const json& caption) {
+        json picture = files.figure(file, "", "", caption.is_string() ? caption : json(files.scene().title), out);
+        if (!picture.is_object()) return;
+        picture["caption"] = caption;
+        pictures.push_back(std::move(picture));
+    };
+    if (show == nullptr) return add(picture_of(files.scene().results.reference.files), false);
+    for (const LectureValue& value : show->pictures)
+        add(from_record<FileName>(value_at(files.scene().root, value.path)), caption_of(value.name, language));
+}
+
+/// Of each variant; a click leads to its scene file.
+void add_variants(const ExperimentRecord& experiment, const SceneFiles& files, const fs::path& out, Language language,
+                  json& pictures) {
+    const bool several = experiment.pictures.size() > 1;
+    for (const ExperimentPicture& variant : experiment.pictures) {
+        const json caption = several ? caption_of(variant.name, language) : json(false);
+        json picture       = files.figure(variant.file, "", "", lecture_name(variant.name, language), out);
+        picture["caption"] = caption;
+        picture["href"]    = files.link(variant.scene, out);
+        pictures.push_back(std::move(picture));
+    }
+}
+
+/// Ticks, lines and titles, as the template formula_chart shows them; false where nothing was measured along a line.
+json chart_of(const ExperimentRecord& experiment, Language language) {
+    if (experiment.curves.empty()) return false;
+    std::vector<FormulaSeries> series;
+    std::string about = lecture_name(experiment.y, language) + ":";
+    for (const ExperimentCurve& curve : experiment.curves) {
+        const std::string name = lecture_name(curve.name, language);
+        about += " " + name + ";";
+        series.push_back({name, curve.x, curve.measured, curve.formula});
+    }
+    json chart = formula_chart(series);
+    for (const char* axis : {"x_ticks", "y_ticks"})
+        for (json& tick : chart[axis]) tick["label"] = number_in_words(tick["label"].get<std::string>(), language);
+    about.pop_back();
+    chart["about"] = about;
+    chart["law"]   = lecture_name(experiment.law, language);
+    chart["x"]     = lecture_name(experiment.x, language);
+    chart["y"]     = lecture_name(experiment.y, language);
+    return chart;
+}
+
+/// "Largest difference from the formula: 2.1·10⁻⁷ (allowed: 10⁻⁵)."; by curve where their limits differ.
+std::string deviation_in_words(const ExperimentRecord& experiment, Language language) {
+    const json& phrases = lecture_words(language)["phrases"];
+    std::vector<const ExperimentCurve*> measured;
+    for (const ExperimentCurve& curve : experiment.curves)
+        if (curve.deviation) measured.push_back(&curve);
+    if (measured.empty()) return "";
+    const bool one_limit =
+        std::ranges::all_of(measured, [&](const ExperimentCurve* c) { return c->limit == measured[0]->limit; });
+    if (one_limit)
+        measured = {*std::ranges::max_element(measured, {}, [](const ExperimentCurve* c) { return *c->deviation; })};
+    std::string words = phrases["deviation"].get<std::string>() + ":";
+    for (const ExperimentCurve* curve : measured) {
+        words += one_limit ? " " : fmt::format(" {}: ", lecture_name(curve->name, language));
+        words += fmt::format("{} ({} {});", score_in_words(curve->deviation, language),
+                             phrases["allowed"].get<std::string>(), score_in_words(curve->limit, language));
+    }
+    words.back() = '.';
+    return words;
+}
+
+std::string pairs_in_words(const ExperimentRecord& experiment, Language language) {
+    if (experiment.pairs.empty()) return "";
+    std::string words = lecture_name("Difference of the pictures (RMSE)", language) + ":";
+    for (const ExperimentPair& pair : experiment.pairs)
+        words += fmt::format(" “{}” / “{}”: {};", lecture_name(pair.one, language), lecture_name(pair.other, language),
+                             score_in_words(pair.rmse, language));
+    words.back() = '.';
+    return words;
+}
+
+/// The figures of a comparison or study, in words.
+void add_measured(const LectureRow& row, const LectureShow& show, const LectureSources& sources, Language language,
+                  json& measured) {
+    const auto root_of = [&](const std::string& frame) {
+        const SceneFiles* files = page_of(sources, show.study, row.scene + frame);
+        return files == nullptr ? Field{} : files->scene().root;
+    };
+    for (const LectureFigure& figure : show.figures)
+        measured.push_back(
+            {{"text", figure_in_words(figure, root_of, language)}, {"lang", std::string(language.code)}});
+    if (const SceneFiles* files = page_of(sources, show.study, row.scene); show.found && files != nullptr)
+        measured.push_back({{"text", finding(files->scene().results)}, {"lang", "en"}});
+}
+
+/// The record of an experiment, of this id; null where there is none.
+const ExperimentRecord* experiment_of(const ExperimentsRecord& record, const std::string& id) {
+    const auto found = std::ranges::find(record.experiments, id, &ExperimentRecord::name);
+    return found == record.experiments.end() ? nullptr : &*found;
+}
+
+json row_view(const LectureRow& row, const LectureSources& sources, const ExperimentsRecord& experiments,
+              const fs::path& out, Language language) {
+    const json& words                  = lecture_words(language)["topics"][row.id];
+    const LectureShow* show            = lecture_show(row.id);
+    const ExperimentRecord* experiment = experiment_of(experiments, row.id);
+    json view                          = {{"id", row.id},
+                                          {"topic", words["topic"]},
+                                          {"source", row.source},
+                                          {"state", state_in_words(row.state, language)},
+                                          {"unfinished", !row.state.starts_with("works")},
+                                          {"shown", false}};
+    const SceneFiles* files =
+        row.scene.empty() ? nullptr : page_of(sources, show == nullptr ? "" : show->study, row.scene);
+    if (files == nullptr && experiment == nullptr) return view;
+    json pictures = json::array(), measured = json::array();
+    json shown = {{"proves", words.value("proves", "")}, {"scene", false}, {"chart", false}};
+    if (files != nullptr) {
+        shown["href"] = url((files->scene().page / "index.html").lexically_relative(out));
+        if (show != nullptr || experiment == nullptr) add_shown(show, *files, out, language, pictures);
+        if (show != nullptr) add_measured(row, *show, sources, language, measured);
+        if (!measured.empty()) shown["scene"] = files->scene().title;
+    }
+    if (experiment != nullptr) {
+        add_variants(*experiment, *sources.experiments, out, language, pictures);
+        shown["chart"] = chart_of(*experiment, language);
+        for (const auto& in_words : {deviation_in_words, pairs_in_words})
+            measured.push_back({{"text", in_words(*experiment, language)}, {"lang", std::string(language.code)}});
+    }
+    std::erase_if(measured.get_ref<json::array_t&>(), [](const json& line) { return line["text"] == ""; });
+    shown["several"]     = pictures.size() > 1;
+    shown["pictures"]    = std::move(pictures);
+    shown["is_measured"] = !measured.empty();
+    shown["measured"]    = std::move(measured);
+    view["shown"]        = std::move(shown);
     return view;
 }
 
 }  // namespace
 
 json lectures_view(const LectureSources& sources, const fs::path& out, Language language) {
-    const json& words   = lecture_words(language);
-    const json& phrases = words["phrases"];
-    json chapters       = json::array();
-    bool any            = false;
+    const json& words      = lecture_words(language);
+    const json& phrases    = words["phrases"];
+    json chapters          = json::array();
+    bool any               = false;
+    const auto experiments = sources.experiments == nullptr
+                                 ? ExperimentsRecord{}
+                                 : from_record<ExperimentsRecord>(sources.experiments->scene().root);
     for (const auto& [letter, chapter] : words["chapters"].items()) {
         json rows = json::array(), exercises = json::array();
         for (const LectureRow& row : lecture_rows()) {
             if (row.id[0] != letter[0]) continue;
-            rows.push_back(row_view(row, sources, out, language));
+            rows.push_back(row_view(row, sources, experiments, out, language));
             any |= rows.back()["shown"].is_object();
         }
         for (const json& exercise : chapter["exercises"])

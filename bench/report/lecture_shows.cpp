@@ -14,7 +14,7 @@ using nlohmann::json;
 
 std::vector<LectureValue> values_from(const json& values) {
     std::vector<LectureValue> all;
-    for (const json& value : values) all.push_back({value.value("name", ""), value["path"]});
+    for (const json& value : values) all.push_back({value.value("name", ""), value["path"], value.value("frame", "")});
     return all;
 }
 
@@ -24,7 +24,11 @@ FigureKind kind_named(const std::string& name) {
 
 std::optional<LectureShow> show_from(const json& topic) {
     if (!topic.contains("pictures")) return std::nullopt;
-    LectureShow show{topic.value("study", ""), values_from(topic["pictures"]), {}, topic.value("shadows", true)};
+    LectureShow show{topic.value("study", ""),
+                     values_from(topic["pictures"]),
+                     {},
+                     topic.value("shadows", true),
+                     topic.value("found", false)};
     for (const json& figure : topic.value("figures", json::array()))
         show.figures.push_back({figure["what"], kind_named(figure["kind"]), values_from(figure["values"])});
     return show;
@@ -47,13 +51,6 @@ std::string figure_of(const Field& value, FigureKind kind) {
         case FigureKind::score: break;
     }
     return score(value.number());
-}
-
-bool has_decimal_comma(Language language) { return lecture_words(language)["decimal_comma"].get<bool>(); }
-
-std::string value_in_words(const Field& value, FigureKind kind, Language language) {
-    const std::string figure = figure_of(value, kind);
-    return has_decimal_comma(language) ? with_decimal_comma(figure) : figure;
 }
 
 }  // namespace
@@ -85,14 +82,23 @@ Field value_at(const Field& root, std::string_view path) {
     return at;
 }
 
-std::string figure_in_words(const LectureFigure& figure, const Field& root, Language language) {
+std::string number_in_words(const std::string& number, Language language) {
+    return lecture_words(language)["decimal_comma"].get<bool>() ? with_decimal_comma(number) : number;
+}
+
+std::string score_in_words(std::optional<double> value, Language language) {
+    return number_in_words(score(value), language);
+}
+
+std::string figure_in_words(const LectureFigure& figure, const std::function<Field(const std::string& frame)>& root_of,
+                            Language language) {
     std::string words;
     for (const LectureValue& value : figure.values) {
-        const Field there = value_at(root, value.path);
+        const Field there = value_at(root_of(value.frame), value.path);
         if (!there.present()) continue;
-        words += words.empty() ? ": " : has_decimal_comma(language) ? "; " : ", ";
+        words += words.empty() ? ": " : number_in_words(".", language) == "," ? "; " : ", ";
         if (!value.name.empty()) words += lecture_name(value.name, language) + " ";
-        words += value_in_words(there, figure.kind, language);
+        words += number_in_words(figure_of(there, figure.kind), language);
     }
     return words.empty() ? "" : lecture_name(figure.what, language) + words + ".";
 }

@@ -2,6 +2,7 @@
 // which pictures and figures show one where the reference's picture of its scene does not.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,6 +18,7 @@ namespace umbra {
 struct LectureValue {
     std::string name;  ///< in English; may be empty
     std::string path;
+    std::string frame{};  ///< "@1": of the results.json of that frame of the scene
 };
 
 enum class FigureKind { score, count, percent };
@@ -32,7 +34,8 @@ struct LectureShow {
     std::string study;  ///< the command that wrote the results.json of the topic's scene; empty: `umbra compare`
     std::vector<LectureValue> pictures;
     std::vector<LectureFigure> figures;
-    bool shadows = true;  ///< false: shading is compared without them
+    bool shadows = true;   ///< false: shading is compared without them
+    bool found   = false;  ///< which methods err where proves the topic
 };
 
 /// `scene` is empty where no scene shows the topic; `test` checks it and the file `code` computes it.
@@ -50,7 +53,14 @@ struct LectureRow {
 /// Absent where the record has no such thing.
 [[nodiscard]] Field value_at(const Field& root, std::string_view path);
 
-/// "What: first 0.12, second 0.34."; without those that are absent, and empty where all are.
-[[nodiscard]] std::string figure_in_words(const LectureFigure& figure, const Field& root, Language language);
+/// "What: first 0.12, second 0.34."; without those that are absent, and empty where all are. `root_of` gives the
+/// results.json of a frame.
+[[nodiscard]] std::string figure_in_words(const LectureFigure& figure,
+                                          const std::function<Field(const std::string& frame)>& root_of,
+                                          Language language);
+
+/// A number as text, as the language writes it; one with three digits.
+[[nodiscard]] std::string number_in_words(const std::string& number, Language language);
+[[nodiscard]] std::string score_in_words(std::optional<double> value, Language language);
 
 }  // namespace umbra

@@ -8,6 +8,7 @@
 
 #include "report_assets.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/record/field.h"
 #include "umbra/core/base/error.h"
 
@@ -70,7 +71,7 @@ const json& lecture_words(Language language) { return all_texts().find(language.
 std::string lecture_name(const std::string& english, Language language) {
     const nlohmann::json& words = lecture_words(language);
     const auto names            = words.find("names");
-    return names == words.end() ? english : names->value(english, english);
+    return names == words.end() ? english : names->value(english, with_decimal_comma(english));
 }
 
 }  // namespace umbra

@@ -32,7 +32,8 @@ inline constexpr Language Language::english{"en"};
 /// translates what topics.json calls pictures and figures; English has none.
 [[nodiscard]] const nlohmann::json& lecture_words(Language language);
 
-/// A name of topics.json in the language.
+/// A name of topics.json or experiments.json in the language; one that `names` lacks, such as "n = 0.5", with the
+/// language's decimal comma.
 [[nodiscard]] std::string lecture_name(const std::string& english, Language language);
 
 }  // namespace umbra

@@ -59,7 +59,7 @@ std::vector<fs::path> results_files(const fs::path& dir) {
 
 /// A results.json of a compared scene, and its place; nothing where it is of another command.
 std::optional<ScenePage> read_scene(const Field& root, const fs::path& file) {
-    for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth"})
+    for (const char* other : {"ladders", "bias", "sweep", "sweeps", "motion", "growth", "experiments"})
         if (root[other].present()) return std::nullopt;
     if (!root["methods"].present()) root["methods"].refuse("an array");
     ScenePage scene{.root    = root,
@@ -78,13 +78,14 @@ struct LadderFolder {
     fs::path data, page;
 };
 
-/// The contents of the folders: compared scenes, studies of shading and of other light, runs of ladders, and the
-/// results.json of swept scenes.
+/// The contents of the folders: compared scenes, studies of shading and of other light, runs of ladders, the
+/// results.json of swept scenes, and the experiments of the lectures, of the first folder that has them.
 struct Found {
     std::vector<ScenePage> scenes;
     std::vector<StudyPage> studies;
     std::vector<LadderFolder> ladders;
     std::vector<fs::path> sweeps;
+    std::optional<ScenePage> experiments;  ///< of the lectures
 };
 
 /// The results.json of swept scenes that a results.json stands for: itself, or those of the scenes that it lists.
@@ -104,6 +105,7 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
     std::vector<StudyPage> studies;
     std::vector<LadderFolder> ladders;
     std::vector<fs::path> sweeps;
+    std::optional<ScenePage> experiments;
     const auto is_below_out = [&](const fs::path& folder) {
         const fs::path relative = folder.lexically_relative(out);
         return relative != "." && *relative.begin() != "..";
@@ -117,6 +119,9 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
                     return bytes_of(other.data / "results.json") == bytes_of(file);
                 }))
                 ladders.push_back({fs::canonical(file.parent_path()), {}});
+            if (root["experiments"].present() && !experiments)
+                experiments = ScenePage{
+                    .root = root, .data = fs::canonical(file.parent_path()), .page = {}, .name = {}, .title = {}};
             for (fs::path& sweep : swept(root, file))
                 if (std::find(sweeps.begin(), sweeps.end(), sweep) == sweeps.end()) sweeps.push_back(std::move(sweep));
             if (std::optional<StudyPage> study = read_study(root, file)) {
@@ -149,9 +154,13 @@ Found find_results(const std::vector<fs::path>& dirs, const fs::path& out) {
             if (taken.insert(folder).second) page = folder;
         }
     };
+    if (experiments) {
+        if (is_below_out(experiments->data)) taken.insert(experiments->page = experiments->data);
+        place(experiments->page, "lectures");
+    }
     for (LadderFolder& folder : ladders) place(folder.page, "ladders");
     for (ScenePage& scene : all) place(scene.page, folder_name(scene.name));
-    return {std::move(all), std::move(studies), std::move(ladders), std::move(sweeps)};
+    return {std::move(all), std::move(studies), std::move(ladders), std::move(sweeps), std::move(experiments)};
 }
 
 /// The tables of ladders for the first page, one a run, and the pages of ladders with their files where they can be
@@ -203,14 +212,20 @@ json studies_section(const std::vector<StudyPage>& studies, const fs::path& out)
 }
 
 /// The page of the lectures; false where no scene of theirs is there.
-json lectures_section(const std::vector<SceneFiles>& files, const std::vector<StudyPage>& studies, const fs::path& out,
+json lectures_section(const std::vector<SceneFiles>& files, const Found& found, const fs::path& out,
                       const ReportOptions& options, StagedFiles& staged) {
     LectureSources sources;
     std::vector<SceneFiles> of_studies;
-    of_studies.reserve(studies.size());
+    of_studies.reserve(found.studies.size());
     for (const SceneFiles& scene : files) sources.pages.emplace_back("", &scene);
-    for (const StudyPage& study : studies)
+    for (const StudyPage& study : found.studies)
         sources.pages.emplace_back(study.command, &of_studies.emplace_back(study.scene, staged));
+    std::optional<SceneFiles> of_experiments;
+    if (found.experiments) {
+        sources.experiments = &of_experiments.emplace(*found.experiments, staged);
+        if (found.experiments->page != found.experiments->data)
+            staged.copy(found.experiments->data / "results.json", found.experiments->page / "results.json");
+    }
     json view = lectures_view(sources, out, options.language);
     if (!view.is_object()) return false;
     const std::string title = view["title"];
@@ -311,7 +326,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     index["trade"]     = trade_section(found.sweeps, root, staged);
     index["studies"]   = studies_section(found.studies, root);
     index["renderers"] = renderers_section(scenes, files, root, staged);
-    index["lectures"]  = lectures_section(files, found.studies, root, options, staged);
+    index["lectures"]  = lectures_section(files, found, root, options, staged);
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 
 #include "umbra/bench/cli/long_runs.h"
 #include "umbra/bench/cli/names.h"
@@ -12,6 +13,7 @@
 #include "umbra/bench/course/course_report.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/report/lecture_experiments.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/lecture_shows.h"
 #include "umbra/bench/run/antialias.h"
@@ -66,7 +68,13 @@ std::vector<fs::path> compared_scenes() {
         const LectureShow* show = lecture_show(row.id);
         const fs::path scene    = scene_named(row.scene);
         if (row.scene.empty() || (show != nullptr && !show->study.empty()) || !fs::exists(scene)) continue;
-        if (std::ranges::find(scenes, scene) == scenes.end()) scenes.push_back(scene);
+        std::set<std::string> frames{""};
+        if (show != nullptr)
+            for (const LectureFigure& figure : show->figures)
+                for (const LectureValue& value : figure.values) frames.insert(value.frame);
+        for (const std::string& frame : frames)
+            if (const fs::path with = scene.string() + frame; std::ranges::find(scenes, with) == scenes.end())
+                scenes.push_back(with);
     }
     return scenes;
 }
@@ -142,6 +150,9 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
         swept = sweep_on_terminal(sweep, common).failed.empty();
         also.push_back(sweep.out);
     }
+    Terminal(common.quiet).progress("experiments of the lectures");
+    also.push_back(out / "lectures");
+    draw_experiments(also.back(), scenes_folder(), "umbra report");
     int studies_failed = 0;
     for (fs::path& folder : study_on_terminal(out, common, studies_failed)) also.push_back(std::move(folder));
     CompareOptions options;
