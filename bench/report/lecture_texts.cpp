@@ -71,7 +71,9 @@ const json& lecture_words(Language language) { return all_texts().find(language.
 std::string lecture_name(const std::string& english, Language language) {
     const nlohmann::json& words = lecture_words(language);
     const auto names            = words.find("names");
-    return names == words.end() ? english : names->value(english, with_decimal_comma(english));
+    return names == words.end()
+               ? english
+               : names->value(english, words.value("decimal_comma", false) ? with_decimal_comma(english) : english);
 }
 
 }  // namespace umbra

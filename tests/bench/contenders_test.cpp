@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <set>
 #include <thread>
 
@@ -12,6 +13,7 @@
 #include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/contenders/gate.h"
 #include "umbra/bench/contenders/program_session.h"
+#include "umbra/bench/course/grade.h"
 #include "umbra/bench/exchange/npy.h"
 #include "umbra/bench/exchange/scene_files.h"
 #include "umbra/bench/out/files.h"
@@ -418,6 +420,72 @@ TEST_F(Contenders, LibrariesInCOfAnyCompilerPassTheGate) {
         EXPECT_NE(seeded(1), seeded(2)) << "the second setting is its own";
     }
     if (tried == 0) GTEST_SKIP() << "there is neither gcc nor clang";
+}
+
+/// Figures of the ten exercises (docs/exercises_solutions.md) on three scenes, by number.
+TEST_F(Contenders, ExercisesShowWhatTheSolutionsSay) {
+    const fs::path file =
+        compiled("gcc", fs::path(UMBRA_SOURCE) / "bench/contenders/libraries/exercises.c", folder_.path());
+    if (file.empty()) GTEST_SKIP() << "there is no gcc";
+    for (const GateRow& row : gate(library_method(file)))
+        EXPECT_TRUE(row.passed) << "without a fault, " << row.question << ": " << row.found;
+    add_library_method(file);
+    CompareOptions options;
+    options.size = {96, 54}, options.repeats = kOnce;
+    for (int number = 0; number <= 10; ++number) options.methods.push_back(fmt::format("exercise:number={}", number));
+    std::map<std::string, Results> found;
+    for (const char* scene : {"stairs", "closed_room", "eye_in_shadow"}) {
+        options.out  = folder_.path() / scene;
+        found[scene] = compare_scene(fmt::format("{}/{}.json", UMBRA_SCENES, scene), options);
+    }
+    const auto figure = [&](int number, const std::string& scene, const std::string& of) {
+        const Results& results = found.at(scene);
+        return figure_of(results, results.methods.at(static_cast<std::size_t>(number)), of, "")
+            .value_or(Figure{})
+            .value;
+    };
+    const auto wrong = [&](int number, const std::string& scene) {
+        return figure(number, scene, "false_shadow") + figure(number, scene, "false_light") +
+               figure(number, scene, "edge");
+    };
+    const auto width = [&](int number) {
+        const ErrorRecord& error = found.at("closed_room").methods.at(static_cast<std::size_t>(number)).errors.at(0);
+        return error.penumbra_width_px->method / error.penumbra_width_px->reference;
+    };
+    for (const char* scene : {"stairs", "closed_room", "eye_in_shadow"})
+        EXPECT_LT(wrong(0, scene), 0.002) << "without a fault, " << scene;
+    EXPECT_GT(figure(1, "closed_room", "false_shadow"), 0.8) << "there is a ceiling behind the light";
+    EXPECT_EQ(wrong(1, "stairs"), 0);
+    const PreparedScene room    = prepare_scene(std::string(UMBRA_SCENES) + "/closed_room.json", {96, 54});
+    const auto equal_neighbours = [&](int number) {
+        const MethodRun run         = run_method(parse_method(fmt::format("exercise:number={}", number)), room.scene,
+                                                 room.facts, room.points, kOnce);
+        const std::vector<float>& s = run.planes[0].s;
+        int equal                   = 0;
+        for (std::size_t i = 1; i < s.size(); ++i) equal += s[i] > 0 && s[i] < 1 && s[i] == s[i - 1] ? 1 : 0;
+        return equal;
+    };
+    EXPECT_GT(equal_neighbours(2), 1.4 * equal_neighbours(0)) << "steps instead of grain";
+    EXPECT_LT(wrong(2, "closed_room"), 0.02);
+    EXPECT_EQ(wrong(2, "stairs"), 0);
+    for (const char* scene : {"stairs", "closed_room", "eye_in_shadow"})
+        EXPECT_GT(figure(3, scene, "acne"), 0.6) << scene;
+    EXPECT_GT(figure(4, "stairs", "edge"), 0.01);
+    EXPECT_GT(figure(4, "eye_in_shadow", "acne"), 0.01);
+    EXPECT_GT(figure(4, "eye_in_shadow", "detachment"), 0.005);
+    EXPECT_GT(figure(5, "eye_in_shadow", "leak"), 0.003);
+    EXPECT_LT(figure(5, "eye_in_shadow", "detachment"), 0.02);
+    EXPECT_EQ(figure(5, "eye_in_shadow", "acne"), 0);
+    EXPECT_GT(figure(6, "stairs", "acne"), 0.2);
+    EXPECT_LT(wrong(6, "eye_in_shadow"), 0.01) << "only walls that face z are wrong";
+    EXPECT_EQ(wrong(7, "stairs"), 0);
+    EXPECT_EQ(width(7), 0);
+    EXPECT_GT(figure(8, "eye_in_shadow", "detachment"), 0.025);
+    EXPECT_EQ(wrong(9, "stairs"), 0);
+    EXPECT_GT(width(9), 0.1);
+    EXPECT_LT(width(9), 0.6);
+    EXPECT_GT(figure(10, "stairs", "edge"), 0.02);
+    EXPECT_EQ(wrong(10, "eye_in_shadow"), 0) << "under the sun nothing is that far";
 }
 
 TEST_F(Contenders, TheLibraryOfTheGuideCompilesAndIsRefusedAsItSays) {
