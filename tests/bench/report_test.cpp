@@ -239,7 +239,9 @@ TEST_F(Report, WhatNeedsAScriptIsHiddenUntilItRuns) {
     write_report({out}, out);
     const std::string page = read(out / "court/index.html");
     EXPECT_TRUE(contains(page, "<li class=\"screen\" hidden><a href=\"#compare\">"));
-    EXPECT_TRUE(contains(page, "<section id=\"compare\" class=\"screen\" aria-labelledby=\"compare-title\" hidden>"));
+    EXPECT_TRUE(contains(
+        page,
+        "<section id=\"compare\" data-src=\"values.js\" class=\"screen\" aria-labelledby=\"compare-title\" hidden>"));
     EXPECT_TRUE(contains(read(out / "index.html"), "<form class=\"finder\" hidden>"));
     // Every script that a page names is there.
     std::size_t scripts = 0;
