@@ -51,7 +51,7 @@ void add_shown(const LectureShow* show, const SceneFiles& files, const fs::path&
 /// Of each variant; a click leads to its scene file.
 void add_variants(const ExperimentRecord& experiment, const SceneFiles& files, const fs::path& out, Language language,
                   json& pictures) {
-    const bool several = experiment.pictures.size() > 1;
+    const bool several = !pictures.empty() || experiment.pictures.size() > 1;
     for (const ExperimentPicture& variant : experiment.pictures) {
         const json caption = several ? caption_of(variant.name, language) : json(false);
         json picture       = files.figure(variant.file, "", "", lecture_name(variant.name, language), out);
@@ -73,7 +73,10 @@ json chart_of(const ExperimentRecord& experiment, Language language) {
     }
     json chart = formula_chart(series);
     for (const char* axis : {"x_ticks", "y_ticks"})
-        for (json& tick : chart[axis]) tick["label"] = number_in_words(tick["label"].get<std::string>(), language);
+        for (json& tick : chart[axis]) {
+            const std::string label = number_in_words(tick["label"].get<std::string>(), language);
+            tick["label"]           = label.starts_with('-') ? "−" + label.substr(1) : label;
+        }
     about.pop_back();
     chart["about"] = about;
     chart["law"]   = lecture_name(experiment.law, language);

@@ -94,7 +94,7 @@ TEST(LectureExperiments, WithoutShadowsStandingAndFloatingAreOnePicture) {
     const TemporaryFolder folder;
     const auto pairs = run("D17", lecture_experiments()["experiments"]["D17"], folder).pairs;
     ASSERT_EQ(pairs.size(), 3u);
-    EXPECT_LT(pairs[0].rmse, 0.004) << "but for pixels of the outline";
+    EXPECT_LT(pairs[0].rmse, 1e-6);
     EXPECT_GT(pairs[1].rmse, 0.02);
     EXPECT_GT(pairs[2].rmse, 0.02);
 }

@@ -238,5 +238,32 @@ TEST(BrdfFigures, SumIsLinearInTheLight) {
     EXPECT_NEAR(sum_of(both, n).r, first.r + sum_of(other, n).r, 1e-12);
 }
 
+/// Both definitions that DE1 prints, of a square face under a near point light: L / E at its middle, and I / Phi of all of
+/// it. For small faces they agree but for the cosine at the eye, since I = L A cos(theta) and Phi = E A.
+TEST(BrdfDefinitions, AgreeForSmallFacesButForTheCosineAtTheEye) {
+    Material material   = glossy(0.6f, 10);
+    material.k_d        = vec3(0.4f);
+    const Brdf f        = brdf_with_cosine(material);
+    const dvec3 v       = polar(50, 30), light(0.7, 0.2, 1.1);
+    const auto arriving = [&](dvec3 p) { return (light - p).z / std::pow(glm::length(light - p), 3.0); };
+    const auto leaving  = [&](dvec3 p) { return f(glm::normalize(light - p), v) * arriving(p); };
+    const double first  = leaving(dvec3(0)) / arriving(dvec3(0));
+    EXPECT_NEAR(first, f(glm::normalize(light), v), 1e-12);
+    double before = 1;
+    for (const double side : {1.0, 0.1, 0.01}) {
+        double intensity = 0, flux = 0;
+        constexpr int kSteps = 40;
+        for (int i = 0; i < kSteps * kSteps; ++i) {
+            const dvec3 p((i % kSteps + 0.5) / kSteps * side - side / 2, (i / kSteps + 0.5) / kSteps * side - side / 2,
+                          0);
+            intensity += leaving(p) * v.z, flux += arriving(p);
+        }
+        const double error = std::abs(intensity / flux / (first * v.z) - 1);
+        EXPECT_LT(error, 0.05 * before) << side;
+        before = std::max(error, 1e-6);
+    }
+    EXPECT_LT(before, 1e-3);
+}
+
 }  // namespace
 }  // namespace umbra
