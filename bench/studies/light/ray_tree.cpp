@@ -354,11 +354,14 @@ TriangleId first_by_tree(const RayScene& rays, const Ray& ray) {
     return rays.first_hit(in_ray_space(rays.space(), ray));
 }
 
+double least_distance(const RayScene& rays, const Ray& ray) {
+    return static_cast<double>(in_ray_space(rays.space(), ray).tnear) / static_cast<double>(rays.space().scale);
+}
+
 TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& ray) {
-    const double start =
-        static_cast<double>(in_ray_space(rays.space(), ray).tnear) / static_cast<double>(rays.space().scale);
-    TriangleId first = kNoTriangle;
-    double nearest   = ray.reach;
+    const double start = least_distance(rays, ray);
+    TriangleId first   = kNoTriangle;
+    double nearest     = ray.reach;
     for (TriangleId t = 0; t < scene.triangles.size(); ++t) {
         if (t == ray.from || (ray.is_of_eye && !scene.switches(t).seen_by_camera)) continue;
         const OnPlane on = meet_plane(ray.origin, ray.direction, dvec3(scene.vertex(t, 0)), dvec3(scene.vertex(t, 1)),

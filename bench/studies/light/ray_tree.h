@@ -150,6 +150,9 @@ void set_met_point(PointBatch& batch, std::size_t i, const Scene& scene, Triangl
 [[nodiscard]] TriangleId first_by_tree(const RayScene& rays, const Ray& ray);  ///< call under FlushDenormals
 [[nodiscard]] TriangleId first_by_search(const RayScene& rays, const Scene& scene, const Ray& ray);
 
+/// What lies nearer along the ray is within the rounding of its start.
+[[nodiscard]] double least_distance(const RayScene& rays, const Ray& ray);
+
 /// Distance from a ray's origin to the plane of a triangle, along the ray; not finite where it runs along the plane.
 [[nodiscard]] double distance_to_plane(const Scene& scene, const Ray& ray, TriangleId t);
 

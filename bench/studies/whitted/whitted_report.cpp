@@ -21,6 +21,11 @@ const Names kAboutPhases{{"eye_rays", "What each eye ray meets, in packets of ne
                {"eye_rays", "Each eye ray by itself, other rays from mirrors and glass alone"},
                {"everywhere", "Each eye ray by itself, mirrored rays from every surface"},
                {"any_weight", "Eye rays from the raster, no ray too light"}},
+    kAboutSearch{{"spheres", "A tree of bounding spheres"},
+                 {"boxes", "A tree of bounding boxes"},
+                 {"cells", "Equal cells (a grid)"},
+                 {"octree", "Boxes halved along three axes (an octree)"},
+                 {"bsp", "Boxes halved along one axis (a BSP tree)"}},
     kAboutKinds{{"eye", "eye rays"},
                 {"reflected", "reflected rays"},
                 {"refracted", "refracted rays"},
@@ -138,7 +143,8 @@ void show_tables(const Json& record, StudyReport& report) {
           {"rays", "traced", kCount},
           {"ms", "time", decimals(1), "ms"},
           {"different_pixels", "pixels that differ", kCount},
-          {.key = "max_difference", .head = "largest difference", .notation = kSignificant, .shown = Shown::on_page}},
+          {.key = "max_difference", .head = "largest difference", .notation = kSignificant, .shown = Shown::on_page},
+          {.key = "growth", .head = "factor from depth to depth", .notation = kSignificant, .shown = Shown::on_page}},
          explained(record["ways"], kAboutWays)}};
 }
 
@@ -182,6 +188,27 @@ void show_formula(const Json& record, StudyReport& report) {
     report.tables.push_back(std::move(kinds));
 }
 
+void show_kept(const Json& kept, StudyReport& report) {
+    if (kept.is_null()) return;
+    Json moves = kept;
+    for (Json& move : moves) {
+        move["percent"] = 100 * move["part"].get<double>();
+        report.pictures["kept"].push_back(
+            {move["picture"], "The scene with kept mirror images",
+             fmt::format("Mirror images of before, the eye moved by {:g} %: RMSE {} on mirrors.",
+                         move["percent"].get<double>(), figure(move["rmse"], 5))});
+        move["kept_percent"] = 100 * move["kept"].get<double>();
+    }
+    report.pictures["kept"].push_back({kept.back()["truth"], "The scene from the moved eye", "The last, traced anew."});
+    report.tables.push_back({"kept",
+                             "Mirror images kept as textures while the eye moves",
+                             {{"percent", "eye moved by", kGeneral, "%"},
+                              {"mirrors", "points on mirrors", kCount},
+                              {"kept_percent", "kept", decimals(1), "%"},
+                              {"rmse", "RMSE on mirrors", decimals(5)}},
+                             std::move(moves)});
+}
+
 void show_search(const Json& search, StudyReport& report) {
     report.words["search"] = Json::array();
     if (search.is_null()) return;
@@ -198,6 +225,16 @@ void show_search(const Json& search, StudyReport& report) {
                      digits(search["tree_us"]), digits(search["search_us"]), amount(search["triangles"]),
                      amount(search["rays"])),
          Shown::in_terminal});
+    report.tables.push_back({"search",
+                             "The same rays in other ways, without vector instructions",
+                             {{.key = "name", .head = "way", .shown = Shown::in_terminal},
+                              {.key = "about", .head = "way", .shown = Shown::on_page},
+                              {"build_ms", "building", kSignificant, "ms"},
+                              {"us", "a ray", kSignificant, "µs"},
+                              {"volumes", "volumes tested a ray", kSignificant},
+                              {"triangles", "triangles tested a ray", kSignificant},
+                              {"different", "met another place", kCount}},
+                             explained(search["ways"], kAboutSearch)});
 }
 
 }  // namespace
@@ -217,6 +254,7 @@ StudyReport whitted_report(const Json& record) {
                     {"undefined", undefined > 0 ? count(undefined) : ""}};
     show_tables(record, report);
     show_search(record["search"], report);
+    show_kept(record["kept"], report);
     show_picture(record, report);
     show_formula(record, report);
     if (undefined > 0)

@@ -14,6 +14,7 @@
 #include "umbra/bench/run/asked_method.h"
 #include "umbra/bench/studies/light/formula_scene.h"
 #include "umbra/bench/studies/light/mirrored_light.h"
+#include "umbra/bench/studies/light/search_ways.h"
 #include "umbra/bench/studies/light/whitted.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/core/image/metrics.h"
@@ -171,11 +172,15 @@ Json phases_json(const Traced& traced) {
 
 Json way_json(Way way, const Traced& traced, const Traced& raster) {
     const ImageError error = image_error(raster.linear, traced.linear);
+    std::vector<double> secondary;  // rays by depth
+    for (std::size_t level = 1; level < traced.tree.levels.size(); ++level)
+        secondary.push_back(static_cast<double>(traced.tree.levels[level].rays.size()));
     return {{"name", kWayNames[static_cast<std::size_t>(way)]},
             {"rays", traced.rays()},
             {"ms", number(traced.ms())},
             {"different_pixels", error.differing},
-            {"max_difference", number(error.max)}};
+            {"max_difference", number(error.max)},
+            {"growth", secondary.size() < 2 ? Json() : number(growth_factor(secondary))}};
 }
 
 /// Whether a ray meets both triangles, or none, at one place: at an edge it may meet either neighbour.
@@ -184,6 +189,34 @@ bool same_place(const Scene& scene, const Ray& ray, TriangleId one, TriangleId o
     if (one == kNoTriangle || other == kNoTriangle) return false;
     return std::abs(distance_to_plane(scene, ray, one) - distance_to_plane(scene, ray, other)) <=
            1e-6 * static_cast<double>(bounds(scene).diagonal());
+}
+
+/// The same rays in the ways that the lecture names, against what the search of every triangle found.
+Json search_ways_json(const Study& study, const std::vector<Ray>& sample, const std::vector<TriangleId>& by_search) {
+    const Scene& scene = study.scene();
+    const auto rays    = static_cast<double>(sample.size());
+    std::vector<double> starts;
+    for (const Ray& ray : sample) starts.push_back(least_distance(study.rays, ray));
+    Json ways = Json::array();
+    for (const SearchWay way : kSearchWays) {
+        std::optional<SpaceSearch> search;
+        const double build_ms = timed_ms([&] { search.emplace(way, scene); });
+        SearchSteps steps;
+        std::vector<TriangleId> met(sample.size());
+        const double ms       = timed_ms([&] {
+            for (std::size_t k = 0; k < sample.size(); ++k) met[k] = search->first(sample[k], starts[k], steps);
+        });
+        std::size_t different = 0;
+        for (std::size_t k = 0; k < sample.size(); ++k)
+            different += same_place(scene, sample[k], met[k], by_search[k]) ? 0 : 1;
+        ways.push_back({{"name", to_string(way)},
+                        {"build_ms", number(build_ms)},
+                        {"us", number(1000 * ms / rays)},
+                        {"volumes", number(static_cast<double>(steps.volumes) / rays)},
+                        {"triangles", number(static_cast<double>(steps.triangles) / rays)},
+                        {"different", different}});
+    }
+    return ways;
 }
 
 /// Secondary rays by the tree of boxes and against every triangle, one thread each.
@@ -224,7 +257,8 @@ Json search_json(const Study& study, const RayTree& tree) {
             {"search_us", number(1000 * search_ms / rays)},
             {"ratio", tree_ms > 0 ? number(search_ms / tree_ms) : Json()},
             {"all_by_search_ms", number(search_ms / rays * static_cast<double>(all))},
-            {"different", different}};
+            {"different", different},
+            {"ways", search_ways_json(study, sample, by_search)}};
 }
 
 /// Rays a pixel, black 1, white the most.
@@ -304,6 +338,77 @@ Json single_json(const Study& study, const Traced& traced, const Image& shown, c
     return {{"rmse", number(image_error(traced.linear, linear).rmse)},
             {"flip", number(flip_ldr(shown, picture).mean)},
             {"picture", "single.png"}};
+}
+
+/// The picture of eye rays that look from `camera`; the scene is the study's.
+Traced trace_from(const Study& study, const Camera& camera, AskedMethod& shadows) {
+    Scene moved  = study.scene();
+    moved.camera = camera;
+    Traced traced;
+    traced.tree =
+        trace_rays(study.rays, moved, subpixel_points(study.rays, moved, study.width(), study.height(), study.side),
+                   {.depth = study.options.depth, .least_weight = study.options.least_weight, .side = study.side});
+    traced.light = light_of_rays(moved, traced.tree, [&](const PointBatch& points) { return shadows(points); });
+    return traced;
+}
+
+/// Where mirror images are kept as textures of their surfaces while the eye moves: each point of a mirror shows what it
+/// mirrored to the eye before. Sideways, by parts of the distance to the target. Null without mirrored rays.
+Json kept_mirrors_json(const Study& study, const Traced& before, AskedMethod& shadows, const fs::path& folder) {
+    if (before.tree.levels.size() < 2 || study.options.places != EyePlaces::regular) return {};
+    const auto mirrored_in = [&](const Traced& traced) {
+        Image all          = gather(study.scene(), traced.tree, traced.light, study.options.depth);
+        const Image direct = gather(study.scene(), traced.tree, traced.light, 1);
+        for (std::size_t k = 0; k < all.data.size(); ++k) all.data[k] -= direct.data[k];
+        return all;
+    };
+    const auto mirrors = [&](const PointBatch& points, std::size_t i) {
+        return points.triangle[i] != kNoTriangle && study.scene().material(points.triangle[i]).reflect > 0;
+    };
+    const PointBatch& old_points = before.tree.levels[0].points;
+    const Image kept             = mirrored_in(before);
+    const Camera camera          = study.scene().camera;
+    const CameraFrame& raster    = *old_points.raster;
+    const dvec3 way              = glm::length(dvec3(camera.target) - dvec3(camera.eye)) * raster.right;
+    Json moves                   = Json::array();
+    for (const double part : {0.0, 0.01, 0.03, 0.1}) {
+        Camera moved             = camera;
+        moved.eye                = vec3(dvec3(camera.eye) + part * way);
+        const Traced now         = trace_from(study, moved, shadows);
+        const PointBatch& points = now.tree.levels[0].points;
+        const Image truth        = gather(study.scene(), now.tree, now.light, study.options.depth);
+        const Image now_mirrored = mirrored_in(now);
+        Image shown              = truth;
+        std::uint64_t of = 0, known = 0;
+        double squares = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (!mirrors(points, i)) continue;
+            ++of;
+            const dvec3 at = raster.project(dvec3(points.position(i)));
+            if (at.z <= 0 || at.x < 0 || at.y < 0 || at.x >= raster.width || at.y >= raster.height) continue;
+            const auto texel = static_cast<std::size_t>(at.y) * static_cast<std::size_t>(raster.width) +
+                               static_cast<std::size_t>(at.x);
+            if (!mirrors(old_points, texel)) continue;  // hidden before: traced anew
+            ++known;
+            for (std::size_t c = 0; c < 3; ++c) {
+                const float error = kept.at(texel, c) - now_mirrored.at(i, c);
+                shown.at(i, c) += error;
+                squares += static_cast<double>(error) * static_cast<double>(error) / 3;
+            }
+        }
+        const std::string file = fmt::format("kept_{}.png", moves.size());
+        write_image(folder / file, study.shown(box_filtered(shown, study.side)));
+        moves.push_back({{"part", part},
+                         {"mirrors", of},
+                         {"kept", number(of > 0 ? static_cast<double>(known) / static_cast<double>(of) : 0)},
+                         {"rmse", number(known > 0 ? std::sqrt(squares / static_cast<double>(known)) : 0)},
+                         {"picture", file}});
+        if (moves.size() == 4) {
+            write_image(folder / "moved.png", study.shown(box_filtered(truth, study.side)));
+            moves.back()["truth"] = "moved.png";
+        }
+    }
+    return moves;
 }
 
 /// The picture in which rays meet bodies by formula.
@@ -404,6 +509,8 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
     Json blind  = blind_json(study, *shadows, shown, folder);
     Json door   = screen_door_json(study, raster, *shadows, shown, folder);
     Json single = single_json(study, raster, shown, folder);
+    study.say("moving the eye");
+    Json kept = kept_mirrors_json(study, raster, *shadows, folder);
     if (options.bodies) study.say("tracing: formula");
     Json formula = formula_json(study, raster, shown, folder);
     Json record  = to_record(head_record(options.command));
@@ -425,6 +532,7 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
                    {"ways", std::move(ways)},
                    {"search", std::move(search)},
                    {"blind", std::move(blind)},
+                   {"kept", std::move(kept)},
                    {"screen_door", std::move(door)},
                    {"single", std::move(single)},
                    {"formula", std::move(formula)}});

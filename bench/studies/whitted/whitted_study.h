@@ -42,7 +42,8 @@ void correct_warnings(Scene& scene);
 
 /// The method must serve the scene, and points off a raster. Writes into `folder`: whitted.png, the picture;
 /// depth_D.png, the picture if rays stopped at depth D; rays.png, brighter where a pixel has more rays; blind.png,
-/// where light arrives by way of a plane mirror; screen_door.png, the picture with Transparency::screen_door, where a
+/// where light arrives by way of a plane mirror; kept_K.png, the picture from an eye that moved aside whose mirrors show
+/// what they mirrored before, and moved.png, the last of them as it should be; screen_door.png, the picture with Transparency::screen_door, where a
 /// surface is seen through; formula.png, where bodies are given, the picture in which rays meet these by formula;
 /// single.png, one of the eye rays of each pixel alone, where there are more.
 /// Returns the record, whose members whitted_report shows:
@@ -50,10 +51,13 @@ void correct_warnings(Scene& scene);
 /// depths: by depth, RayCounts, `left` (met nothing), errors of depth_D.png from the picture. phases: milliseconds of
 /// the fastest run and their fractions. ways: `raster` (eye rays from the raster, rays from mirrors and glass alone),
 /// `eye_rays` (each eye ray by itself), `everywhere` (mirrored rays from every surface, too), `any_weight` (as
-/// `raster`, but no ray is too light): rays, milliseconds, pixels that differ from `raster`, by how much at most.
-/// search: a sample of secondary rays by the tree and against every triangle; null without secondary rays. blind:
+/// `raster`, but no ray is too light): rays, milliseconds, pixels that differ from `raster`, by how much at most, growth:
+/// the factor by which secondary rays grow from depth to depth (growth_factor), null where they have no two depths.
+/// search: a sample of secondary rays by the tree, against every triangle, and in each SearchWay: milliseconds to build,
+/// microseconds, volumes and triangles a ray; null without secondary rays. blind:
 /// diffuse points that a light reaches over a plane mirror, those of them where its S_j is 0; null without plane
-/// mirrors. screen_door, single: that picture's errors from the whole; null where there is none. formula: bodies
+/// mirrors. kept: by how far the eye moved (a part of its distance to the target), the fraction of mirrors' points whose
+/// mirror image was kept, and its error there (RMSE, scene-linear); null without mirrored rays. screen_door, single: that picture's errors from the whole; null where there is none. formula: bodies
 /// by kind, how many triangles they replace, RayCounts by depth, milliseconds, rays to a light with an area (null: none
 /// is asked), and the picture's errors from the whole; null without bodies.
 ///

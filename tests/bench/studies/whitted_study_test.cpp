@@ -147,6 +147,26 @@ TEST(WhittedStudy, WaysMakeOnePictureAndSearchFindsTheSame) {
     EXPECT_EQ(search["of"].get<double>(), rays[0] - 64 * 48);
     EXPECT_EQ(search["triangles"], mirror_scene().triangles.size());
     EXPECT_GT(search["ratio"].get<double>(), 1);
+    ASSERT_EQ(search["ways"].size(), 5u);
+    for (const Json& way : search["ways"]) {
+        EXPECT_EQ(way["different"], 0) << way;
+        EXPECT_LT(way["triangles"].get<double>(), static_cast<double>(mirror_scene().triangles.size())) << way;
+    }
+}
+
+/// Mirror images that are kept are right where the eye has not moved, and err the more the farther it moves.
+TEST(WhittedStudy, KeptMirrorImagesErrAsTheEyeMoves) {
+    const TemporaryFolder folder;
+    const Json record = trace_whitted(prepared_mirrors(), quick(), folder.path());
+    const Json& kept  = record["kept"];
+    ASSERT_EQ(kept.size(), 4u);
+    EXPECT_EQ(kept[0]["rmse"], 0.0);
+    EXPECT_EQ(kept[0]["kept"], 1.0);
+    EXPECT_GT(kept[1]["rmse"].get<double>(), 0);
+    EXPECT_GT(kept[3]["rmse"].get<double>(), 2 * kept[1]["rmse"].get<double>());
+    EXPECT_GT(kept[3]["kept"].get<double>(), 0.5);
+    EXPECT_GT(largest_difference(file_of(folder, kept[3]["picture"]), file_of(folder, kept[3]["truth"])), 0.05);
+    EXPECT_EQ(largest_difference(file_of(folder, kept[0]["picture"]), file_of(folder, record["picture"])), 0);
 }
 
 /// The square's shadow lies where the mirror sends the lamp's light: dark under S_j, and marked.
@@ -385,12 +405,28 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                                 {"rmse", 0.0625},
                                 {"flip", 0.1875},
                                 {"picture", "depth_2.png"}});
-    record["phases"] = Json::array({{{"name", "shadows"}, {"ms", 30.5}, {"fraction", 0.75}}});
-    record["ways"]   = Json::array(
-          {{{"name", "eye_rays"}, {"rays", 456}, {"ms", 50.5}, {"different_pixels", 3}, {"max_difference", 0.375}}});
-    record["search"]       = {{"triangles", 8},           {"rays", 9},         {"of", 10},
-                              {"tree_us", 0.25},          {"search_us", 12.5}, {"ratio", 50},
-                              {"all_by_search_ms", 1500}, {"different", 4}};
+    record["phases"]       = Json::array({{{"name", "shadows"}, {"ms", 30.5}, {"fraction", 0.75}}});
+    record["ways"]         = Json::array({{{"name", "eye_rays"},
+                                           {"rays", 456},
+                                           {"ms", 50.5},
+                                           {"different_pixels", 3},
+                                           {"max_difference", 0.375},
+                                           {"growth", 1.75}}});
+    record["kept"]         = nullptr;
+    record["search"]       = {{"triangles", 8},
+                              {"rays", 9},
+                              {"of", 10},
+                              {"tree_us", 0.25},
+                              {"search_us", 12.5},
+                              {"ratio", 50},
+                              {"all_by_search_ms", 1500},
+                              {"different", 4},
+                              {"ways", Json::array({{{"name", "octree"},
+                                                     {"build_ms", 5115},
+                                                     {"us", 5216},
+                                                     {"volumes", 5317},
+                                                     {"triangles", 5418},
+                                                     {"different", 5519}}})}};
     record["formula"]      = {{"bodies", {{"spheres", 31}, {"boxes", 32}}},
                               {"triangles_replaced", 3301},
                               {"triangles_left", 3402},
@@ -479,8 +515,9 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
         EXPECT_NE(page.find(part), std::string::npos) << part;
     EXPECT_NE(page.find("every mirror here is perfect"), std::string::npos);
     record["glossy"] = true;
-    record["search"] = record["blind"] = record["screen_door"] = record["single"] = record["formula"] = nullptr,
-    record["undefined"]                                                                               = 0;
+    record["search"] = record["kept"] = record["blind"] = record["screen_door"] = record["single"] = record["formula"] =
+        nullptr,
+    record["undefined"] = 0;
     StagedFiles again;
     write_study_page(whitted_report(record), record, folder.path(), again);
     again.commit();
