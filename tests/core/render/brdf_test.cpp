@@ -238,8 +238,8 @@ TEST(BrdfFigures, SumIsLinearInTheLight) {
     EXPECT_NEAR(sum_of(both, n).r, first.r + sum_of(other, n).r, 1e-12);
 }
 
-/// Both definitions that DE1 prints, of a square face under a near point light: L / E at its middle, and I / Phi of all of
-/// it. For small faces they agree but for the cosine at the eye, since I = L A cos(theta) and Phi = E A.
+/// Both definitions that DE1 prints, of a square face under a near point light: L / E at its middle, and I / Phi of all
+/// of it. For small faces they agree except for the cosine at the eye, since I = L A cos(theta) and Phi = E A.
 TEST(BrdfDefinitions, AgreeForSmallFacesButForTheCosineAtTheEye) {
     Material material   = glossy(0.6f, 10);
     material.k_d        = vec3(0.4f);
