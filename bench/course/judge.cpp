@@ -73,7 +73,7 @@ std::optional<GradeRecord> kept(const fs::path& file, const std::string& key) {
 /// The file of a scene's answers; empty where there is none.
 fs::path answers_in(const fs::path& folder, const std::string& scene) {
     for (const char* ending : {".npy", ".exr"})
-        if (const fs::path file = folder / (scene + ending); fs::is_regular_file(file)) return file;
+        if (fs::path file = folder / (scene + ending); fs::is_regular_file(file)) return file;
     return {};
 }
 

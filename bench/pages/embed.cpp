@@ -66,7 +66,7 @@ std::string without_entities(std::string_view value) {
         int code                    = 0;
         for (const auto& [entity, c] : {std::pair{"amp", '&'}, std::pair{"lt", '<'}, std::pair{"gt", '>'},
                                         std::pair{"quot", '"'}, std::pair{"apos", '\''}})
-            if (name == entity) code = c;
+            if (name == entity) code = static_cast<unsigned char>(c);
         if (name.starts_with("#")) {
             const bool hex = name.size() > 1 && (name[1] == 'x' || name[1] == 'X');
             std::from_chars(name.data() + (hex ? 2 : 1), name.data() + name.size(), code, hex ? 16 : 10);
@@ -129,7 +129,7 @@ private:
             return c != ' ' && c != '\n' && c != '\t' && c != '\r' && c != '=' && c != '>' && c != '/';
         };
         ++at_;
-        const std::string tag = take_while(is_name);
+        std::string tag = take_while(is_name);
         out_ += "<" + tag;
         while (at_ < html_.size() && html_[at_] != '>') {
             const std::string space = take_while(is_space);

@@ -164,7 +164,8 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
         for (const auto& in_words : {deviation_in_words, pairs_in_words})
             measured.push_back({{"text", in_words(*experiment, language)}, {"lang", std::string(language.code)}});
     }
-    std::erase_if(measured.get_ref<json::array_t&>(), [](const json& line) { return line["text"] == ""; });
+    std::erase_if(measured.get_ref<json::array_t&>(),
+                  [](const json& line) { return line["text"].get_ref<const std::string&>().empty(); });
     shown["several"]     = pictures.size() > 1;
     shown["pictures"]    = std::move(pictures);
     shown["is_measured"] = !measured.empty();

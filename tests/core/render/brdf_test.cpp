@@ -254,8 +254,8 @@ TEST(BrdfDefinitions, AgreeForSmallFacesButForTheCosineAtTheEye) {
         double intensity = 0, flux = 0;
         constexpr int kSteps = 40;
         for (int i = 0; i < kSteps * kSteps; ++i) {
-            const dvec3 p((i % kSteps + 0.5) / kSteps * side - side / 2, (i / kSteps + 0.5) / kSteps * side - side / 2,
-                          0);
+            const int column = i % kSteps, row = i / kSteps;
+            const dvec3 p(((column + 0.5) / kSteps - 0.5) * side, ((row + 0.5) / kSteps - 0.5) * side, 0);
             intensity += leaving(p) * v.z, flux += arriving(p);
         }
         const double error = std::abs(intensity / flux / (first * v.z) - 1);
