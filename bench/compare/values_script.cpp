@@ -1,5 +1,6 @@
 #include "umbra/bench/compare/values_script.h"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,20 +16,6 @@ namespace {
 
 constexpr const char* kReference = "Reference";
 
-std::string base64(std::string_view bytes) {
-    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
-        std::uint32_t three = 0;
-        for (std::size_t k = 0; k < 3; ++k)
-            three = three << 8 | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= n ? digits[three >> (18 - 6 * k) & 63] : '=';
-    }
-    return text;
-}
-
 /// `colour` gives the three bytes of a point.
 template <class Colour>
 std::string data_url(const PointBatch& points, const Colour& colour) {
@@ -37,7 +24,7 @@ std::string data_url(const PointBatch& points, const Colour& colour) {
         const uvec3 bytes = colour(i);
         for (int k = 0; k < 3; ++k) image.at(i, static_cast<std::size_t>(k)) = static_cast<float>(bytes[k]) / 255;
     }
-    return "data:image/png;base64," + base64(png_bytes(image));
+    return "data:image/png;base64," + OIIO::Strutil::base64_encode(png_bytes(image));
 }
 
 }  // namespace

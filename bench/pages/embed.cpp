@@ -1,7 +1,7 @@
 #include "umbra/bench/pages/embed.h"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
-#include <openssl/evp.h>
 
 #include <algorithm>
 #include <array>
@@ -18,18 +18,6 @@ namespace umbra {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string base64(const std::string& bytes) {
-    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // EVP_EncodeBlock ends it with a zero
-    constexpr std::size_t kBlock = 3u << 20;                   // its lengths are int
-    std::size_t length           = 0;
-    for (std::size_t at = 0; at < bytes.size(); at += kBlock)
-        length += std::size_t(EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data() + length),
-                                              reinterpret_cast<const unsigned char*>(bytes.data() + at),
-                                              int(std::min(kBlock, bytes.size() - at))));
-    text.resize(length);
-    return text;
-}
 
 std::string_view media_type(const fs::path& file) {
     constexpr std::array kTypes = {std::pair{".css", "text/css"},          std::pair{".js", "text/javascript"},
@@ -198,7 +186,7 @@ private:
                 fmt::format("{}: cannot be opened, expected a file that {} shows", file.string(), beside.string()));
         std::string bytes = bytes_of(file);
         if (file.extension() == ".css") bytes = style(bytes, file);
-        return fmt::format("data:{};base64,{}", media_type(file), base64(bytes));
+        return fmt::format("data:{};base64,{}", media_type(file), OIIO::Strutil::base64_encode(bytes));
     }
 
     /// A style with the files behind its url() in it.
