@@ -123,10 +123,13 @@ ExperimentCurve curve_along(const ExperimentSetting& setting, const MeasuredPict
 }
 
 void note_deviation(const ExperimentSetting& setting, ExperimentCurve& curve) {
-    curve.deviation = 0;
-    for (std::size_t k = 0; k < curve.formula.size(); ++k)
-        if (!std::isnan(curve.formula[k]))
-            curve.deviation = std::max(*curve.deviation, std::abs(curve.measured[k] - curve.formula[k]));
+    for (std::size_t k = 0; k < curve.formula.size(); ++k) {
+        if (std::isnan(curve.formula[k])) continue;
+        const double off = std::abs(curve.measured[k] - curve.formula[k]);
+        // What is not a number is farther off than any number that a record can hold.
+        constexpr double kFarthest = std::numeric_limits<double>::max();
+        curve.deviation            = std::max(curve.deviation.value_or(0), off <= kFarthest ? off : kFarthest);
+    }
     curve.limit = setting["limit"].get<double>();
 }
 
@@ -202,8 +205,11 @@ void draw_experiments(const fs::path& out, const fs::path& scenes, const std::st
     StagedFolder folder(out);
     ExperimentsRecord record{.head = head_record(command)};
     const json& all = lecture_experiments();
-    for (const auto& [id, experiment] : all["experiments"].items())
+    for (const auto& [id, experiment] : all["experiments"].items()) {
+        const json& scene = experiment.value("scene", json::object());  // another folder of scenes may not have it
+        if (scene.is_string() && !fs::exists(scenes / (scene.get<std::string>() + ".json"))) continue;
         record.experiments.push_back(run_experiment(id, experiment, all["base"], folder.folder(), scenes));
+    }
     write_text(folder.folder() / "results.json", json_text(to_record(record)));
     folder.commit();
 }

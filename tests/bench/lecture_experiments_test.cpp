@@ -50,6 +50,7 @@ TEST_P(EveryExperiment, IsWhatItsFormulaSays) {
         EXPECT_GT(known, 0.7 * static_cast<double>(curve.formula.size())) << curve.name << " leaves most open";
         if (curve.measured.empty()) continue;
         ASSERT_EQ(curve.x.size(), curve.measured.size()) << curve.name;
+        ASSERT_TRUE(curve.deviation) << curve.name << ": no pixel is judged";
         EXPECT_LT(*curve.deviation, *curve.limit) << curve.name;
         for (std::size_t k = 0; HasFailure() && k < curve.x.size(); ++k)
             if (std::abs(curve.measured[k] - curve.formula[k]) >= *curve.limit)
@@ -88,6 +89,16 @@ TEST(LectureExperiments, PlantedFormulasAreSeen) {
             run(id, json::parse(text.replace(at, std::string_view(right).size(), wrong)), folder).curves;
         EXPECT_TRUE(std::ranges::any_of(curves, [](const ExperimentCurve& c) { return c.deviation > c.limit; })) << id;
     }
+}
+
+TEST(LectureExperiments, WhatIsNoNumberIsNotRight) {
+    const TemporaryFolder folder;
+    json experiment     = lecture_experiments()["experiments"]["A9"];
+    experiment["value"] = "if(i > 100, 0 / 0, R)";
+    EXPECT_GT(run("A9", experiment, folder).curves.at(0).deviation, 1e300);
+    experiment["value"] = "R", experiment["formula"] = "0 / 0";
+    for (json& variant : experiment["variants"]) variant.erase("formula");
+    EXPECT_EQ(run("A9", experiment, folder).curves.at(0).deviation, std::nullopt) << "nothing is judged";
 }
 
 TEST(LectureExperiments, WithoutShadowsStandingAndFloatingAreOnePicture) {
