@@ -96,32 +96,21 @@ static int faulty_visibility(const umbra_question* question, size_t begin, size_
     return 1;
 }
 
-static const umbra_parameter exercise_parameters[] = {
-    [NUMBER]           = {.name     = "number",
-                          .type     = UMBRA_INTEGER,
-                          .fallback = "0",
-                          .max      = 10,
-                          .doc      = "Number of the exercise, 1 to 10."},
-    [EXERCISE_SAMPLES] = {.name     = "samples",
-                          .type     = UMBRA_INTEGER,
-                          .fallback = "16",
-                          .min      = 1,
-                          .max      = 4096,
-                          .doc      = "Segments from a point to an area light."},
-    [EXERCISE_SEED]    = {.name     = "seed",
-                          .type     = UMBRA_INTEGER,
-                          .fallback = "1",
-                          .max      = 1000000,
-                          .doc      = "Picks the place of each sample."},
-};
-
 const umbra_contender_info* umbra_contender(void) {
+    static umbra_parameter all[]           = {[NUMBER]        = {.name     = "number",
+                                                                 .type     = UMBRA_INTEGER,
+                                                                 .fallback = "0",
+                                                                 .max      = 10,
+                                                                 .doc      = "Number of the exercise, 1 to 10."},
+                                              [EXERCISE_SEED] = {.name = ""}};
+    all[EXERCISE_SAMPLES]                  = parameters[SAMPLES];
+    all[EXERCISE_SEED]                     = parameters[SEED];
     static const umbra_contender_info info = {
         .version         = UMBRA_CONTENDER_VERSION,
         .lights          = UMBRA_HARD | UMBRA_RECTANGLE | UMBRA_DISK,
         .flags           = UMBRA_THREADS,
-        .parameter_count = sizeof exercise_parameters / sizeof *exercise_parameters,
-        .parameters      = exercise_parameters,
+        .parameter_count = sizeof all / sizeof *all,
+        .parameters      = all,
         .name            = "exercise",
         .title           = "Exercise",
         .release         = "1",
