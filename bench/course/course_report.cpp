@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "report_assets.h"
+#include "umbra/bench/compare/record.h"
 #include "umbra/bench/contenders/line_process.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
@@ -18,7 +20,6 @@
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/record/strict_record.h"
 #include "umbra/bench/report/report.h"
-#include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 
@@ -28,11 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// A scene of a chapter, compared.
-struct ChapterScene {
-    std::string title{}, folder{};
-    Results results{};
-};
+constexpr const char* kPdf = "course.pdf";
 
 std::vector<std::string> paragraphs(const std::string& text) {
     std::vector<std::string> all;
@@ -66,13 +63,13 @@ json methods_view(const Results& results, Language language) {
     return rows;
 }
 
-json scene_section(const ChapterScene& scene, const SceneFiles& files, const json& words, Language language,
-                   std::size_t number) {
-    const fs::path root       = files.scene().page.parent_path();
+json scene_section(const SceneFiles& files, const json& words, Language language, std::size_t number) {
+    const ScenePage& scene    = files.scene();
+    const fs::path root       = scene.page.parent_path();
     const MethodRecord* worst = worst_method(scene.results);
     json view{{"id", fmt::format("scene-{}", number)},
               {"title", scene.title},
-              {"href", url(fs::path(scene.folder) / "index.html")},
+              {"href", url(fs::path(scene.name) / "index.html")},
               {"rows", methods_view(scene.results, language)},
               {"pair", slider_view(files, worst, root)},
               {"classes", false},
@@ -94,16 +91,35 @@ json exercises_view(const ChapterRecord& chapter, bool with_answers) {
     return all;
 }
 
-/// The program of that name in PATH.
-bool is_in_path(const std::string& name) {
-    const char* path = std::getenv("PATH");
-    const std::string all(path != nullptr ? path : "");
-    for (std::size_t at = 0; at <= all.size();) {
-        const std::size_t end = std::min(all.find(':', at), all.size());
-        if (access((fs::path(all.substr(at, end - at)) / name).c_str(), X_OK) == 0) return true;
-        at = end + 1;
-    }
-    return false;
+/// Comparisons by scene and methods; nothing where the scene cannot be read.
+using CourseScenes = std::map<std::pair<fs::path, std::vector<std::string>>, std::optional<ScenePage>>;
+
+/// The methods of a chapter.
+const std::vector<std::string>& methods_in(const CourseRecord& course, std::size_t chapter) {
+    const std::vector<std::string>& own = course.chapters[chapter].methods;
+    return own.empty() ? course.methods : own;
+}
+
+/// Each scene with the methods of its chapter, once where two chapters have both in common. Messages go to `problems`.
+CourseScenes compare_course(const Course& course, CompareOptions options, std::vector<std::string>& problems) {
+    CourseScenes scenes;
+    std::set<std::string> folders;
+    for (std::size_t c = 0; c < course.scenes.size(); ++c)
+        for (const fs::path& file : course.scenes[c]) {
+            options.methods         = methods_in(course.record, c);
+            const auto [at, is_new] = scenes.try_emplace({file, options.methods});
+            if (!is_new) continue;
+            const std::string name = folder_name(scene_name(file));
+            options.folder         = name;
+            for (int k = 2; !folders.insert(options.folder).second; ++k) options.folder = fmt::format("{}-{}", name, k);
+            try {
+                at->second = page_in(options.out / options.folder, compare_scene(file, options));
+                for (std::string& message : failures(at->second->results)) problems.push_back(std::move(message));
+            } catch (const InputError& e) {
+                problems.emplace_back(e.what());
+            }
+        }
+    return scenes;
 }
 
 }  // namespace
@@ -135,114 +151,73 @@ Course read_course(const fs::path& file, const FindScene& find) {
 }
 
 std::vector<std::string> write_course(const Course& course, CompareOptions options) {
-    const fs::path root = fs::weakly_canonical(fs::absolute(options.out));
-    check_writable_beside(root, {"course.pdf"});
+    const fs::path root = options.out = fs::weakly_canonical(fs::absolute(options.out));
+    check_writable_beside(root, {kPdf});
     const PlaceLock lock = PlaceLock::inside(root);
     options.size         = course.size;
     options.add_page     = write_scene_page;
-    std::map<std::pair<fs::path, std::vector<std::string>>, ChapterScene> compared;
-    std::set<std::string> folders;
     std::vector<std::string> problems;
-    std::vector<std::vector<const ChapterScene*>> chapters;
-    for (std::size_t c = 0; c < course.scenes.size(); ++c) {
-        const ChapterRecord& chapter = course.record.chapters[c];
-        options.methods              = chapter.methods.empty() ? course.record.methods : chapter.methods;
-        chapters.emplace_back();
-        for (const fs::path& file : course.scenes[c]) {
-            auto [at, is_new] = compared.try_emplace({file, options.methods});
-            if (is_new) {
-                const std::string name = folder_name(scene_name(file));
-                options.folder         = name;
-                for (int k = 2; !folders.insert(options.folder).second; ++k)
-                    options.folder = fmt::format("{}-{}", name, k);
-                try {
-                    at->second       = {.folder = options.folder, .results = compare_scene(file, options)};
-                    at->second.title = at->second.results.scene.title.empty() ? name : at->second.results.scene.title;
-                } catch (const InputError& e) {
-                    problems.emplace_back(e.what());
-                }
-                for (const MethodRecord& method : at->second.results.methods)
-                    if (method.failed)
-                        problems.push_back(fmt::format("{}: {}: {}", name, method.text, method.failed->message));
-            }
-            if (!at->second.folder.empty()) chapters.back().push_back(&at->second);
-        }
-    }
+    const CourseScenes compared = compare_course(course, options, problems);
 
     StagedFiles staged;
-    std::vector<ScenePage> pages;
-    for (const auto& chapter : chapters)
-        for (const ChapterScene* scene : chapter)
-            pages.push_back({.root    = {},
-                             .results = scene->results,
-                             .data    = root / scene->folder,
-                             .page    = root / scene->folder,
-                             .name    = scene->folder,
-                             .title   = scene->title});
     const json words = lecture_words(course.language).at("course");
-    json views       = json::array();
-    std::size_t k    = 0;
-    std::vector<SceneFiles> files;
-    files.reserve(pages.size());
-    for (std::size_t c = 0; c < chapters.size(); ++c) {
+    json chapters = json::array(), folders = json::array();
+    std::size_t number = 0;
+    for (std::size_t c = 0; c < course.scenes.size(); ++c) {
         const ChapterRecord& chapter = course.record.chapters[c];
         json scenes                  = json::array();
-        for (const ChapterScene* scene : chapters[c]) {
-            files.emplace_back(pages[k], staged);
-            scenes.push_back(scene_section(*scene, files.back(), words, course.language, ++k));
-        }
-        views.push_back({{"id", fmt::format("chapter-{}", c + 1)},
-                         {"title", chapter.title},
-                         {"paragraphs", paragraphs(chapter.text)},
-                         {"scenes", std::move(scenes)},
-                         {"has_exercises", !chapter.exercises.empty()},
-                         {"exercises", exercises_view(chapter, course.record.answers)},
-                         {"words", words}});
+        for (const fs::path& file : course.scenes[c])
+            if (const auto& scene = compared.at({file, methods_in(course.record, c)})) {
+                scenes.push_back(scene_section(SceneFiles(*scene, staged), words, course.language, ++number));
+                folders.push_back(scene->name);
+            }
+        chapters.push_back({{"id", fmt::format("chapter-{}", c + 1)},
+                            {"title", chapter.title},
+                            {"paragraphs", paragraphs(chapter.text)},
+                            {"scenes", std::move(scenes)},
+                            {"has_exercises", !chapter.exercises.empty()},
+                            {"exercises", exercises_view(chapter, course.record.answers)},
+                            {"words", words}});
     }
     const PageHead head{course.record.title, "", {"slider.js", "pictures.js"}, std::string(course.language.code)};
     staged.write(root / "index.html", render_page(assets::course_html, head,
                                                   {{"title", course.record.title},
                                                    {"paragraphs", paragraphs(course.record.text)},
-                                                   {"chapters", std::move(views)},
+                                                   {"chapters", std::move(chapters)},
                                                    {"has_failures", !problems.empty()},
                                                    {"failures", problems},
                                                    {"words", words},
                                                    {"version", version()}}));
-    for (const char* script : {"slider.js", "compare.js", "finder.js", "pictures.js"})
-        write_page_assets(root, {script}, staged);
+    write_scene_assets(root, staged);
+    staged.remove(root / kPdf);  // of an earlier page
     Json record      = to_record(head_record(options.command));
     record["course"] = to_record(course.record);
-    record["scenes"] = folders, record["files"] = {"course.pdf"};
+    record["scenes"] = folders, record["files"] = {kPdf};
     staged.write(root / "results.json", json_text(record));
     staged.commit();
     return problems;
 }
 
 std::string print_course(const fs::path& out) {
-    const fs::path root = fs::weakly_canonical(fs::absolute(out));
+    const fs::path root = fs::weakly_canonical(fs::absolute(out)), made = root / ".course.pdf.umbra-new";
     for (const char* browser : {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"}) {
-        if (!is_in_path(browser)) continue;
-        const fs::path made = root / ".course.pdf.umbra-new";
-        std::vector<std::string> command{"sh",
-                                         "-c",
-                                         "\"$@\" >&2; echo $?",
-                                         "sh",
-                                         browser,
-                                         "--headless",
-                                         "--disable-gpu",
-                                         "--no-pdf-header-footer",
-                                         "--virtual-time-budget=20000",
-                                         "--print-to-pdf=" + made.string()};
-        if (geteuid() == 0) command.emplace_back("--no-sandbox");  // Chromium has none for root
+        // Chromium says nothing that could be waited for: the shell says how it ended.
+        std::vector<std::string> command{"sh", "-c", "\"$@\" >&2; echo $?", "sh", browser};
+        for (const char* option :
+             {"--headless", "--disable-gpu", "--no-pdf-header-footer", "--virtual-time-budget=20000"})
+            command.emplace_back(option);
+        if (geteuid() == 0) command.emplace_back("--no-sandbox");  // it has none for root
+        command.push_back("--print-to-pdf=" + made.string());
         command.push_back("file://" + url(root / "index.html"));
         try {
             const std::string code = LineProcess(command, root).ask("", 300);
+            if (code == "127") continue;  // there is none of that name
             if (code != "0" || !fs::is_regular_file(made))
                 return fmt::format("{} ended with exit code {} and wrote no PDF", browser, code);
         } catch (const MethodError& e) {
             return fmt::format("{}: {}", browser, e.what());
         }
-        fs::rename(made, root / "course.pdf");
+        fs::rename(made, root / kPdf);
         return "";
     }
     return "no Chromium was found in PATH, which prints the page";

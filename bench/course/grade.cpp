@@ -6,15 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 
 namespace umbra {
 namespace {
-
-const MethodRecord* handed_in(const Compared& scene) {
-    const auto found = std::ranges::find(scene.results.methods, scene.method, &MethodRecord::id);
-    return found == scene.results.methods.end() ? nullptr : &*found;
-}
 
 std::optional<double> part(std::optional<std::uint64_t> of, std::uint64_t all) {
     if (!of || all == 0) return std::nullopt;
@@ -51,15 +47,6 @@ std::optional<double> figure_at(const ErrorRecord& e, const std::string& of) {
     return part(shadow.edge.value_or(0) + light.edge.value_or(0), points);  // edge
 }
 
-std::optional<double> whole_frame_ms(const MethodRecord& method) {
-    if (!method.times) return std::nullopt;
-    double sum = 0;
-    for (const auto& phase : {method.times->phases.build_ms, method.times->phases.aim_ms, method.times->phases.look_ms,
-                              method.times->phases.visibility_ms})
-        sum += phase ? known(phase->median).value_or(0) : 0;
-    return sum;
-}
-
 std::string_view unit_of(const std::string& of) { return std::ranges::find(causes(), of, &Cause::name)->unit; }
 
 /// The nearest multiple of a step; of a tenth as a decimal has it.
@@ -84,7 +71,7 @@ std::string why_without(const RubricItemRecord& item, const Results& results, co
 /// One item on one scene.
 GradedSceneRecord graded(const RubricItemRecord& item, const Compared& scene) {
     GradedSceneRecord found{.scene = scene.folder};
-    const MethodRecord* method = handed_in(scene);
+    const MethodRecord* method = scene.record();
     const bool failed = method == nullptr || method->failed, refused = !failed && method->serves.how == "not";
     if (item.of == "failed" || item.of == "refused") {
         found.figure = (item.of == "failed" ? failed : refused) ? 1 : 0;
@@ -138,12 +125,17 @@ std::string sentence_of(const GradedItemRecord& item, const RubricItemRecord& as
 
 }  // namespace
 
+const MethodRecord* Compared::record() const {
+    const auto found = std::ranges::find(results.methods, method, &MethodRecord::id);
+    return found == results.methods.end() ? nullptr : &*found;
+}
+
 std::optional<Figure> figure_of(const Results& results, const MethodRecord& method, const std::string& of,
                                 const std::string& against) {
     if (of == "time") {
         const auto other = std::ranges::find(results.methods, against, &MethodRecord::text);
         if (other == results.methods.end()) return std::nullopt;
-        const auto ms = whole_frame_ms(method), than = whole_frame_ms(*other);
+        const auto ms = totals(method).object_ms, than = totals(*other).object_ms;
         if (!ms || !than || !(*than > 0)) return std::nullopt;
         return Figure{*ms / *than};
     }

@@ -95,6 +95,8 @@ struct Compared {
     Results results{};
     std::string method{};  ///< empty: it has no answers here
     std::string why{};     ///< why not
+
+    [[nodiscard]] const MethodRecord* record() const;  ///< null where it has no answers
 };
 
 /// The figure that a rubric names, under the light where it is largest; nothing where no light tells. `against`: of time.

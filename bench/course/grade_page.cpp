@@ -12,6 +12,7 @@
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
+#include "umbra/bench/report/report.h"
 #include "umbra/bench/studies/study_report.h"
 
 namespace umbra {
@@ -19,11 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-const MethodRecord* answered(const Compared& scene) {
-    const auto found = std::ranges::find(scene.results.methods, scene.method, &MethodRecord::id);
-    return found == scene.results.methods.end() || found->failed || !serves(*found) ? nullptr : &*found;
-}
 
 std::string points_in_words(double points, double max) { return fmt::format("{:g} of {:g}", points, max); }
 
@@ -85,16 +81,16 @@ json scenes_view(const GradeRecord& grade, const std::vector<Compared>& scenes, 
     json all = json::array();
     for (std::size_t s = 0; s < scenes.size(); ++s) {
         const fs::path page        = files[s].scene().page.parent_path();
-        const MethodRecord* method = answered(scenes[s]);
-        const auto found           = std::ranges::find(scenes[s].results.methods, scenes[s].method, &MethodRecord::id);
+        const MethodRecord* method = scenes[s].record();
         std::string finding        = scenes[s].why;
         if (method != nullptr)
-            finding = finding_of(*method);
-        else if (found != scenes[s].results.methods.end())
-            finding = found->failed ? found->failed->message : found->serves.why;
+            finding = method->failed    ? method->failed->message
+                      : serves(*method) ? finding_of(*method)
+                                        : method->serves.why;
+        if (method != nullptr && (method->failed || !serves(*method))) method = nullptr;  // there is nothing to show
         all.push_back(
             {{"id", fmt::format("scene-{}", s + 1)},
-             {"title", files[s].scene().title},
+             {"title", scenes[s].folder},
              {"href", scenes[s].method.empty() ? "" : url(fs::path(scenes[s].folder) / "index.html")},
              {"finding", finding},
              {"pair", method != nullptr ? slider_view(files[s], method, page) : json(false)},
@@ -154,13 +150,7 @@ void write_grade_page(const GradeRecord& grade, const RubricRecord& rubric, cons
                       const fs::path& folder, StagedFiles& staged) {
     const fs::path root = fs::weakly_canonical(fs::absolute(folder));
     std::vector<ScenePage> pages;
-    for (const Compared& scene : scenes)
-        pages.push_back({.root    = {},
-                         .results = scene.results,
-                         .data    = root / scene.folder,
-                         .page    = root / scene.folder,
-                         .name    = scene.folder,
-                         .title   = scene.folder});
+    for (const Compared& scene : scenes) pages.push_back(page_in(root / scene.folder, scene.results));
     std::vector<SceneFiles> files;
     files.reserve(pages.size());
     for (const ScenePage& page : pages) files.emplace_back(page, staged);
@@ -185,9 +175,7 @@ void write_grade_page(const GradeRecord& grade, const RubricRecord& rubric, cons
                               {"has_commands", !grade.head.command.empty()},
                               {"commands", json::array({without_folders(grade.head.command)})},
                               {"version", grade.head.version}}));
-    for (const auto& script :
-         {std::string("slider.js"), std::string("compare.js"), std::string("finder.js"), std::string("pictures.js")})
-        write_page_assets(root, {script}, staged);
+    write_scene_assets(root, staged);
 }
 
 std::string grade_text(const GradeRecord& grade) {

@@ -70,10 +70,10 @@ std::optional<GradeRecord> kept(const fs::path& file, const std::string& key) {
     return std::nullopt;
 }
 
-/// The file of a scene's answers; empty where there is none.
+/// The file of a scene's answers; empty where there is none. A link is none: it may lead to what somebody else handed in.
 fs::path answers_in(const fs::path& folder, const std::string& scene) {
     for (const char* ending : {".npy", ".exr"})
-        if (fs::path file = folder / (scene + ending); fs::is_regular_file(file)) return file;
+        if (fs::path file = folder / (scene + ending); fs::is_regular_file(fs::symlink_status(file))) return file;
     return {};
 }
 

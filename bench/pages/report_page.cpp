@@ -19,6 +19,16 @@ namespace umbra {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+ScenePage page_in(const fs::path& folder, const Results& results) {
+    const std::string name = folder.filename().string();
+    return {.root    = {},
+            .results = results,
+            .data    = folder,
+            .page    = folder,
+            .name    = name,
+            .title   = results.scene.title.empty() ? name : results.scene.title};
+}
+
 SceneFiles::SceneFiles(const ScenePage& scene, StagedFiles& staged) : scene_(scene), staged_(staged) {
     const SizeRecord& size = scene.results.size;
     if (size.width) size_["width"] = std::to_string(*size.width);

@@ -23,6 +23,9 @@ struct ScenePage {
     bool with_exr    = true;  ///< EXRs are copied where the page lies in another folder than the data
 };
 
+/// A comparison whose page and files are in one folder.
+[[nodiscard]] ScenePage page_in(const std::filesystem::path& folder, const Results& results);
+
 /// Links to the files that one results.json names. They must be there and lie in its folder; where the page is
 /// in another folder, they are copied to it. Both arguments must outlive this.
 class SceneFiles {

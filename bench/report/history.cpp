@@ -9,6 +9,7 @@
 
 #include "report_assets.h"
 #include "umbra/bench/pages/page_template.h"
+#include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/run/results.h"
 #include "umbra/bench/statistics/statistics.h"
@@ -62,13 +63,6 @@ std::vector<double> totals_of(const TimesRecord& times) {
     return totals;
 }
 
-double total_of_medians(const TimesRecord& times) {
-    double sum = 0;
-    for (const auto* phase : {&times.build_ms, &times.aim_ms, &times.look_ms, &times.visibility_ms})
-        if (*phase) sum += (*phase)->median;
-    return sum;
-}
-
 KeptRun kept_run(const MethodRecord& method, const Results& results) {
     KeptRun run;
     if (method.failed) {
@@ -91,7 +85,7 @@ KeptRun kept_run(const MethodRecord& method, const Results& results) {
     run.cell.wrong = points > 0 ? wrong / points : 0;
     if (method.times) {
         run.totals  = totals_of(method.times->phases);
-        run.cell.ms = total_of_medians(method.times->phases);
+        run.cell.ms = totals(method).object_ms.value_or(0);
     }
     if (results.turns && !results.turns->calibration_ms.empty()) {
         run.calibration = median(results.turns->calibration_ms);

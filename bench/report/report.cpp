@@ -284,6 +284,10 @@ void write_scene_page(const fs::path& folder) {
     staged.commit();
 }
 
+void write_scene_assets(const fs::path& folder, StagedFiles& staged) {
+    write_page_assets(folder, kSceneScripts, staged);
+}
+
 bool links_hold(const fs::path& page) {
     const std::string html = bytes_of(page);
     if (html.empty()) return false;
@@ -330,7 +334,8 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     add_failures(index, options.failed, scenes, found.ladders);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
-    for (const auto& scripts : {kIndexScripts, kSceneScripts}) write_page_assets(root, scripts, staged);
+    write_page_assets(root, kIndexScripts, staged);
+    write_scene_assets(root, staged);
     staged.commit();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/report/lecture_texts.h"
 
 namespace umbra {
@@ -31,6 +32,9 @@ void write_report(const std::vector<std::filesystem::path>& dirs, const std::fil
 /// Writes folder/index.html alone, for a scene that compare wrote to `folder`, which lies in the report's folder.
 /// Throws as above.
 void write_scene_page(const std::filesystem::path& folder);
+
+/// Style and scripts of such pages, into the folder that theirs lie in.
+void write_scene_assets(const std::filesystem::path& folder, StagedFiles& staged);
 
 /// Everything that a page links to or shows exists; false where there is no page.
 [[nodiscard]] bool links_hold(const std::filesystem::path& page);

@@ -6,10 +6,14 @@
 
 #include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/course/apart.h"
+#include "umbra/bench/course/course_report.h"
 #include "umbra/bench/course/grade_page.h"
 #include "umbra/bench/course/judge.h"
 #include "umbra/bench/course/platforms.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/pages/report_page.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/temporary_folder.h"
 
@@ -148,6 +152,10 @@ TEST(Course, AnswersAreTakenSceneByScene) {
     const GradeRecord by_file = course.graded(files);
     EXPECT_EQ(by_file.failed, "");
     EXPECT_EQ(points_of(by_file), points_of(by_program));
+    make_folder(course.path("thief"));
+    fs::create_symlink(files.folder / "board.exr", course.path("thief") / "board.exr");
+    EXPECT_NE(course.graded({.name = "thief", .folder = fs::canonical(course.path("thief"))}).failed, "")
+        << "a link to what somebody else handed in";
     write_text(files.folder / "board.exr", "no picture");
     const GradeRecord broken = course.graded(files);
     EXPECT_EQ(broken.points, 0);
@@ -316,6 +324,48 @@ TEST(CoursePages, ShowPointsAndPictures) {
     EXPECT_TRUE(contains(csv, "handed_in,points,item Dark where it should be,")) << csv;
     EXPECT_TRUE(contains(csv, "\none,6.0,0.0,3.0,")) << csv;
     EXPECT_TRUE(contains(bytes_of(course.path("grades") / "index.html"), R"(<a href="two/index.html">two</a>)"));
+}
+
+TEST(CourseReport, HasChaptersInALanguageOfAFolder) {
+    const Classroom course;
+    make_folder(course.path("it"));
+    write_text(course.path("it") / "texts.json", R"({"decimal_comma": true, "course": {"exercises": "Esercizi"}})");
+    const auto with = [&](const std::string& more) {
+        write_text(
+            course.path("course.json"),
+            R"({"title": "Ombre", "language": "it", "methods": ["ray_traced", "shadow_zbuffer:resolution=16"], )" +
+                more + R"("chapters": [{"title": "Uno", "text": "A.\n\nB.", "scenes": ["board.json"],
+ "exercises": [{"question": "Why?", "answer": "Texels."}]}, {"title": "Due", "scenes": ["board.json"]}]})");
+        return read_course(course.path("course.json"),
+                           [](const std::string& name) -> fs::path { throw UsageError("there is no scene " + name); });
+    };
+    CompareOptions options;
+    options.out = course.path("out"), options.repeats = kOnce;
+    make_folder(course.path("out"));
+    write_text(course.path("out/course.pdf"), "of an earlier page");
+    write_text(course.path("out/results.json"), R"({"schema": 2, "version": "0", "files": ["course.pdf"]})");
+    EXPECT_EQ(write_course(with(""), options), std::vector<std::string>());
+    EXPECT_FALSE(fs::exists(course.path("out/course.pdf"))) << "of an earlier page";
+    const std::string page = bytes_of(course.path("out/index.html"));
+    EXPECT_TRUE(contains(page, "<html lang=\"it\">"));
+    EXPECT_TRUE(contains(page, "<h3>Esercizi</h3>"));
+    EXPECT_TRUE(contains(page, ">Method</th>")) << "what the folder does not translate is English";
+    EXPECT_TRUE(contains(page, "<p>A.</p>\n<p>B.</p>"));
+    EXPECT_TRUE(contains(page, "Why?"));
+    EXPECT_FALSE(contains(page, "Texels.")) << "answers are not asked for";
+    EXPECT_TRUE(links_hold(course.path("out/index.html")));
+    EXPECT_FALSE(fs::exists(course.path("out/board-2"))) << "two chapters share a comparison";
+    const auto results = from_record<Results>(read_results(course.path("out/board/results.json")));
+    EXPECT_GT(totals(results.methods.at(1)).interior + totals(results.methods.at(1)).edge, 0);
+    EXPECT_TRUE(contains(page, fmt::format("<td>{}</td><td>{}</td>", count(totals(results.methods.at(1)).interior),
+                                           count(totals(results.methods.at(1)).edge))))
+        << page;
+    EXPECT_EQ(write_course(with("\"answers\": true, "), options), std::vector<std::string>());
+    EXPECT_TRUE(contains(bytes_of(course.path("out/index.html")), "Texels."));
+    for (const char* wrong : {"\"answer\": true, ", "\"size\": \"big\", ", "\"methods\": [\"rays\"], "})
+        EXPECT_THROW(with(wrong), InputError) << wrong;
+    write_text(course.path("it") / "texts.json", R"({"course": {"esercizi": "Esercizi"}})");
+    EXPECT_THROW(with(""), InputError) << "English has no such text";
 }
 
 }  // namespace

@@ -32,7 +32,10 @@ Results kept(double ms, std::uint64_t wrong, double calibration = 10) {
         build.samples.push_back(ms / 4);
         visibility.samples.push_back((ms - ms / 4) * (1 + 0.001 * i));
     }
+    TimingRecord aim{.median = 0, .min = 0, .max = 0, .runs = 8};
+    aim.samples                        = std::vector<double>(8, 0);
     method.times->phases.build_ms      = build;
+    method.times->phases.aim_ms        = aim;
     method.times->phases.visibility_ms = visibility;
     ErrorRecord error;
     error.points         = 1000;

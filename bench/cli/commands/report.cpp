@@ -173,6 +173,8 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
 int report_course(const ReportLine& line, const Common& common) {
     if (!line.folders.empty()) throw UsageError("report: --course: compares anew, expected no DIR");
     if (line.out.empty()) throw UsageError("report: --course: -o DIR is required");
+    if (line.language != "en" || !line.with.empty() || line.without_exr)
+        throw UsageError("report: --course: the file says languages and methods, expected no --lang, --with, --no-exr");
     const Course course = read_course(line.course, [](const std::string& name) { return scene_file(name); });
     CompareOptions options;
     options.out = line.out, options.command = common.command, options.threads = thread_count();
