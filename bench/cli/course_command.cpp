@@ -23,7 +23,7 @@ Submission folder_handed_in(const std::string& folder) {
 
 GradeRecord judge_on_terminal(const Submission& handed_in, const Rubric& rubric, JudgeOptions options,
                               const Common& common) {
-    options.command = common.command;
+    if (options.command.empty()) options.command = common.command;
     options.threads = thread_count();
     return on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
         options.progress = tell;

@@ -11,10 +11,12 @@
 #include "report_assets.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/contenders/line_process.h"
+#include "umbra/bench/contenders/program_session.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/out/staged_files.h"
+#include "umbra/bench/pages/embed.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
@@ -74,11 +76,13 @@ json scene_section(const SceneFiles& files, const json& words, Language language
               {"pair", slider_view(files, worst, root)},
               {"classes", false},
               {"words", words}};
-    if (worst == nullptr || totals(*worst).interior == 0) return view;
+    if (view["pair"].is_object()) view["pair"]["right"]["who"] = words.at("reference");
+    if (worst == nullptr || totals(*worst).interior + totals(*worst).edge == 0) return view;
     const std::string label = method_label(*worst, scene.results.methods);
     json picture            = class_picture_view(files, *worst, label, root);
     if (picture.is_boolean()) return view;
-    picture["caption"] = fmt::format("{}: {}", words.at("wrong_points").get<std::string>(), label);
+    picture["caption"] = fmt::format("{}: {}. {}", words.at("wrong_points").get<std::string>(), label,
+                                     words.at("right_points").get<std::string>());
     picture["rings"]   = false;  // their words are English
     view["classes"]    = std::move(picture);
     return view;
@@ -129,7 +133,7 @@ Course read_course(const fs::path& file, const FindScene& find) {
     Course course{.file = file};
     const Field root           = parse_json(bytes_of(file), file.string());
     const CourseRecord& record = course.record = from_strict_record<CourseRecord>(root);
-    if (record.chapters.empty()) root["chapters"].refuse("a list of chapters");
+    if (record.chapters.empty()) root["chapters"].refuse("a list with at least one chapter");
     if (!record.language.empty()) {
         const fs::path folder = file.parent_path() / record.language;
         const auto known      = language_named(record.language);
@@ -139,8 +143,8 @@ Course read_course(const fs::path& file, const FindScene& find) {
     }
     try {
         if (!record.size.empty()) course.size = parse_size(record.size);
-    } catch (const UsageError&) {
-        root["size"].refuse("WIDTHxHEIGHT");
+    } catch (const UsageError& e) {
+        root["size"].refuse(fmt::format("a size ({})", e.what()));
     }
     check_methods(root["methods"]);
     for (const Field& chapter : root["chapters"].items()) {
@@ -190,8 +194,12 @@ std::vector<std::string> write_course(const Course& course, CompareOptions optio
                                                    {"version", version()}}));
     write_scene_assets(root, staged);
     staged.remove(root / kPdf);  // of an earlier page
-    Json record      = to_record(head_record(options.command));
-    record["course"] = to_record(course.record);
+    Json record        = to_record(head_record(options.command));
+    CourseRecord shown = course.record;  // what is handed out holds no answers that its page does not show
+    if (!shown.answers)
+        for (ChapterRecord& chapter : shown.chapters)
+            for (ExerciseRecord& exercise : chapter.exercises) exercise.answer.clear();
+    record["course"] = to_record(shown);
     record["scenes"] = folders, record["files"] = {kPdf};
     staged.write(root / "results.json", json_text(record));
     staged.commit();
@@ -200,6 +208,9 @@ std::vector<std::string> write_course(const Course& course, CompareOptions optio
 
 std::string print_course(const fs::path& out) {
     const fs::path root = fs::weakly_canonical(fs::absolute(out)), made = root / ".course.pdf.umbra-new";
+    const RunFolder folder;
+    const fs::path page = folder.path() / "course.html";  // whose links do not lead into folders of this machine
+    write_text(page, embedded_page(root / "index.html"));
     for (const char* browser : {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"}) {
         // Chromium says nothing that could be waited for: the shell says how it ended.
         std::vector<std::string> command{"sh", "-c", "\"$@\" >&2; echo $?", "sh", browser};
@@ -208,7 +219,7 @@ std::string print_course(const fs::path& out) {
             command.emplace_back(option);
         if (geteuid() == 0) command.emplace_back("--no-sandbox");  // it has none for root
         command.push_back("--print-to-pdf=" + made.string());
-        command.push_back("file://" + url(root / "index.html"));
+        command.push_back("file://" + url(page));
         try {
             const std::string code = LineProcess(command, root).ask("", 300);
             if (code == "127") continue;  // there is none of that name

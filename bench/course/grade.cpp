@@ -56,6 +56,9 @@ double stepped(double points, double step) {
     return whole ? std::round(points * parts) / parts : std::round(points / step) * step;
 }
 
+/// A sum of decimals as decimals have it.
+double without_noise(double sum) { return std::round(sum * 1e9) / 1e9; }
+
 /// A figure that others have on the scene, or that cannot be had of it, is no merit. Empty: nothing there asks for it.
 std::string why_without(const RubricItemRecord& item, const Results& results, const MethodRecord& method) {
     if (item.of == "time") return method.times ? "" : "it has no time";
@@ -64,7 +67,7 @@ std::string why_without(const RubricItemRecord& item, const Results& results, co
         return "none of its points is answered";
     for (const MethodRecord& other : results.methods)
         if (figure_of(results, other, item.of, ""))
-            return "its answers have nothing to measure this by, and others' have";
+            return "its answers have no edge or penumbra to measure, and others' have";
     return "";
 }
 
@@ -73,6 +76,7 @@ GradedSceneRecord graded(const RubricItemRecord& item, const Compared& scene) {
     GradedSceneRecord found{.scene = scene.folder};
     const MethodRecord* method = scene.record();
     const bool failed = method == nullptr || method->failed, refused = !failed && method->serves.how == "not";
+    found.unanswered = failed;
     if (item.of == "failed" || item.of == "refused") {
         found.figure = (item.of == "failed" ? failed : refused) ? 1 : 0;
         if (failed) found.why = method != nullptr ? method->failed->message : scene.why;
@@ -109,18 +113,25 @@ const GradedSceneRecord* worst_of(const std::vector<GradedSceneRecord>& scenes) 
     return worst;
 }
 
+std::size_t counting(const std::vector<GradedSceneRecord>& scenes) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(scenes, [](const GradedSceneRecord& scene) { return std::isfinite(scene.credit); }));
+}
+
 std::string sentence_of(const GradedItemRecord& item, const RubricItemRecord& asked, const std::string& failed) {
     if (!failed.empty()) return fmt::format("0 of {:g} points: {}", item.max, failed);
     const GradedSceneRecord* worst = worst_of(item.scenes);
     const std::string points       = fmt::format("{:g} of {:g} points", item.points, item.max);
     if (worst == nullptr) return points + ": nothing on the scenes asks for this.";
-    if (!worst->figure) return fmt::format("{}: on {}, {}.", points, worst->scene, worst->why);
-    std::string text =
-        fmt::format("{}: on {}, {}.", points, worst->scene, cause_in_words(item.of, *worst, asked.against));
+    const std::size_t scenes = counting(item.scenes);
+    const std::string where  = fmt::format("{}{}", scenes > 1 && worst->credit < 1 ? "worst on " : "on ", worst->scene);
+    const std::string mean   = scenes > 1 && worst->credit < 1 ? fmt::format(" Mean of {} scenes.", scenes) : "";
+    if (!worst->figure) return fmt::format("{}: {}, {}.{}", points, where, worst->why, mean);
+    std::string text = fmt::format("{}: {}, {}.", points, where, cause_in_words(item.of, *worst, asked.against));
     if (worst->credit < 1 && item.of != "failed" && item.of != "refused")
         text += fmt::format(" All points are given up to {}, none from {}.", figure_in_words(item.of, asked.full),
                             figure_in_words(item.of, asked.none));
-    return text;
+    return text + mean;
 }
 
 }  // namespace
@@ -170,10 +181,9 @@ void grade(GradeRecord& record, const RubricRecord& rubric, const std::vector<Co
         const double exact  = telling > 0 ? asked.points * credit / telling : compared ? asked.points : 0;
         item.points         = std::min(asked.points, stepped(exact, rubric.step));
         item.sentence       = sentence_of(item, asked, record.failed);
-        record.points += item.points, record.max += item.max;
+        record.points = without_noise(record.points + item.points), record.max = without_noise(record.max + item.max);
         record.items.push_back(std::move(item));
     }
-    record.points = stepped(record.points, rubric.step);
 }
 
 }  // namespace umbra

@@ -16,7 +16,8 @@ namespace umbra {
 struct GradedSceneRecord {
     std::string scene{}, light{}, why{};
     std::optional<double> figure{};
-    double credit = kUnknown;
+    double credit   = kUnknown;
+    bool unanswered = false;
 };
 template <class Fields>
 void describe(Fields& of, Is<GradedSceneRecord>) {
@@ -27,6 +28,7 @@ void describe(Fields& of, Is<GradedSceneRecord>) {
     of("credit", &GradedSceneRecord::credit, "null: nothing on this scene asks for it, and it does not count",
        kFraction);
     of.may("why", &GradedSceneRecord::why, "why there is no figure");
+    of.may("unanswered", &GradedSceneRecord::unanswered, "true: it failed there, or has no answers");
 }
 
 struct GradedItemRecord {

@@ -1,10 +1,12 @@
 #include "umbra/bench/course/grade_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "report_assets.h"
 #include "umbra/bench/out/own_files.h"
@@ -108,6 +110,16 @@ std::string apart_in_words(const ApartRecord& apart) {
         apart.scene_s);
 }
 
+/// Why nothing could be asked of it, or on which scenes it has no answers.
+std::string failed_in_words(const GradeRecord& grade) {
+    if (!grade.failed.empty()) return grade.failed;
+    std::set<std::string> scenes;
+    for (const GradedItemRecord& item : grade.items)
+        for (const GradedSceneRecord& scene : item.scenes)
+            if (scene.unanswered) scenes.insert(scene.scene);
+    return scenes.empty() ? "" : fmt::format("no answers on {}", fmt::join(scenes, ", "));
+}
+
 /// Keys of columns have no dots or slashes, which mean members of members.
 std::string column_key(std::string name) {
     std::ranges::replace_if(
@@ -194,8 +206,10 @@ ClassRecord write_class(const RubricRecord& rubric, const std::vector<GradeRecor
     for (const RubricItemRecord& item : rubric.items) record.items.push_back(item.name), record.max += item.points;
     for (std::size_t i = 0; i < grades.size(); ++i) {
         const GradeRecord& grade = grades[i];
-        ClassRowRecord row{
-            .handed_in = grade.handed_in, .folder = folders[i], .failed = grade.failed, .points = grade.points};
+        ClassRowRecord row{.handed_in = grade.handed_in,
+                           .folder    = folders[i],
+                           .failed    = failed_in_words(grade),
+                           .points    = grade.points};
         for (const GradedItemRecord& item : grade.items) row.items.push_back(item.points);
         record.rows.push_back(std::move(row));
     }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -118,6 +119,9 @@ Asked asked_of(const Submission& handed_in, const Rubric& rubric, std::span<cons
         throw InputError(fmt::format("the folder holds no file {}, and no {}.npy or {}.exr with answers", missing,
                                      scenes[0].name, scenes[0].name));
     }
+    if (const fs::path first = run[0]; first.is_relative() && run[0].find('/') != std::string::npos &&
+                                       access((handed_in.folder / first).c_str(), X_OK) != 0)
+        throw InputError(fmt::format("{} is not executable, expected chmod +x {}", run[0], run[0]));
     const LimitsRecord& limits = rubric.record.limits;
     record.apart               = apart_record(limits, protect);
     ContenderRecord program{.command   = apart_command(run, handed_in.folder, limits, protect),
@@ -134,6 +138,15 @@ CompareOptions options_of(const Rubric& rubric, const JudgeOptions& options) {
     const bool timed  = std::ranges::any_of(rubric.record.items, [](const auto& item) { return item.of == "time"; });
     to.repeats        = timed ? Repeats{} : kOnce;
     return to;
+}
+
+/// Students are not told where on the grader's machine their files were.
+std::string without_folder(std::string message, const fs::path& folder) {
+    const std::string start = folder.string() + "/";
+    if (!folder.empty())
+        for (std::size_t at = message.find(start); at != std::string::npos; at = message.find(start))
+            message.erase(at, start.size());
+    return message;
 }
 
 bool can_be_read(const fs::path& scene) {
@@ -188,7 +201,15 @@ GradeRecord judge(const Submission& handed_in, const Rubric& rubric, const Judge
                        .method    = handed_in.method ? handed_in.method->text() : kHandedIn};
     if (!options.key.empty())
         record.key = combined_key({submission_key(handed_in, options.key), options.embed ? kOneFile : ""});
-    if (auto same = kept(options.out / "results.json", record.key)) return *same;
+    StagedFiles staged;
+    const auto write_platform_files = [&](const GradeRecord& grade) {
+        for (const PlatformFile& file : kPlatformFiles) staged.write(options.out / file.name, file.text(grade));
+    };
+    if (auto same = kept(options.out / "results.json", record.key)) {
+        write_platform_files(*same);  // which also say what their environment says now
+        staged.commit();
+        return *same;
+    }
     for (const PlatformFile& file : kPlatformFiles) record.files.emplace_back(file.name);
     if (options.embed) record.files.emplace_back(kOneFile);
     check_writable_beside(options.out, record.files);
@@ -211,13 +232,14 @@ GradeRecord judge(const Submission& handed_in, const Rubric& rubric, const Judge
     } catch (const MethodError& e) {
         record.failed = e.what();
     }
+    record.failed = without_folder(record.failed, handed_in.folder);
+    for (Compared& scene : all) scene.why = without_folder(scene.why, handed_in.folder);
     end_idle_programs();
     grade(record, rubric.record, all);
     record.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     for (const Compared& scene : all)
         if (!scene.method.empty()) record.scenes.push_back(scene.folder);
-    StagedFiles staged;
-    for (const PlatformFile& file : kPlatformFiles) staged.write(options.out / file.name, file.text(record));
+    write_platform_files(record);
     staged.write(options.out / "results.json", json_text(to_record(record)));
     write_grade_page(record, rubric.record, all, options.out, staged);
     staged.commit();

@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
@@ -12,6 +13,17 @@ namespace umbra {
 namespace {
 
 bool full(const GradedItemRecord& item) { return item.points >= item.max; }
+
+/// The least factor, up to 100, that makes all points whole numbers; 100 where none does.
+int scale_to_whole(const GradeRecord& grade) {
+    const auto whole = [](double points) { return std::abs(points - std::round(points)) < 1e-6; };
+    for (int scale = 1; scale < 100; ++scale)
+        if (std::ranges::all_of(grade.items, [&](const GradedItemRecord& item) {
+                return whole(item.points * scale) && whole(item.max * scale);
+            }))
+            return scale;
+    return 100;
+}
 
 std::string environment(const char* name) {
     const char* value = std::getenv(name);
@@ -79,9 +91,10 @@ std::string classroom50_text(const GradeRecord& grade, std::int64_t now) {
               {"max-score", 0},
               {"tests", Json::array()}};
     std::int64_t score = 0, most = 0;
+    const int scale = scale_to_whole(grade);
     for (const GradedItemRecord& item : grade.items) {
-        const auto points = static_cast<std::int64_t>(std::floor(item.points)),
-                   max    = static_cast<std::int64_t>(std::floor(item.max));
+        const auto points = static_cast<std::int64_t>(std::floor(item.points * scale + 1e-6)),
+                   max    = static_cast<std::int64_t>(std::floor(item.max * scale + 1e-6));
         score += points, most += max;
         json["tests"].push_back({{"test-name", item.name},
                                  {"passed", full(item)},
@@ -94,19 +107,19 @@ std::string classroom50_text(const GradeRecord& grade, std::int64_t now) {
 }
 
 std::string grade_junit(const GradeRecord& grade) {
-    int lost = 0;
-    for (const GradedItemRecord& item : grade.items) lost += full(item) ? 0 : 1;
+    const bool runs  = grade.failed.empty();
+    const auto lost  = std::ranges::count_if(grade.items, [](const GradedItemRecord& item) { return !full(item); });
     std::string text = fmt::format(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-        "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"0\">\n",
-        xml_text(grade.rubric), grade.items.size(), lost);
+        "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
+        xml_text(grade.rubric), grade.items.size(), runs ? lost : 0, runs ? 0 : lost);
     for (const GradedItemRecord& item : grade.items) {
         text += fmt::format("<testcase classname=\"{}\" name=\"{}\"", xml_text(grade.handed_in), xml_text(item.name));
-        text += full(item) ? "/>\n"
-                           : fmt::format(
-                                 ">\n<failure type=\"points\" message=\"{:g} of {:g} points\">{}</failure>\n"
-                                 "</testcase>\n",
-                                 item.points, item.max, xml_text(item.sentence));
+        const char* kind = runs ? "failure" : "error";
+        text += full(item)
+                    ? "/>\n"
+                    : fmt::format(">\n<{} type=\"points\" message=\"{:g} of {:g} points\">{}</{}>\n</testcase>\n", kind,
+                                  item.points, item.max, xml_text(item.sentence), kind);
     }
     return text + "</testsuite>\n</testsuites>\n";
 }

@@ -13,10 +13,11 @@ namespace umbra {
 [[nodiscard]] std::string autolab_text(const GradeRecord& grade);
 /// results.json of PrairieLearn's external graders: a score of 0 to 1, a test an item.
 [[nodiscard]] std::string prairielearn_text(const GradeRecord& grade);
-/// result.json of Classroom 50 (classroom50/result/v1), whose points are whole numbers: points are rounded down. Names
+/// result.json of Classroom 50 (classroom50/result/v1), whose points are whole numbers: where some are not, all are
+/// multiplied by the least factor that makes them so. Names
 /// and addresses are those of its runner's environment; `now`: seconds since 1970, UTC.
 [[nodiscard]] std::string classroom50_text(const GradeRecord& grade, std::int64_t now);
-/// JUnit XML: a test case an item; a failure where points are lost.
+/// JUnit XML: a test case an item; a failure where points are lost, an error where nothing could be asked.
 [[nodiscard]] std::string grade_junit(const GradeRecord& grade);
 
 }  // namespace umbra

@@ -78,7 +78,11 @@ std::vector<fs::path> scenes_beside(const Field& names, const fs::path& file, co
     std::vector<fs::path> scenes;
     for (const Field& name : names.items()) {
         const fs::path beside = file.parent_path() / name.required_text();
-        scenes.push_back(fs::is_regular_file(beside) ? beside : find(name.text()));
+        try {
+            scenes.push_back(fs::is_regular_file(beside) ? beside : find(name.text()));
+        } catch (const UsageError& e) {
+            name.refuse(fmt::format("a scene, or a file beside this one ({})", e.what()));
+        }
     }
     return scenes;
 }
@@ -92,8 +96,8 @@ Rubric read_rubric(const fs::path& file, const FindScene& find) {
     Rubric rubric{.file = file, .text = bytes_of(file)};
     const Field root     = parse_json(rubric.text, file.string());
     RubricRecord& record = rubric.record = from_strict_record<RubricRecord>(root);
-    if (record.scenes.empty()) root["scenes"].refuse("a list of scenes");
-    if (record.items.empty()) root["items"].refuse("a list of items");
+    if (record.scenes.empty()) root["scenes"].refuse("a list with at least one scene");
+    if (record.items.empty()) root["items"].refuse("a list with at least one item");
     if (!std::isfinite(record.step)) record.step = 0.1;
     if (record.step <= 0) root["step"].refuse("a number above 0");
     LimitsRecord& limits = record.limits;
@@ -102,8 +106,8 @@ Rubric read_rubric(const fs::path& file, const FindScene& find) {
         if (!std::isfinite(*limit)) *limit = value;
     try {
         if (!record.size.empty()) rubric.size = parse_size(record.size);
-    } catch (const UsageError&) {
-        root["size"].refuse("WIDTHxHEIGHT");
+    } catch (const UsageError& e) {
+        root["size"].refuse(fmt::format("a size ({})", e.what()));
     }
     rubric.scenes = scenes_beside(root["scenes"], file, find);
     check_methods(root["methods"]);
@@ -112,6 +116,8 @@ Rubric read_rubric(const fs::path& file, const FindScene& find) {
         const Field at         = root["items"].items()[i];
         RubricItemRecord& item = record.items[i];
         complete(item, at, record.scenes);
+        if (item.points > 0 && item.points < record.step)
+            at["points"].refuse(fmt::format("at least \"step\", {}, to which points are rounded", record.step));
         if (!names.insert(item.name).second) at["name"].refuse("a name that no item before has");
         if (item.against.empty()) continue;
         check_method(at["against"]);

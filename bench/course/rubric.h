@@ -34,7 +34,7 @@ void describe(Fields& of, Is<RubricItemRecord>) {
     of.must("of", &RubricItemRecord::of, "the figure: acne, leak, time, ... (docs/course.md)");
     of.may("against", &RubricItemRecord::against, "time: the method whose time is 1");
     of("points", &RubricItemRecord::points, "", at_least(0));
-    of.may("full", &RubricItemRecord::full, "up to this figure all points are given; 0");
+    of.may("full", &RubricItemRecord::full, "up to this figure all points are given; 0", at_least(0));
     of.may("none", &RubricItemRecord::none, "from this figure on none; failed and refused: 1");
     of.may("scenes", &RubricItemRecord::scenes, "those of the rubric that count here; all");
 }

@@ -221,10 +221,11 @@ std::vector<std::string> error_groups() {
 
 const MethodRecord* worst_method(const Results& results) {
     const MethodRecord* worst = nullptr;
-    double most               = -1;
+    std::pair most(-1.0, -1.0);
     for (const MethodRecord& method : results.methods) {
         if (!serves(method) || is_reference(results, method) || !picture_of(method.files)) continue;
-        if (const double wrong = totals(method).interior; wrong > most) worst = &method, most = wrong;
+        const Totals sums = totals(method);
+        if (const std::pair wrong(sums.interior, sums.edge); wrong > most) worst = &method, most = wrong;
     }
     return worst;
 }

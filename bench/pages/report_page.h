@@ -107,8 +107,8 @@ struct Totals {
 [[nodiscard]] std::optional<double> wrong_points(const ErrorRecord& error, std::string_view group,
                                                  std::string_view member);
 
-/// The method with the most wrong interior points, of those with a picture that are not the reference; the first of
-/// equals. Null where there is none.
+/// The method with the most wrong interior points, of those with a picture that are not the reference; of equals
+/// the one with the most at edges, and then the first. Null where there is none.
 [[nodiscard]] const MethodRecord* worst_method(const Results& results);
 
 /// A reference may be among the methods of its comparison; it is not compared with itself.

@@ -141,6 +141,23 @@ TEST(Course, CreditFallsEvenlyBetweenTheBounds) {
     EXPECT_EQ(graded(210, 100).items[0].points, 3) << "3.9 / 2 + 2 in steps of a half";
 }
 
+TEST(Course, ThePointsAreTheSumOfTheItems) {
+    RubricRecord rubric{.step = 0.5};
+    rubric.items = {{.name = "a", .of = "acne", .points = 1, .full = 0, .none = 1},
+                    {.name = "b", .of = "acne", .points = 1.25, .full = 0, .none = 1}};
+    MethodRecord method{.id = "mine"};
+    method.serves.how = "exactly";
+    ErrorRecord error;
+    error.points = 1000, error.false_shadow.emplace().acne = 0;
+    method.errors = {error};
+    Compared one{.asked = "s", .folder = "s", .method = "mine"};
+    one.results.methods = {method};
+    GradeRecord record;
+    grade(record, rubric, {one});
+    EXPECT_EQ(record.points, 2.25);
+    EXPECT_EQ(record.points, record.max);
+}
+
 TEST(Course, AnswersAreTakenSceneByScene) {
     const Classroom course;
     make_folder(course.path("files"));
@@ -160,6 +177,14 @@ TEST(Course, AnswersAreTakenSceneByScene) {
     const GradeRecord broken = course.graded(files);
     EXPECT_EQ(broken.points, 0);
     EXPECT_TRUE(contains(broken.items[4].sentence, "board.exr")) << broken.items[4].sentence;
+    EXPECT_FALSE(contains(broken.items[4].sentence, course.path("").string())) << "students are not told where";
+    const ClassRecord rows =
+        write_class(course.rubric().record, {by_file, broken}, {"a", "b"}, "umbra grade", course.path("class"));
+    EXPECT_EQ(rows.rows[0].failed, "");
+    EXPECT_EQ(rows.rows[1].failed, "no answers on board");
+    const Submission locked = course.script("locked", "exit 0");
+    fs::permissions(locked.folder / "run", fs::perms::owner_read);
+    EXPECT_EQ(course.graded(locked).failed, "./run is not executable, expected chmod +x ./run");
 }
 
 TEST(Course, WhatIsKeptIsNotGradedAgain) {
@@ -283,10 +308,10 @@ TEST(Platforms, GetTheFieldsThatTheyDescribe) {
     EXPECT_EQ(classroom["classroom"], "shadows");
     EXPECT_EQ(classroom["review"], "https://example.org/c");
     EXPECT_EQ(classroom["datetime"], "2023-11-14T22:13:20Z");
-    EXPECT_EQ(classroom["score"], 4);
-    EXPECT_EQ(classroom["max-score"], 7);
+    EXPECT_EQ(classroom["score"], 9) << "4.5, and all are twice as many, so that 1.5 is whole";
+    EXPECT_EQ(classroom["max-score"], 14);
     EXPECT_EQ(classroom["tests"][1]["test-name"], "Leaks");
-    EXPECT_EQ(classroom["tests"][1]["score"], 1);
+    EXPECT_EQ(classroom["tests"][1]["score"], 3);
     EXPECT_EQ(classroom["tests"][1]["passed"], false);
 
     const std::string junit = grade_junit(grade);
@@ -298,6 +323,8 @@ TEST(Platforms, GetTheFieldsThatTheyDescribe) {
 TEST(Platforms, OfWhatFailedSayWhy) {
     GradeRecord grade = a_grade();
     grade.failed = "it ended", grade.points = 0;
+    EXPECT_TRUE(contains(grade_junit(grade), "failures=\"0\" errors=\"1\""));
+    EXPECT_TRUE(contains(grade_junit(grade), "</error>"));
     EXPECT_EQ(Json::parse(gradescope_text(grade))["output"], "it ended");
     EXPECT_EQ(Json::parse(prairielearn_text(grade))["message"], "it ended");
     EXPECT_EQ(Json::parse(prairielearn_text(grade))["gradable"], true);
@@ -353,6 +380,8 @@ TEST(CourseReport, HasChaptersInALanguageOfAFolder) {
     EXPECT_TRUE(contains(page, "<p>A.</p>\n<p>B.</p>"));
     EXPECT_TRUE(contains(page, "Why?"));
     EXPECT_FALSE(contains(page, "Texels.")) << "answers are not asked for";
+    EXPECT_FALSE(contains(bytes_of(course.path("out/results.json")), "Texels."));
+    EXPECT_TRUE(contains(page, "Wrong points: Shadow z-buffer")) << "all of them at edges";
     EXPECT_TRUE(links_hold(course.path("out/index.html")));
     EXPECT_FALSE(fs::exists(course.path("out/board-2"))) << "two chapters share a comparison";
     const auto results = from_record<Results>(read_results(course.path("out/board/results.json")));

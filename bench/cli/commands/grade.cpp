@@ -24,8 +24,13 @@ int grade_class(const GradeLine& line, const Common& common) {
             "such as a container, keeps it apart");
     std::set<std::string> names;
     std::vector<Submission> all;
+    int code = kDone;
     for (const std::string& folder : line.folders) {
-        if (!fs::is_directory(folder)) throw InputError(fmt::format("{}: is no folder", folder));
+        if (!fs::is_directory(folder)) {
+            print_error("{}: is no folder, and is left out\n", folder);
+            code = kUnreadable;
+            continue;
+        }
         all.push_back(folder_handed_in(folder));
         if (!names.insert(folder_name(all.back().name)).second)
             throw UsageError(fmt::format("{}: two folders are called {}", folder, all.back().name));
@@ -50,8 +55,8 @@ int grade_class(const GradeLine& line, const Common& common) {
                "\n";
     });
     for (const GradeRecord& grade : grades)
-        if (!grade.not_compared.empty()) return kUnreadable;
-    return kDone;
+        if (!grade.not_compared.empty()) code = kUnreadable;
+    return code;
 }
 
 }  // namespace

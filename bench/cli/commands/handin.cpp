@@ -21,7 +21,11 @@ int handin(const HandinLine& line, const Common& common) {
     const Rubric rubric =
         line.course.rubric.empty() ? rubric_of(scene_files(line.scenes, common.up)) : rubric_on_line(line.course);
     Submission handed_in = fs::is_directory(line.what) ? folder_handed_in(line.what) : Submission{line.what};
-    if (handed_in.folder.empty()) handed_in.method = parse_method(line.what);
+    if (handed_in.folder.empty()) try {
+            handed_in.method = parse_method(line.what);
+        } catch (const UsageError& e) {
+            throw UsageError(fmt::format("handin {}: is no folder, and no method: {}", line.what, e.what()));
+        }
     const GradeRecord grade = judge_on_terminal(
         handed_in, rubric, {.out = line.course.out, .protect = can_keep_apart(), .embed = line.course.embed}, common);
     print_record(line.course.as_json, common, to_record(grade),
