@@ -201,17 +201,23 @@ ExperimentRecord run_experiment(const std::string& id, const json& experiment, c
     return record;
 }
 
-void draw_experiments(const fs::path& out, const fs::path& scenes, const std::string& command) {
+std::vector<ListedFailureRecord> draw_experiments(const fs::path& out, const fs::path& scenes,
+                                                  const std::string& command) {
     StagedFolder folder(out);
     ExperimentsRecord record{.head = head_record(command)};
     const json& all = lecture_experiments();
     for (const auto& [id, experiment] : all["experiments"].items()) {
         const json& scene = experiment.value("scene", json::object());  // another folder of scenes may not have it
         if (scene.is_string() && !fs::exists(scenes / (scene.get<std::string>() + ".json"))) continue;
-        record.experiments.push_back(run_experiment(id, experiment, all["base"], folder.folder(), scenes));
+        try {
+            record.experiments.push_back(run_experiment(id, experiment, all["base"], folder.folder(), scenes));
+        } catch (const std::exception& error) {
+            record.failed.push_back({.scene = id, .method = "the experiment", .failure = {.message = error.what()}});
+        }
     }
     write_text(folder.folder() / "results.json", json_text(to_record(record)));
     folder.commit();
+    return record.failed;
 }
 
 }  // namespace umbra

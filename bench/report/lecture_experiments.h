@@ -82,11 +82,13 @@ void describe(Fields& of, Is<ExperimentRecord>) {
 struct ExperimentsRecord {
     HeadRecord head{};
     std::vector<ExperimentRecord> experiments{};
+    std::vector<ListedFailureRecord> failed{};
 };
 template <class Fields>
 void describe(Fields& of, Is<ExperimentsRecord>) {
     of.all(&ExperimentsRecord::head);
     of("experiments", &ExperimentsRecord::experiments, "");
+    of("failed", &ExperimentsRecord::failed, "experiments that are not among these; `scene` is the topic's id");
 }
 
 /// {base, experiments: {A1: ...}}.
@@ -98,8 +100,8 @@ void describe(Fields& of, Is<ExperimentsRecord>) {
                                               const nlohmann::json& base, const std::filesystem::path& folder,
                                               const std::filesystem::path& scenes);
 
-/// All of them, into the folder `out`, which appears whole or not at all, with a results.json.
-void draw_experiments(const std::filesystem::path& out, const std::filesystem::path& scenes,
-                      const std::string& command);
+/// All of them, into the folder `out`, which appears whole or not at all, with a results.json. Returns those that failed.
+std::vector<ListedFailureRecord> draw_experiments(const std::filesystem::path& out, const std::filesystem::path& scenes,
+                                                  const std::string& command);
 
 }  // namespace umbra

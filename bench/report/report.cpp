@@ -21,6 +21,7 @@
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/report/lecture_experiments.h"
 #include "umbra/bench/report/lecture_page.h"
 #include "umbra/bench/report/renderers_page.h"
 #include "umbra/bench/report/report_index.h"
@@ -250,14 +251,15 @@ json renderers_section(const std::vector<ScenePage>& scenes, const std::vector<S
 }
 
 /// Everything that failed, in words, for the first page.
-void add_failures(json& index, const std::vector<std::string>& scenes_failed, const std::vector<ScenePage>& scenes,
-                  const std::vector<LadderFolder>& ladders) {
+void add_failures(json& index, const std::vector<std::string>& scenes_failed, const Found& found) {
     json failures = scenes_failed;
-    for (const ScenePage& scene : scenes)
+    for (const ScenePage& scene : found.scenes)
         for (std::string& message : scene_failures(scene.results)) failures.push_back(scene.title + ": " + message);
-    for (const LadderFolder& folder : ladders)
-        for (std::string& message : listed_failures(read_ladders(folder.data / "results.json").failed))
-            failures.push_back(std::move(message));
+    const auto add = [&](const std::vector<ListedFailureRecord>& failed) {
+        for (std::string& message : listed_failures(failed)) failures.push_back(std::move(message));
+    };
+    for (const LadderFolder& folder : found.ladders) add(read_ladders(folder.data / "results.json").failed);
+    if (found.experiments) add(from_record<ExperimentsRecord>(found.experiments->root).failed);
     index["has_failures"] = !failures.empty();
     index["failures"]     = std::move(failures);
 }
@@ -331,7 +333,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     index["studies"]   = studies_section(found.studies, root);
     index["renderers"] = renderers_section(scenes, files, root, staged);
     index["lectures"]  = lectures_section(files, found, root, options, staged);
-    add_failures(index, options.failed, scenes, found.ladders);
+    add_failures(index, options.failed, found);
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
     write_page_assets(root, kIndexScripts, staged);

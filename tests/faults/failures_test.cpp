@@ -240,8 +240,11 @@ TEST_F(Failures, ReportShowsWhatFailedAndIsWhole) {
     EXPECT_EQ(answer.exit_code, 5);
     const std::string index = text_of(file("out/index.html"));
     for (const char* what : {"first: The reference exact failed", "second: Exact visibility failed",
-                             "far_from_origin: the reference failed at 1: a &lt;planted&gt; defect"})
+                             "far_from_origin: the reference failed at 1: a &lt;planted&gt; defect",
+                             "A9: the experiment failed: a &lt;planted&gt; defect"})
         EXPECT_TRUE(contains(index, what)) << what;
+    EXPECT_TRUE(contains(answer.output, "A9: the experiment: a <planted> defect")) << answer.output;
+    EXPECT_TRUE(contains(text_of(file("out/lectures.html")), "lectures/D1-1.png")) << "experiments of other methods";
     EXPECT_TRUE(fs::exists(file("out/second/ray_traced.png")));
     EXPECT_TRUE(fs::exists(file("out/ladders/index.html")));
 }

@@ -152,7 +152,9 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     }
     Terminal(common.quiet).progress("experiments of the lectures");
     also.push_back(out / "lectures");
-    draw_experiments(also.back(), scenes_folder(), "umbra report");
+    const auto experiments_failed = draw_experiments(also.back(), scenes_folder(), "umbra report");
+    for (const ListedFailureRecord& failed : experiments_failed)
+        print_error("{}: {}: {}\n", failed.scene, failed.method, failed.failure.message);
     int studies_failed = 0;
     for (fs::path& folder : study_on_terminal(out, common, studies_failed)) also.push_back(std::move(folder));
     CompareOptions options;
@@ -165,7 +167,7 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     const ScenesDone done =
         compare_on_terminal(compared_scenes(), options, common, {.also = also, .language = language});
     const int code = exit_code(done);
-    if (!climbed || !swept || studies_failed > 0) return kInternal;
+    if (!climbed || !swept || !experiments_failed.empty() || studies_failed > 0) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
