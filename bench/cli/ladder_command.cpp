@@ -11,6 +11,8 @@
 #include <span>
 #include <vector>
 
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/ladders/ladder_file.h"
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
@@ -127,7 +129,16 @@ LaddersRecord climb_ladders(const LadderOptions& options) {
                         "with -o",
                         options.out.string()));
     std::vector<const Ladder*> chosen;
-    for (const std::string& name : options.names) chosen.push_back(&find_ladder(name));
+    for (const std::string& name : options.names) {
+        const Ladder& ladder = is_ladder_file(name)
+                                   ? read_ladder(name, [](const std::string& scene) { return scene_file(scene); })
+                                   : find_ladder(name);
+        const auto same      = [&](const Ladder* other) { return other->name == ladder.name; };
+        if (std::ranges::any_of(chosen, same))
+            throw UsageError(
+                fmt::format("{}: another ladder is called {}, expected each name once", name, ladder.name));
+        chosen.push_back(&ladder);
+    }
     if (chosen.empty()) chosen.assign(ladders().begin(), ladders().end());
     const std::vector<MethodChoice> methods_chosen =
         options.methods.empty() ? default_methods(options.only_by_default) : chosen_methods(options.methods, {}, {});

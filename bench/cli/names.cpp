@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/ladders/ladder_file.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
@@ -147,7 +147,8 @@ void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& 
 
 void return_ladders(std::vector<std::string>& methods, std::vector<std::string>& positionals) {
     const std::vector<std::string> known = ladder_names();
-    return_to(positionals, methods, [&](const std::string& word) { return contains(known, word); });
+    return_to(positionals, methods,
+              [&](const std::string& word) { return is_ladder_file(word) || contains(known, word); });
 }
 
 CLI::Validator number_in(double low, double high, const std::string& expected) {

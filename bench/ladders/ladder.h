@@ -1,9 +1,10 @@
 // Ladders: families of scenes over one extreme, in geometric steps from harmless to absurd.
 //
-// A ladder is one function and one line in ladders.def. On each rung `exact` is the truth; a method breaks at the first
+// A ladder is one function and one line in ladders.def, or a file (ladder_file.h). On each rung `exact` is the truth; a method breaks at the first
 // rung where its interior errors exceed a stated fraction (bench/ladder_run.h).
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -18,8 +19,8 @@ struct Ladder {
     std::string_view title;  ///< "Distance from the origin"
     std::string_view about;  ///< one or two sentences: what grows, and what it hurts
     std::string_view unit;   ///< of a rung's value, as read after the number: "scene sizes"; empty for pure numbers
-    std::span<const double> rungs;          ///< harmless first; an array that outlives the program's work
-    Scene (*scene)(double rung) = nullptr;  ///< with lights, camera, picture size; the same bits each time
+    std::span<const double> rungs;            ///< harmless first; an array that outlives the program's work
+    std::function<Scene(double rung)> scene;  ///< with lights, camera, picture size; the same bits each time
 
     /// Ladders over the sum, where S_j is correct: the error in the picture of that rung (scene-linear R G B,
     /// rendered with the true S_j); empty where there is none. Null: S_j is compared, method by method.

@@ -1,6 +1,8 @@
 // How a file's numbers become a scene's: which axis points up, and the origin of positions. Internal to core.
 #pragma once
 
+#include <string>
+
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
@@ -15,8 +17,9 @@ namespace umbra {
 /// Readers take positions in double and round them once, by position().
 struct Reading {
     UpAxis up = UpAxis::y;
-    dvec3 origin{0};  ///< of the scene, in the file's space once it stands upright
-    int frame = 0;    ///< of the file's animation, counted from 0
+    dvec3 origin{0};                    ///< of the scene, in the file's space once it stands upright
+    int frame               = 0;        ///< of the file's animation, counted from 0
+    const std::string* text = nullptr;  ///< of a native scene, instead of what the file holds
 
     /// Exact: components trade places and signs.
     [[nodiscard]] dvec3 upright(dvec3 v) const {

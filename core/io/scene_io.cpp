@@ -47,6 +47,29 @@ std::string origin_words(const Scene& scene) {
         o.x, o.y, o.z);
 }
 
+/// `text` as Reading has it.
+Scene load(const path& name, const std::string* text) {
+    std::vector<std::string_view> endings;
+    for (const Format& format : kFormats) endings.push_back(format.ending);
+    const auto [file_name, tail] = split_frame(name.string());
+    const path file(file_name);
+    Reading reading{.text = text};
+    const std::optional<UpAxis> up = tail.empty() ? std::nullopt : up_axis(tail.substr(1));
+    const bool is_frame            = !tail.empty() && !up;
+    if (is_frame && lower_ending(file) != ".json")
+        throw InputError(fmt::format("{}: only native scenes (.json) have frames", name.string()));
+    if (up) reading.up = *up;
+    if (is_frame) reading.frame = std::stoi(tail.substr(1));
+    SceneFile read = read_by_ending(file, endings, reading);
+    check_scene(read, file);
+    if (read.scene.origin != dvec3(0) && !read.has_origin) read.scene.warnings.push_back(origin_words(read.scene));
+    Scene scene = complete_scene(std::move(read), file);
+    if (is_frame) scene.name += tail;
+    if (scene.frames > 0 && is_frame) scene.title += fmt::format(", frame {}", scene.frame);
+    scene.source += tail;
+    return scene;
+}
+
 }  // namespace
 
 SceneFile read_by_ending(const path& file, const std::vector<std::string_view>& endings, Reading reading) {
@@ -107,26 +130,7 @@ std::string scene_name(const path& file) {
     return path(base).stem().string() + (!frame.empty() && up_axis(frame.substr(1)) ? "" : frame);
 }
 
-Scene load_scene(const path& name) {
-    std::vector<std::string_view> endings;
-    for (const Format& format : kFormats) endings.push_back(format.ending);
-    const auto [file_name, tail] = split_frame(name.string());
-    const path file(file_name);
-    Reading reading;
-    const std::optional<UpAxis> up = tail.empty() ? std::nullopt : up_axis(tail.substr(1));
-    const bool is_frame            = !tail.empty() && !up;
-    if (is_frame && lower_ending(file) != ".json")
-        throw InputError(fmt::format("{}: only native scenes (.json) have frames", name.string()));
-    if (up) reading.up = *up;
-    if (is_frame) reading.frame = std::stoi(tail.substr(1));
-    SceneFile read = read_by_ending(file, endings, reading);
-    check_scene(read, file);
-    if (read.scene.origin != dvec3(0) && !read.has_origin) read.scene.warnings.push_back(origin_words(read.scene));
-    Scene scene = complete_scene(std::move(read), file);
-    if (is_frame) scene.name += tail;
-    if (scene.frames > 0 && is_frame) scene.title += fmt::format(", frame {}", scene.frame);
-    scene.source += tail;
-    return scene;
-}
+Scene load_scene(const path& file) { return load(file, nullptr); }
+Scene load_scene(const path& file, const std::string& text) { return load(file, &text); }
 
 }  // namespace umbra

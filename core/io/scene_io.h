@@ -20,6 +20,8 @@ namespace umbra {
 /// A scene far from the file's origin is moved to it before positions are rounded to float; Scene::origin is the
 /// distance.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file);
+/// As if FILE, a native scene that need not be there, held this text: meshes are those beside it.
+[[nodiscard]] Scene load_scene(const std::filesystem::path& file, const std::string& text);
 
 /// FILE and "@N" or "@z"; the latter is empty where a file has the whole name, or where it does not end in a number or
 /// an axis (up_axis) after an @.

@@ -14,7 +14,8 @@
 
 namespace umbra {
 SceneFile read_native(const std::filesystem::path& file, const Reading& reading) {
-    const JsonText json(read_text(file, kMaxNativeFile));
+    const JsonText json(reading.text != nullptr ? SourceText{file.string(), *reading.text}
+                                                : read_text(file, kMaxNativeFile));
     const JsonFields f(json, json.root(), "a scene",
                        {"$schema",
                         "title",

@@ -1,0 +1,95 @@
+#include "umbra/bench/ladders/ladder_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <deque>
+#include <nlohmann/json.hpp>
+
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/pages/report_text.h"
+#include "umbra/bench/record/strict_record.h"
+#include "umbra/core/base/error.h"
+#include "umbra/core/io/scene_io.h"
+
+namespace umbra {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// What a ladder of a file refers to.
+struct ReadLadder {
+    LadderFileRecord record;
+    std::string name;
+    Ladder ladder;
+};
+
+/// Growing, or shrinking.
+bool are_in_order(const std::vector<double>& rungs) {
+    for (std::size_t k = 0; k < rungs.size(); ++k) {
+        if (!std::isfinite(rungs[k])) return false;
+        if (k > 0 && !(rungs[k] > rungs[k - 1]) != !(rungs[1] > rungs[0])) return false;
+        if (k > 0 && rungs[k] == rungs[k - 1]) return false;
+    }
+    return rungs.size() > 1;
+}
+
+fs::path scene_of_ladder(const Field& name, const fs::path& file,
+                         const std::function<fs::path(const std::string&)>& find) {
+    fs::path scene = file.parent_path() / name.required_text();
+    try {
+        if (!fs::is_regular_file(scene)) scene = find(name.text());
+    } catch (const UsageError& e) {
+        name.refuse(fmt::format("a native scene of ours, or beside this file ({})", e.what()));
+    }
+    if (scene.extension() != ".json") name.refuse("a native scene (.json), whose numbers \"set\" can name");
+    return scene;
+}
+
+/// Refuses a pointer that leads to no number in the scene.
+void check_pointer(const Field& pointer, const json& scene, const fs::path& file) {
+    const std::string expected = fmt::format("the JSON Pointer of a number in {}", file.string());
+    try {
+        if (!scene.at(json::json_pointer(pointer.required_text())).is_number()) pointer.refuse(expected);
+    } catch (const json::exception&) {
+        pointer.refuse(expected);
+    }
+}
+
+}  // namespace
+
+bool is_ladder_file(const std::string& word) { return fs::path(word).extension() == ".json"; }
+
+const Ladder& read_ladder(const fs::path& file, const std::function<fs::path(const std::string&)>& find) {
+    if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no file", file.string()));
+    static std::deque<ReadLadder> all;
+    const Field root  = parse_json(bytes_of(file), file.string());
+    auto record       = from_strict_record<LadderFileRecord>(root);
+    const fs::path at = scene_of_ladder(root["scene"], file, find);
+    static_cast<void>(load_scene(at));  // what is wrong with the scene has a line in its own file
+    const json scene = json::parse(bytes_of(at));
+    if (record.set.empty()) root["set"].refuse("a list with the JSON Pointer of at least one number of the scene");
+    for (const Field& pointer : root["set"].items()) check_pointer(pointer, scene, at);
+    if (!are_in_order(record.rungs)) root["rungs"].refuse("at least two numbers, growing or shrinking");
+    ReadLadder& read = all.emplace_back();
+    read.record      = std::move(record);
+    read.name        = folder_name(file.stem().string());
+    if (read.record.title.empty()) read.record.title = in_words(read.name);
+    if (read.record.about.empty())
+        read.record.about = fmt::format("{} of {} changes.", fmt::join(read.record.set, ", "), at.filename().string());
+    read.ladder = {.name  = read.name,
+                   .title = read.record.title,
+                   .about = read.record.about,
+                   .unit  = read.record.unit,
+                   .rungs = read.record.rungs,
+                   .scene = [at, scene, set = read.record.set](double rung) {
+                       json changed = scene;
+                       for (const std::string& pointer : set) changed[json::json_pointer(pointer)] = rung;
+                       return load_scene(at, changed.dump(2));
+                   }};
+    return read.ladder;
+}
+
+}  // namespace umbra

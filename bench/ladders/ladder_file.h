@@ -1,0 +1,39 @@
+// Ladders that people write: a scene, numbers in it that change from rung to rung, and their values (docs/report.md).
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "umbra/bench/ladders/ladder.h"
+#include "umbra/bench/record/record.h"
+
+namespace umbra {
+
+struct LadderFileRecord {
+    std::string title{}, about{}, unit{};
+    FileName scene{};
+    std::vector<std::string> set{};
+    std::vector<double> rungs{};
+};
+template <class Fields>
+void describe(Fields& of, Is<LadderFileRecord>) {
+    of.name("ladder_file", "a ladder of your own, called as its file is");
+    of("title", &LadderFileRecord::title, "default: its name in words");
+    of("about", &LadderFileRecord::about, "one or two sentences: what grows, and what it hurts");
+    of("unit", &LadderFileRecord::unit, "of a rung's value, as read after the number");
+    of("scene", &LadderFileRecord::scene, "a native scene beside the file, or of ours by name");
+    of("set", &LadderFileRecord::set, "JSON Pointers to numbers in the scene; each gets the rung's value");
+    of("rungs", &LadderFileRecord::rungs, "growing or shrinking, harmless first");
+}
+
+/// Whether a word of a command line is the file of a ladder, not a ladder's name.
+[[nodiscard]] bool is_ladder_file(const std::string& word);
+
+/// The ladder stays to the program's end, as the canonical ones do. `find` gives the file of a scene that is not beside
+/// the ladder's file; it may throw UsageError. Throws InputError.
+[[nodiscard]] const Ladder& read_ladder(const std::filesystem::path& file,
+                                        const std::function<std::filesystem::path(const std::string&)>& find);
+
+}  // namespace umbra
