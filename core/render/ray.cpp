@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/render/embree_api.h"
@@ -74,15 +75,21 @@ RayScene::RayScene(const Scene& scene, Met met) : impl_(std::make_unique<Impl>()
         static_assert(sizeof(vec3) == 12 && sizeof(uvec3) == 12);
         RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* vertices       = static_cast<vec3*>(rtcSetNewGeometryBuffer(
-                  geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), scene.positions.size()));
+                  geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(vec3), scene.positions.size() + 1));
         auto* indices        = static_cast<uvec3*>(
             rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(uvec3), triangles));
         if (vertices && indices) {
             std::transform(scene.positions.begin(), scene.positions.end(), vertices,
                            [&](vec3 p) { return space_.point(p); });
-            // Triangles that are not to be met have no area here, so that all keep their numbers.
+            // All triangles keep their numbers. Those that no ray can meet, or is not to meet, have a corner that is no
+            // number, so that Embree's tree leaves them out.
+            vertices[scene.positions.size()] = vec3(std::numeric_limits<float>::quiet_NaN());
+            const auto is_met                = [&](TriangleId t) {
+                const uvec3 v = scene.triangles[t];
+                return v.x != v.y && v.y != v.z && v.z != v.x && (met == Met::all || scene.blocks(t));
+            };
             for (TriangleId t = 0; t < triangles; ++t)
-                indices[t] = met == Met::all || scene.blocks(t) ? scene.triangles[t] : uvec3(scene.triangles[t][0]);
+                indices[t] = is_met(t) ? scene.triangles[t] : uvec3(static_cast<unsigned>(scene.positions.size()));
             impl_->vertices  = {vertices, scene.positions.size()};
             impl_->triangles = {indices, triangles};
             rtcSetGeometryOccludedFilterFunction(geometry, skip_own_triangle);
