@@ -10,6 +10,7 @@
 // Arthur Appel. Some Techniques for Shading Machine Renderings of Solids. 1968
 // Turner Whitted. An Improved Illumination Model for Shaded Display. 1980
 // Robert Cook, Thomas Porter, Loren Carpenter. Distributed Ray Tracing. 1984
+// Jarek Rossignac, Paul Borrel. Multi-Resolution 3D Approximations for Rendering Complex Scenes. 1993
 // Carsten Waechter, Nikolaus Binder. A Fast and Robust Method for Avoiding Self-Intersection. 2019
 #include <fmt/format.h>
 
@@ -17,6 +18,7 @@
 
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/render/tiles.h"
+#include "umbra/shadows/geometry/coarse.h"
 #include "umbra/shadows/light_rays/light_rays.h"
 #include "umbra/shadows/light_rays/sample_options.h"
 #include "umbra/shadows/method.h"
@@ -35,6 +37,7 @@ struct Options : SampleOptions {
     double epsilon      = 1e-4;
     Measure measure     = Measure::area;
     Cull cull           = Cull::shafts;
+    double coarseness   = 0;
 };
 
 const std::vector<Parameter> kParameters{
@@ -56,13 +59,29 @@ const std::vector<Parameter> kParameters{
         "Which rays to an area light are not traced: none, or those that a shaft from a tile of points to the "
         "light decides. S_j is the same, bit for bit.",
         {.phase = Phase::build, .choices = "none|shafts", .area_lights = true}),
+    parameter<&Options::coarseness>(
+        "coarseness",
+        "Level of detail: width of the cells in which an occluder's vertices are joined, 0: none are. Rays then start "
+        "half of it above their surface.",
+        {.unit = "scene diagonals", .phase = Phase::build, .min = 0, .max = 0.25, .sweep = "0|0.0005|0.002|0.008"}),
 };
+
+/// Triangles have their numbers in the scene, also where they are coarser.
+RayScene tree_of_occluders(const Scene& scene, double cell) {
+    if (!(cell > 0)) return RayScene(scene, Met::blocking);
+    Scene coarse     = scene;
+    coarse.triangles = coarse_triangles(scene, cell);
+    return RayScene(coarse, Met::blocking);
+}
 
 /// The triangles that block light, as rays and shafts look for them.
 struct Occluders final : Built {
     Occluders(const Scene& of, const SceneFacts& its_facts, const Options& options)
-        : Built(of, its_facts), diagonal(bounds(of).diagonal()), rays(of, Met::blocking) {
-        if (options.cull == Cull::shafts && !its_facts.hard_lights_only && is_tree_worth_it(of, options.samples))
+        : Built(of, its_facts),
+          diagonal(bounds(of).diagonal()),
+          rays(tree_of_occluders(of, options.coarseness * double(diagonal))) {
+        if (options.cull == Cull::shafts && options.coarseness == 0 && !its_facts.hard_lights_only &&
+            is_tree_worth_it(of, options.samples))
             shaft_tree.emplace(of, rays.space());
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
@@ -94,6 +113,9 @@ public:
     [[nodiscard]] Measure measures() const override { return options.measure; }
 
     [[nodiscard]] Service serves(const SceneFacts& facts) const override {
+        if (options.coarseness > 0)
+            return {How::approximately,
+                    fmt::format("occluders are coarser by cells of {:g} scene diagonals", options.coarseness)};
         if (!facts.hard_lights_only)
             return {How::approximately, fmt::format("area lights are sampled, {} rays a point", options.samples)};
         if (options.offset != OffsetPolicy::skip_triangle)
@@ -144,8 +166,14 @@ private:
     /// S_j of a point with no sample of the light in front of its plane: there is no irradiance to take a fraction of.
     static constexpr float kNoSample = -1;
 
+    /// Coarser occluders lie about half a cell above and below the surface that they stand for, so that rays which start
+    /// closer to it meet it at once.
     [[nodiscard]] StartPlaces start_places(const Occluders& from) const {
-        return {from.scene, from.rays.space(), options.offset, static_cast<float>(options.epsilon) * from.diagonal};
+        const bool lifted   = options.offset == OffsetPolicy::epsilon || options.coarseness > 0;
+        const double lift   = options.offset == OffsetPolicy::epsilon ? options.epsilon : 0;
+        const double height = std::max(lift, 0.5 * options.coarseness);
+        return {from.scene, from.rays.space(), lifted ? OffsetPolicy::epsilon : options.offset,
+                static_cast<float>(height) * from.diagonal};
     }
 
     /// The rays of one point, once more: without those of samples behind its plane, which nobody traces.
@@ -242,7 +270,8 @@ extern const MethodInfo ray_traced{
     .paper =
         "Arthur Appel, Some Techniques for Shading Machine Renderings of Solids, 1968; Turner Whitted, An Improved "
         "Illumination Model for Shaded Display, 1980; Robert Cook, Thomas Porter, Loren Carpenter, Distributed Ray "
-        "Tracing, 1984",
+        "Tracing, 1984; Jarek Rossignac, Paul Borrel, Multi-Resolution 3D Approximations for Rendering Complex Scenes, "
+        "1993",
     .summary =
         "A ray from each surface point to the light, or to many points of an area light, asks whether anything "
         "lies between. Errs by noise in penumbrae, and by the offset that keeps rays off their own surface. "

@@ -44,6 +44,7 @@ constexpr std::array kSettings{
     "ray_traced:samples=4"sv,
     "ray_traced:samples=4,offset=integer_offset,sampler=stratified,cull=none"sv,
     "ray_traced:samples=8,offset=epsilon,measure=irradiance"sv,
+    "ray_traced:samples=4,coarseness=0.02"sv,
     "soft_volumes:samples=4"sv,
     "soft_volumes:samples=8,sampler=r2,doubtful=count"sv,
     "radiosity:size=0.25,levels=1,samples=1"sv,
