@@ -51,7 +51,7 @@ std::set<std::string> keys_of(const json& object) {
 
 /// Whether a name consists of symbols, numbers and names of people alone, which no language changes.
 bool is_symbolic(const std::string& name) {
-    static const std::regex word("[A-Za-z]{3,}"), symbol("cos|sin|tan|max|min|Phong|Blinn|Gouraud");
+    static const std::regex word("[A-Za-z]{3,}"), symbol("cos|sin|tan|max|min|RGB|Phong|Blinn|Gouraud");
     if (name == "on") return false;
     return std::all_of(std::sregex_iterator(name.begin(), name.end(), word), std::sregex_iterator(),
                        [](const std::smatch& found) { return std::regex_match(found.str(), symbol); });

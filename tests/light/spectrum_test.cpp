@@ -109,6 +109,33 @@ TEST(Spectrum, ErrorsOfRgbAreThoseOfThePage) {
     }
 }
 
+/// As [1, 0.5, 0]: what a picture cannot show is 0, six digits.
+std::string list(dvec3 colour) {
+    std::string text;
+    for (int c = 0; c < 3; ++c) {
+        std::string number = fmt::format("{:.6f}", std::max(colour[c], 0.0));
+        number.erase(number.find_last_not_of('0') + 1);
+        if (number.back() == '.') number.pop_back();
+        text += (c > 0 ? ", " : "[") + number;
+    }
+    return text + "]";
+}
+
+/// B12 of the lectures shows each paint under the lamp of 2856 K.
+TEST(Spectrum, ColoursAreThoseOfTheLecture) {
+    std::ifstream in(std::string(UMBRA_TOP) + "/bench/report/lectures/experiments.json");
+    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    const Spectrum& light = kLights[0].spectrum;
+    EXPECT_NE(page.find("\"colour\": " + list(rgb(light, kWhite))), std::string::npos) << list(rgb(light, kWhite));
+    for (std::size_t k = 0; k < kPaints.size(); ++k) {
+        const SpectralColour c     = spectral_colour(kPaints[k].spectrum, light, kWhite);
+        const dvec3 paint          = rgb(kPaints[k].spectrum * kWhite, kWhite);
+        const std::string in_rgb   = fmt::format("\"O_d\": {}", list(paint)),
+                          true_one = fmt::format("\"/objects/{}/material/O_d\": {}", k + 1, list(c.spectral / 2.0));
+        for (const std::string& part : {in_rgb, true_one}) EXPECT_NE(page.find(part), std::string::npos) << part;
+    }
+}
+
 /// A ball of each paint on a grey floor, once with the colours under the light itself, once with a coloured light.
 TEST(Spectrum, OneSceneDiffersByWhatThePageSays) {
     const Spectrum& light = kLights[0].spectrum;
