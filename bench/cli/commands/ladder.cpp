@@ -22,7 +22,9 @@ int ladder(LadderLine line, const Common& common) {
 
 Action ladder_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<LadderLine>();
-    app.add_option("LADDER", line->options.names, "Ladders, or files of your own (docs/report.md; default: all of ours; umbra list names them)")->type_name("");
+    app.add_option("LADDER", line->options.names,
+                   "Ladders, or files of your own (docs/report.md; default: all of ours; umbra list names them)")
+        ->type_name("");
     add_methods(app, line->options.methods,
                 "Methods, with settings (default: all that reports show but exact, each also @textbook)");
     app.add_option("--patience", line->options.patience_s,
