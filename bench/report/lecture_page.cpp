@@ -109,9 +109,13 @@ std::string deviation_in_words(const ExperimentRecord& experiment, Language lang
 std::string pairs_in_words(const ExperimentRecord& experiment, Language language) {
     if (experiment.pairs.empty()) return "";
     std::string words = lecture_name("Difference of the pictures (RMSE)", language) + ":";
+    const auto quoted =
+        [&, marks = lecture_words(language)["phrases"]["quoted"].get<std::string>()](const std::string& name) {
+            return fmt::format(fmt::runtime(marks), lecture_name(name, language));
+        };
     for (const ExperimentPair& pair : experiment.pairs)
-        words += fmt::format(" “{}” / “{}”: {};", lecture_name(pair.one, language), lecture_name(pair.other, language),
-                             score_in_words(pair.rmse, language));
+        words +=
+            fmt::format(" {} / {}: {};", quoted(pair.one), quoted(pair.other), score_in_words(pair.rmse, language));
     words.back() = '.';
     return words;
 }
@@ -143,7 +147,7 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
     const ExperimentRecord* experiment = experiment_of(experiments, row.id);
     json view                          = {{"id", row.id},
                                           {"topic", words["topic"]},
-                                          {"source", row.source},
+                                          {"source", lecture_name(row.source, language)},
                                           {"state", state_in_words(row.state, language)},
                                           {"unfinished", !row.state.starts_with("works")},
                                           {"shown", false}};

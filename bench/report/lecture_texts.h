@@ -29,7 +29,7 @@ inline constexpr Language Language::english{"en"};
 
 /// Its texts.json: {decimal_comma, phrases, chapters: {A: {title, exercises: [{question, answer}]}}, topics: {A1: {topic,
 /// proves}}, course, names}. `proves` is what the picture of a topic's scene shows; absent where no scene shows it. `names`
-/// translates what topics.json calls pictures and figures; English has none.
+/// translates what topics.json calls pictures, figures and sources; English has none.
 [[nodiscard]] const nlohmann::json& lecture_words(Language language);
 
 /// A name of topics.json or experiments.json in the language; one that `names` lacks, such as "n = 0.5", with the

@@ -124,13 +124,13 @@ TEST(LectureExperiments, AreShownWithTheirPlots) {
     const std::string shown = topic(page(out), "A9");
     for (const char* part :
          {"lectures/A9-1.png", "href=\"lectures/A9-2.json\"", "<figcaption>1 / d²<", "<i>f_att = min(",
-          "class=\"dots\"", "largest difference from the formula: ", "(allowed 1.0·10⁻⁵)"})
+          "class=\"dots\"", "Largest difference from the formula: ", "(allowed 1.0·10⁻⁵)"})
         EXPECT_NE(shown.find(part), std::string::npos) << part << " in\n" << shown;
     EXPECT_NE(topic(page(out), "D6").find("N = 4: 0.2"), std::string::npos) << topic(page(out), "D6");
     EXPECT_NE(topic(page(out), "A5").find("stroke-dasharray"), std::string::npos);
     write_report({out}, handed, {.language = *language_named("de"), .with_exr = false});
     const std::string german = topic(page(handed), "A7");
-    for (const char* part : {"<figcaption>Rechteck, w = 0,5<", "größte Abweichung von der Formel", ">0,2</text>"})
+    for (const char* part : {"<figcaption>Rechteck, w = 0,5<", "Größte Abweichung von der Formel", ">0,2</text>"})
         EXPECT_NE(german.find(part), std::string::npos) << part << " in\n" << german;
     EXPECT_TRUE(links_hold(handed / "lectures.html"));
     draw_experiments(out / "lectures", UMBRA_SCENES, "umbra report");  // replaces its own

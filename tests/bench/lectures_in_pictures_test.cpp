@@ -65,6 +65,7 @@ std::set<std::string> names_shown() {
             if (!value.name.empty()) names.insert(value.name);
     };
     for (const LectureRow& row : lecture_rows()) {
+        if (row.source.find("errs") != std::string::npos) names.insert(row.source);
         if (!row.show) continue;
         add(row.show->pictures);
         for (const LectureFigure& figure : row.show->figures) names.insert(figure.what), add(figure.values);
