@@ -102,6 +102,39 @@ TEST(FormulaBodies, InterpenetratingBodiesNeedNoIntersection) {
     EXPECT_EQ(nearest(1.5), std::pair('b', 4.1));
 }
 
+TEST(FormulaBodies, CylinderAndConeEndAtTheirCaps) {
+    const auto at = [](const std::optional<Passage>& p) {
+        return p ? std::pair(p->enter, p->leave) : std::pair(9.0, 9.0);
+    };
+    // Across, along, and past a cylinder of radius 1 and half height 2.
+    EXPECT_EQ(at(through_cylinder({-3, 0, 0}, {1, 0, 0}, 1, 2)), std::pair(2.0, 4.0));
+    EXPECT_EQ(at(through_cylinder({0.5, 0, 5}, {0, 0, -1}, 1, 2)), std::pair(3.0, 7.0));
+    EXPECT_FALSE(through_cylinder({-3, 0, 2.5}, {1, 0, 0}, 1, 2));
+    EXPECT_FALSE(through_cylinder({1.5, 0, 5}, {0, 0, -1}, 1, 2));
+    // A cone whose base, of radius 1, is at z = -1: half as wide at z = 0. Down its axis, across, and beside its mirror image.
+    EXPECT_EQ(at(through_cone({0, 0, 3}, {0, 0, -1}, 1, 1)), std::pair(2.0, 4.0));
+    EXPECT_EQ(at(through_cone({-3, 0, 0}, {1, 0, 0}, 1, 1)), std::pair(2.5, 3.5));
+    EXPECT_EQ(at(through_cone({0.25, 0, 3}, {0, 0, -1}, 1, 1)), std::pair(2.5, 4.0));
+    EXPECT_FALSE(through_cone({-3, 0, 1.5}, {1, 0, 0}, 1, 1));
+    EXPECT_EQ(at(through_cone({-3, 0, -1}, {2, 0, 0}, 1, 1)), std::pair(1.0, 2.0)) << "any length of the direction";
+}
+
+TEST(FormulaBodies, ATorusIsEnteredTwice) {
+    const auto check = [](dvec3 o, dvec3 d, const std::vector<double>& expected) {
+        const Passages found = through_torus(o, d, 2, 0.5);
+        ASSERT_EQ(2 * static_cast<std::size_t>(found.count), expected.size());
+        for (std::size_t k = 0; k < expected.size(); ++k)
+            EXPECT_NEAR(k % 2 == 0 ? found.list[k / 2].enter : found.list[k / 2].leave, expected[k], 1e-12);
+    };
+    check({-5, 0, 0}, {1, 0, 0}, {2.5, 3.5, 6.5, 7.5});
+    check({-5, 0, 0}, {0.5, 0, 0}, {5, 7, 13, 15});
+    check({0, 0, 5}, {0, 0, -1}, {});                      // through its hole
+    check({2, 0, 5}, {0, 0, -1}, {4.5, 5.5});              // through its tube
+    check({-5, 0, 0.3}, {1, 0, 0}, {2.6, 3.4, 6.6, 7.4});  // sqrt(0.25 - 0.09) = 0.4 around each circle
+    check({-5, 0, 0.6}, {1, 0, 0}, {});
+    check({2.4, -9, 0}, {0, 1, 0}, {9 - std::sqrt(0.49), 9 + std::sqrt(0.49)});  // x^2 + y^2 = 6.25 outside
+}
+
 TEST(FormulaBodies, AgreeWithFineTriangles) {
     Scene scene;
     scene.materials.resize(1);

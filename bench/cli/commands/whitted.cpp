@@ -91,8 +91,9 @@ Action whitted_command(CLI::App& app, const Common& common) {
     app.add_flag("--glossy", options.glossy,
                  "Spread mirrored rays by each material's shininess: rough mirrors, with noise that more "
                  "--pixel-samples average out");
-    app.add_flag("--formula", line->formula,
-                 "Add a picture in which rays meet spheres and boxes by formula instead of by triangles");
+    app.add_flag(
+        "--formula", line->formula,
+        "Add a picture in which rays meet spheres, boxes, cylinders, cones and tori by formula instead of by triangles");
     app.add_option("--runs", options.runs, "Runs of each way to trace; the fastest counts")
         ->check(number_in(1, 1000, "an integer from 1 to 1000"))
         ->capture_default_str()

@@ -6,6 +6,9 @@
 #include <optional>
 #include <utility>
 
+#include <Eigen/Dense>
+
+#include "umbra/bench/studies/light/body_tree.h"
 #include "umbra/core/base/disjoint_sets.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/scene/topology.h"
@@ -13,7 +16,7 @@
 namespace umbra {
 namespace {
 
-constexpr std::size_t kFewestOfASphere = 20, kTrianglesOfABox = 12;
+constexpr std::size_t kFewestOfARoundBody = 20, kTrianglesOfABox = 12;
 constexpr double kNormalCosine = 1 - 1e-5;  ///< of a vertex normal and the surface's own, at least
 
 /// The largest distance of a vertex from a surface of this size: some roundings to float of its coordinates.
@@ -29,7 +32,9 @@ public:
 
     [[nodiscard]] std::optional<Body> as_body() const {
         if (triangles_.size() == kTrianglesOfABox) return as_box();
-        return triangles_.size() >= kFewestOfASphere ? as_sphere() : std::nullopt;
+        if (triangles_.size() < kFewestOfARoundBody || scene_.normals.empty()) return std::nullopt;
+        if (auto sphere = as_sphere()) return sphere;
+        return as_turned();
     }
 
 private:
@@ -80,7 +85,6 @@ private:
     // The centre c and the radius r that make sum (|p - c|^2 - r^2)^2 least over all corners p. From their mean, which
     // is then 0: 2 (sum p p^T) c = sum |p|^2 p, and r^2 = |c|^2 + mean |p|^2.
     [[nodiscard]] std::optional<Body> as_sphere() const {
-        if (scene_.normals.empty()) return std::nullopt;
         const dvec3 mean = mean_corner();
         dmat3 squares(0);
         dvec3 cubes(0);
@@ -123,6 +127,90 @@ private:
             const dvec3 normal = area(t);
             const double out   = glm::dot(normal, corner(t, 0) - centre) * (inside_out ? -1 : 1);
             return normal == dvec3(0) || out >= 0.4 * radius * glm::length(normal);
+        });
+    }
+
+    /// A body around one of the principal axes of its vertices, whose moments across it are equal.
+    [[nodiscard]] std::optional<Body> as_turned() const {
+        const dvec3 mean        = mean_corner();
+        Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+        each_corner([&](TriangleId t, int k) {
+            const dvec3 p = corner(t, k) - mean;
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) squares(i, j) += p[i] * p[j];
+        });
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> moments(squares);
+        const Eigen::Vector3d& size = moments.eigenvalues();  // ascending
+        for (const int odd : {0, 2}) {
+            if (!(size[2] - size[0] > 1e-3 * size[2]) || !(std::abs(size[1] - size[2 - odd]) < 1e-4 * size[2]))
+                continue;
+            const auto axis = [&](int k) {
+                const Eigen::Vector3d v = moments.eigenvectors().col(k);
+                return dvec3(v.x(), v.y(), v.z());
+            };
+            const dvec3 z = axis(odd), x = axis(1);
+            for (const double way : {1.0, -1.0}) {
+                const dmat3 axes(x, glm::cross(way * z, x), way * z);
+                for (const BodyKind kind : {BodyKind::cylinder, BodyKind::cone, BodyKind::torus})
+                    if (const auto found = turned(kind, mean, axes)) return found;
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// Sizes from the vertices; then all vertices, normals and triangles have to fit.
+    [[nodiscard]] std::optional<Body> turned(BodyKind kind, dvec3 mean, const dmat3& axes) const {
+        double low = HUGE_VAL, high = -HUGE_VAL, widest = 0;
+        double n = 0, r = 0, rr = 0, s = 0, rs = 0;  // sums over corners of 1, r, r^2, s = r^2 + z^2, r s
+        each_corner([&](TriangleId t, int k) {
+            const dvec3 p    = glm::transpose(axes) * (corner(t, k) - mean);
+            const double far = std::hypot(p.x, p.y), square = far * far + p.z * p.z;
+            low = std::min(low, p.z), high = std::max(high, p.z), widest = std::max(widest, far);
+            n += 1, r += far, rr += far * far, s += square, rs += far * square;
+        });
+        const double volume_at = volume(mean);
+        Body found             = body(kind, mean, volume_at < 0);
+        found.axes             = axes;
+        double whole           = 0;
+        if (kind == BodyKind::torus) {
+            // The circle s = 2 major r + minor^2 - major^2 around which the vertices lie, by least squares.
+            const double major        = 0.5 * (n * rs - r * s) / (n * rr - r * r),
+                         minor_square = (s - 2 * major * r) / n + major * major;
+            if (!(major > 0 && minor_square > 0 && minor_square < major * major)) return std::nullopt;
+            const double minor = std::sqrt(minor_square);
+            found.radius       = major;
+            found.half_size    = {major + minor, major + minor, minor};
+            whole              = 2 * kPi * kPi * major * minor_square;
+        } else {
+            const double half = 0.5 * (high - low);
+            if (!(half > 0 && widest > 0)) return std::nullopt;
+            found.centre += 0.5 * (low + high) * axes[2];
+            found.radius    = widest;
+            found.half_size = {widest, widest, half};
+            whole           = 2 * kPi * widest * widest * half / (kind == BodyKind::cone ? 3 : 1);
+        }
+        const double filled = std::abs(volume_at) / whole;
+        if (!(filled > 0.4 && filled < 1.001) || !lies_on(found)) return std::nullopt;
+        return found;
+    }
+
+    /// Whether all vertices lie on the body's surface with its normals, and all triangles face along it.
+    [[nodiscard]] bool lies_on(const Body& found) const {
+        const double allowed = rounding(glm::length(found.half_size), farthest_coordinate());
+        return std::ranges::all_of(triangles_, [&](TriangleId t) {
+            const dvec3 facet  = area(t) * (found.inside_out ? -1.0 : 1.0),
+                        middle = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0;
+            if (facet != dvec3(0) && !(glm::dot(facet, onto_surface(found, middle).normal) >= 0.4 * glm::length(facet)))
+                return false;
+            for (int k = 0; k < 3; ++k) {
+                const dvec3 p = corner(t, k), normal(scene_.normals[scene_.triangles[t][k]]);
+                // From a little towards the middle, where an edge has one normal of two.
+                const OnSurface on = onto_surface(found, p + 1e-3 * (middle - p));
+                if (!(glm::length(onto_surface(found, p).position - p) <= allowed) || normal == dvec3(0) ||
+                    !(std::abs(glm::dot(normal, on.normal)) >= kNormalCosine * glm::length(normal)))
+                    return false;
+            }
+            return true;
         });
     }
 

@@ -9,8 +9,8 @@
 namespace umbra {
 namespace {
 
-/// World space to the axes of a box, from its centre.
-dvec3 into_box(const Body& box, dvec3 direction) { return glm::transpose(box.axes) * direction; }
+/// World space to the axes of a body, from its centre.
+dvec3 into_axes(const Body& body, dvec3 direction) { return glm::transpose(body.axes) * direction; }
 
 /// Half the size of a body's bounds, world space.
 dvec3 half_bounds(const Body& body) {
@@ -20,26 +20,31 @@ dvec3 half_bounds(const Body& body) {
     return half;
 }
 
-/// Where a ray crosses a body's surface: up to two distances in (least, reach), ascending.
+/// Where a ray crosses a body's surface: distances in (least, reach), ascending.
 struct Crossings {
-    double t[2]{};
+    double t[4]{};
     int count = 0;
 };
 
-// A ray that starts on a convex body lies inside it from there on, or up to there: one end of
-// its passage is 0 except for rounding, and the sign of the other one decides. No tolerance: however short the way
-// through the body is, it is found.
+// A ray that starts on a body has a crossing there, which is 0 except for rounding: the nearest to 0, and it does not
+// count. No tolerance: however short the way through the body is, it is found.
 Crossings crossings(const Body& body, bool starts_here, const BodyRay& ray, double least) {
-    const std::optional<Passage> passage = through_body(body, ray.origin, ray.direction);
+    const Passages passages = through_body(body, ray.origin, ray.direction);
+    double ends[4]{};
+    int count = 0, start = -1;
+    for (int k = 0; k < passages.count; ++k)
+        for (const double end :
+             {passages.list[static_cast<std::size_t>(k)].enter, passages.list[static_cast<std::size_t>(k)].leave})
+            ends[count++] = end;
+    for (int k = 0; starts_here && k < count; ++k)
+        if (start < 0 || std::abs(ends[k]) < std::abs(ends[start])) start = k;
     Crossings found;
-    if (!passage || (starts_here && !(passage->enter + passage->leave > 0))) return found;
-    const auto add = [&](double t, double from) {
-        if (t > from && t < ray.reach) found.t[found.count++] = t;
-    };
-    if (!starts_here) add(passage->enter, least);
-    add(passage->leave, starts_here ? 0 : least);
+    for (int k = 0; k < count; ++k)
+        if (k != start && ends[k] > (starts_here ? 0 : least) && ends[k] < ray.reach) found.t[found.count++] = ends[k];
     return found;
 }
+
+Passages alone(const std::optional<Passage>& passage) { return passage ? Passages{{*passage}, 1} : Passages{}; }
 
 // In tree space the bodies lie within [-1, 1], so that floats there round by at most 2^-24, and by 2^-22 along a ray
 // through it. Bounds and reaches are larger by kSlack.
@@ -47,19 +52,53 @@ constexpr double kSlack = 0x1p-20;
 
 }  // namespace
 
-std::optional<Passage> through_body(const Body& body, dvec3 origin, dvec3 direction) {
-    if (body.kind == BodyKind::sphere) return through_sphere(origin, direction, body.centre, body.radius);
-    return through_box(into_box(body, origin - body.centre), into_box(body, direction), -body.half_size,
-                       body.half_size);
+Passages through_body(const Body& body, dvec3 origin, dvec3 direction) {
+    if (body.kind == BodyKind::sphere) return alone(through_sphere(origin, direction, body.centre, body.radius));
+    const dvec3 from = into_axes(body, origin - body.centre), along = into_axes(body, direction);
+    switch (body.kind) {
+        case BodyKind::cylinder: return alone(through_cylinder(from, along, body.radius, body.half_size.z));
+        case BodyKind::cone: return alone(through_cone(from, along, body.radius, body.half_size.z));
+        case BodyKind::torus: return through_torus(from, along, body.radius, body.half_size.z);
+        default: return alone(through_box(from, along, -body.half_size, body.half_size));
+    }
 }
+
+namespace {
+
+/// Cylinder, cone or torus: p along the axes, and the answer too.
+OnSurface onto_turned(const Body& body, dvec3 p) {
+    const double half = body.half_size.z, far = std::hypot(p.x, p.y);
+    const dvec3 outwards = far > 0 ? dvec3(p.x / far, p.y / far, 0) : dvec3(1, 0, 0), axis(0, 0, 1);
+    if (body.kind == BodyKind::torus) {
+        const dvec3 ring = body.radius * outwards, normal = glm::normalize(p - ring);
+        return {ring + half * normal, normal};
+    }
+    const bool is_cone = body.kind == BodyKind::cone;
+    // The side, and the caps: those that p is farther outside of, or less far inside.
+    const dvec3 normal  = is_cone ? glm::normalize(2 * half * outwards + body.radius * axis) : outwards;
+    const double beside = glm::dot(normal, p - (is_cone ? half * axis : body.radius * outwards)),
+                 beyond = is_cone ? -half - p.z : std::abs(p.z) - half;
+    if (beyond > beside) {
+        const double side = is_cone || p.z < 0 ? -1 : 1;
+        return {std::min(far, body.radius) * outwards + side * half * axis, side * axis};
+    }
+    const double z = std::clamp(p.z - beside * normal.z, -half, half);
+    return {(is_cone ? body.radius * (half - z) / (2 * half) : body.radius) * outwards + z * axis, normal};
+}
+
+}  // namespace
 
 OnSurface onto_surface(const Body& body, dvec3 p) {
     if (body.kind == BodyKind::sphere) {
         const dvec3 normal = glm::normalize(p - body.centre);
         return {body.centre + body.radius * normal, normal};
     }
-    dvec3 local = into_box(body, p - body.centre);
-    int face    = 0;
+    dvec3 local = into_axes(body, p - body.centre);
+    if (body.kind != BodyKind::box) {
+        const OnSurface on = onto_turned(body, local);
+        return {body.centre + body.axes * on.position, body.axes * on.normal};
+    }
+    int face = 0;
     for (int k = 1; k < 3; ++k)
         if (std::abs(local[k]) - body.half_size[k] > std::abs(local[face]) - body.half_size[face]) face = k;
     const double side = local[face] < 0 ? -1 : 1;

@@ -1,4 +1,4 @@
-// Rays against many spheres and boxes by formula: a tree of their bounds in Embree, the formulas in double.
+// Rays against many bodies by formula: a tree of their bounds in Embree, the formulas in double.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace umbra {
 
-/// Where a line is inside a body; t in lengths of `direction`. See through_sphere and through_box.
-[[nodiscard]] std::optional<Passage> through_body(const Body& body, dvec3 origin, dvec3 direction);
+/// Where a line is inside a body; t in lengths of `direction`. See through_sphere and the others.
+[[nodiscard]] Passages through_body(const Body& body, dvec3 origin, dvec3 direction);
 
 /// The place on the body's surface that is nearest to a place close to it, and the unit normal there, outwards.
 struct OnSurface {

@@ -1,6 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <array>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "report_assets.h"
 #include "umbra/bench/pages/report_text.h"
@@ -148,28 +152,41 @@ void show_tables(const Json& record, StudyReport& report) {
          explained(record["ways"], kAboutWays)}};
 }
 
+constexpr std::array<std::array<const char*, 2>, 5> kKindsOfBodies{
+    {{"spheres", "sphere"}, {"boxes", "box"}, {"cylinders", "cylinder"}, {"cones", "cone"}, {"tori", "torus"}}};
+
+/// "2 spheres, 1 box", or "spheres: 2, boxes: 1"; records of earlier versions have spheres and boxes alone.
+std::string bodies_in_words(const Json& bodies, bool plural_first) {
+    std::vector<std::string> parts;
+    for (const auto& [plural, one] : kKindsOfBodies) {
+        const double many = bodies.value(plural, 0.0);
+        if (many > 0)
+            parts.push_back(plural_first ? fmt::format("{}: {}", plural, count(many))
+                                         : fmt::format("{} {}", count(many), many == 1 ? one : plural));
+    }
+    return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 void show_formula(const Json& record, StudyReport& report) {
     report.words["formula"] = Json::array();
     const Json& formula     = record["formula"];
     if (formula.is_null()) return;
-    const double boxes  = formula["bodies"]["boxes"].get<double>();
     const Json& samples = formula["light_samples"];
-    report.words["formula"].push_back({{"spheres", how_many(formula["bodies"]["spheres"], "sphere")},
-                                       {"boxes", count(boxes) + (boxes == 1 ? " box" : " boxes")},
+    report.words["formula"].push_back({{"bodies", bodies_in_words(formula["bodies"], false)},
                                        {"replaced", how_many(formula["triangles_replaced"], "triangle")},
                                        {"left", how_many(formula["triangles_left"], "triangle")},
                                        {"samples", samples.is_null() ? "" : amount(samples)}});
     report.pictures["formula"] = {
-        {record["picture"], "The scene with its spheres and boxes as triangles",
+        {record["picture"], "The scene with its bodies as triangles",
          fmt::format("Triangles: {} ms.", figure(record["total_ms"], 1))},
-        {formula["picture"], "The scene with its spheres and boxes by formula",
+        {formula["picture"], "The scene with its bodies by formula",
          fmt::format("By formula: {}, {} ms; {}, largest difference {}.", how_many(formula["rays"]),
                      figure(formula["ms"], 1), errors_of(formula, "the picture of triangles"),
                      digits(formula["max_difference"]))}};
     report.sentences.push_back(
-        {fmt::format("by formula (spheres: {}, boxes: {}, instead of {} triangles): {} ms; RMSE {}, FLIP {}, largest "
+        {fmt::format("by formula ({}, instead of {} triangles): {} ms; RMSE {}, FLIP {}, largest "
                      "difference {}",
-                     amount(formula["bodies"]["spheres"]), count(boxes), amount(formula["triangles_replaced"]),
+                     bodies_in_words(formula["bodies"], true), amount(formula["triangles_replaced"]),
                      figure(formula["ms"], 1), figure(formula["rmse"], 5), figure(formula["flip"], 4),
                      fmt::format("{:.4g}", formula["max_difference"].get<double>())),
          Shown::in_terminal});

@@ -450,7 +450,12 @@ Json formula_json(const Study& study, const Traced& triangles, const Image& show
     Json depths            = Json::array();
     for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
         depths.push_back(counts_json(level, traced.tree.levels[level].counts));
-    return {{"bodies", {{"spheres", bodies.count(BodyKind::sphere)}, {"boxes", bodies.count(BodyKind::box)}}},
+    return {{"bodies",
+             {{"spheres", bodies.count(BodyKind::sphere)},
+              {"boxes", bodies.count(BodyKind::box)},
+              {"cylinders", bodies.count(BodyKind::cylinder)},
+              {"cones", bodies.count(BodyKind::cone)},
+              {"tori", bodies.count(BodyKind::torus)}}},
             {"triangles_replaced", bodies.triangles()},
             {"triangles_left", study.scene().triangles.size() - bodies.triangles()},
             {"light_samples", sampled ? Json(kFormulaLightSamples) : Json()},

@@ -338,7 +338,7 @@ TEST(WhittedStudy, FormulaRecordAndPictureAreWhatWasTraced) {
         double reflected = 0;
         for (const Json& d : record["depths"]) reflected += d["reflected"].get<double>();
         EXPECT_EQ(found["totals_of_triangles"]["reflected"], reflected);
-        EXPECT_EQ(found["bodies"], (Json{{"spheres", 1}, {"boxes", 1}}));
+        EXPECT_EQ(found["bodies"], (Json{{"spheres", 1}, {"boxes", 1}, {"cylinders", 0}, {"cones", 0}, {"tori", 0}}));
         EXPECT_EQ(found["triangles_replaced"], 24u * 22 + 12);
         EXPECT_EQ(found["triangles_left"], scene.triangles.size() - 24 * 22 - 12);
         EXPECT_TRUE(found["light_samples"].is_null());
@@ -427,7 +427,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                                                      {"volumes", 5317},
                                                      {"triangles", 5418},
                                                      {"different", 5519}}})}};
-    record["formula"]      = {{"bodies", {{"spheres", 31}, {"boxes", 32}}},
+    record["formula"]      = {{"bodies", {{"spheres", 31}, {"boxes", 32}, {"cones", 1}}},
                               {"triangles_replaced", 3301},
                               {"triangles_left", 3402},
                               {"light_samples", 16},
@@ -453,8 +453,9 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                               {"picture", "formula.png"}};
     const std::string text = study_text(whitted_report(record));
     EXPECT_NE(
-        text.find("by formula (spheres: 31, boxes: 32, instead of 3301 triangles): 48.5 ms; RMSE 0.03125, FLIP 0.0469, "
-                  "largest difference 0.875\n"),
+        text.find(
+            "by formula (spheres: 31, boxes: 32, cones: 1, instead of 3301 triangles): 48.5 ms; RMSE 0.03125, FLIP 0.0469, "
+            "largest difference 0.875\n"),
         std::string::npos)
         << text;
     EXPECT_NE(text.find("\nreflected               4210        3604\n"), std::string::npos) << text;
@@ -498,7 +499,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                                   "23 pixels of diffuse",
                                   "19 of them (orange)",
                                   "<img src=\"formula.png\"",
-                                  "31 spheres and 32 boxes",
+                                  "31 spheres, 32 boxes, 1 cone",
                                   "instead of " + count(3301) + " triangles; " + count(3402) + " triangles remain",
                                   "the mean of 16 of them",
                                   count(4715) + " rays, 48.5 ms; RMSE 0.03125",
