@@ -138,6 +138,27 @@ TEST(Coarse, RaysMeetTheCoarserBall) {
     }
 }
 
+/// The coarser ball lies above the fine one in places: rays start above it, so that few of the ball's own points are dark.
+TEST(Coarse, RaysStartAboveTheCoarserBall) {
+    const Scene scene       = ball_scene(LightKind::point);
+    const PointBatch points = primary(scene);
+    const auto s            = [&](const std::string& method) {
+        MethodCase rays(method, scene);
+        rays.prepare(0);
+        return rays.visibility(points, 0).s;
+    };
+    const auto fine = s("ray_traced"), coarse = s("ray_traced:coarseness=0.02");
+    std::size_t lit = 0, dark = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (points.triangle[i] == kNoTriangle || scene.triangle_object[points.triangle[i]] != 1u ||
+            !is_open(points, 0, i) || fine[i] != 1)
+            continue;
+        ++lit, dark += coarse[i] < 1 ? 1 : 0;
+    }
+    EXPECT_GT(lit, 50u);
+    EXPECT_LT(double(dark), 0.05 * double(lit));
+}
+
 TEST(Coarse, BlameNamesTrianglesOfTheBall) {
     const Scene scene       = ball_scene(LightKind::point);
     const PointBatch points = primary(scene);
