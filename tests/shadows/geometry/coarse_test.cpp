@@ -78,6 +78,22 @@ TEST(Coarse, KeepsNoTriangleTwiceAndJoinsNoObjects) {
     }
 }
 
+TEST(Coarse, MakesOneSheetOfTwoThatAreCloseTogether) {
+    const Scene one              = grid(4, 1);
+    std::vector<vec3> positions  = one.positions;
+    std::vector<uvec3> triangles = one.triangles;
+    const auto first             = static_cast<std::uint32_t>(positions.size());
+    for (const vec3 p : one.positions) positions.push_back(p + vec3(0, 0.01f, 0));
+    for (const uvec3 t : one.triangles) triangles.emplace_back(t.x + first, t.z + first, t.y + first);
+    const Scene slab = scene_of(positions, triangles);
+    for (const double cell : {0.2, 0.3}) {
+        const std::size_t whole = with_area(coarse_triangles(one, cell));
+        EXPECT_GT(whole, 0u);
+        EXPECT_EQ(with_area(coarse_triangles(slab, cell)), whole) << cell;
+    }
+    EXPECT_EQ(with_area(coarse_triangles(slab, 0.004)), slab.triangles.size());
+}
+
 /// A floor, a ball of many triangles above it, and a lamp.
 Scene ball_scene(LightKind kind) {
     Scene scene = grid(1, 8);
