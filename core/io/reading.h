@@ -19,7 +19,7 @@ struct Reading {
     UpAxis up = UpAxis::y;
     dvec3 origin{0};                    ///< of the scene, in the file's space once it stands upright
     int frame               = 0;        ///< of the file's animation, counted from 0
-    const std::string* text = nullptr;  ///< of a native scene, instead of what the file holds
+    const std::string* text = nullptr;  ///< of a native scene, in place of that of its file
 
     /// Exact: components trade places and signs.
     [[nodiscard]] dvec3 upright(dvec3 v) const {
