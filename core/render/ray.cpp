@@ -81,8 +81,8 @@ RayScene::RayScene(const Scene& scene, Met met) : impl_(std::make_unique<Impl>()
         if (vertices && indices) {
             std::transform(scene.positions.begin(), scene.positions.end(), vertices,
                            [&](vec3 p) { return space_.point(p); });
-            // All triangles keep their numbers. Those that no ray can meet, or is not to meet, have a corner that is not a
-            // number, so that Embree's tree leaves them out.
+            // All triangles keep their numbers. Those that no ray can meet, or is not to meet, have a corner without
+            // numbers (NaN), so that Embree's tree leaves them out.
             vertices[scene.positions.size()] = vec3(std::numeric_limits<float>::quiet_NaN());
             const auto is_met                = [&](TriangleId t) {
                 const uvec3 v = scene.triangles[t];
