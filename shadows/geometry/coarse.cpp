@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 #include <unordered_map>
+
 namespace umbra {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "umbra/core/base/geometry.h"
+#include "umbra/core/scene/primitives.h"
 #include "umbra/shadows/geometry/coarse.h"
 #include "umbra/tests/support/mesh_scene.h"
 #include "umbra/tests/support/method_case.h"
@@ -12,20 +12,10 @@
 namespace umbra {
 namespace {
 
-/// A sheet of n x n squares, as wide as `width`, at height y.
-Scene grid(std::uint32_t n, float width, float y = 0) {
-    std::vector<vec3> positions;
-    std::vector<uvec3> triangles;
-    for (std::uint32_t j = 0; j <= n; ++j)
-        for (std::uint32_t i = 0; i <= n; ++i)
-            positions.emplace_back(width * (float(i) / float(n) - 0.5f), y, width * (0.5f - float(j) / float(n)));
-    for (std::uint32_t j = 0; j < n; ++j)
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const std::uint32_t at = j * (n + 1) + i;
-            triangles.emplace_back(at, at + 1, at + n + 2);
-            triangles.emplace_back(at, at + n + 2, at + n + 1);
-        }
-    return scene_of(positions, triangles);
+/// A sheet of n x n squares.
+Scene grid(int n, float width) {
+    const Mesh sheet = make_plane(width, width, n);
+    return scene_of(sheet.positions, sheet.triangles);
 }
 
 double area(const Scene& scene, const std::vector<uvec3>& triangles) {
@@ -97,21 +87,9 @@ TEST(Coarse, MakesOneSheetOfTwoThatAreCloseTogether) {
 /// A floor, a ball of many triangles above it, and a lamp.
 Scene ball_scene(LightKind kind) {
     Scene scene = grid(1, 8);
-    std::vector<vec3> positions;
-    std::vector<uvec3> triangles;
-    constexpr std::uint32_t n = 64;
-    for (std::uint32_t j = 0; j <= n; ++j)
-        for (std::uint32_t i = 0; i <= n; ++i) {
-            const double a = 2 * kPi * i / n, b = kPi * j / n;
-            positions.emplace_back(std::sin(b) * std::cos(a), 2 + std::cos(b), std::sin(b) * std::sin(a));
-        }
-    for (std::uint32_t j = 0; j < n; ++j)
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const std::uint32_t at = j * (n + 1) + i;
-            triangles.emplace_back(at, at + 1, at + n + 2);
-            triangles.emplace_back(at, at + n + 2, at + n + 1);
-        }
-    add_object(scene, "ball", positions, {}, triangles, 0);
+    Mesh ball   = make_sphere(1, 64, 64);
+    for (vec3& p : ball.positions) p.y += 2;
+    add_object(scene, "ball", ball.positions, {}, ball.triangles, 0);
     Light light;
     light.name     = "lamp";
     light.kind     = kind;
