@@ -76,14 +76,7 @@ const std::vector<Cause>& causes() {
 
 std::vector<fs::path> scenes_beside(const Field& names, const fs::path& file, const FindScene& find) {
     std::vector<fs::path> scenes;
-    for (const Field& name : names.items()) {
-        const fs::path beside = file.parent_path() / name.required_text();
-        try {
-            scenes.push_back(fs::is_regular_file(beside) ? beside : find(name.text()));
-        } catch (const UsageError& e) {
-            name.refuse(fmt::format("a scene, or a file beside this one ({})", e.what()));
-        }
-    }
+    for (const Field& name : names.items()) scenes.push_back(scene_beside(name, file, find));
     return scenes;
 }
 

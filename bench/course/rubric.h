@@ -2,13 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "umbra/bench/record/record.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/bench/run/scene_beside.h"
 
 namespace umbra {
 
@@ -81,9 +81,6 @@ struct Rubric {
     std::vector<std::filesystem::path> scenes{};
     Size size{};
 };
-
-/// The file of a scene that no file beside the rubric is called by. Throws InputError.
-using FindScene = std::function<std::filesystem::path(const std::string& name)>;
 
 /// The files of a list of names. Throws InputError with its position.
 [[nodiscard]] std::vector<std::filesystem::path> scenes_beside(const Field& names, const std::filesystem::path& file,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <deque>
 #include <nlohmann/json.hpp>
@@ -28,24 +29,9 @@ struct ReadLadder {
 
 /// Growing, or shrinking.
 bool are_in_order(const std::vector<double>& rungs) {
-    for (std::size_t k = 0; k < rungs.size(); ++k) {
-        if (!std::isfinite(rungs[k])) return false;
-        if (k > 0 && !(rungs[k] > rungs[k - 1]) != !(rungs[1] > rungs[0])) return false;
-        if (k > 0 && rungs[k] == rungs[k - 1]) return false;
-    }
-    return rungs.size() > 1;
-}
-
-fs::path scene_of_ladder(const Field& name, const fs::path& file,
-                         const std::function<fs::path(const std::string&)>& find) {
-    fs::path scene = file.parent_path() / name.required_text();
-    try {
-        if (!fs::is_regular_file(scene)) scene = find(name.text());
-    } catch (const UsageError& e) {
-        name.refuse(fmt::format("a native scene of ours, or beside this file ({})", e.what()));
-    }
-    if (scene.extension() != ".json") name.refuse("a native scene (.json), whose numbers \"set\" can name");
-    return scene;
+    return rungs.size() > 1 && std::ranges::all_of(rungs, [](double rung) { return std::isfinite(rung); }) &&
+           (std::ranges::adjacent_find(rungs, std::greater_equal()) == rungs.end() ||
+            std::ranges::adjacent_find(rungs, std::less_equal()) == rungs.end());
 }
 
 /// Refuses a pointer that leads to no number in the scene.
@@ -62,12 +48,13 @@ void check_pointer(const Field& pointer, const json& scene, const fs::path& file
 
 bool is_ladder_file(const std::string& word) { return fs::path(word).extension() == ".json"; }
 
-const Ladder& read_ladder(const fs::path& file, const std::function<fs::path(const std::string&)>& find) {
+const Ladder& read_ladder(const fs::path& file, const FindScene& find) {
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no file", file.string()));
     static std::deque<ReadLadder> all;
     const Field root  = parse_json(bytes_of(file), file.string());
     auto record       = from_strict_record<LadderFileRecord>(root);
-    const fs::path at = scene_of_ladder(root["scene"], file, find);
+    const fs::path at = scene_beside(root["scene"], file, find);
+    if (at.extension() != ".json") root["scene"].refuse("a native scene (.json), whose numbers \"set\" can name");
     static_cast<void>(load_scene(at));  // what is wrong with the scene has a line in its own file
     const json scene = json::parse(bytes_of(at));
     if (record.set.empty()) root["set"].refuse("a list with the JSON Pointer of at least one number of the scene");

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/record/record.h"
+#include "umbra/bench/run/scene_beside.h"
 
 namespace umbra {
 
@@ -31,9 +31,7 @@ void describe(Fields& of, Is<LadderFileRecord>) {
 /// Whether a word of a command line is the file of a ladder, not a ladder's name.
 [[nodiscard]] bool is_ladder_file(const std::string& word);
 
-/// The ladder stays to the program's end, as the canonical ones do. `find` gives the file of a scene that is not beside
-/// the ladder's file; it may throw UsageError. Throws InputError.
-[[nodiscard]] const Ladder& read_ladder(const std::filesystem::path& file,
-                                        const std::function<std::filesystem::path(const std::string&)>& find);
+/// The ladder stays to the program's end, as the canonical ones do. Throws InputError.
+[[nodiscard]] const Ladder& read_ladder(const std::filesystem::path& file, const FindScene& find);
 
 }  // namespace umbra
