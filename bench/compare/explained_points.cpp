@@ -72,7 +72,7 @@ std::vector<ExplainedPointRecord> explained_points(const Scene& scene, const Poi
                                     .on    = triangle_record(scene, points.triangle[i]),
                                     .method = answer_record(*method.work, points, i, light),
                                     .truth  = answer_record(*truth.work, points, i, light)};
-        add_difference(record.method, record.truth, scene, points, i);
+        add_difference(record.method, record.truth, scene, points, i, light);
         const dvec3 p        = exact_position(scene, points, i);
         const double nearest = 1e-3 * glm::dot(p - picture.eye, picture.forward);
         const auto triangle  = [&](const AnswerRecord& answer) {

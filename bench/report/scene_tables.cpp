@@ -107,6 +107,13 @@ json column_groups(const std::vector<Column>& columns) {
     return groups;
 }
 
+/// "8 × 3 × 8 units, diagonal 11.7", of the box around all objects.
+std::string size_in_words(const ExtentRecord& box) {
+    if (box.min.size() != 3 || box.max.size() != 3) return kNone;
+    const dvec3 size(box.max[0] - box.min[0], box.max[1] - box.min[1], box.max[2] - box.min[2]);
+    return fmt::format("{:.4g} × {:.4g} × {:.4g} units, diagonal {:.4g}", size.x, size.y, size.z, glm::length(size));
+}
+
 }  // namespace
 
 json error_view(const Results& results) {
@@ -232,11 +239,9 @@ json fact_view(const FactsRecord& facts) {
              {"volume", o.closed ? score(known(o.volume)) : kNone},
              {"faults", std::move(faults)}});
     }
-    return {{"triangles", count(facts.triangles)},
-            {"requires", facts.required},
-            {"not_required", facts.not_required},
-            {"has_objects", !objects.empty()},
-            {"objects", std::move(objects)}};
+    return {{"triangles", count(facts.triangles)}, {"size", size_in_words(facts.extent)},
+            {"requires", facts.required},          {"not_required", facts.not_required},
+            {"has_objects", !objects.empty()},     {"objects", std::move(objects)}};
 }
 
 }  // namespace umbra

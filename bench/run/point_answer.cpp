@@ -84,24 +84,16 @@ std::string in_words(const EvidenceRecord& e) {
                        e.unit.empty() ? "" : " ", e.unit);
 }
 
-std::string truth_in_words(const AnswerRecord& truth, double length) {
-    if (!truth.blocker) {
-        const auto room = length_of_margin(truth);
-        return room ? fmt::format("Nothing is in the way: the nearest occluder is {:.3g} from the segment.", *room)
-               : *truth.visibility == 1 ? "The point sees all of the light."
-                                        : fmt::format("The point sees {:.3g} of the light.", *truth.visibility);
-    }
-    std::string text = fmt::format("Triangle {} of {} is in the way", truth.blocker->triangle, truth.blocker->object);
-    if (truth.at) text += fmt::format(", {:.3g} from the point", *truth.at * length);
-    if (const auto edge = length_of_margin(truth)) text += fmt::format(", {:.3g} from its nearest edge", *edge);
-    if (*truth.visibility > 0) text += fmt::format("; the point sees {:.3g} of the light", *truth.visibility);
-    return text + ".";
+/// Of the segment that the answer's reason is about, world.
+double length_of_segment(const AnswerRecord& a, const Scene& scene, const PointBatch& points, std::size_t i) {
+    return glm::length(dvec3(a.towards[0], a.towards[1], a.towards[2]) - exact_position(scene, points, i));
 }
 
-/// The answers are not the same. `own`: the point's triangle; `length`: of the truth's segment.
-std::string difference_in_words(const AnswerRecord& method, const AnswerRecord& truth, TriangleId own, double length) {
+/// What the method had before it when it answered otherwise than the truth. `own`: the point's triangle; `length`: of
+/// the truth's segment.
+std::string method_in_words(const AnswerRecord& method, const AnswerRecord& truth, TriangleId own, double length) {
     const bool too_dark = *method.visibility < *truth.visibility;
-    std::string text    = truth_in_words(truth, length);
+    std::string text;
     if (too_dark && method.blocker && method.blocker->triangle == own)
         text += " The method takes the point's own triangle for an occluder.";
     else if (too_dark && method.blocker && !(truth.blocker && truth.blocker->triangle == method.blocker->triangle))
@@ -124,13 +116,30 @@ std::string difference_in_words(const AnswerRecord& method, const AnswerRecord& 
 
 }  // namespace
 
+std::string truth_in_words(const AnswerRecord& truth, const Scene& scene, const PointBatch& points, std::size_t i,
+                           LightId light) {
+    if (!truth.blocker) {
+        const auto room = length_of_margin(truth);
+        return room ? fmt::format("Nothing is in the way: the nearest occluder is {:.3g} from the segment.", *room)
+               : *truth.visibility == 1 ? "The point sees all of the light."
+                                        : fmt::format("The point sees {:.3g} of the light.", *truth.visibility);
+    }
+    const double length = length_of_segment(truth, scene, points, i);
+    std::string text = fmt::format("Triangle {} of {} is in the way", truth.blocker->triangle, truth.blocker->object);
+    if (truth.at) text += fmt::format(", {:.3g} from the point", *truth.at * length);
+    if (truth.at && scene.lights[light].kind != LightKind::directional)
+        text += fmt::format(" and {:.3g} from the light", (1 - *truth.at) * length);
+    if (const auto edge = length_of_margin(truth)) text += fmt::format(", {:.3g} from its nearest edge", *edge);
+    if (*truth.visibility > 0) text += fmt::format("; the point sees {:.3g} of the light", *truth.visibility);
+    return text + ".";
+}
+
 void add_difference(AnswerRecord& method, const AnswerRecord& truth, const Scene& scene, const PointBatch& points,
-                    std::size_t i) {
+                    std::size_t i, LightId light) {
     if (!method.visibility || !truth.visibility || *method.visibility == *truth.visibility) return;
     if (!method.answered || !truth.answered) return;  // the method of one threw when it was asked for its reason
-    const dvec3 towards(truth.towards[0], truth.towards[1], truth.towards[2]);
-    method.difference =
-        difference_in_words(method, truth, points.triangle[i], glm::length(towards - exact_position(scene, points, i)));
+    method.difference = truth_in_words(truth, scene, points, i, light) +
+                        method_in_words(method, truth, points.triangle[i], length_of_segment(truth, scene, points, i));
 }
 
 std::string sentence(const AnswerRecord& a) {

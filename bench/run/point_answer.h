@@ -81,10 +81,14 @@ void describe(Fields& of, Is<AnswerRecord>) {
 /// Why no method is asked for the light at point i, which has a surface, a sentence; empty where methods are.
 [[nodiscard]] std::string decided_in_words(const Scene& scene, const PointBatch& points, LightId light, std::size_t i);
 
+/// The truth's answer at point i and this light: what is in the way, and how far that is from the point and the light.
+[[nodiscard]] std::string truth_in_words(const AnswerRecord& truth, const Scene& scene, const PointBatch& points,
+                                         std::size_t i, LightId light);
+
 /// Sets `difference` of the method's answer where the truth's is another: a few sentences from the first difference of
-/// their evidence, at point i.
+/// their evidence, at point i and this light.
 void add_difference(AnswerRecord& method, const AnswerRecord& truth, const Scene& scene, const PointBatch& points,
-                    std::size_t i);
+                    std::size_t i, LightId light);
 
 /// "umbra, S 0; triangle 3 of box blocks at 0.4 of the way to the light; ..."
 [[nodiscard]] std::string sentence(const AnswerRecord& answer);

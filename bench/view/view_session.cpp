@@ -288,7 +288,7 @@ WhyHereRecord ViewSession::why(const ViewRequest& request, const Budget& most) {
     // The truth is that of areas: another measure is no error.
     for (std::size_t k = 0; k < choices.size(); ++k)
         if (choices[k].make()->measures() == Measure::area)
-            add_difference(record.answers[k].answer, record.answers.back().answer, scene, points, i);
+            add_difference(record.answers[k].answer, record.answers.back().answer, scene, points, i, light);
     return record;
 }
 

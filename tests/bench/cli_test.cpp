@@ -629,6 +629,20 @@ TEST_F(Cli, ObjectsThatTakeNoPartAreNamed) {
     EXPECT_FALSE(record["lights"][0].contains("away"));
 }
 
+TEST_F(Cli, WhySaysTheTruthWhicheverMethodIsAsked) {
+    const std::string box   = R"({"camera": {"eye": [0, 3, 6], "target": [0, 0, 0]}, "lights": [)";
+    const std::string lower = R"(], "objects": [{"name": "ground", "type": "plane", "size": 8},
+        {"name": "lid", "type": "plane", "transform": [{"translate": [0, 1, 0]}], "seen_by_camera": false}]})";
+    std::ofstream(file("lamp.json")) << box << R"({"name": "lamp", "type": "point", "position": [0, 4, 0]})" << lower;
+    const std::string why = "why " + file("lamp.json") + " 27 15 --size 49x33 --methods planar_projection";
+    const std::string said =
+        "  the truth                Triangle 3 of lid is in the way, 1.01 from the point and 3.04 from the light";
+    EXPECT_TRUE(contains(umbra(why).output, said)) << umbra(why).output;
+    const auto light = nlohmann::json::parse(umbra(why + " --json").output)["lights"][0];
+    EXPECT_EQ(light["methods"].size(), 1u);
+    EXPECT_TRUE(contains(light["truth"].get<std::string>(), "Triangle 3 of lid is in the way"));
+}
+
 TEST_F(Cli, InspectSaysHowClosedMeshesAreOriented) {
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
     std::ofstream(file("outwards.obj")) << corners << "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";

@@ -151,7 +151,7 @@ protected:
                          .answered   = true};
     }
     [[nodiscard]] std::string words() {
-        add_difference(method_, truth_, prepared_.scene, prepared_.points, i_);
+        add_difference(method_, truth_, prepared_.scene, prepared_.points, i_, light_);
         return method_.difference;
     }
     [[nodiscard]] bool says(const std::string& part) { return words().find(part) != std::string::npos; }
@@ -161,6 +161,7 @@ protected:
 
     PreparedScene prepared_;
     std::size_t i_ = 0;
+    LightId light_ = 0;
     AnswerRecord method_, truth_;
 };
 
@@ -185,6 +186,13 @@ TEST_F(Difference, HasTheOccluderTheTexelAndTheBias) {
     EXPECT_TRUE(says("The bias lifts the point past the occluder.")) << "1.5 of bias, 1 to the occluder";
     evidence("width of the texel", 0.03);
     EXPECT_TRUE(says("One depth stands for the whole texel, and the edge passes within its width."));
+}
+
+TEST_F(Difference, HasTheDistanceFromALightThatHasAPlace) {
+    EXPECT_FALSE(says("from the light")) << words();
+    prepared_.scene.lights[light_].kind = LightKind::point;
+    EXPECT_TRUE(says("Triangle 3 of box is in the way, 1 from the point and 3 from the light, 0.02 from its"))
+        << words();
 }
 
 TEST_F(Difference, TellsAcneFromAnotherOccluder) {

@@ -33,6 +33,7 @@ json distinct(const std::string& name) {
     results["facts"]["objects"][0]     = {{"name", "ring"},   {"triangles", 21}, {"vertices", 22},
                                           {"components", 23}, {"closed", true},  {"outward", true},
                                           {"planar", false},  {"area", 2.4},     {"volume", 0.25}};
+    results["facts"]["extent"]         = {{"min", {-1, 2, 5}}, {"max", {2, 6, 17}}};
     int n                              = 100;
     for (std::size_t m = 1; m < 3; ++m) {
         json& method           = results["methods"][m];
@@ -289,6 +290,7 @@ TEST_F(PageFigures, TablesOfPicturesMethodsAndObjects) {
     EXPECT_EQ(objects.at("ring", "Parts"), "23");
     EXPECT_EQ(objects.at("ring", "Area, units²"), "2.40");
     EXPECT_EQ(objects.at("ring", "Volume, units³"), "0.250");
+    EXPECT_NE(page.find("<dt>Size</dt><dd>3 × 4 × 12 units, diagonal 13</dd>"), std::string::npos);
 }
 
 /// A picture draws all points, its figures speak of those that are answered: both say how many these are.

@@ -27,7 +27,7 @@ struct WhyLine {
 struct WhyLightRecord {
     std::string light{};
     bool away = false, unshadowed = false;
-    std::string decided{};
+    std::string decided{}, truth{};
     std::vector<AnswerRecord> methods{};
 };
 template <class Fields>
@@ -37,6 +37,7 @@ void describe(Fields& of, Is<WhyLightRecord>) {
     of.may("away", &WhyLightRecord::away, "the light is behind the surface");
     of.may("unshadowed", &WhyLightRecord::unshadowed, "the object receives no shadows, or the point lies in the light");
     of.may("decided", &WhyLightRecord::decided, "why no method is asked, in words");
+    of.may("truth", &WhyLightRecord::truth, "what is in the way, in words");
 }
 
 struct PointRecord {
@@ -76,6 +77,7 @@ std::string text_of(const WhyRecord& record) {
     for (const WhyLightRecord& light : record.lights) {
         text += fmt::format("light {}\n", light.light);
         if (!light.decided.empty()) text += "  " + light.decided + "\n";
+        if (!light.truth.empty()) text += fmt::format("  {:24} {}\n", "the truth", light.truth);
         for (const AnswerRecord& a : light.methods) {
             text += fmt::format("  {:24} {}\n", a.method, sentence(a));
             if (!a.difference.empty()) text += fmt::format("  {:24}   unlike the truth: {}\n", "", a.difference);
@@ -114,27 +116,32 @@ int why(const WhyLine& line, const Common& common) {
             record.lights.push_back(
                 {.light = scene.lights[light].name, .decided = decided_in_words(scene, points, light, i)});
         }
+    // The truth first, whichever methods are asked: it says what their answers should be.
+    MethodAtWork reference(default_reference(prepared.facts).choice, scene, prepared.facts);
+    std::vector<AnswerRecord> truths(lights.size());
+    for (std::size_t k = 0; k < lights.size(); ++k) {
+        WhyLightRecord& entry = record.lights[k];
+        if (!points.asks(lights[k], i)) {
+            (points.faces(lights[k], i) ? entry.unshadowed : entry.away) = true;
+            continue;
+        }
+        truths[k]   = answer_record(reference, points, i, lights[k]);
+        entry.truth = truths[k].answered ? truth_in_words(truths[k], scene, points, i, lights[k]) : truths[k].failed;
+    }
     for (const MethodChoice& choice : choices) {
         MethodAtWork work(choice, scene, prepared.facts);
         const Service service = work.service();
         for (std::size_t k = 0; k < lights.size(); ++k) {
-            WhyLightRecord& entry = record.lights[k];
-            if (!points.asks(lights[k], i))
-                (points.faces(lights[k], i) ? entry.unshadowed : entry.away) = true;
-            else if (!service)
-                entry.methods.push_back({.method = choice.text(), .not_served = service.why});
-            else
-                entry.methods.push_back(answer_record(work, points, i, lights[k]));
+            if (!points.asks(lights[k], i)) continue;
+            AnswerRecord answer{.method = choice.text(), .not_served = service.why};
+            if (service) {
+                answer = answer_record(work, points, i, lights[k]);
+                // The truth is that of areas: another measure is no error.
+                if (work.method().measures() == Measure::area)
+                    add_difference(answer, truths[k], scene, points, i, lights[k]);
+            }
+            record.lights[k].methods.push_back(std::move(answer));
         }
-    }
-    const std::string truth = default_reference(prepared.facts).choice.text();
-    for (WhyLightRecord& light : record.lights) {
-        const auto found = std::ranges::find(light.methods, truth, &AnswerRecord::method);
-        if (found == light.methods.end()) continue;
-        // The truth is that of areas: another measure is no error.
-        for (std::size_t k = 0; k < choices.size() && k < light.methods.size(); ++k)
-            if (choices[k].make()->measures() == Measure::area)
-                add_difference(light.methods[k], *found, scene, points, i);
     }
     print_out("{}", line.as_json ? json_text(to_record(record)) : without_controls(text_of(record)));
     return kDone;
