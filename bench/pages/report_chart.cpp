@@ -43,10 +43,11 @@ struct LinearAxis {
     }
 };
 
-/// Every fourth point, the ends, and both sides of a jump of more than 3; the pen is lifted where a value is not finite.
+/// At least 80 points, the ends, and both sides of a jump of more than 3; the pen is lifted where a value is not finite.
 std::string formula_path(const FormulaSeries& of, const LinearAxis& x, const LinearAxis& y) {
     std::string path;
     bool down         = false;
+    const auto stride = std::max<std::size_t>(1, of.x.size() / 80);
     const auto height = [&](std::size_t k) { return y(of.formula[k]); };
     const auto jumps  = [&](std::size_t k) { return std::abs(height(k) - height(k - 1)) > 3; };
     for (std::size_t k = 0; k < of.x.size(); ++k) {
@@ -55,7 +56,7 @@ std::string formula_path(const FormulaSeries& of, const LinearAxis& x, const Lin
             continue;
         }
         const bool at_end = !down || k + 1 == of.x.size() || !std::isfinite(of.formula[k + 1]);
-        if (!at_end && k % 4 != 0 && !jumps(k) && !jumps(k + 1)) continue;
+        if (!at_end && k % stride != 0 && !jumps(k) && !jumps(k + 1)) continue;
         path += fmt::format("{}{:.1f} {:.1f}", down ? 'L' : 'M', x(of.x[k]), height(k));
         down = true;
     }
@@ -171,7 +172,7 @@ json rung_chart(const std::vector<std::string>& rungs, const std::vector<RungSer
 }
 
 json formula_chart(const std::vector<FormulaSeries>& series) {
-    constexpr double bottom = 220, kDots = 40;
+    constexpr double bottom = 220, kDots = 40, kOff = 0.02;
     double least_x = HUGE_VAL, most_x = -HUGE_VAL, least = 0, most = 0;
     for (const FormulaSeries& s : series) {
         for (const double at : s.x) least_x = std::min(least_x, at), most_x = std::max(most_x, at);
@@ -185,8 +186,13 @@ json formula_chart(const std::vector<FormulaSeries>& series) {
         const FormulaSeries& s = series[i];
         std::string dots;
         const auto stride = static_cast<std::size_t>(std::ceil(static_cast<double>(s.measured.size()) / kDots));
-        for (std::size_t k = 0; k < s.measured.size(); k += stride)
-            if (std::isfinite(s.measured[k])) dots += fmt::format("M{:.1f} {:.1f}h0", x(s.x[k]), y(s.measured[k]));
+        // In turns, so that no curve covers another, and wherever the formula says nothing or something else.
+        const auto shown = [&](std::size_t k) {
+            return k % stride == i % stride || !(std::abs(s.measured[k] - s.formula[k]) <= kOff * (most - least));
+        };
+        for (std::size_t k = 0; k < s.measured.size(); ++k)
+            if (shown(k) && std::isfinite(s.measured[k]))
+                dots += fmt::format("M{:.1f} {:.1f}h0", x(s.x[k]), y(s.measured[k]));
         lines.push_back({{"colour", std::to_string(mark_style(i).colour)},
                          {"label", s.label},
                          {"path", formula_path(s, x, y)},

@@ -176,7 +176,10 @@ ExperimentRecord run_experiment(const std::string& id, const json& experiment, c
         if (same == texts.size()) {
             texts.push_back(drawn);
             const std::string name = fmt::format("{}-{}", id, same + 1);
-            record.pictures.push_back({setting.text("name"), {name + ".png"}, {name + ".json"}});
+            const json caption     = setting["caption"];  // where a curve's name says too little of the picture
+            record.pictures.push_back({caption.is_null() ? setting.text("name") : caption.get<std::string>(),
+                                       {name + ".png"},
+                                       {name + ".json"}});
             write_text(folder / (name + ".json"), text);
             pictures.push_back(picture_of_experiment(setting, folder / (name + ".json@" + frame)));
             write_image(folder / (name + ".png"), pictures.back().shown);

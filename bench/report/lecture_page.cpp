@@ -8,7 +8,6 @@
 
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/report/finding.h"
 #include "umbra/bench/report/lecture_experiments.h"
 
 namespace umbra {
@@ -68,7 +67,7 @@ json chart_of(const ExperimentRecord& experiment, Language language) {
     std::string about = lecture_name(experiment.y, language) + ":";
     for (const ExperimentCurve& curve : experiment.curves) {
         const std::string name = lecture_name(curve.name, language);
-        about += " " + name + ";";
+        about += " " + name + separator(language);
         series.push_back({name, curve.x, curve.measured, curve.formula});
     }
     json chart = formula_chart(series);
@@ -77,11 +76,13 @@ json chart_of(const ExperimentRecord& experiment, Language language) {
             const std::string label = number_in_words(tick["label"].get<std::string>(), language);
             tick["label"]           = label.starts_with('-') ? "−" + label.substr(1) : label;
         }
-    about.pop_back();
+    about.resize(about.size() - separator(language).size());
     chart["about"] = about;
     chart["law"]   = lecture_name(experiment.law, language);
     chart["x"]     = lecture_name(experiment.x, language);
     chart["y"]     = lecture_name(experiment.y, language);
+    // One letter stands upright: turned, an I is a dash.
+    chart["upright"] = experiment.y.size() == 1;
     return chart;
 }
 
@@ -96,28 +97,30 @@ std::string deviation_in_words(const ExperimentRecord& experiment, Language lang
         std::ranges::all_of(measured, [&](const ExperimentCurve* c) { return c->limit == measured[0]->limit; });
     if (one_limit)
         measured = {*std::ranges::max_element(measured, {}, [](const ExperimentCurve* c) { return *c->deviation; })};
-    std::string words = phrases["deviation"].get<std::string>() + ":";
+    std::string words = phrases["deviation"].get<std::string>(), next = ": ";
     for (const ExperimentCurve* curve : measured) {
-        words += one_limit ? " " : fmt::format(" {}: ", lecture_name(curve->name, language));
-        words += fmt::format("{} ({} {});", score_in_words(curve->deviation, language),
+        words += next;
+        if (!one_limit) words += lecture_name(curve->name, language) + ": ";
+        words += fmt::format("{} ({} {})", score_in_words(curve->deviation, language),
                              phrases["allowed"].get<std::string>(), score_in_words(curve->limit, language));
+        next = separator(language);
     }
-    words.back() = '.';
-    return words;
+    return words + ".";
 }
 
 std::string pairs_in_words(const ExperimentRecord& experiment, Language language) {
     if (experiment.pairs.empty()) return "";
-    std::string words = lecture_name("Difference of the pictures (RMSE)", language) + ":";
+    std::string words = lecture_name("Difference of the pictures (RMSE)", language), next = ": ";
     const auto quoted =
         [&, marks = lecture_words(language)["phrases"]["quoted"].get<std::string>()](const std::string& name) {
             return fmt::format(fmt::runtime(marks), lecture_name(name, language));
         };
-    for (const ExperimentPair& pair : experiment.pairs)
-        words +=
-            fmt::format(" {} / {}: {};", quoted(pair.one), quoted(pair.other), score_in_words(pair.rmse, language));
-    words.back() = '.';
-    return words;
+    for (const ExperimentPair& pair : experiment.pairs) {
+        words += next;
+        words += fmt::format("{} / {}: {}", quoted(pair.one), quoted(pair.other), score_in_words(pair.rmse, language));
+        next = separator(language);
+    }
+    return words + ".";
 }
 
 /// The figures of a comparison or study, in words.
@@ -130,8 +133,6 @@ void add_measured(const LectureRow& row, const LectureShow& show, const LectureS
     for (const LectureFigure& figure : show.figures)
         measured.push_back(
             {{"text", figure_in_words(figure, root_of, language)}, {"lang", std::string(language.code)}});
-    if (const SceneFiles* files = page_of(sources, show.study, row.scene); show.found && files != nullptr)
-        measured.push_back({{"text", finding(files->scene().results)}, {"lang", "en"}});
 }
 
 /// The record of an experiment, of this id; null where there is none.
@@ -153,7 +154,7 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
                                           {"shown", false}};
     const SceneFiles* files =
         row.scene.empty() ? nullptr : page_of(sources, show == nullptr ? "" : show->study, row.scene);
-    if (files == nullptr && experiment == nullptr) return view;
+    if (files == nullptr && experiment == nullptr && !words.contains("proves")) return view;
     json pictures = json::array(), measured = json::array();
     json shown = {{"proves", words.value("proves", "")}, {"scene", false}, {"chart", false}};
     if (files != nullptr) {
@@ -170,7 +171,9 @@ json row_view(const LectureRow& row, const LectureSources& sources, const Experi
     }
     std::erase_if(measured.get_ref<json::array_t&>(),
                   [](const json& line) { return line["text"].get_ref<const std::string&>().empty(); });
-    shown["several"]     = pictures.size() > 1;
+    shown["several"]     = pictures.size() != 1;
+    shown["is_proved"]   = files != nullptr || experiment != nullptr;
+    shown["illustrated"] = !pictures.empty();
     shown["pictures"]    = std::move(pictures);
     shown["is_measured"] = !measured.empty();
     shown["measured"]    = std::move(measured);
@@ -193,7 +196,7 @@ json lectures_view(const LectureSources& sources, const fs::path& out, Language 
         for (const LectureRow& row : lecture_rows()) {
             if (row.id[0] != letter[0]) continue;
             rows.push_back(row_view(row, sources, experiments, out, language));
-            any |= rows.back()["shown"].is_object();
+            any |= rows.back().value(json::json_pointer("/shown/is_proved"), false);
         }
         for (const json& exercise : chapter["exercises"])
             exercises.push_back({{"exercise", exercise["question"]}, {"answer", exercise["answer"]}});
@@ -204,6 +207,7 @@ json lectures_view(const LectureSources& sources, const fs::path& out, Language 
     }
     if (!any) return false;
     return {{"title", phrases["title"]},
+            {"skip", phrases["skip"]},
             {"lead", phrases["lead"]},
             {"measured_word", phrases["measured"]},
             {"exercise_word", phrases["exercise"]},

@@ -24,11 +24,7 @@ FigureKind kind_named(const std::string& name) {
 
 std::optional<LectureShow> show_from(const json& topic) {
     if (!topic.contains("pictures")) return std::nullopt;
-    LectureShow show{topic.value("study", ""),
-                     values_from(topic["pictures"]),
-                     {},
-                     topic.value("shadows", true),
-                     topic.value("found", false)};
+    LectureShow show{topic.value("study", ""), values_from(topic["pictures"]), {}, topic.value("shadows", true)};
     for (const json& figure : topic.value("figures", json::array()))
         show.figures.push_back({figure["what"], kind_named(figure["kind"]), values_from(figure["values"])});
     return show;
@@ -96,11 +92,13 @@ std::string figure_in_words(const LectureFigure& figure, const std::function<Fie
     for (const LectureValue& value : figure.values) {
         const Field there = value_at(root_of(value.frame), value.path);
         if (!there.present()) continue;
-        words += words.empty() ? ": " : number_in_words(".", language) == "," ? "; " : ", ";
-        if (!value.name.empty()) words += lecture_name(value.name, language) + " ";
+        words += words.empty() ? ": " : separator(language);
+        if (!value.name.empty()) words += lecture_name(value.name, language) + ": ";
         words += number_in_words(figure_of(there, figure.kind), language);
     }
-    return words.empty() ? "" : lecture_name(figure.what, language) + words + ".";
+    if (words.empty()) return "";
+    const bool named = !figure.values.front().name.empty();  // then each has a colon of its own
+    return lecture_name(figure.what, language) + (named ? " –" + words.substr(1) : words) + ".";
 }
 
 }  // namespace umbra

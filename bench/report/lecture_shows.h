@@ -34,8 +34,7 @@ struct LectureShow {
     std::string study;  ///< the command that wrote the results.json of the topic's scene; empty: `umbra compare`
     std::vector<LectureValue> pictures;
     std::vector<LectureFigure> figures;
-    bool shadows = true;   ///< false: shading is compared without them
-    bool found   = false;  ///< which methods err where proves the topic
+    bool shadows = true;  ///< false: shading is compared without them
 };
 
 /// `scene` is empty where no scene shows the topic; `test` checks it and the file `code` computes it.
@@ -53,7 +52,7 @@ struct LectureRow {
 /// Absent where the record has no such thing.
 [[nodiscard]] Field value_at(const Field& root, std::string_view path);
 
-/// "What: first 0.12, second 0.34."; without those that are absent, and empty where all are. `root_of` gives the
+/// "What – first: 0.12; second: 0.34."; "What: 0.12." of a value without a name; without those that are absent, and empty where all are. `root_of` gives the
 /// results.json of a frame.
 [[nodiscard]] std::string figure_in_words(const LectureFigure& figure,
                                           const std::function<Field(const std::string& frame)>& root_of,

@@ -70,10 +70,25 @@ const json& lecture_words(Language language) { return all_texts().find(language.
 
 std::string lecture_name(const std::string& english, Language language) {
     const nlohmann::json& words = lecture_words(language);
-    const auto names            = words.find("names");
-    return names == words.end()
-               ? english
-               : names->value(english, words.value("decimal_comma", false) ? with_decimal_comma(english) : english);
+    if (const auto names = words.find("names"); names != words.end())
+        if (const auto found = names->find(english); found != names->end()) return found->get<std::string>();
+    if (!words.value("decimal_comma", false)) return english;
+    const std::string own = separator(language);
+    std::string text;
+    for (std::size_t k = 0; k < english.size(); ++k) {
+        const auto digit = [&](std::size_t at) {
+            return at < english.size() && '0' <= english[at] && english[at] <= '9';
+        };
+        const bool decimal = english[k] == '.' && k > 0 && digit(k - 1) && digit(k + 1);
+        const bool lists   = english[k] == ';' || (english[k] == ',' && english.find('=') != std::string::npos);
+        if (lists && k + 1 < english.size() && english[k + 1] == ' ')
+            text += own, ++k;
+        else
+            text += decimal ? ',' : english[k];
+    }
+    return text;
 }
+
+std::string separator(Language language) { return lecture_words(language)["phrases"]["separator"]; }
 
 }  // namespace umbra

@@ -32,8 +32,11 @@ inline constexpr Language Language::english{"en"};
 /// translates what topics.json calls pictures, figures and sources; English has none.
 [[nodiscard]] const nlohmann::json& lecture_words(Language language);
 
-/// A name of topics.json or experiments.json in the language; one that `names` lacks, such as "n = 0.5", with the
-/// language's decimal comma.
+/// A name of topics.json or experiments.json in the language. One that `names` lacks, such as "n = 0.5", has the
+/// language's decimal comma and, where that is one, the language's separator between the numbers of a formula.
 [[nodiscard]] std::string lecture_name(const std::string& english, Language language);
+
+/// Between two figures of a list: "; " in English.
+[[nodiscard]] std::string separator(Language language);
 
 }  // namespace umbra

@@ -1,4 +1,5 @@
 // The experiments of the lectures: what is measured along a line of each picture is what the topic's formula says.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -165,6 +166,27 @@ TEST(Formula, IsReadAsPeopleReadIt) {
     EXPECT_THROW(define(more, "y 2"), InputError);
 }
 
+TEST(FormulaChart, DrawsEveryPointThatIsOffTheFormulaAndNoCurveOverAnother) {
+    std::vector<double> x, right, off, unsaid;
+    for (int k = 0; k <= 366; ++k) {  // a unit a point
+        x.push_back(k), right.push_back(1);
+        off.push_back(k == 123 || k == 124 ? 0.9 : 1);
+        unsaid.push_back(k == 201 ? NAN : 1);
+    }
+    const json chart = formula_chart({{"a", x, right, right}, {"b", x, off, right}, {"c", x, right, unsaid}});
+    const auto has   = [&](std::size_t series, int k) {
+        const std::string dots = chart["lines"][series]["dots"];
+        return dots.find(fmt::format("M{}.0 ", 64 + k)) != std::string::npos;
+    };
+    EXPECT_TRUE(has(1, 123) && has(1, 124));
+    EXPECT_FALSE(has(2, 123) || has(1, 125) || has(0, 124));
+    EXPECT_TRUE(has(2, 202 - 1));
+    for (int k = 0; k <= 366; ++k) {
+        if (k == 201 || k == 123 || k == 124) continue;
+        EXPECT_LE(int(has(0, k)) + int(has(1, k)) + int(has(2, k)), 1) << k;
+    }
+}
+
 TEST(FormulaChart, HasDotsLinesAndRoundTicks) {
     const json chart = formula_chart({{"a", {0, 1, 2}, {0, 0.5, 1}, {0, 0.5, 1}}, {"b", {0, 1, 2}, {}, {1, NAN, 0}}});
     EXPECT_EQ(chart["lines"][0]["path"], "M64.0 220.0L247.0 117.0L430.0 14.0");
@@ -175,6 +197,22 @@ TEST(FormulaChart, HasDotsLinesAndRoundTicks) {
     std::string labels;
     for (const json& tick : chart["y_ticks"]) labels += tick["label"].get<std::string>() + " ";
     EXPECT_EQ(labels, "0 0.2 0.4 0.6 0.8 1 ");
+}
+
+TEST(LectureExperiments, PicturesHaveCaptionsOfTheirOwnWhereCurvesShareThem) {
+    const TemporaryFolder folder;
+    const ExperimentRecord record = run("A8", lecture_experiments()["experiments"]["A8"], folder);
+    ASSERT_EQ(record.pictures.size(), 2u);
+    EXPECT_EQ(record.pictures[0].name, "ambient term not attenuated");
+    EXPECT_EQ(record.pictures[1].name, "ambient term attenuated");
+    EXPECT_EQ(record.curves[0].name, "R: diffuse");
+}
+
+TEST(LectureNames, HaveTheNumbersAndListsOfTheirLanguage) {
+    const Language german = *language_named("de"), greek = *language_named("el");
+    EXPECT_EQ(lecture_name("x = 1.5, 2; y = f(1), ...", Language::english), "x = 1.5, 2; y = f(1), ...");
+    EXPECT_EQ(lecture_name("x = 1.5, 2; y = f(1), ...", german), "x = 1,5; 2; y = f(1); ...");
+    EXPECT_EQ(lecture_name("DE1, DE2; Harrison et al. 1988", greek), "DE1, DE2· Harrison et al. 1988");
 }
 
 TEST(LectureExperiments, AreOfTopics) {
