@@ -419,7 +419,7 @@ FAULTS = {
         ('a phase has the part of another', in_study('whitted', lambda r: exchanged_between(*r['phases'][:2],
                                                                                          'fraction'))),
         ('a step of radiosity is missing', in_study('radiosity', lambda r: r['unshot'].pop(3))),
-        ('the lectures show another figure', in_page(figure_raised(r'<span lang="de">[^<]*?: [^<]*?0,'),
+        ('the lectures show another figure', in_page(figure_raised(r'<span lang="de">[^<]*?: 0,'),
                                                      name='lectures.html')),
         ('the lectures write a decimal point in German',
          in_page(lambda page: re.sub(r'(<span lang="de">[^<]*? 0),', r'\1.', page, count=1), name='lectures.html')),

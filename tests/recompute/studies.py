@@ -271,13 +271,14 @@ def lectures(page, language, records, tally):
             name = lambda english: words.get('names', {}).get(english, english)
             values = [(name(v['name']) if v.get('name') else '', member(record, v['path'])) for v in figure['values']]
             values = [(n, v) for n, v in values if v is not None]
-            what, _, rest = said.removesuffix('.').partition(': ')
+            # "What – first: 0.12; second: 0.34." or "What: 0.12."
+            what, _, rest = said.removesuffix('.').partition(' – ' if figure['values'][0].get('name') else ': ')
             tally.text(kind, where, what, name(figure['what']))
-            parts = re.split('; ' if words['decimal_comma'] else ', ', rest)
+            parts = rest.split(words['phrases']['separator'])
             if len(parts) != len(values):
                 tally.fault(where, f'"{said}" has {len(parts)} figures in place of {len(values)}')
             for part, (of, value) in zip(parts, values):
-                shown_name, _, shown_figure = part.rpartition(' ')
+                shown_name, _, shown_figure = part.rpartition(': ')
                 tally.text(kind, where, shown_name, of)
                 point = shown_figure.replace(',', '.') if words['decimal_comma'] else shown_figure
                 tally.figures[kind] += 1
