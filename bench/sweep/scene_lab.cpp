@@ -20,6 +20,14 @@ SceneLab::SceneLab(const std::filesystem::path& file, CellOptions options, const
       options_(std::move(options)),
       store_(store) {}
 
+SceneLab::SceneLab(const SceneLab& other, const Size& size)
+    : scene_(other.scene_), facts_(other.facts_), file_(other.file_), options_(other.options_), store_(other.store_) {
+    options_.size = size;
+    anew_         = other.anew_;
+}
+
+Size SceneLab::size() const { return options_.size.width > 0 ? options_.size : Size{scene_->width, scene_->height}; }
+
 CellView& SceneLab::view(int view) {
     const auto found = views_.find(view);
     if (found != views_.end()) return found->second;

@@ -30,8 +30,11 @@ class SceneLab {
 public:
     /// Loads the scene. `store` must outlive this. Throws InputError.
     SceneLab(const std::filesystem::path& file, CellOptions options, const CellStore& store);
+    /// The same scene with the same options, in pictures of another size.
+    SceneLab(const SceneLab& other, const Size& size);
 
     [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] Size size() const;  ///< of the pictures
     [[nodiscard]] CellView& view(int view);
     [[nodiscard]] const SceneFacts& facts() const { return facts_; }
     /// `reference` of the record of view 0.

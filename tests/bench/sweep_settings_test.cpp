@@ -10,6 +10,7 @@
 #include <random>
 #include <utility>
 
+#include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
@@ -174,11 +175,14 @@ protected:
         return r;
     }
     void keep(const MadeUp& s, std::optional<double> noise_bar) {
+        o_.choices.push_back(parse_method(s.text));
+        keep_in(lab_, s, noise_bar);
+    }
+    void keep_in(SceneLab& lab, const MadeUp& s, std::optional<double> noise_bar = {}) {
         const MethodChoice choice = parse_method(s.text);
-        o_.choices.push_back(choice);
         for (int v = 0; v < static_cast<int>(s.rmse.size()); ++v) {
             const Json inner = {{"interior", s.interior}, {"edge", 0}}, none = {{"interior", 0}, {"edge", 0}};
-            store_.keep({{"key", lab_.view(v).key(choice)},
+            store_.keep({{"key", lab.view(v).key(choice)},
                          {"view", v},
                          {"serves", {{"how", "approximately"}, {"why", "."}}},
                          {"undefined", s.undefined},
@@ -191,7 +195,7 @@ protected:
                             {"false_light", none}}}}});
         }
         const Phases once = s.price > 0 ? Phases{0, 0, 0, s.price} : s.ms;
-        store_.keep({{"key", lab_.machine_key("price", choice)},
+        store_.keep({{"key", lab.machine_key("price", choice)},
                      {"price",
                       {{"build_ms", once.build},
                        {"aim_ms", {once.aim}},
@@ -203,7 +207,7 @@ protected:
             for (const double round : s.rounds) samples.push_back(ms * round);
             return Json{{"median", ms}, {"samples", std::move(samples)}};
         };
-        store_.keep({{"key", lab_.machine_key("time", choice)},
+        store_.keep({{"key", lab.machine_key("time", choice)},
                      {"turns", {{"pinned", true}, {"noise_bar", *noise_bar}, {"calibration_ms", Json::array()}}},
                      {"times",
                       {{"build_ms", timing(s.ms.build)},
@@ -678,6 +682,85 @@ TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {
     const Json times = lab.times({&rays, 1}, turns).settings[0];
     EXPECT_NE(times["build_ms"]["median"], 123456.0);
     EXPECT_EQ(lab.times({&rays, 1}, turns).settings[0], times);
+}
+
+// ---- The first answer: errors in pictures of 8 x 5 pixels, costs in those of 16 x 9.
+
+class FirstAnswerByHand : public RecommendByHand {
+protected:
+    /// The setting, with errors in views of the small picture, and one run on the whole one. Without errors it must not
+    /// be looked at: that would compute its cells.
+    void add(const std::string& text, const std::vector<double>& rmse, double ms, double undefined = 0) {
+        o_.choices.push_back(parse_method(text));
+        MadeUp s{.text = text, .rmse = rmse, .ms = {0, 0, 0, ms / 2}, .undefined = undefined};
+        keep_in(coarse_, s);
+        s.rmse.clear(), s.ms.visibility = ms;
+        keep_in(lab_, s);
+    }
+    [[nodiscard]] std::optional<FirstAnswer> first(double seconds = 100) {
+        auto answer = first_answer(coarse_, lab_, o_, seconds);
+        EXPECT_EQ(coarse_.computed() + lab_.computed(), 0u) << "everything was made up";
+        return answer;
+    }
+    SceneLab coarse_{lab_, {8, 5}};
+};
+
+const std::vector<double> kWithin(3, 0.005), kBeyond{0.02};
+
+TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {
+    add("exact", kWithin, 10);
+    for (const auto& [texels, ms] :
+         {std::pair{64, 1.0}, {128, 2.0}, {256, 3.0}, {512, 4.0}, {1024, 5.0}, {2048, 6.0}, {4096, 7.0}, {8192, 8.0}}) {
+        const bool asked = texels <= 2048;
+        add(fmt::format("shadow_zbuffer:resolution={}", texels),
+            !asked          ? std::vector<double>{}
+            : texels < 2048 ? kBeyond
+                            : kWithin,
+            ms);
+    }
+    add("ray_traced", {}, 6.5);
+    const auto answer = first();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->choice.text(), "shadow_zbuffer") << "of 2048 texels";
+    EXPECT_EQ(answer->cost, 6);
+    EXPECT_NEAR(answer->bounds.at(0), 0.005, 1e-12) << "views that agree leave no doubt";
+    EXPECT_EQ(answer->size.width, 8);
+    EXPECT_EQ(answer->views, 3);
+    EXPECT_TRUE(answer->in_time);
+    EXPECT_EQ(first_answer_text(*answer, o_),
+              "Provisional: shadow_zbuffer, about 6 ms a frame with camera=2,light=1,object=0\n"
+              "  rmse at most 0.005, by 3 views of 8 x 5 pixels; the final answer follows.\n");
+    const Json json = first_answer_json(*answer, o_);
+    EXPECT_EQ(json["method"], "shadow_zbuffer");
+    EXPECT_EQ(json["cost"], 6.0);
+    EXPECT_EQ(json["views"], 3);
+    EXPECT_EQ(json["size"]["height"], 5);
+}
+
+TEST_F(FirstAnswerByHand, IsBeyondALimitInNoViewNorByItsBoundAndLeavesNothingUndefined) {
+    add("shadow_zbuffer", {0.005, 0.005, 0.02}, 1);
+    add("scan_line", {0.002, 0.004, 0.009}, 2);  // the bound over views is beyond
+    add("planar_projection", {0.001}, 3, 0.2);
+    EXPECT_FALSE(first());
+    add("ray_traced", kWithin, 4);
+    EXPECT_EQ(first()->choice.text(), "ray_traced");
+    EXPECT_FALSE(first(0)) << "nothing is begun behind the time";
+}
+
+TEST_F(FirstAnswerByHand, IsFromFewPointsWhereTheSizeOfThePictureChangesNoError) {
+    const auto size = [&](const char* limit, Size whole) {
+        const Limit one   = parse_limit(limit);
+        const Size coarse = first_size(whole, {&one, 1});
+        return fmt::format("{} x {}", coarse.width, coarse.height);
+    };
+    EXPECT_EQ(size("rmse=0.01", {640, 360}), "327 x 184") << "60,000 points";
+    EXPECT_EQ(size("rmse=0.1", {640, 360}), "160 x 90");
+    EXPECT_EQ(size("rmse=0.001", {640, 360}), "640 x 360");
+    EXPECT_EQ(size("rmse=0", {640, 360}), "640 x 360");
+    EXPECT_EQ(size("mae=0.01", {320, 180}), "160 x 90");
+    EXPECT_EQ(size("image_rmse=0.01", {64, 48}), "64 x 48");
+    EXPECT_EQ(size("interior=0.01", {640, 360}), "640 x 360") << "how wide the band at edges is counts in pixels";
+    EXPECT_EQ(size("flip=0.01", {640, 360}), "640 x 360");
 }
 
 }  // namespace

@@ -371,9 +371,14 @@ def recommended(folder, r, tally):
     cells = os.path.join(folder, 'cells')
     cells = cells if os.path.isdir(cells) else r['kept_in'] or cells
     views, how, kept = {}, {}, []
+    points_in = {}  # the first answer is from smaller pictures of the same views
     for name in sorted(os.listdir(cells)) if os.path.isdir(cells) else ():
         cell = load(os.path.join(cells, name)) if name.endswith('.json') else {}
         if 'errors' in cell:
+            points = sum(e['points'] for e in cell['errors'])
+            if points < points_in.get((cell['text'], cell['view']), 0):
+                continue
+            points_in[cell['text'], cell['view']] = points
             views.setdefault(cell['text'], {})[cell['view']] = entries_of_cell(cell)
             how[cell['text']] = cell['serves']
         elif cell.get('times'):

@@ -1,4 +1,4 @@
-#include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/recommend/first_answer.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,9 @@ namespace umbra {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// After which the first answer is given: with what began before, ten seconds on a scene of common size.
+constexpr double kFirstSeconds = 7;
 
 struct RecommendLine {
     std::string scene, workload, cells;
@@ -41,20 +44,34 @@ int recommend(RecommendLine line, const Common& common) {
     SweepPlan plan;
     plan.settings     = line.methods;
     CellOptions& cell = line.cell;
-    Recommendation found;
+    const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
+    options.kept_in = store.folder().string();
+    std::optional<Terminal> terminal(std::in_place, common.quiet);
+    cell.progress = [&](const std::string& what) { terminal->progress(what); };
+    SceneLab lab(scene_file(line.scene, common.up), cell, store);
+    if (line.fresh) lab.measure_anew();
+    pass_warnings(lab.scene(), [&](const std::string& warning) { terminal->warn(warning); });
+    options.choices = planned_settings(plan, lab.facts());
+    std::optional<FirstAnswer> first;
     {
-        const Terminal terminal(common.quiet);
-        cell.progress = [&](const std::string& what) { terminal.progress(what); };
-        const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
-        options.kept_in = store.folder().string();
-        SceneLab lab(scene_file(line.scene, common.up), cell, store);
-        if (line.fresh) lab.measure_anew();
-        pass_warnings(lab.scene(), [&](const std::string& warning) { terminal.warn(warning); });
-        options.choices = planned_settings(plan, lab.facts());
-        found           = recommend(lab, options);
+        SceneLab coarse(lab, first_size(lab.size(), options.limits));
+        first = first_answer(coarse, lab, options, kFirstSeconds);
     }
-    print_out("{}", line.as_json ? json_text(recommendation_json(found, options))
-                                 : without_controls(recommendation_text(found, options)));
+    if (first && !line.as_json) {
+        terminal.reset();
+        print_out("{}", without_controls(first_answer_text(*first, options)));
+        flush_out();  // it is read while the search goes on
+        terminal.emplace(common.quiet);
+    }
+    const Recommendation found = recommend(lab, options);
+    terminal.reset();
+    if (line.as_json) {
+        Json record     = recommendation_json(found, options);
+        record["first"] = first ? first_answer_json(*first, options) : Json();
+        print_out("{}", json_text(record));
+    } else {
+        print_out("{}", without_controls(recommendation_text(found, options)));
+    }
     return found.chosen ? kDone : kNo;
 }
 

@@ -1,0 +1,40 @@
+// The first answer of `umbra recommend`: the cheapest setting that was found within the limits in a few seconds, on a
+// picture of few points. Provisional: it is to use until the search of all settings has ended.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "umbra/bench/recommend/recommend.h"
+
+namespace umbra {
+
+struct FirstAnswer {
+    MethodChoice choice;
+    std::vector<double> bounds;  ///< [limit], upper_bound from the views that it was looked at in
+    double cost = 0;             ///< ms a frame by one run on the whole picture
+    Size size{};                 ///< of the pictures it was looked at in
+    int views    = 0;
+    bool in_time = true;  ///< every family of settings was looked at, or passed over as dearer
+};
+
+/// How many views the first answer is from.
+inline constexpr int kFirstViews = 3;
+
+/// The picture that a first answer is from: as many points as it takes to know that an error of 0 is within the limits,
+/// and at least 14,400; the whole one where that is no more, or where a limit is of a metric that depends on the size,
+/// as all do but mean errors of S_j and of the linear picture.
+[[nodiscard]] Size first_size(const Size& whole, std::span<const Limit> limits);
+
+/// `coarse` is the scene of `whole` at first_size; costs are those of `whole`. Families are looked at in their order, the reference's first; of each the
+/// settings from the cheapest on, until one is within the limits or dearer than the cheapest that is. Begins with nothing after `seconds`. Nothing where no setting is within the limits.
+[[nodiscard]] std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole,
+                                                      const RecommendOptions& options, double seconds);
+
+/// "ray_traced: about 3.1 ms a frame ...", two lines.
+[[nodiscard]] std::string first_answer_text(const FirstAnswer& answer, const RecommendOptions& options);
+
+/// As `umbra recommend --json` has it in `first`.
+[[nodiscard]] Json first_answer_json(const FirstAnswer& answer, const RecommendOptions& options);
+
+}  // namespace umbra
