@@ -20,6 +20,8 @@ using Clock = std::chrono::steady_clock;
 /// surface, or one that faces away from the light.
 constexpr double kPoints = 6, kFewestPoints = 14400;
 
+constexpr double kLongMs = 500;  ///< of one run on the whole picture, so that nobody waits for a price
+
 bool depends_on_the_size(const Metric& metric) {
     return metric.name != "rmse" && metric.name != "mae" && metric.name != "image_rmse";
 }
@@ -36,31 +38,39 @@ public:
     [[nodiscard]] bool is_over() const { return Clock::now() >= until_; }
     [[nodiscard]] const std::optional<FirstAnswer>& best() const { return best_; }
 
-    /// Each setting costs more than those before it, and errs less.
-    void look_at(const Family& family) {
-        for (const MethodChoice& choice : family.settings)
-            if (is_over() || !is_cheaper(choice) || take_if_within(choice)) return;
+    /// The next setting of a family: each costs more than those before it, and errs less. What it costs; nothing where
+    /// no further one of the family can be the answer.
+    [[nodiscard]] std::optional<double> look_at(const MethodChoice& choice) {
+        const std::optional<double> cost = cost_of(choice);
+        if (!cost || (best_ && *cost >= best_->cost) || take_if_within(choice, *cost)) return std::nullopt;
+        return cost;
     }
 
 private:
-    /// One run at few points tells most of those that are dearer.
-    [[nodiscard]] bool is_cheaper(const MethodChoice& choice) {
-        for (SceneLab* lab : {&coarse_, &whole_}) {
-            const std::optional<double> c = cost(*lab, choice);
-            if (!c || (best_ && *c >= best_->cost)) return false;
-        }
-        return true;
+    /// By one run on the whole picture, where one at few points does not say already that it is dearer; from that one
+    /// where the other would take too long.
+    [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice) {
+        const std::optional<RunTimes> few = coarse_.price(choice);
+        if (!few) return std::nullopt;
+        const Size small = coarse_.size(), large = whole_.size();
+        const double more =
+            static_cast<double>(large.width) * large.height / (static_cast<double>(small.width) * small.height);
+        if (more * (few->look + sum(few->visibility)) > kLongMs) return cost_of(*few, more);
+        if (const double least = cost_of(*few, 1); best_ && least >= best_->cost) return least;
+        const std::optional<RunTimes> all = whole_.price(choice);
+        return all ? std::optional(cost_of(*all, 1)) : std::nullopt;
     }
 
-    [[nodiscard]] std::optional<double> cost(SceneLab& lab, const MethodChoice& choice) const {
-        const std::optional<RunTimes> run = lab.price(choice);
-        if (!run) return std::nullopt;
-        const auto sum = [](const std::vector<double>& of) { return std::accumulate(of.begin(), of.end(), 0.0); };
-        return frame_cost_ms(options_.workload, {run->build, sum(run->aim), run->look, sum(run->visibility)});
+    /// Passes over points count `more` times.
+    [[nodiscard]] double cost_of(const RunTimes& run, double more) const {
+        return frame_cost_ms(options_.workload, {run.build, sum(run.aim), more * run.look, more * sum(run.visibility)});
+    }
+    [[nodiscard]] static double sum(const std::vector<double>& lights) {
+        return std::accumulate(lights.begin(), lights.end(), 0.0);
     }
 
     /// Whether it is within the limits; then it is the best so far.
-    bool take_if_within(const MethodChoice& choice) {
+    bool take_if_within(const MethodChoice& choice, double cost) {
         std::vector<Json> cells;
         for (int view = 0; view < kFirstViews; ++view) {
             cells.push_back(coarse_.cell(choice, view));
@@ -76,7 +86,7 @@ private:
             if (!bound || *bound > limit.most) return false;
             bounds.push_back(*bound);
         }
-        best_.emplace(FirstAnswer{.choice = choice, .bounds = std::move(bounds), .cost = *cost(whole_, choice)});
+        best_.emplace(FirstAnswer{.choice = choice, .bounds = std::move(bounds), .cost = cost});
         return true;
     }
 
@@ -103,16 +113,28 @@ Size first_size(const Size& whole, std::span<const Limit> limits) {
 std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const RecommendOptions& options,
                                         double seconds) {
     FirstSearch search(coarse, whole, options, seconds);
-    std::vector<Family> all = families(options.choices);
-    std::stable_partition(all.begin(), all.end(), [](const Family& f) { return f.settings.front().info->reference; });
-    bool in_time = true;
-    for (const Family& family : all) {
-        if ((in_time = !search.is_over()) == false) break;
-        search.look_at(family);
+    struct Line {
+        Family family;
+        bool other;            ///< than the reference
+        double last      = 0;  ///< what the setting before the next one costs
+        std::size_t next = 0;
+    };
+    std::vector<Line> lines;
+    for (Family& family : families(options.choices)) {
+        const bool other = !family.settings.front().info->reference;
+        lines.push_back({std::move(family), other});
+    }
+    // Always where the last one was cheapest: what costs a lot is looked at if nothing that costs little is an answer.
+    while (!lines.empty() && !search.is_over()) {
+        const auto line = std::ranges::min_element(lines, {}, [](const Line& l) { return std::pair(l.other, l.last); });
+        const auto cost = search.look_at(line->family.settings[line->next]);
+        if (cost && ++line->next < line->family.settings.size())
+            line->last = *cost;
+        else
+            lines.erase(line);
     }
     std::optional<FirstAnswer> answer = search.best();
-    if (answer)
-        answer->size = coarse.size(), answer->views = kFirstViews, answer->in_time = in_time && !search.is_over();
+    if (answer) answer->size = coarse.size(), answer->views = kFirstViews, answer->in_time = lines.empty();
     return answer;
 }
 

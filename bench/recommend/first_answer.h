@@ -12,7 +12,8 @@ namespace umbra {
 struct FirstAnswer {
     MethodChoice choice;
     std::vector<double> bounds;  ///< [limit], upper_bound from the views that it was looked at in
-    double cost = 0;             ///< ms a frame by one run on the whole picture
+    double cost = 0;             ///< ms a frame by one run on the whole picture, or by one at few points
+                                 ///< where that takes over half a second
     Size size{};                 ///< of the pictures it was looked at in
     int views    = 0;
     bool in_time = true;  ///< every family of settings was looked at, or passed over as dearer
@@ -26,8 +27,10 @@ inline constexpr int kFirstViews = 3;
 /// as all do but mean errors of S_j and of the linear picture.
 [[nodiscard]] Size first_size(const Size& whole, std::span<const Limit> limits);
 
-/// `coarse` is the scene of `whole` at first_size; costs are those of `whole`. Families are looked at in their order, the reference's first; of each the
-/// settings from the cheapest on, until one is within the limits or dearer than the cheapest that is. Begins with nothing after `seconds`. Nothing where no setting is within the limits.
+/// `coarse` is the scene of `whole` at first_size; costs are those of `whole`. The reference is looked at first, then
+/// of all families the settings from the cheapest on, always where the one before was cheapest; a family ends with one
+/// that is within the limits, or dearer than the cheapest that is. Begins with nothing after `seconds`. Nothing where
+/// no setting is within the limits.
 [[nodiscard]] std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole,
                                                       const RecommendOptions& options, double seconds);
 

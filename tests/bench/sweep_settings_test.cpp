@@ -718,7 +718,7 @@ TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {
                             : kWithin,
             ms);
     }
-    add("ray_traced", {}, 6.5);
+    add("ray_traced", {}, 11);
     const auto answer = first();
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->choice.text(), "shadow_zbuffer") << "of 2048 texels";
