@@ -73,9 +73,11 @@ std::string counted(double n, const std::string& noun) {
     return fmt::format("{} {}{}", count(n), noun, n == 1 ? "" : "s");
 }
 
-std::string with_decimal_comma(std::string figure) {
-    std::replace(figure.begin(), figure.end(), '.', ',');
-    return figure;
+std::string with_decimal_comma(std::string text) {
+    const auto digit = [](char c) { return '0' <= c && c <= '9'; };
+    for (std::size_t k = 1; k + 1 < text.size(); ++k)
+        if (text[k] == '.' && digit(text[k - 1]) && digit(text[k + 1])) text[k] = ',';
+    return text;
 }
 
 std::string without_folders(const std::string& command) {

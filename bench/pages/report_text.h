@@ -38,8 +38,8 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// "1 point", "2 points": `count` and the noun, which takes an s.
 [[nodiscard]] std::string counted(double n, const std::string& noun);
 
-/// A figure as German and Greek write it: with a decimal comma.
-[[nodiscard]] std::string with_decimal_comma(std::string figure);
+/// Figures in a text as German and Greek write them: a comma for each point between digits.
+[[nodiscard]] std::string with_decimal_comma(std::string text);
 
 /// A command line without the folders of the machine that it ran on: "/home/x/scenes/a.json" as "a.json".
 [[nodiscard]] std::string without_folders(const std::string& command);

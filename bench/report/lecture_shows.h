@@ -52,8 +52,8 @@ struct LectureRow {
 /// Absent where the record has no such thing.
 [[nodiscard]] Field value_at(const Field& root, std::string_view path);
 
-/// "What – first: 0.12; second: 0.34."; "What: 0.12." of a value without a name; without those that are absent, and empty where all are. `root_of` gives the
-/// results.json of a frame.
+/// "What – first: 0.12; second: 0.34."; "What: 0.12." of a value without a name. Those that are absent are left out; empty
+/// where all are. `root_of` gives the results.json of a frame.
 [[nodiscard]] std::string figure_in_words(const LectureFigure& figure,
                                           const std::function<Field(const std::string& frame)>& root_of,
                                           Language language);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <boost/algorithm/string/replace.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -73,19 +74,9 @@ std::string lecture_name(const std::string& english, Language language) {
     if (const auto names = words.find("names"); names != words.end())
         if (const auto found = names->find(english); found != names->end()) return found->get<std::string>();
     if (!words.value("decimal_comma", false)) return english;
-    const std::string own = separator(language);
-    std::string text;
-    for (std::size_t k = 0; k < english.size(); ++k) {
-        const auto digit = [&](std::size_t at) {
-            return at < english.size() && '0' <= english[at] && english[at] <= '9';
-        };
-        const bool decimal = english[k] == '.' && k > 0 && digit(k - 1) && digit(k + 1);
-        const bool lists   = english[k] == ';' || (english[k] == ',' && english.find('=') != std::string::npos);
-        if (lists && k + 1 < english.size() && english[k + 1] == ' ')
-            text += own, ++k;
-        else
-            text += decimal ? ',' : english[k];
-    }
+    std::string text = with_decimal_comma(english);
+    boost::algorithm::replace_all(text, "; ", separator(language));
+    if (text.find('=') != std::string::npos) boost::algorithm::replace_all(text, ", ", separator(language));
     return text;
 }
 
