@@ -19,7 +19,9 @@ namespace umbra {
 namespace {
 
 constexpr double kInfinite     = std::numeric_limits<double>::infinity();
-constexpr double kTooExpensive = 5;  ///< one run each: more than a busy machine makes of equal settings
+// More than a busy machine makes of equal settings: by one run each, and by the faster of two, or where the run took so
+// long that it had its share of the processors.
+constexpr double kFar = 5, kFarTwice = 2, kLongRunMs = 250;
 
 std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
     const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
@@ -49,28 +51,35 @@ public:
                 result_.candidates[k].choice.settings == choice.settings)
                 return k;
         if (options_.progress) options_.progress(choice.text());
-        Candidate c{choice, {}, {}, {}, {}, {}, {}};
-        for (int view = 0; view < options_.views; ++view) {
-            c.views.push_back(lab_.cell(choice, view));
-            c.unfit = why_unfit(c.views);
-            if (!c.unfit.empty()) break;
-        }
-        for (const Limit& limit : options_.limits)
-            c.bounds.push_back(c.unfit.empty() ? upper_bound(*limit.metric, c.views) : std::nullopt);
+        Candidate c{choice, {}, false, {}, {}, {}, {}, {}, {}, {}};
+        c.bounds.resize(options_.limits.size());
+        look_on(c, true);
         result_.candidates.push_back(std::move(c));
         return result_.candidates.size() - 1;
     }
 
+    /// Its bounds, also where some view is beyond a limit.
+    Candidate& looked_at_whole(std::size_t candidate) {
+        Candidate& c = result_.candidates[candidate];
+        if (c.unfit.empty()) look_on(c, false);
+        return c;
+    }
+
     /// The settings that may be the answer: of each family the first within the limits; and those that the answer is
-    /// compared with: of each family the first and the last. The reference comes first, since its price passes over
-    /// others.
+    /// compared with: of each family the first and the last. What serves exactly comes first, the reference before all,
+    /// since others are outdone by it; then the last one of each family, so that those that share what was built and
+    /// aimed at follow one another.
     void look_at_families() {
         std::vector<Family> all = families(options_.choices);
-        std::stable_partition(all.begin(), all.end(),
-                              [](const Family& f) { return f.settings.front().info->reference; });
+        std::ranges::stable_sort(all, {}, [&](const Family& f) {
+            return std::pair(!f.settings.front().info->reference, !is_by_proof(f.settings.front()));
+        });
         for (Family& family : all) {
             result_.settings += family.settings.size();
-            while (!family.settings.empty() && pass_over(family.settings.back())) family.settings.pop_back();
+            drop_what_costs_too_much(family);
+            while (!family.settings.empty() && is_outdone(family.settings.back())) family.settings.pop_back();
+        }
+        for (const Family& family : all) {
             if (family.settings.empty()) continue;
             const auto good = first_good(family.settings.size(), [&](std::size_t k) {
                 return result_.candidates[look(family.settings[k])].within(options_.limits);
@@ -79,6 +88,28 @@ public:
             static_cast<void>(look(family.settings.front()));
         }
         result_.looked_at = result_.candidates.size();
+    }
+
+    /// Each setting of a family costs more than those before it: from the first that is passed over on, all are.
+    void drop_what_costs_too_much(Family& family) {
+        const auto first = std::ranges::find_if(family.settings, [&](const MethodChoice& c) { return pass_over(c); });
+        if (first == family.settings.end()) return;
+        const PassedOver least = result_.passed_over.back();
+        for (auto later = first + 1; later != family.settings.end(); ++later)
+            result_.passed_over.push_back({*later, least.candidate, least.ratio});
+        family.settings.erase(first, family.settings.end());
+    }
+
+    /// Settings that were outdone by one that is the answer no longer are looked at further. Whether there are any.
+    bool look_at_outdone_by(std::size_t candidate) {
+        bool any = false;
+        for (Candidate& c : result_.candidates) {
+            if (c.outdone_by != candidate) continue;
+            c.outdone_by.reset();
+            look_on(c, true);
+            any = true;
+        }
+        return any;
     }
 
     /// The next setting of its family, where bisection has left that out. Whether there is one.
@@ -110,7 +141,7 @@ public:
             if (!c.unfit.empty() || !c.within(options_.limits)) continue;
             if (!c.choice.info->reference && *c.bounds[0] > 0) continue;
             const std::optional<double> mine = price(choice), other = price(c.choice);
-            if (!mine || !other || *mine <= kTooExpensive * *other) continue;
+            if (!mine || !other || !costs_far_more(choice, c.choice)) continue;
             result_.passed_over.push_back({choice, k, *mine / *other});
             return true;
         }
@@ -145,7 +176,7 @@ public:
             for (const std::size_t k : fit) {
                 const Candidate& c = result_.candidates[k];
                 const bool rivals  = answer.within(options_.limits) && c.within(options_.limits);
-                if (rivals && *c.price <= kTooExpensive * *answer.price && std::ranges::find(who, k) == who.end())
+                if (rivals && !costs_far_more(c.choice, answer.choice) && std::ranges::find(who, k) == who.end())
                     who.push_back(k);
             }
             if (who.size() == timed) return;
@@ -174,14 +205,13 @@ public:
     /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
     [[nodiscard]] std::optional<Dropped> try_on_further_views(std::size_t k) {
         result_.held_out.clear();
+        if (is_the_reference(result_.candidates[k])) return std::nullopt;
         for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
             const Json cell = lab_.cell(result_.candidates[k].choice, view);
             lab_.release(view);
-            for (const Limit& limit : options_.limits) {
-                const std::optional<double> error = error_in_view(*limit.metric, cell);
-                if (error && *error <= limit.most) continue;
+            if (const auto beyond = beyond_in(cell, view)) {
                 result_.held_out.clear();
-                return Dropped{k, view, limit.metric, error};
+                return Dropped{k, *beyond};
             }
             result_.held_out.push_back(cell);
         }
@@ -189,30 +219,94 @@ public:
     }
 
     /// The cost of `k` over that of `base`.
-    [[nodiscard]] Rival rival(std::size_t k, std::size_t base) const {
+    [[nodiscard]] Rival rival(std::size_t k, std::size_t base) {
         const Candidate &x = result_.candidates[k], &y = result_.candidates[base];
         Ratio ratio = paired_ratio(x.costs, y.costs);
         if (ratio.has_interval()) return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
-        if (ratio.pairs == 0) ratio.median = *x.price / *y.price;
-        return {k, ratio, std::max(ratio.median, 1 / ratio.median) > kTooExpensive};
+        if (ratio.pairs == 0) {
+            ratio.median = *x.price / *y.price;
+            return {k, ratio, costs_far_more(x.choice, y.choice) || costs_far_more(y.choice, x.choice)};
+        }
+        return {k, ratio, std::max(ratio.median, 1 / ratio.median) > kFar};
     }
 
 private:
-    /// Whether `a` is cheaper than `b` by far and no worse: within the limits if `b` is, and its bound no higher.
-    [[nodiscard]] bool outdoes(const Candidate& a, const Candidate& b) const {
-        const bool no_worse = a.within(options_.limits) || !b.within(options_.limits);
-        const bool lower    = a.bounds[0] && (!b.bounds[0] || *a.bounds[0] <= *b.bounds[0]);
-        return no_worse && lower && *b.cost > kTooExpensive * *a.cost;
+    [[nodiscard]] std::optional<Beyond> beyond_in(const Json& cell, int view) const {
+        for (const Limit& limit : options_.limits)
+            if (const auto error = error_in_view(*limit.metric, cell); !error || *error > limit.most)
+                return Beyond{view, limit.metric, error};
+        return std::nullopt;
     }
 
-    /// Milliseconds a frame by one run; nothing where the setting does not serve.
-    [[nodiscard]] std::optional<double> price(const MethodChoice& choice) {
-        const std::optional<RunTimes> run = lab_.price(choice);
-        if (!run) return std::nullopt;
+    /// Its views that are missing; `while_needed`: up to one that is beyond a limit, or by which it is outdone.
+    void look_on(Candidate& c, bool while_needed) {
+        const auto all = static_cast<std::size_t>(options_.views);
+        while (c.views.size() < all) {
+            const int view = static_cast<int>(c.views.size());
+            c.views.push_back(lab_.cell(c.choice, view));
+            c.unfit = why_unfit(c.views);
+            if (!c.unfit.empty()) return;
+            if (!c.beyond) c.beyond = beyond_in(c.views.back(), view);
+            if (!while_needed || c.views.size() == all) continue;
+            if (!c.beyond) c.outdone_by = outdone_by(c);
+            if (c.beyond || c.outdone_by) return;
+        }
+        c.is_whole = true;
+        for (std::size_t k = 0; k < options_.limits.size(); ++k)
+            c.bounds[k] = upper_bound(*options_.limits[k].metric, c.views);
+    }
+
+    /// Whether only rounding can make it err.
+    [[nodiscard]] bool is_by_proof(const MethodChoice& choice) const {
+        try {
+            const How how = verdict(*choice.make(), lab_.facts()).how;
+            return how == How::exactly || how == How::to_rounding;
+        } catch (const UsageError&) {  // its settings contradict one another
+            return false;
+        }
+    }
+
+    [[nodiscard]] bool is_outdone(const MethodChoice& choice) {
+        return result_.candidates[look(choice)].outdone_by.has_value();
+    }
+
+    /// It is then neither the answer nor a step of the staircase.
+    [[nodiscard]] std::optional<std::size_t> outdone_by(const Candidate& c) {
+        for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
+            const Candidate& other = result_.candidates[k];
+            const bool is_dropped  = std::ranges::find(result_.dropped, k, &Dropped::candidate) != result_.dropped.end();
+            if (!other.unfit.empty() || is_dropped || !outdoes(other, c)) continue;
+            if (other.within(options_.limits)) return k;
+        }
+        return std::nullopt;
+    }
+
+    /// Whether `a` is cheaper than `b` by far and no worse: within the limits if `b` is, and its bound no higher.
+    [[nodiscard]] bool outdoes(const Candidate& a, const Candidate& b) {
+        const bool no_worse = a.within(options_.limits) || !b.within(options_.limits);
+        const auto least    = b.least_bound(options_.limits, 0);
+        const bool lower    = a.bounds[0] && (!least || *a.bounds[0] <= *least);
+        return no_worse && lower && costs_far_more(b.choice, a.choice);
+    }
+
+    [[nodiscard]] bool costs_far_more(const MethodChoice& a, const MethodChoice& b) {
+        const auto ratio = [&](int runs_of_a, int runs_of_b) {
+            const std::optional<double> over = price(a, runs_of_a), under = price(b, runs_of_b);
+            return over && under ? *over / *under : 0;
+        };
+        const double once = ratio(1, 1);
+        if (once > kFar || once <= kFarTwice) return once > kFar;
+        return ratio(lab_.price(a)->all() > kLongRunMs ? 1 : 2, 2) > kFarTwice;
+    }
+
+    /// Milliseconds a frame, alone; nothing where the setting does not serve.
+    [[nodiscard]] std::optional<double> price(const MethodChoice& choice, int runs = 1) {
+        const std::optional<RunTimes> times = lab_.price(choice, runs);
+        if (!times) return std::nullopt;
         const auto sum = [](const std::vector<double>& lights) {
             return std::accumulate(lights.begin(), lights.end(), 0.0);
         };
-        return frame_cost_ms(options_.workload, {run->build, sum(run->aim), run->look, sum(run->visibility)});
+        return frame_cost_ms(options_.workload, {times->build, sum(times->aim), times->look, sum(times->visibility)});
     }
 
     SceneLab& lab_;
@@ -220,26 +314,46 @@ private:
     Recommendation& result_;
 };
 
-/// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar.
-std::vector<Step> staircase_of(const std::vector<Candidate>& candidates, double noise_bar) {
+/// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar. What a
+/// view rules out as a step is looked at in no further one.
+std::vector<Step> staircase_of(Search& search, const Recommendation& r, const RecommendOptions& options) {
     std::vector<std::size_t> by_cost;
-    for (std::size_t k = 0; k < candidates.size(); ++k)
-        if (candidates[k].cost && candidates[k].bounds[0]) by_cost.push_back(k);
-    std::ranges::stable_sort(by_cost, {}, [&](std::size_t k) { return *candidates[k].cost; });
-    const double same = std::isfinite(noise_bar) ? 1 + noise_bar : 1;
+    for (std::size_t k = 0; k < r.candidates.size(); ++k)
+        if (r.candidates[k].cost) by_cost.push_back(k);
+    std::ranges::stable_sort(by_cost, {}, [&](std::size_t k) { return *r.candidates[k].cost; });
+    const double same = std::isfinite(r.noise_bar) ? 1 + r.noise_bar : 1;
     std::vector<Step> steps;
-    double cheapest = 0;  // of those that the last step stands for
+    double cheapest    = 0;  // of those that the last step stands for
+    const auto is_step = [&](const std::optional<double>& error) {
+        return error && (steps.empty() || *error < steps.back().error);
+    };
     for (const std::size_t k : by_cost) {
-        const double cost = *candidates[k].cost, error = *candidates[k].bounds[0];
-        if (!steps.empty() && error >= steps.back().error) continue;
+        if (!is_step(r.candidates[k].least_bound(options.limits, 0))) continue;
+        const auto error = search.looked_at_whole(k).bounds[0];
+        if (!is_step(error)) continue;
+        const double cost = *r.candidates[k].cost;
         if (!steps.empty() && cost <= same * cheapest) {
-            steps.back() = {k, error};
+            steps.back() = {k, *error};
             continue;
         }
-        steps.push_back({k, error});
+        steps.push_back({k, *error});
         cheapest = cost;
     }
     return steps;
+}
+
+/// Of those that were timed, the one that misses by the smallest factor.
+std::optional<std::size_t> nearest_of(Search& search, std::vector<std::size_t> timed, const Recommendation& r,
+                                      const RecommendOptions& options) {
+    const auto ratio = [&](std::size_t k) { return r.candidates[k].worst_ratio(options.limits); };
+    std::ranges::stable_sort(timed, {}, ratio);  // of some only what it is no less than is known
+    std::optional<std::size_t> nearest;
+    for (const std::size_t k : timed) {
+        if (nearest && ratio(k) >= ratio(*nearest)) continue;
+        static_cast<void>(search.looked_at_whole(k));
+        if (!nearest || ratio(k) < ratio(*nearest)) nearest = k;
+    }
+    return nearest;
 }
 
 }  // namespace
@@ -288,15 +402,33 @@ std::optional<std::size_t> first_good(std::size_t count, const std::function<boo
     return high;
 }
 
-bool Candidate::within(std::span<const Limit> limits) const { return worst_ratio(limits) <= 1; }
+bool Candidate::within(std::span<const Limit> limits) const { return is_whole && !beyond && worst_ratio(limits) <= 1; }
+
+std::optional<double> Candidate::least_bound(std::span<const Limit> limits, std::size_t limit) const {
+    if (is_whole || views.empty()) return bounds[limit];
+    double least = 0;
+    for (const Json& cell : views) {
+        const std::optional<double> error = error_in_view(*limits[limit].metric, cell);
+        if (!error) return std::nullopt;
+        least = std::max(least, *error);
+    }
+    return least;
+}
 
 double Candidate::worst_ratio(std::span<const Limit> limits) const {
     double worst = 0;
     for (std::size_t k = 0; k < limits.size(); ++k) {
-        if (!bounds[k]) return kInfinite;
-        if (*bounds[k] > 0) worst = std::max(worst, limits[k].most > 0 ? *bounds[k] / limits[k].most : kInfinite);
+        const std::optional<double> least = least_bound(limits, k);
+        if (!least) return kInfinite;
+        if (*least > 0) worst = std::max(worst, limits[k].most > 0 ? *least / limits[k].most : kInfinite);
     }
     return worst;
+}
+
+bool is_the_reference(const Candidate& c) {
+    return c.choice.info->reference && std::ranges::all_of(c.views, [](const Json& cell) {
+               return cell.at("serves").at("how") == "exactly";
+           });
 }
 
 Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
@@ -319,14 +451,11 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
         // One run, alone, is no cost that a median of turns could be ranked by.
         std::ranges::stable_sort(
             within, {}, [&](std::size_t k) { return std::pair(r.candidates[k].costs.empty(), *r.candidates[k].cost); });
-        r.staircase = staircase_of(r.candidates, r.noise_bar);
     };
     rank();
     if (within.empty()) {
-        for (const std::size_t k : timed)
-            if (!r.nearest ||
-                r.candidates[k].worst_ratio(options.limits) < r.candidates[*r.nearest].worst_ratio(options.limits))
-                r.nearest = k;
+        r.nearest   = nearest_of(search, timed, r, options);
+        r.staircase = staircase_of(search, r, options);
         return r;
     }
     const auto compare_others = [&] {
@@ -347,16 +476,19 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
             r.undecided.push_back(within.front());
             for (const Rival& rival : r.tied) r.undecided.push_back(rival.candidate);
             r.tied.clear(), r.untold.clear(), r.runner_up.reset();
+            r.staircase = staircase_of(search, r, options);
             return r;
         }
         if (auto dropped = search.try_on_further_views(within.front())) {
             r.dropped.push_back(*dropped);
-            if (search.look_behind(dropped->candidate)) search.time_candidates();
+            const bool next = search.look_behind(dropped->candidate);
+            if (search.look_at_outdone_by(dropped->candidate) || next) search.time_candidates();
             rank();
         } else {
             r.chosen = within.front();
         }
     }
+    r.staircase = staircase_of(search, r, options);
     if (!r.chosen) return r;
     r.cheapest = search.rival(timed.front(), *r.chosen);
     for (const std::size_t k : timed)

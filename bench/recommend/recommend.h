@@ -27,7 +27,7 @@ struct RecommendOptions {
     std::vector<MethodChoice> choices;  ///< candidates; those that leave points undefined are not taken
     int views    = 5;                   ///< that the choice is made on, from view 0
     int held_out = 10;                  ///< further views that a setting is tried on before it is the answer
-    TurnOptions turns{.rounds = 9, .budget_ms = 20000};
+    TurnOptions turns{.rounds = 9, .budget_ms = 6000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
     std::string kept_in{};           ///< the folder of cells and times, to be named; empty: it is not
     std::function<void(const std::string&)> progress{};
@@ -45,19 +45,35 @@ struct Family {
 /// behind an accepted one is accepted; nothing where the last is not. `good` is asked at most once a setting.
 [[nodiscard]] std::optional<std::size_t> first_good(std::size_t count, const std::function<bool(std::size_t)>& good);
 
+/// The first view of a setting that is beyond a limit, and so its bound, which is no less than any view.
+struct Beyond {
+    int view             = 0;
+    const Metric* metric = nullptr;
+    std::optional<double> error{};  ///< what that view leaves possible; nothing: it was not judged there
+};
+
 /// One setting that was looked at.
 struct Candidate {
     MethodChoice choice;
-    std::vector<Json> views;                    ///< cells
-    std::vector<std::optional<double>> bounds;  ///< [limit]
+    std::vector<Json> views;                    ///< cells from view 0 on
+    bool is_whole = false;                      ///< views are all that are chosen on
+    std::vector<std::optional<double>> bounds;  ///< [limit]; nothing where it is not whole
+    std::optional<Beyond> beyond;               ///< the first such view; behind it none was needed
+    std::optional<std::size_t> outdone_by;      ///< a candidate that is within the limits and costs less by far, with a
+                                                ///< bound no higher than what is known of this one: no view was needed
     std::string unfit;                          ///< why it is no candidate at all; empty where it is one
     std::vector<double> costs;                  ///< ms a frame, one a round; empty where it took part in none
     std::optional<double> price;                ///< ms a frame by one run, alone
     std::optional<double> cost;                 ///< by the medians of the phases; of one run where there are no rounds
     [[nodiscard]] bool within(std::span<const Limit> limits) const;
-    /// The largest bound over its limit; infinite where a bound is not known.
+    /// A bound, or what it is no less than by the views that are there; nothing where neither is known.
+    [[nodiscard]] std::optional<double> least_bound(std::span<const Limit> limits, std::size_t limit) const;
+    /// The largest of these over its limit; infinite where one is not known.
     [[nodiscard]] double worst_ratio(std::span<const Limit> limits) const;
 };
+
+/// Whether further views would compare it with itself.
+[[nodiscard]] bool is_the_reference(const Candidate& c);
 
 /// How much dearer: settings are tied where they took turns in the same six rounds or more and the paired ratio of
 /// their costs does not differ from 1 by more than noise. Where there is no such ratio, one of over five times differs,
@@ -72,17 +88,15 @@ struct Rival {
 /// A setting within the limits in the views that were chosen on, and not in all others that it was tried on.
 struct Dropped {
     std::size_t candidate;
-    int view;  ///< the first one beyond
-    const Metric* metric;
-    std::optional<double> error;  ///< what that view leaves possible; nothing: it was not judged there
+    Beyond beyond;
 };
 
-/// A setting that was not looked at: by one run each, it costs over five times as much as a candidate within the limits
-/// that has no errors or is the reference.
+/// A setting that was not looked at: it costs more by far, as prices tell, than a candidate within the limits that has no
+/// errors or is the reference.
 struct PassedOver {
     MethodChoice choice;
     std::size_t candidate;  ///< the cheaper one
-    double ratio;           ///< of the costs
+    double ratio;           ///< of the costs, or of those of a setting of its family that costs less, at least
 };
 
 /// A method and what was found of its settings.
@@ -118,7 +132,8 @@ struct Recommendation {
     std::optional<Rival> exact;           ///< the reference method, where it was timed
     std::vector<Step> staircase;          ///< by descending error
     std::vector<PassedOver> passed_over;  ///< in the order in which they were met
-    std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within
+    std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
+                                          ///< None of the reference, which they would compare with itself
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
     double noise_bar = 0;                     ///< as of Turns
 };

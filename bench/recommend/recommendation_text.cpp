@@ -48,7 +48,12 @@ double most_undefined(const Candidate& c) {
     return most;
 }
 
-Json candidate_json(const Candidate& c, const RecommendOptions& options) {
+Json beyond_json(const Beyond& beyond) {
+    return {{"view", beyond.view}, {"metric", beyond.metric->name}, {"error", optional_number(beyond.error)}};
+}
+
+Json candidate_json(const Candidate& c, const Recommendation& r, const RecommendOptions& options) {
+    const Candidate* outdone_by = c.outdone_by ? &r.candidates[*c.outdone_by] : nullptr;
     Json errors = Json::object();
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Limit& limit                      = options.limits[k];
@@ -58,7 +63,10 @@ Json candidate_json(const Candidate& c, const RecommendOptions& options) {
     }
     return {{"method", c.choice.text()},
             {"cost", optional_number(c.cost)},
+            {"views", c.views.size()},
             {"errors", std::move(errors)},
+            {"beyond", c.beyond ? beyond_json(*c.beyond) : Json()},
+            {"outdone_by", outdone_by ? Json(outdone_by->choice.text()) : Json()},
             {"undefined", number(most_undefined(c))}};
 }
 
@@ -68,7 +76,7 @@ Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendO
         {"within", m.within},     {"best", nullptr},        {"factor", nullptr},        {"unfit", nullptr}};
     if (!m.candidate) return entry;
     const Candidate& c = r.candidates[*m.candidate];
-    entry["best"]      = candidate_json(c, options);
+    entry["best"]      = candidate_json(c, r, options);
     if (c.unfit.empty())
         entry["factor"] = number(c.worst_ratio(options.limits));
     else
@@ -77,7 +85,7 @@ Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendO
 }
 
 Json rival_json(const Rival& rival, const Recommendation& r, const RecommendOptions& options) {
-    Json entry          = candidate_json(r.candidates[rival.candidate], options);
+    Json entry          = candidate_json(r.candidates[rival.candidate], r, options);
     const Ratio& ratio  = rival.ratio;
     const auto bound    = [&](double value) { return ratio.has_interval() ? number(value) : Json(); };
     entry["cost_ratio"] = {{"median", number(ratio.median)},     {"low", bound(ratio.interval.low)},
@@ -128,8 +136,19 @@ std::string rival_in_words(const Rival& rival, const Recommendation& r) {
     return fmt::format("{} ({:.3f} ms, {:.2f} times{})", c.choice.text(), *c.cost, ratio.median, how);
 }
 
+/// "rmse up to 0.05 in view 3".
+std::string beyond_in_words(const Beyond& beyond) {
+    return fmt::format("{} {} in view {}", beyond.metric->name,
+                       beyond.error ? "up to " + with_unit(*beyond.error, beyond.metric->unit) : "unknown",
+                       beyond.view);
+}
+
 /// The bounds of a candidate in one line: "rmse at most 0.012, flip at most 0.02: 1.2 times a limit".
-std::string bounds_in_words(const Candidate& c, const RecommendOptions& options) {
+std::string bounds_in_words(const Candidate& c, const Recommendation& r, const RecommendOptions& options) {
+    if (c.beyond && !c.is_whole) return beyond_in_words(*c.beyond) + ": beyond the limit";
+    if (c.outdone_by)
+        return fmt::format("looked at in {} only: {} costs far less", counted_views(c.views.size()),
+                           r.candidates[*c.outdone_by].choice.text());
     std::string text;
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Metric& metric = *options.limits[k].metric;
@@ -146,7 +165,9 @@ std::string held_out_in_words(const Recommendation& r, const RecommendOptions& o
     const std::size_t views = r.held_out.size();
     if (views == 0)
         return errors_in_words(r.candidates[*r.chosen], options) +
-               "  It was tried on no view that it was not chosen on: how many are beyond a limit is not known.\n";
+               (is_the_reference(r.candidates[*r.chosen])
+                    ? "  It is the reference: further views would compare it with itself.\n"
+                    : "  It was tried on no view that it was not chosen on: how many are beyond a limit is not known.\n");
     std::string text;
     for (const Limit& limit : options.limits) {
         double most = 0;
@@ -168,10 +189,9 @@ std::string dropped_in_words(const Recommendation& r, const RecommendOptions& op
     std::string text;
     for (const Dropped& d : r.dropped) {
         const Candidate& c = r.candidates[d.candidate];
-        text +=
-            fmt::format("  Dropped: {} ({:.3f} ms), within the limits in the {}: {} {} in view {}\n", c.choice.text(),
-                        *c.cost, options.views == 1 ? "view that was chosen on" : "views that were chosen on",
-                        d.metric->name, d.error ? "up to " + with_unit(*d.error, d.metric->unit) : "unknown", d.view);
+        text += fmt::format("  Dropped: {} ({:.3f} ms), within the limits in the {}: {}\n", c.choice.text(), *c.cost,
+                            options.views == 1 ? "view that was chosen on" : "views that were chosen on",
+                            beyond_in_words(d.beyond));
     }
     return text;
 }
@@ -187,12 +207,12 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
             name               = c.choice.text();
             what               = !c.unfit.empty() ? "left out: " + c.unfit
                                  : !c.cost        ? "could not be timed"
-                                           : fmt::format("{:>9.3f} ms  {}{}", *c.cost, bounds_in_words(c, options),
+                                           : fmt::format("{:>9.3f} ms  {}{}", *c.cost, bounds_in_words(c, r, options),
                                            dropped ? ", dropped" : "");
         } else if (m.outdone_by) {
             const PassedOver& p = r.passed_over[*m.outdone_by];
             name                = p.choice.text();
-            what                = fmt::format("not looked at: one run costs {:.0f} times as much as one of {}", p.ratio,
+            what                = fmt::format("not looked at: one run costs {:.2g} times as much as one of {}, or more", p.ratio,
                                               r.candidates[p.candidate].choice.text());
         }
         widest = std::max(widest, name.size());
@@ -243,7 +263,7 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
                    {"dropped", Json::array()},
                    {"not_compared", Json::array()}};
     if (r.chosen) {
-        Json chosen   = candidate_json(r.candidates[*r.chosen], options);
+        Json chosen   = candidate_json(r.candidates[*r.chosen], r, options);
         Json held_out = {{"views", r.held_out.size()}, {"holds", Json::object()}, {"largest", Json::object()}};
         for (std::size_t k = 0; k < options.limits.size(); ++k) {
             const Metric& metric                        = *options.limits[k].metric;
@@ -258,20 +278,19 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
         chosen["held_out"]       = std::move(held_out);
         record["recommendation"] = std::move(chosen);
     }
-    for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], options));
+    for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], r, options));
     for (const TriedMethod& m : tried_methods(r, options)) record["methods"].push_back(method_json(m, r, options));
     for (const Rival& rival : r.tied) record["tied"].push_back(rival_json(rival, r, options));
     for (const Rival& rival : r.untold) record["not_compared"].push_back(rival_json(rival, r, options));
     for (const Dropped& d : r.dropped) {
-        record["dropped"].push_back(candidate_json(r.candidates[d.candidate], options));
-        record["dropped"].back()["beyond"] = {
-            {"view", d.view}, {"metric", d.metric->name}, {"error", optional_number(d.error)}};
+        record["dropped"].push_back(candidate_json(r.candidates[d.candidate], r, options));
+        record["dropped"].back()["beyond"] = beyond_json(d.beyond);
     }
     if (r.runner_up) record["runner_up"] = rival_json(*r.runner_up, r, options);
     if (r.cheapest) record["cheapest"] = rival_json(*r.cheapest, r, options);
     if (r.exact) record["exact"] = rival_json(*r.exact, r, options);
     if (r.nearest) {
-        record["nearest"]           = candidate_json(r.candidates[*r.nearest], options);
+        record["nearest"]           = candidate_json(r.candidates[*r.nearest], r, options);
         record["nearest"]["factor"] = number(r.candidates[*r.nearest].worst_ratio(options.limits));
     }
     for (const Step& step : r.staircase)
@@ -283,7 +302,7 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
         if (!c.unfit.empty())
             unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
         else
-            candidates.push_back(candidate_json(c, options));
+            candidates.push_back(candidate_json(c, r, options));
     }
     record["unfit"]      = std::move(unfit);
     record["candidates"] = std::move(candidates);
@@ -342,9 +361,13 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     text += staircase_in_words(r, options);
     text += methods_in_words(r, options) + noise_in_words(r, options);
     const std::size_t asked = r.settings - r.passed_over.size();
-    text += fmt::format("  {} of {} {} looked at, in {} each{}.\n", r.looked_at,
+    const bool all_whole    = std::ranges::all_of(r.candidates, [&](const Candidate& c) {
+        return !c.unfit.empty() || c.is_whole;
+    });
+    text += fmt::format("  {} of {} {} looked at, in {} each{}{}.\n", r.looked_at,
                         counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
                         counted_views(static_cast<std::size_t>(options.views)),
+                        all_whole ? "" : " or as many as it took to rule it out",
                         r.looked_at < asked ? "; bisection saved others" : "");
     if (!options.kept_in.empty())
         text += fmt::format("  Errors and times are kept in {}; --fresh measures times anew.\n", options.kept_in);

@@ -57,6 +57,8 @@ public:
     const Aimed& aimed(LightId light);
     /// What `look` made; it has run.
     [[nodiscard]] const Looked& looked() const { return *looked_; }
+    [[nodiscard]] bool is_built() const { return built_ != nullptr; }
+    [[nodiscard]] bool is_aimed_at(LightId light) const { return aimed_.contains(light); }
     [[nodiscard]] bool looks_at(const PointBatch& points) const { return looked_ && &looked_->points == &points; }
 
     /// S_j at the points that it looks at, and what is decided without the method. `out` as Method::visibility wants

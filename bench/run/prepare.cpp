@@ -14,6 +14,7 @@
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/off_pixel.h"
+#include "umbra/core/scene/view_facts.h"
 
 namespace umbra {
 namespace {
@@ -124,7 +125,8 @@ PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pi
     return p;
 }
 
-PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size size, int pixel_samples, Work work) {
+PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size size, int pixel_samples, Work work,
+                            const KnownGeometry* known) {
     PreparedScene p;
     p.pixel_side = samples_along_side(pixel_samples);
     p.scene      = std::move(scene);
@@ -133,12 +135,16 @@ PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size
         throw InputError(fmt::format("{}: the picture is {} x {}, expected at most {} pixels (set --size)",
                                      file.string(), size.width, size.height, kMaxArea));
     check_memory(p.scene, file, size.width, size.height, pixel_samples, work);
-    p.facts_ms = timed_ms([&] { p.facts = find_facts(p.scene); });
-    std::optional<RayScene> rays;
-    p.rays_build_ms = timed_ms([&] { rays.emplace(p.scene); });
+    p.facts_ms = timed_ms([&] {
+        p.facts = known != nullptr ? known->facts : find_facts(p.scene);
+        if (known != nullptr) update_view_facts(p.scene, p.facts);
+    });
+    std::optional<RayScene> built;
+    if (known == nullptr) p.rays_build_ms = timed_ms([&] { built.emplace(p.scene); });
+    const RayScene& rays = known != nullptr ? known->rays : *built;
     p.gbuffer_ms =
-        timed_ms([&] { p.points = primary_points(*rays, p.scene, p.scene.camera, size.width, size.height); });
-    if (p.pixel_side > 1) p.subpixels = subpixel_points(*rays, p.scene, size.width, size.height, p.pixel_side);
+        timed_ms([&] { p.points = primary_points(rays, p.scene, p.scene.camera, size.width, size.height); });
+    if (p.pixel_side > 1) p.subpixels = subpixel_points(rays, p.scene, size.width, size.height, p.pixel_side);
     warn_of_picture(p.scene, p.points);
     warn_of_points_off_their_pixels(p.scene, p.points);
     return p;

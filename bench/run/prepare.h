@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "umbra/core/render/points.h"
+#include "umbra/core/render/ray.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/scene.h"
 
@@ -55,8 +56,15 @@ struct Size {
 [[nodiscard]] PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples = 1,
                                           Work work = Work::comparison);
 
-/// The same for a scene that is there already; `file` names it in messages.
+/// Of a scene that has the same triangles and materials, and lights of the same kinds.
+struct KnownGeometry {
+    const SceneFacts& facts;
+    const RayScene& rays;
+};
+
+/// The same for a scene that is there already; `file` names it in messages. What `known` has is not found again.
 [[nodiscard]] PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size size,
-                                          int pixel_samples = 1, Work work = Work::comparison);
+                                          int pixel_samples = 1, Work work = Work::comparison,
+                                          const KnownGeometry* known = nullptr);
 
 }  // namespace umbra

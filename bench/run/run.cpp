@@ -95,6 +95,11 @@ void run_light(MethodRun& run, const PointBatch& points, LightId light, const Re
     MethodAtWork& work = *run.work;
     run.aim.push_back(time_runs(
         repeats, [&] { work.aim(light); }, [&] { work.forget_aim(light); }));
+    answer_light(run, points, light, repeats);
+}
+
+void answer_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
+    MethodAtWork& work = *run.work;
     look_at(run, points, repeats);
     VisibilityPlane plane(points.size(), run.is_coloured);
     run.visibility.push_back(time_runs(

@@ -79,7 +79,8 @@ struct MethodRun {
 void look_at(MethodRun& run, const PointBatch& points, const Repeats& repeats);
 
 /// The phases of one light, and of the points where it does not look at these yet: adds to `run`, whose method has been
-/// built. `points` must outlive the next call.
+/// built. `points` must outlive the next call. `answer_light` is that without the aim, which `run.work` has.
+void answer_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats);
 void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats);
 
 /// The phases of all lights, and what the values of the run hold then.

@@ -41,15 +41,25 @@ MethodChoice seeded(const MethodChoice& choice, int view) {
 
 }  // namespace
 
-CellView::CellView(std::shared_ptr<const Scene> own, std::filesystem::path file, int view, CellOptions options,
+const SceneFacts& OwnScene::facts() {
+    if (!facts_) facts_.emplace(find_facts(scene_));
+    return *facts_;
+}
+
+const RayScene& OwnScene::rays() {
+    if (!rays_) rays_.emplace(scene_);
+    return *rays_;
+}
+
+CellView::CellView(std::shared_ptr<OwnScene> own, std::filesystem::path file, int view, CellOptions options,
                    std::filesystem::path folder)
     : own_(std::move(own)),
       file_(std::move(file)),
       view_(view),
       options_(std::move(options)),
       folder_(std::move(folder)),
-      scene_key_(scene_key(*own_)) {
-    if (options_.size.width == 0) options_.size = {own_->width, own_->height};
+      scene_key_(scene_key(own_->scene())) {
+    if (options_.size.width == 0) options_.size = {own_->scene().width, own_->scene().height};
 }
 
 std::string CellView::what_truth_depends_on() const {
@@ -69,7 +79,9 @@ std::string CellView::reference_key() const { return combined_key({"reference", 
 const PreparedScene& CellView::prepared() {
     if (!prepared_) {
         if (options_.progress) options_.progress(fmt::format("preparing view {}", view_));
-        prepared_.emplace(prepare_scene(view_of(*own_, view_), file_, options_.size));
+        const KnownGeometry known{own_->facts(), own_->rays()};
+        prepared_.emplace(prepare_scene(view_of(own_->scene(), view_, &known.rays), file_, options_.size, 1,
+                                        Work::comparison, &known));
     }
     return *prepared_;
 }
@@ -107,7 +119,7 @@ Json CellView::reference() {
     return record;
 }
 
-const std::shared_ptr<MethodAtWork>& CellView::at_work(const MethodChoice& choice) {
+void CellView::build(const MethodChoice& choice) {
     if (work_ && work_->choice().info == choice.info) {
         work_->set(choice);
     } else {
@@ -115,10 +127,79 @@ const std::shared_ptr<MethodAtWork>& CellView::at_work(const MethodChoice& choic
         work_ = std::make_shared<MethodAtWork>(choice, prepared().scene, prepared().facts);
     }
     work_->limit(options_.budget);
+    if (!work_->service() || work_->is_built()) return;
+    aim_ms_.clear();
+    build_ms_.reset();
     // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
     const ThreadLimit one(1);
-    if (work_->service()) work_->built();
-    return work_;
+    work_->build();
+}
+
+/// On all threads, and by itself.
+double CellView::time_of_build(const MethodChoice& choice) {
+    const bool is_built = work_ && work_->choice().info == choice.info && work_->is_built() &&
+                          first_changed_phase(work_->choice().settings, choice.settings) != Phase::build;
+    if (is_built && build_ms_) return *build_ms_;
+    MethodAtWork alone(choice, prepared().scene, prepared().facts);
+    alone.limit(options_.budget);
+    alone.warm_up();
+    const double ms = timed_ms([&] { alone.build(); });
+    if (is_built) build_ms_ = ms;
+    return ms;
+}
+
+/// What the last run has built and aimed at is not made again.
+MethodRun CellView::run(const MethodChoice& choice, std::optional<LightId>& at) {
+    const PreparedScene& p = prepared();
+    ran_.reset();
+    build(seeded(choice, view_));
+    MethodRun run{choice};
+    run.is_coloured = p.facts.has_coloured_filters;
+    run.work        = work_;
+    run.service     = run.work->service();
+    if (!run.service) return run;
+    if (work_->looks_at(p.points)) {
+        run.look = look_ms_;
+    } else {
+        look_at(run, p.points, kOnce);
+        look_ms_ = run.look;
+    }
+    for (LightId light = 0; light < p.scene.lights.size(); ++light) {
+        at = light;
+        if (work_->is_aimed_at(light)) {
+            run.aim.push_back(aim_ms_.at(light));
+            answer_light(run, p.points, light, kOnce);
+        } else {
+            run_light(run, p.points, light, kOnce);
+            aim_ms_[light] = run.aim.back();
+        }
+    }
+    at.reset();
+    note_memory(run);
+    RunTimes times{.look = run.look.median};
+    for (const Timing& aim : run.aim) times.aim.push_back(aim.median);
+    for (const Timing& visibility : run.visibility) times.visibility.push_back(visibility.median);
+    times_.insert_or_assign(all_settings(choice), std::move(times));
+    return run;
+}
+
+std::optional<RunTimes> CellView::times_of_one_run(const MethodChoice& choice, bool anew) {
+    const std::string which = all_settings(choice);
+    std::optional<LightId> at;
+    try {
+        if (anew && work_) work_->forget_aims(), work_->forget_look(), build_ms_.reset();
+        if (anew || !times_.contains(which)) ran_ = run(choice, at);
+        const auto found = times_.find(which);
+        if (found == times_.end()) return std::nullopt;
+        RunTimes times = found->second;
+        times.build    = time_of_build(choice);
+        return times;
+    } catch (const InputError&) {
+        throw;
+    } catch (...) {
+        work_.reset();
+        return std::nullopt;
+    }
 }
 
 Json CellView::compute(const MethodChoice& choice) {
@@ -129,12 +210,10 @@ Json CellView::compute(const MethodChoice& choice) {
     Json cell;
     Trial trial{.noise_runs = kCellNoiseRuns, .budget = options_.budget};
     trial.run = [&](std::optional<LightId>& at) {
-        MethodRun run{choice};
-        run.is_coloured = p.facts.has_coloured_filters;
-        run.work        = at_work(seeded(choice, view_));
-        run.service     = run.work->service();
-        if (run.service) run_lights(run, p.points, scene.lights.size(), kOnce, &at);
-        return run;
+        const bool is_there = ran_ && all_settings(ran_->choice) == all_settings(choice);
+        MethodRun made      = is_there ? std::move(*ran_) : run(choice, at);
+        ran_.reset();
+        return made;
     };
     trial.truth = [&](const MethodRun& run) -> const MethodRun& {
         against = &truths().of(run.work->method());

@@ -12,6 +12,7 @@
 #include "umbra/bench/compare/image_figures.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
+#include "umbra/bench/time/turns.h"
 
 namespace umbra {
 
@@ -28,12 +29,27 @@ struct CellOptions {
     std::function<void(const std::string&)> progress{};  ///< receives what takes long; may be empty
 };
 
+/// A scene as loaded, and what its triangles decide, which all its views share. One caller at a time.
+class OwnScene {
+public:
+    explicit OwnScene(Scene scene) : scene_(std::move(scene)) {}
+
+    [[nodiscard]] const Scene& scene() const { return scene_; }
+    /// Both are made when they are first asked for.
+    [[nodiscard]] const SceneFacts& facts();
+    [[nodiscard]] const RayScene& rays();
+
+private:
+    Scene scene_;
+    std::optional<SceneFacts> facts_;
+    std::optional<RayScene> rays_;
+};
+
 /// One view of one scene, made ready when the first cell has to be computed.
 class CellView {
 public:
-    /// `own` is the scene as loaded from `file`, which only messages name; view 0 is that scene. The truth is kept in
-    /// `folder` for other processes.
-    CellView(std::shared_ptr<const Scene> own, std::filesystem::path file, int view, CellOptions options,
+    /// View 0 is the scene itself. Only messages name `file`. The truth is kept in `folder` for other processes.
+    CellView(std::shared_ptr<OwnScene> own, std::filesystem::path file, int view, CellOptions options,
              std::filesystem::path folder);
 
     [[nodiscard]] int view() const { return view_; }
@@ -51,6 +67,9 @@ public:
     /// follow one another and differ from a later phase on share the phases before. In view v > 0 methods that have a
     /// seed run with another one.
     [[nodiscard]] Json compute(const MethodChoice& choice);
+    /// Times of one run of all phases, alone: of the one that `compute` compared, or of one now, which the next `compute`
+    /// of this setting compares; `anew`: of one now in any case. View 0. Nothing where the setting does not serve, or fails.
+    [[nodiscard]] std::optional<RunTimes> times_of_one_run(const MethodChoice& choice, bool anew = false);
     /// Whether neither the method nor the truth was cut short by a budget, which no key has, in the last computed cell.
     [[nodiscard]] bool is_whole() const { return is_whole_; }
 
@@ -58,9 +77,11 @@ private:
     [[nodiscard]] Truths& truths();
     [[nodiscard]] const Rendered& rendered(const Truth& truth);
     [[nodiscard]] std::string what_truth_depends_on() const;
-    [[nodiscard]] const std::shared_ptr<MethodAtWork>& at_work(const MethodChoice& choice);
+    [[nodiscard]] MethodRun run(const MethodChoice& choice, std::optional<LightId>& at);
+    void build(const MethodChoice& choice);
+    [[nodiscard]] double time_of_build(const MethodChoice& choice);
 
-    std::shared_ptr<const Scene> own_;
+    std::shared_ptr<OwnScene> own_;
     std::filesystem::path file_;
     int view_;
     CellOptions options_;
@@ -70,7 +91,12 @@ private:
     std::optional<Truths> truths_;
     std::map<const Truth*, Rendered> rendered_;
     bool is_whole_ = true;
-    std::shared_ptr<MethodAtWork> work_;  ///< of the method that was asked last
+    std::shared_ptr<MethodAtWork> work_;     ///< of the method that was asked last
+    std::optional<double> build_ms_;         ///< of what it has built, on all threads
+    std::map<LightId, Timing> aim_ms_;       ///< of its aims
+    Timing look_ms_{};                       ///< of its look at the points
+    std::optional<MethodRun> ran_;           ///< and nothing has compared it yet
+    std::map<std::string, RunTimes> times_;  ///< of runs, by all settings, without `build`
 };
 
 }  // namespace umbra

@@ -33,10 +33,10 @@ public:
     /// The same scene with the same options, in pictures of another size.
     SceneLab(const SceneLab& other, const Size& size);
 
-    [[nodiscard]] const Scene& scene() const { return *scene_; }
+    [[nodiscard]] const Scene& scene() const { return own_->scene(); }
     [[nodiscard]] Size size() const;  ///< of the pictures
     [[nodiscard]] CellView& view(int view);
-    [[nodiscard]] const SceneFacts& facts() const { return facts_; }
+    [[nodiscard]] const SceneFacts& facts() const { return own_->facts(); }
     /// `reference` of the record of view 0.
     [[nodiscard]] Json reference();
     /// Frees what a view holds; its cells stay on disk.
@@ -48,9 +48,9 @@ public:
     [[nodiscard]] Json cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 
-    /// The first run of a setting on view 0, alone: a price, not a time to compare closely. It is found where a run on
-    /// this machine has paid it. Nothing where the setting does not serve, or failed.
-    [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice);
+    /// The fastest of `runs` runs of a setting on view 0 at least, alone: a price, not a time to compare closely. It is
+    /// found where runs on this machine have paid it. Nothing where the setting does not serve, or failed.
+    [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice, int runs = 1);
 
     /// Times of settings that took turns with one another. They are found where a run on this machine timed all of
     /// these together; otherwise all of them are timed now, also those that an earlier run has timed among others: a
@@ -71,8 +71,7 @@ private:
     void keep_measured(const Json& entry);
     [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);
 
-    std::shared_ptr<const Scene> scene_;
-    SceneFacts facts_;
+    std::shared_ptr<OwnScene> own_;
     std::filesystem::path file_;
     CellOptions options_;
     const CellStore& store_;

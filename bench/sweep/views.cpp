@@ -82,17 +82,20 @@ void move_light(Light& light, dvec3 middle, const RayScene& rays, Draw& draw) {
 
 }  // namespace
 
-Scene view_of(const Scene& scene, int view) {
+Scene view_of(const Scene& scene, int view, const RayScene* rays) {
     Scene moved = scene;
     if (view == 0) return moved;
-    const RayScene rays(scene);
+    if (rays == nullptr) {
+        const RayScene own(scene);
+        return view_of(scene, view, &own);
+    }
     const Box box      = bounds(scene);
     const dvec3 middle = 0.5 * (dvec3(box.min) + dvec3(box.max));
     Draw draw(view);
-    move_camera(moved.camera, rays, draw);
+    move_camera(moved.camera, *rays, draw);
     place_fixed_lights(moved);
     for (Light& light : moved.lights)
-        if (!light.camera_pose) move_light(light, middle, rays, draw);
+        if (!light.camera_pose) move_light(light, middle, *rays, draw);
     return moved;
 }
 

@@ -1,6 +1,7 @@
 // Views of a scene: its own camera and lights, and others jittered around them.
 #pragma once
 
+#include "umbra/core/render/ray.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
@@ -13,7 +14,7 @@ inline constexpr double kJitterSun   = 5;     ///< degrees, of directional light
 
 /// View 0 is the scene itself. View v > 0 has the camera and every light moved at random, always the same for the same
 /// v. Nothing passes through a triangle on the way from its place in view 0, so that no eye and no light of a room
-/// leaves it; what cannot move so far moves less far.
-[[nodiscard]] Scene view_of(const Scene& scene, int view);
+/// leaves it; what cannot move so far moves less far. `rays`: of the scene, where they are there already.
+[[nodiscard]] Scene view_of(const Scene& scene, int view, const RayScene* rays = nullptr);
 
 }  // namespace umbra

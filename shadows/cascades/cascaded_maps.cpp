@@ -264,9 +264,9 @@ void CascadedMaps::blame(const Aimed& aimed, const Looked& looked, std::span<Tri
             if (asked && samples.find(i, asked->view, lookups.view(*asked), asked->receiver, bias_.mode, filter_))
                 return;
     });
-    samples.name(blockers, [&](std::size_t v) {
-        return is_sun(aimed.source()) ? owners(*lookups.drawn[v], as<Sun>(aimed).casters, Faces::all)
-                                      : as<LightViews>(aimed).owners(v);
+    samples.name(blockers, [&](std::size_t v, std::span<const std::size_t> asked) {
+        return is_sun(aimed.source()) ? owners(*lookups.drawn[v], as<Sun>(aimed).casters, Faces::all, asked)
+                                      : as<LightViews>(aimed).owners(v, asked);
     });
 }
 

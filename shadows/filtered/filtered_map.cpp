@@ -204,7 +204,7 @@ public:
                 samples.find(i, found->view, of.views()[found->view], found->receiver, BiasMode::manual, asked);
             }
         });
-        samples.name(blockers, [&](std::size_t v) { return of.owners(v); });
+        samples.name(blockers, [&](std::size_t v, auto where) { return of.owners(v, where); });
     }
 
     [[nodiscard]] Reason explain(const Aimed& aimed, const Looked& looked, std::size_t i, Given given) const override {

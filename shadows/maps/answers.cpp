@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/gbuffer.h"
@@ -73,17 +74,18 @@ bool BlockingSamples::find(std::size_t i, std::size_t k, const MapView& view, co
     return at.has_value();
 }
 
-void BlockingSamples::name(std::span<TriangleId> blockers,
-                           const std::function<std::vector<TriangleId>(std::size_t k)>& owners) const {
+void BlockingSamples::name(std::span<TriangleId> blockers, const Owners& owners) const {
     std::ranges::fill(blockers, kNoTriangle);
-    std::size_t maps = 0;
+    std::map<std::size_t, std::vector<std::size_t>> asked;
     for (const Sample& sample : samples_)
-        if (sample.map != kNone) maps = std::max(maps, sample.map + 1);
-    for (std::size_t k = 0; k < maps; ++k) {
-        if (std::ranges::find(samples_, k, &Sample::map) == samples_.end()) continue;
-        const std::vector<TriangleId> shown = owners(k);
+        if (sample.map != kNone) asked[sample.map].push_back(sample.at);
+    for (auto& [k, samples] : asked) {
+        std::ranges::sort(samples);
+        samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
+        const std::vector<TriangleId> shown = owners(k, samples);
         for (std::size_t i = 0; i < samples_.size(); ++i)
-            if (samples_[i].map == k) blockers[i] = shown[samples_[i].at];
+            if (samples_[i].map == k)
+                blockers[i] = shown[static_cast<std::size_t>(std::ranges::lower_bound(samples, samples_[i].at) - samples.begin())];
     }
 }
 

@@ -169,10 +169,10 @@ public:
     bool find(std::size_t i, std::size_t k, const MapView& view, const Receiver& receiver, BiasMode mode,
               const Filter& filter);
 
-    /// Writes one triangle a point, kNoTriangle where no sample was found. `owners(k)` is asked for the maps in which
-    /// one was (LightViews::owners).
-    void name(std::span<TriangleId> blockers,
-              const std::function<std::vector<TriangleId>(std::size_t k)>& owners) const;
+    /// Of samples of map k, which ascend: the triangle that each shows (LightViews::owners).
+    using Owners = std::function<std::vector<TriangleId>(std::size_t k, std::span<const std::size_t> samples)>;
+    /// Writes one triangle a point, kNoTriangle where no sample was found. Maps in which none was are not asked.
+    void name(std::span<TriangleId> blockers, const Owners& owners) const;
 
 private:
     static constexpr std::size_t kNone = ~std::size_t{0};

@@ -59,9 +59,9 @@ void DepthMap::move_towards(const DepthMap& first, const std::function<double(do
 
 std::vector<std::uint32_t> DepthMap::owners(const dmat4& clip_from_world, std::span<const vec3> positions,
                                             std::span<const uvec3> all, std::span<const std::span<const uvec3>> runs,
-                                            Faces faces) const {
-    std::vector<std::uint32_t> owners(samples(), kNoOwner);
-    keep_owners({width_, height_, code(), clip_from_world, positions, runs, faces}, words_.get(), all, owners.data());
+                                            Faces faces, std::span<const std::size_t> samples) const {
+    std::vector<std::uint32_t> owners(samples.size(), kNoOwner);
+    keep_owners({width_, height_, code(), clip_from_world, positions, runs, faces}, words_.get(), all, samples, owners);
     return owners;
 }
 

@@ -78,12 +78,13 @@ public:
     /// In every sample that is not empty keeps between(r of `first`, r of this), in [0, 1], instead of r. Parallel.
     void move_towards(const DepthMap& first, const std::function<double(double first, double second)>& between);
 
-    /// Which triangle each sample shows: draws the same once more and names the one whose depth the map kept, the first
-    /// of several, by its index in `all`, of which the runs are parts; kNoOwner where there is none. As costly as
-    /// drawing: for explaining a map.
+    /// Which triangle each of some samples shows, which ascend, row by row: draws the same once more and names the one
+    /// whose depth the map kept, the first of several, by its index in `all`, of which the runs are parts; kNoOwner where
+    /// there is none. As costly as drawing: for explaining a map.
     [[nodiscard]] std::vector<std::uint32_t> owners(const dmat4& clip_from_world, std::span<const vec3> positions,
                                                     std::span<const uvec3> all,
-                                                    std::span<const std::span<const uvec3>> runs, Faces faces) const;
+                                                    std::span<const std::span<const uvec3>> runs, Faces faces,
+                                                    std::span<const std::size_t> samples) const;
     static constexpr std::uint32_t kNoOwner = 0xffffffffu;
 
 private:

@@ -168,11 +168,13 @@ dmat4 clip_around(const MapView& view, ivec2 sample, int size) {
 
 double LightViews::half_of_memory() { return 0.5 * usable_memory(); }
 
-std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces) {
+std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces,
+                               std::span<const std::size_t> samples) {
     static_assert(DepthMap::kNoOwner == kNoTriangle);
     const dmat4 clip_from_world = view.frame.clip_from_world();
     const Scene& scene          = casters.scene();
-    return view.map.owners(clip_from_world, scene.positions, scene.triangles, casters.seen_by(clip_from_world), faces);
+    return view.map.owners(clip_from_world, scene.positions, scene.triangles, casters.seen_by(clip_from_world), faces,
+                           samples);
 }
 
 TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample) {
@@ -182,8 +184,8 @@ TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces face
     const Scene& scene   = casters.scene();
     const auto triangles = casters.reaching(clip_from_world);
     around.draw(clip_from_world, scene.positions, triangles, faces);
-    return around.owners(clip_from_world, scene.positions, scene.triangles, triangles,
-                         faces)[kSize / 2 * kSize + kSize / 2];
+    const std::size_t middle = kSize / 2 * kSize + kSize / 2;
+    return around.owners(clip_from_world, scene.positions, scene.triangles, triangles, faces, {&middle, 1}).front();
 }
 
 void draw_around(MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample, int around) {

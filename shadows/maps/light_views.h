@@ -26,9 +26,10 @@ struct MapView {
     std::optional<DepthMap> midpoint{};  ///< halfway in depth between that and the second, where there are two
 };
 
-/// Which triangle each sample of a view's map shows that `faces` of `casters` were drawn into, kNoTriangle where none.
-/// Draws the map again.
-[[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces);
+/// Which triangle each of some samples of a view's map shows that `faces` of `casters` were drawn into, kNoTriangle where
+/// none. They ascend, row by row. Draws the map again.
+[[nodiscard]] std::vector<TriangleId> owners(const MapView& view, const SelectedCasters& casters, Faces faces,
+                                             std::span<const std::size_t> samples);
 /// The same of one sample: draws a few samples around it.
 [[nodiscard]] TriangleId owner(const MapView& view, const SelectedCasters& casters, Faces faces, ivec2 sample);
 /// Draws the triangles that reach the samples at most `around` from this one in x and in y. These become as in the
@@ -86,8 +87,8 @@ public:
 
     [[nodiscard]] const std::vector<MapView>& views() const { return views_; }
     /// Which triangle each sample of view k's map shows, kNoTriangle where none. Draws the map again.
-    [[nodiscard]] std::vector<TriangleId> owners(std::size_t k) const {
-        return umbra::owners(views_[k], casters_, faces_);
+    [[nodiscard]] std::vector<TriangleId> owners(std::size_t k, std::span<const std::size_t> samples) const {
+        return umbra::owners(views_[k], casters_, faces_, samples);
     }
     [[nodiscard]] TriangleId owner(std::size_t k, ivec2 sample) const {
         return umbra::owner(views_[k], casters_, faces_, sample);

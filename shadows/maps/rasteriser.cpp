@@ -239,10 +239,14 @@ struct Owner {
     static constexpr bool kNamed = true;
     const std::uint32_t* words;
     const uvec3* all;
-    std::uint32_t* owners;
+    std::span<const std::size_t> asked;
+    std::vector<std::uint64_t> is_asked;  ///< a bit a sample: few are, and most that are drawn are not
+    std::span<std::uint32_t> owners;
     void operator()(std::size_t sample, std::uint32_t word, const uvec3* triangle) const {
-        if (word == words[sample])
-            owners[sample] = std::min(owners[sample], static_cast<std::uint32_t>(triangle - all));
+        if ((is_asked[sample / 64] >> (sample % 64) & 1) == 0 || word != words[sample]) return;
+        const auto at        = std::ranges::lower_bound(asked, sample) - asked.begin();
+        std::uint32_t& owner = owners[static_cast<std::size_t>(at)];
+        owner                = std::min(owner, static_cast<std::uint32_t>(triangle - all));
     }
 };
 
@@ -600,8 +604,10 @@ void keep_nearest_behind(const Drawing& drawing, const std::uint32_t* first, std
 }
 
 void keep_owners(const Drawing& drawing, const std::uint32_t* words, std::span<const uvec3> all,
-                 std::uint32_t* owners) {
-    rasterise(drawing, Owner{words, all.data(), owners});
+                 std::span<const std::size_t> asked, std::span<std::uint32_t> owners) {
+    std::vector<std::uint64_t> is_asked((static_cast<std::size_t>(drawing.width) * drawing.height + 63) / 64);
+    for (const std::size_t sample : asked) is_asked[sample / 64] |= std::uint64_t{1} << (sample % 64);
+    rasterise(drawing, Owner{words, all.data(), asked, std::move(is_asked), owners});
 }
 
 }  // namespace umbra

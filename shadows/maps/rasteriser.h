@@ -49,9 +49,10 @@ void keep_nearest(const Drawing& drawing, std::uint32_t* words);
 void keep_nearest_behind(const Drawing& drawing, const std::uint32_t* first, std::uint32_t roundings,
                          std::uint32_t* words);
 
-/// Every owner becomes the least of itself and of the indices in `all`, of which the runs are parts, of the triangles
-/// that cover its sample with just the depth in `words`. Takes longer than drawing.
-void keep_owners(const Drawing& drawing, const std::uint32_t* words, std::span<const uvec3> all, std::uint32_t* owners);
+/// The owners of some samples, `asked`, which ascend: each becomes the least of itself and of the indices in `all`, of
+/// which the runs are parts, of the triangles that cover its sample with just the depth in `words`.
+void keep_owners(const Drawing& drawing, const std::uint32_t* words, std::span<const uvec3> all,
+                 std::span<const std::size_t> asked, std::span<std::uint32_t> owners);
 
 /// The depth as kept of nearness r in [0, 1].
 [[nodiscard]] std::uint32_t depth_word(const DepthCode& code, double r);

@@ -190,7 +190,7 @@ public:
                 samples.find(i, found->view, views.views()[found->view], rotated(found->receiver, seen.camera, p),
                              bias_.mode, asked);
         });
-        samples.name(blockers, [&](std::size_t v) { return views.owners(v); });
+        samples.name(blockers, [&](std::size_t v, auto where) { return views.owners(v, where); });
         for_each_contact(
             aimed, seen, [&](std::size_t i) { return blockers[i] == kNoTriangle; },
             [&](std::size_t i, TriangleId shown) { blockers[i] = shown; });

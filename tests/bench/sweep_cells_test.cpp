@@ -154,7 +154,7 @@ TEST(SceneKey, ChangesWithEverythingThatAnAnswerDependsOn) {
 /// Everything that a cell is asked for, one at a time: the view, both sides of the picture, the reference, its points,
 /// and each parameter of the method. The key of the record of the reference is none of them.
 TEST(CellKey, ChangesWithEverythingThatIsAskedFor) {
-    const auto own = std::make_shared<const Scene>(load_scene(scene_file("umbra_penumbra")));
+    const auto own = std::make_shared<OwnScene>(load_scene(scene_file("umbra_penumbra")));
     const TemporaryFolder folder;
     std::map<std::string, std::string> keys;
     const auto add = [&](const char* what, int view, const CellOptions& options, const char* setting) {
@@ -337,7 +337,7 @@ TEST(Views, KeepLightsAtTheCameraThatAreFixedToIt) {
 
 TEST(CellView, HasRandomNumbersOfItsOwn) {
     const TemporaryFolder folder;
-    const auto own = std::make_shared<const Scene>(load_scene(scene_file("umbra_penumbra")));
+    const auto own = std::make_shared<OwnScene>(load_scene(scene_file("umbra_penumbra")));
     CellView view(own, scene_file("umbra_penumbra"), 2, {.size = {48, 27}}, folder.path());
     const PreparedScene& p   = view.prepared();
     const ReferenceRun truth = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt);
@@ -352,7 +352,7 @@ TEST(CellView, HasRandomNumbersOfItsOwn) {
 
 TEST(CellView, ComparesWithTheTruthOfTheMethodsOwnMeasure) {
     const TemporaryFolder folder;
-    const auto own = std::make_shared<const Scene>(load_scene(scene_file("umbra_penumbra")));
+    const auto own = std::make_shared<OwnScene>(load_scene(scene_file("umbra_penumbra")));
     CellView view(own, scene_file("umbra_penumbra"), 0, {.size = {32, 18}}, folder.path());
     const Json area       = view.compute(parse_method("ray_traced")),
                irradiance = view.compute(parse_method("ray_traced:measure=irradiance"));
@@ -370,7 +370,7 @@ TEST(CellView, HasColouredShadows) {
         "lights": [{"type": "directional", "direction": [0.2, -1, 0]}],
         "objects": [{"type": "plane", "size": [8, 8]},
                     {"type": "plane", "size": [2, 1], "material": "glass", "transform": [{"translate": [0, 1, 0]}]}]})");
-    const auto own  = std::make_shared<const Scene>(load_scene(file));
+    const auto own  = std::make_shared<OwnScene>(load_scene(file));
     CellView view(own, file, 0, {.size = {48, 27}}, folder.path());
     const MethodChoice choice = parse_method("brute_force");
     const Json cell           = view.compute(choice);
