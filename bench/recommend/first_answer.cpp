@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numeric>
 
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/record/field.h"
@@ -55,18 +54,10 @@ private:
         const Size small = coarse_.size(), large = whole_.size();
         const double more =
             static_cast<double>(large.width) * large.height / (static_cast<double>(small.width) * small.height);
-        if (more * (few->look + sum(few->visibility)) > kLongMs) return cost_of(*few, more);
-        if (const double least = cost_of(*few, 1); best_ && least >= best_->cost) return least;
+        if (more * few->all() > kLongMs) return price_ms(options_.workload, *few, more);
+        if (const double least = price_ms(options_.workload, *few); best_ && least >= best_->cost) return least;
         const std::optional<RunTimes> all = whole_.price(choice);
-        return all ? std::optional(cost_of(*all, 1)) : std::nullopt;
-    }
-
-    /// Passes over points count `more` times.
-    [[nodiscard]] double cost_of(const RunTimes& run, double more) const {
-        return frame_cost_ms(options_.workload, {run.build, sum(run.aim), more * run.look, more * sum(run.visibility)});
-    }
-    [[nodiscard]] static double sum(const std::vector<double>& lights) {
-        return std::accumulate(lights.begin(), lights.end(), 0.0);
+        return all ? std::optional(price_ms(options_.workload, *all)) : std::nullopt;
     }
 
     /// Whether it is within the limits; then it is the best so far.

@@ -19,9 +19,9 @@ namespace umbra {
 namespace {
 
 constexpr double kInfinite     = std::numeric_limits<double>::infinity();
-// More than a busy machine makes of equal settings: by one run each, and by the faster of two, or where the run took so
-// long that it had its share of the processors.
-constexpr double kFar = 5, kFarTwice = 2, kLongRunMs = 250;
+// More than a busy machine makes of equal settings: by the faster of two runs each, or one that took so long that it had
+// its share of the processors; and by the median of few rounds.
+constexpr double kFar = 2, kLongRunMs = 250, kFarByFewRounds = 5;
 
 std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
     const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
@@ -39,118 +39,43 @@ std::optional<double> error_in_view(const Metric& metric, const Json& cell) {
     return why_unfit({&cell, 1}).empty() ? possible_error(metric, cell) : std::nullopt;
 }
 
-/// Looks at settings of one scene, each once.
+/// Looks at settings of one scene, each once. Errors are those of small pictures, whose points are as good a sample of
+/// the scene; times and further views those of whole ones.
 class Search {
 public:
-    Search(SceneLab& lab, const RecommendOptions& options, Recommendation& result)
-        : lab_(lab), options_(options), result_(result) {}
-
-    std::size_t look(const MethodChoice& choice) {
-        for (std::size_t k = 0; k < result_.candidates.size(); ++k)
-            if (result_.candidates[k].choice.info == choice.info &&
-                result_.candidates[k].choice.settings == choice.settings)
-                return k;
-        if (options_.progress) options_.progress(choice.text());
-        Candidate c{choice, {}, false, {}, {}, {}, {}, {}, {}, {}};
-        c.bounds.resize(options_.limits.size());
-        look_on(c, true);
-        result_.candidates.push_back(std::move(c));
-        return result_.candidates.size() - 1;
-    }
-
-    /// Its bounds, also where some view is beyond a limit.
-    Candidate& looked_at_whole(std::size_t candidate) {
-        Candidate& c = result_.candidates[candidate];
-        if (c.unfit.empty()) look_on(c, false);
-        return c;
-    }
-
-    /// The settings that may be the answer: of each family the first within the limits; and those that the answer is
-    /// compared with: of each family the first and the last. What serves exactly comes first, the reference before all,
-    /// since others are outdone by it; then the last one of each family, so that those that share what was built and
-    /// aimed at follow one another.
-    void look_at_families() {
-        std::vector<Family> all = families(options_.choices);
-        std::ranges::stable_sort(all, {}, [&](const Family& f) {
+    Search(SceneLab& small, SceneLab& whole, const RecommendOptions& options, Recommendation& result)
+        : small_(small), whole_(whole), options_(options), result_(result) {
+        const Size few = small.size(), all = whole.size();
+        more_points_  = static_cast<double>(all.width) * all.height / (static_cast<double>(few.width) * few.height);
+        result_.size = few;
+        families_    = families(options.choices);
+        std::ranges::stable_sort(families_, {}, [&](const Family& f) {
             return std::pair(!f.settings.front().info->reference, !is_by_proof(f.settings.front()));
         });
-        for (Family& family : all) {
-            result_.settings += family.settings.size();
-            drop_what_costs_too_much(family);
-            while (!family.settings.empty() && is_outdone(family.settings.back())) family.settings.pop_back();
-        }
-        for (const Family& family : all) {
-            if (family.settings.empty()) continue;
-            const auto good = first_good(family.settings.size(), [&](std::size_t k) {
-                return result_.candidates[look(family.settings[k])].within(options_.limits);
-            });
-            if (good) static_cast<void>(look(family.settings[*good]));
-            static_cast<void>(look(family.settings.front()));
+        for (const Family& family : families_) result_.settings += family.settings.size();
+    }
+
+    /// The settings that may be the answer, of each family those up to the first within the limits, and the reference,
+    /// which comes first: others are passed over by what is within the limits and costs far less.
+    void look_at_families() {
+        result_.passed_over.clear();
+        for (const Family& family : families_) {
+            for (std::size_t k = 0; k < family.settings.size(); ++k) {
+                if (const auto by = passed_over_by(family.settings[k])) {
+                    // Each setting costs more than those before it.
+                    for (; k < family.settings.size(); ++k)
+                        result_.passed_over.push_back({family.settings[k], by->candidate, by->ratio});
+                    break;
+                }
+                if (is_answer(look(family.settings[k]))) break;
+            }
         }
         result_.looked_at = result_.candidates.size();
     }
 
-    /// Each setting of a family costs more than those before it: from the first that is passed over on, all are.
-    void drop_what_costs_too_much(Family& family) {
-        const auto first = std::ranges::find_if(family.settings, [&](const MethodChoice& c) { return pass_over(c); });
-        if (first == family.settings.end()) return;
-        const PassedOver least = result_.passed_over.back();
-        for (auto later = first + 1; later != family.settings.end(); ++later)
-            result_.passed_over.push_back({*later, least.candidate, least.ratio});
-        family.settings.erase(first, family.settings.end());
-    }
-
-    /// Settings that were outdone by one that is the answer no longer are looked at further. Whether there are any.
-    bool look_at_outdone_by(std::size_t candidate) {
-        bool any = false;
-        for (Candidate& c : result_.candidates) {
-            if (c.outdone_by != candidate) continue;
-            c.outdone_by.reset();
-            look_on(c, true);
-            any = true;
-        }
-        return any;
-    }
-
-    /// The next setting of its family, where bisection has left that out. Whether there is one.
-    bool look_behind(std::size_t candidate) {
-        const MethodChoice& dropped = result_.candidates[candidate].choice;
-        for (const Family& family : families(options_.choices)) {
-            const auto is = [](const MethodChoice& a, const MethodChoice& b) {
-                return a.info == b.info && a.settings == b.settings;
-            };
-            const auto here = std::ranges::find_if(family.settings, [&](const auto& c) { return is(c, dropped); });
-            if (here == family.settings.end() || here + 1 == family.settings.end()) continue;
-            const MethodChoice& next = *(here + 1);
-            if (std::ranges::any_of(result_.passed_over, [&](const PassedOver& p) { return is(p.choice, next); }))
-                return false;
-            static_cast<void>(look(next));
-            const bool is_new = result_.candidates.size() > result_.looked_at;
-            result_.looked_at = result_.candidates.size();
-            return is_new;
-        }
-        return false;
-    }
-
-    /// Whether a setting cannot be the answer nor a step of the staircase, whatever its errors: the reference, or one
-    /// without errors, is within the limits and cheaper by far. Memory is no error: others may need less than these.
-    bool pass_over(const MethodChoice& choice) {
-        if (choice.info->reference || options_.limits.front().metric->name == "memory_mb") return false;
-        for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
-            const Candidate& c = result_.candidates[k];
-            if (!c.unfit.empty() || !c.within(options_.limits)) continue;
-            if (!c.choice.info->reference && *c.bounds[0] > 0) continue;
-            const std::optional<double> mine = price(choice), other = price(c.choice);
-            if (!mine || !other || !costs_far_more(choice, c.choice)) continue;
-            result_.passed_over.push_back({choice, k, *mine / *other});
-            return true;
-        }
-        return false;
-    }
-
-    /// Each candidate gets its price as its cost, and those that may be the answer or a step, and the reference, the
-    /// median of rounds in turns: the fewer take turns, the more rounds fit into the budget. Turns may find another
-    /// answer than prices do; what its price does not outdo takes turns with it, too.
+    /// Each candidate gets its price as its cost, and those that may be the answer or a step before it the median of
+    /// rounds in turns: the fewer take turns, the more rounds fit into the budget. Turns may find another answer than
+    /// prices do; what its price does not outdo takes turns with it, too.
     void time_candidates() {
         std::vector<std::size_t> fit, who;
         for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
@@ -161,26 +86,115 @@ public:
             if (c.cost) fit.push_back(k);
         }
         for (const std::size_t k : fit)
-            if (result_.candidates[k].choice.info->reference || std::ranges::none_of(fit, [&](std::size_t o) {
-                    return outdoes(result_.candidates[o], result_.candidates[k]);
-                }))
-                who.push_back(k);
+            if (std::ranges::none_of(fit, [&](std::size_t o) { return outdoes(o, k); })) who.push_back(k);
         while (!who.empty()) {
             time_in_turns_with_one_another(who);
             const auto cheapest     = std::ranges::min_element(who, {}, [&](std::size_t k) {
-                const Candidate& c = result_.candidates[k];
-                return c.within(options_.limits) ? c.cost.value_or(kInfinite) : kInfinite;
+                return is_answer(k) ? result_.candidates[k].cost.value_or(kInfinite) : kInfinite;
             });
             const Candidate& answer = result_.candidates[*cheapest];
             const std::size_t timed = who.size();
             for (const std::size_t k : fit) {
-                const Candidate& c = result_.candidates[k];
-                const bool rivals  = answer.within(options_.limits) && c.within(options_.limits);
-                if (rivals && !costs_far_more(c.choice, answer.choice) && std::ranges::find(who, k) == who.end())
+                const bool rivals = is_answer(*cheapest) && is_answer(k);
+                if (rivals && std::ranges::find(who, k) == who.end() &&
+                    !costs_far_more(result_.candidates[k].choice, answer.choice))
                     who.push_back(k);
             }
             if (who.size() == timed) return;
         }
+    }
+
+    /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
+    [[nodiscard]] std::optional<Dropped> try_on_further_views(std::size_t k) {
+        result_.held_out.clear();
+        if (is_the_reference(result_.candidates[k])) return std::nullopt;
+        for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
+            const Json cell = whole_.cell(result_.candidates[k].choice, view);
+            whole_.release(view);
+            if (const auto beyond = beyond_in(cell, view)) {
+                result_.held_out.clear();
+                return Dropped{k, *beyond};
+            }
+            result_.held_out.push_back(cell);
+        }
+        return std::nullopt;
+    }
+
+    /// Its bounds, also where some view is beyond a limit.
+    const Candidate& looked_at_whole(std::size_t candidate) {
+        Candidate& c = result_.candidates[candidate];
+        if (c.unfit.empty()) look_on(c, false);
+        return c;
+    }
+
+    /// The cost of `k` over that of `base`.
+    [[nodiscard]] Rival rival(std::size_t k, std::size_t base) {
+        const Candidate &x = result_.candidates[k], &y = result_.candidates[base];
+        Ratio ratio = paired_ratio(x.costs, y.costs);
+        if (ratio.has_interval()) return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
+        if (ratio.pairs > 0) return {k, ratio, std::max(ratio.median, 1 / ratio.median) > kFarByFewRounds};
+        ratio.median = *x.price / *y.price;
+        return {k, ratio, costs_far_more(x.choice, y.choice) || costs_far_more(y.choice, x.choice)};
+    }
+
+private:
+    [[nodiscard]] bool is_answer(std::size_t k) const {
+        return result_.candidates[k].within(options_.limits) &&
+               std::ranges::find(result_.dropped, k, &Dropped::candidate) == result_.dropped.end();
+    }
+
+    std::size_t look(const MethodChoice& choice) {
+        for (std::size_t k = 0; k < result_.candidates.size(); ++k)
+            if (result_.candidates[k].choice.info == choice.info &&
+                result_.candidates[k].choice.settings == choice.settings)
+                return k;
+        if (options_.progress) options_.progress(choice.text());
+        Candidate c{choice, {}, false, {}, {}, {}, {}, {}, {}};
+        c.bounds.resize(options_.limits.size());
+        look_on(c, true);
+        result_.candidates.push_back(std::move(c));
+        return result_.candidates.size() - 1;
+    }
+
+    /// Its views that are missing; `while_within`: up to one that is beyond a limit. Of the reference one is enough.
+    void look_on(Candidate& c, bool while_within) {
+        while (c.views.size() < static_cast<std::size_t>(options_.views)) {
+            const int view = static_cast<int>(c.views.size());
+            if (view > 0 && is_the_reference(c)) break;
+            c.views.push_back(small_.cell(c.choice, view));
+            c.unfit = why_unfit(c.views);
+            if (!c.unfit.empty()) return;
+            if (!c.beyond) c.beyond = beyond_in(c.views.back(), view);
+            if (while_within && c.beyond) return;
+        }
+        c.is_whole = true;
+        for (std::size_t k = 0; k < options_.limits.size(); ++k)
+            c.bounds[k] = upper_bound(*options_.limits[k].metric, c.views);
+    }
+
+    [[nodiscard]] std::optional<Beyond> beyond_in(const Json& cell, int view) const {
+        for (const Limit& limit : options_.limits)
+            if (const auto error = error_in_view(*limit.metric, cell); !error || *error > limit.most)
+                return Beyond{view, limit.metric, error};
+        return std::nullopt;
+    }
+
+    /// A setting that costs far more than one that is within the limits cannot be the answer, whatever its errors. A
+    /// limit of memory may be there for the sake of those that cost more.
+    [[nodiscard]] std::optional<PassedOver> passed_over_by(const MethodChoice& choice) {
+        if (choice.info->reference || options_.limits.front().metric->name == "memory_mb") return std::nullopt;
+        for (std::size_t k = 0; k < result_.candidates.size(); ++k)
+            if (is_answer(k) && costs_far_more(choice, result_.candidates[k].choice))
+                return PassedOver{choice, k, *price(choice) / *price(result_.candidates[k].choice)};
+        return std::nullopt;
+    }
+
+    /// Whether `k` is no answer and no step before it, since `other` is cheaper by far and no worse, or the answer.
+    [[nodiscard]] bool outdoes(std::size_t other, std::size_t k) {
+        const Candidate &a = result_.candidates[other], &b = result_.candidates[k];
+        const auto least = b.least_bound(options_.limits, 0);
+        const bool lower = a.bounds[0] && (!least || *a.bounds[0] <= *least) && !is_answer(k);
+        return (is_answer(other) || lower) && costs_far_more(b.choice, a.choice);
     }
 
     void time_in_turns_with_one_another(const std::vector<std::size_t>& who) {
@@ -188,9 +202,9 @@ public:
         TurnOptions turns = options_.turns;
         for (const std::size_t k : who) {
             choices.push_back(result_.candidates[k].choice);
-            turns.first.push_back(lab_.price(result_.candidates[k].choice));
+            turns.first.push_back(whole_.price(result_.candidates[k].choice));
         }
-        const TimedTogether together = lab_.times(choices, turns, options_.most_noise);
+        const TimedTogether together = whole_.times(choices, turns, options_.most_noise);
         result_.noise_bar            = together.noise_bar();
         for (std::size_t t = 0; t < who.size(); ++t) {
             const Json& times = together.settings[t];
@@ -202,116 +216,35 @@ public:
         }
     }
 
-    /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
-    [[nodiscard]] std::optional<Dropped> try_on_further_views(std::size_t k) {
-        result_.held_out.clear();
-        if (is_the_reference(result_.candidates[k])) return std::nullopt;
-        for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
-            const Json cell = lab_.cell(result_.candidates[k].choice, view);
-            lab_.release(view);
-            if (const auto beyond = beyond_in(cell, view)) {
-                result_.held_out.clear();
-                return Dropped{k, *beyond};
-            }
-            result_.held_out.push_back(cell);
-        }
-        return std::nullopt;
+    [[nodiscard]] bool costs_far_more(const MethodChoice& a, const MethodChoice& b) {
+        const auto ratio = [&](int runs_of_a, int runs_of_b) {
+            const std::optional<double> over = price(a, runs_of_a), under = price(b, runs_of_b);
+            return over && under ? *over / *under : 0;
+        };
+        return ratio(1, 1) > kFar && ratio(small_.price(a)->all() > kLongRunMs ? 1 : 2, 2) > kFar;
     }
 
-    /// The cost of `k` over that of `base`.
-    [[nodiscard]] Rival rival(std::size_t k, std::size_t base) {
-        const Candidate &x = result_.candidates[k], &y = result_.candidates[base];
-        Ratio ratio = paired_ratio(x.costs, y.costs);
-        if (ratio.has_interval()) return {k, ratio, umbra::differs(ratio, result_.noise_bar)};
-        if (ratio.pairs == 0) {
-            ratio.median = *x.price / *y.price;
-            return {k, ratio, costs_far_more(x.choice, y.choice) || costs_far_more(y.choice, x.choice)};
-        }
-        return {k, ratio, std::max(ratio.median, 1 / ratio.median) > kFar};
-    }
-
-private:
-    [[nodiscard]] std::optional<Beyond> beyond_in(const Json& cell, int view) const {
-        for (const Limit& limit : options_.limits)
-            if (const auto error = error_in_view(*limit.metric, cell); !error || *error > limit.most)
-                return Beyond{view, limit.metric, error};
-        return std::nullopt;
-    }
-
-    /// Its views that are missing; `while_needed`: up to one that is beyond a limit, or by which it is outdone.
-    void look_on(Candidate& c, bool while_needed) {
-        const auto all = static_cast<std::size_t>(options_.views);
-        while (c.views.size() < all) {
-            const int view = static_cast<int>(c.views.size());
-            c.views.push_back(lab_.cell(c.choice, view));
-            c.unfit = why_unfit(c.views);
-            if (!c.unfit.empty()) return;
-            if (!c.beyond) c.beyond = beyond_in(c.views.back(), view);
-            if (!while_needed || c.views.size() == all) continue;
-            if (!c.beyond) c.outdone_by = outdone_by(c);
-            if (c.beyond || c.outdone_by) return;
-        }
-        c.is_whole = true;
-        for (std::size_t k = 0; k < options_.limits.size(); ++k)
-            c.bounds[k] = upper_bound(*options_.limits[k].metric, c.views);
+    /// Milliseconds a frame, by runs alone; nothing where the setting does not serve.
+    [[nodiscard]] std::optional<double> price(const MethodChoice& choice, int runs = 1) {
+        const std::optional<RunTimes> times = small_.price(choice, runs);
+        return times ? std::optional(price_ms(options_.workload, *times, more_points_)) : std::nullopt;
     }
 
     /// Whether only rounding can make it err.
     [[nodiscard]] bool is_by_proof(const MethodChoice& choice) const {
         try {
-            const How how = verdict(*choice.make(), lab_.facts()).how;
+            const How how = verdict(*choice.make(), whole_.facts()).how;
             return how == How::exactly || how == How::to_rounding;
         } catch (const UsageError&) {  // its settings contradict one another
             return false;
         }
     }
 
-    [[nodiscard]] bool is_outdone(const MethodChoice& choice) {
-        return result_.candidates[look(choice)].outdone_by.has_value();
-    }
-
-    /// It is then neither the answer nor a step of the staircase.
-    [[nodiscard]] std::optional<std::size_t> outdone_by(const Candidate& c) {
-        for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
-            const Candidate& other = result_.candidates[k];
-            const bool is_dropped  = std::ranges::find(result_.dropped, k, &Dropped::candidate) != result_.dropped.end();
-            if (!other.unfit.empty() || is_dropped || !outdoes(other, c)) continue;
-            if (other.within(options_.limits)) return k;
-        }
-        return std::nullopt;
-    }
-
-    /// Whether `a` is cheaper than `b` by far and no worse: within the limits if `b` is, and its bound no higher.
-    [[nodiscard]] bool outdoes(const Candidate& a, const Candidate& b) {
-        const bool no_worse = a.within(options_.limits) || !b.within(options_.limits);
-        const auto least    = b.least_bound(options_.limits, 0);
-        const bool lower    = a.bounds[0] && (!least || *a.bounds[0] <= *least);
-        return no_worse && lower && costs_far_more(b.choice, a.choice);
-    }
-
-    [[nodiscard]] bool costs_far_more(const MethodChoice& a, const MethodChoice& b) {
-        const auto ratio = [&](int runs_of_a, int runs_of_b) {
-            const std::optional<double> over = price(a, runs_of_a), under = price(b, runs_of_b);
-            return over && under ? *over / *under : 0;
-        };
-        const double once = ratio(1, 1);
-        if (once > kFar || once <= kFarTwice) return once > kFar;
-        return ratio(lab_.price(a)->all() > kLongRunMs ? 1 : 2, 2) > kFarTwice;
-    }
-
-    /// Milliseconds a frame, alone; nothing where the setting does not serve.
-    [[nodiscard]] std::optional<double> price(const MethodChoice& choice, int runs = 1) {
-        const std::optional<RunTimes> times = lab_.price(choice, runs);
-        if (!times) return std::nullopt;
-        const auto sum = [](const std::vector<double>& lights) {
-            return std::accumulate(lights.begin(), lights.end(), 0.0);
-        };
-        return frame_cost_ms(options_.workload, {times->build, sum(times->aim), times->look, sum(times->visibility)});
-    }
-
-    SceneLab& lab_;
+    SceneLab &small_, &whole_;
     const RecommendOptions& options_;
     Recommendation& result_;
+    double more_points_ = 1;  ///< of a whole picture, for one of a small one
+    std::vector<Family> families_;
 };
 
 /// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar. What a
@@ -389,19 +322,6 @@ std::vector<Family> families(std::span<const MethodChoice> choices) {
     return all;
 }
 
-std::optional<std::size_t> first_good(std::size_t count, const std::function<bool(std::size_t)>& good) {
-    if (count == 0 || !good(count - 1)) return std::nullopt;
-    std::size_t low = 0, high = count - 1;  // the first good one is in [low, high], and high is good
-    while (low < high) {
-        const std::size_t middle = low + (high - low) / 2;
-        if (good(middle))
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    return high;
-}
-
 bool Candidate::within(std::span<const Limit> limits) const { return is_whole && !beyond && worst_ratio(limits) <= 1; }
 
 std::optional<double> Candidate::least_bound(std::span<const Limit> limits, std::size_t limit) const {
@@ -426,14 +346,22 @@ double Candidate::worst_ratio(std::span<const Limit> limits) const {
 }
 
 bool is_the_reference(const Candidate& c) {
-    return c.choice.info->reference && std::ranges::all_of(c.views, [](const Json& cell) {
+    return c.choice.info->reference && !c.views.empty() && std::ranges::all_of(c.views, [](const Json& cell) {
                return cell.at("serves").at("how") == "exactly";
            });
 }
 
-Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
+double price_ms(const Workload& workload, const RunTimes& run, double more_points) {
+    const auto sum = [](const std::vector<double>& lights) {
+        return std::accumulate(lights.begin(), lights.end(), 0.0);
+    };
+    return frame_cost_ms(workload,
+                         {run.build, sum(run.aim), more_points * run.look, more_points * sum(run.visibility)});
+}
+
+Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOptions& options) {
     Recommendation r;
-    Search search(lab, options, r);
+    Search search(small, whole, options, r);
     search.look_at_families();
     search.time_candidates();
 
@@ -481,8 +409,9 @@ Recommendation recommend(SceneLab& lab, const RecommendOptions& options) {
         }
         if (auto dropped = search.try_on_further_views(within.front())) {
             r.dropped.push_back(*dropped);
-            const bool next = search.look_behind(dropped->candidate);
-            if (search.look_at_outdone_by(dropped->candidate) || next) search.time_candidates();
+            const std::size_t before = r.candidates.size();
+            search.look_at_families();
+            if (r.candidates.size() > before) search.time_candidates();
             rank();
         } else {
             r.chosen = within.front();

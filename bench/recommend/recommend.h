@@ -41,10 +41,6 @@ struct Family {
 };
 [[nodiscard]] std::vector<Family> families(std::span<const MethodChoice> choices);
 
-/// The index of the first setting of a family that `good` accepts, by bisection, which takes for granted that each one
-/// behind an accepted one is accepted; nothing where the last is not. `good` is asked at most once a setting.
-[[nodiscard]] std::optional<std::size_t> first_good(std::size_t count, const std::function<bool(std::size_t)>& good);
-
 /// The first view of a setting that is beyond a limit, and so its bound, which is no less than any view.
 struct Beyond {
     int view             = 0;
@@ -59,8 +55,6 @@ struct Candidate {
     bool is_whole = false;                      ///< views are all that are chosen on
     std::vector<std::optional<double>> bounds;  ///< [limit]; nothing where it is not whole
     std::optional<Beyond> beyond;               ///< the first such view; behind it none was needed
-    std::optional<std::size_t> outdone_by;      ///< a candidate that is within the limits and costs less by far, with a
-                                                ///< bound no higher than what is known of this one: no view was needed
     std::string unfit;                          ///< why it is no candidate at all; empty where it is one
     std::vector<double> costs;                  ///< ms a frame, one a round; empty where it took part in none
     std::optional<double> price;                ///< ms a frame by one run, alone
@@ -91,8 +85,8 @@ struct Dropped {
     Beyond beyond;
 };
 
-/// A setting that was not looked at: it costs more by far, as prices tell, than a candidate within the limits that has no
-/// errors or is the reference.
+/// A setting that was not looked at: it costs far more, as prices tell, than a candidate within the limits, and so is not
+/// the answer whatever its errors.
 struct PassedOver {
     MethodChoice choice;
     std::size_t candidate;  ///< the cheaper one
@@ -111,7 +105,8 @@ struct TriedMethod {
     std::optional<std::size_t> outdone_by;  ///< index into passed_over, where none was looked at: the cheapest of them
 };
 
-/// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest; of those
+/// A step of the staircase: down to the bound `error` of the first limit's metric, this one is the cheapest of those that
+/// were looked at; of those
 /// that the noise bar does not tell apart, the one with the smallest bound.
 struct Step {
     std::size_t candidate;
@@ -134,10 +129,17 @@ struct Recommendation {
     std::vector<PassedOver> passed_over;  ///< in the order in which they were met
     std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
                                           ///< None of the reference, which they would compare with itself
+    Size size{};                              ///< of the pictures that it was chosen on
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
     double noise_bar = 0;                     ///< as of Turns
 };
-[[nodiscard]] Recommendation recommend(SceneLab& lab, const RecommendOptions& options);
+
+/// `small` is the scene of `whole` in pictures of as many points as the limits need (first_size), or `whole` itself.
+/// Settings are looked at in its pictures; times, and the views that nothing was chosen on, are of whole ones.
+[[nodiscard]] Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOptions& options);
+
+/// What a frame costs by one run on a picture, for one of so many times its points: passes over points count as often.
+[[nodiscard]] double price_ms(const Workload& workload, const RunTimes& run, double more_points = 1);
 
 /// Every method of the candidates, in the order in which the options name them.
 [[nodiscard]] std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options);

@@ -52,8 +52,7 @@ Json beyond_json(const Beyond& beyond) {
     return {{"view", beyond.view}, {"metric", beyond.metric->name}, {"error", optional_number(beyond.error)}};
 }
 
-Json candidate_json(const Candidate& c, const Recommendation& r, const RecommendOptions& options) {
-    const Candidate* outdone_by = c.outdone_by ? &r.candidates[*c.outdone_by] : nullptr;
+Json candidate_json(const Candidate& c, const RecommendOptions& options) {
     Json errors = Json::object();
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Limit& limit                      = options.limits[k];
@@ -66,7 +65,6 @@ Json candidate_json(const Candidate& c, const Recommendation& r, const Recommend
             {"views", c.views.size()},
             {"errors", std::move(errors)},
             {"beyond", c.beyond ? beyond_json(*c.beyond) : Json()},
-            {"outdone_by", outdone_by ? Json(outdone_by->choice.text()) : Json()},
             {"undefined", number(most_undefined(c))}};
 }
 
@@ -76,7 +74,7 @@ Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendO
         {"within", m.within},     {"best", nullptr},        {"factor", nullptr},        {"unfit", nullptr}};
     if (!m.candidate) return entry;
     const Candidate& c = r.candidates[*m.candidate];
-    entry["best"]      = candidate_json(c, r, options);
+    entry["best"]      = candidate_json(c, options);
     if (c.unfit.empty())
         entry["factor"] = number(c.worst_ratio(options.limits));
     else
@@ -85,7 +83,7 @@ Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendO
 }
 
 Json rival_json(const Rival& rival, const Recommendation& r, const RecommendOptions& options) {
-    Json entry          = candidate_json(r.candidates[rival.candidate], r, options);
+    Json entry          = candidate_json(r.candidates[rival.candidate], options);
     const Ratio& ratio  = rival.ratio;
     const auto bound    = [&](double value) { return ratio.has_interval() ? number(value) : Json(); };
     entry["cost_ratio"] = {{"median", number(ratio.median)},     {"low", bound(ratio.interval.low)},
@@ -144,11 +142,8 @@ std::string beyond_in_words(const Beyond& beyond) {
 }
 
 /// The bounds of a candidate in one line: "rmse at most 0.012, flip at most 0.02: 1.2 times a limit".
-std::string bounds_in_words(const Candidate& c, const Recommendation& r, const RecommendOptions& options) {
+std::string bounds_in_words(const Candidate& c, const RecommendOptions& options) {
     if (c.beyond && !c.is_whole) return beyond_in_words(*c.beyond) + ": beyond the limit";
-    if (c.outdone_by)
-        return fmt::format("looked at in {} only: {} costs far less", counted_views(c.views.size()),
-                           r.candidates[*c.outdone_by].choice.text());
     std::string text;
     for (std::size_t k = 0; k < options.limits.size(); ++k) {
         const Metric& metric = *options.limits[k].metric;
@@ -207,7 +202,7 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
             name               = c.choice.text();
             what               = !c.unfit.empty() ? "left out: " + c.unfit
                                  : !c.cost        ? "could not be timed"
-                                           : fmt::format("{:>9.3f} ms  {}{}", *c.cost, bounds_in_words(c, r, options),
+                                           : fmt::format("{:>9.3f} ms  {}{}", *c.cost, bounds_in_words(c, options),
                                            dropped ? ", dropped" : "");
         } else if (m.outdone_by) {
             const PassedOver& p = r.passed_over[*m.outdone_by];
@@ -236,7 +231,7 @@ std::string noise_in_words(const Recommendation& r, const RecommendOptions& opti
 std::string staircase_in_words(const Recommendation& r, const RecommendOptions& options) {
     if (r.staircase.empty()) return {};
     std::string text =
-        fmt::format("  If {} may be at most E, the cheapest of the settings by their bounds from {}:\n",
+        fmt::format("  If {} may be at most E, the cheapest that was looked at, by bounds from {}:\n",
                     options.limits.front().metric->name, counted_views(static_cast<std::size_t>(options.views)));
     for (std::size_t k = 0; k < r.staircase.size(); ++k) {
         const Step& step        = r.staircase[k];
@@ -263,7 +258,7 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
                    {"dropped", Json::array()},
                    {"not_compared", Json::array()}};
     if (r.chosen) {
-        Json chosen   = candidate_json(r.candidates[*r.chosen], r, options);
+        Json chosen   = candidate_json(r.candidates[*r.chosen], options);
         Json held_out = {{"views", r.held_out.size()}, {"holds", Json::object()}, {"largest", Json::object()}};
         for (std::size_t k = 0; k < options.limits.size(); ++k) {
             const Metric& metric                        = *options.limits[k].metric;
@@ -278,19 +273,19 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
         chosen["held_out"]       = std::move(held_out);
         record["recommendation"] = std::move(chosen);
     }
-    for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], r, options));
+    for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], options));
     for (const TriedMethod& m : tried_methods(r, options)) record["methods"].push_back(method_json(m, r, options));
     for (const Rival& rival : r.tied) record["tied"].push_back(rival_json(rival, r, options));
     for (const Rival& rival : r.untold) record["not_compared"].push_back(rival_json(rival, r, options));
     for (const Dropped& d : r.dropped) {
-        record["dropped"].push_back(candidate_json(r.candidates[d.candidate], r, options));
+        record["dropped"].push_back(candidate_json(r.candidates[d.candidate], options));
         record["dropped"].back()["beyond"] = beyond_json(d.beyond);
     }
     if (r.runner_up) record["runner_up"] = rival_json(*r.runner_up, r, options);
     if (r.cheapest) record["cheapest"] = rival_json(*r.cheapest, r, options);
     if (r.exact) record["exact"] = rival_json(*r.exact, r, options);
     if (r.nearest) {
-        record["nearest"]           = candidate_json(r.candidates[*r.nearest], r, options);
+        record["nearest"]           = candidate_json(r.candidates[*r.nearest], options);
         record["nearest"]["factor"] = number(r.candidates[*r.nearest].worst_ratio(options.limits));
     }
     for (const Step& step : r.staircase)
@@ -302,7 +297,7 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
         if (!c.unfit.empty())
             unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
         else
-            candidates.push_back(candidate_json(c, r, options));
+            candidates.push_back(candidate_json(c, options));
     }
     record["unfit"]      = std::move(unfit);
     record["candidates"] = std::move(candidates);
@@ -314,6 +309,7 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
     record["passed_over"] = std::move(passed_over);
     record["workload"]    = to_text(options.workload);
     record["views"]       = options.views;
+    record["size"]        = {{"width", r.size.width}, {"height", r.size.height}};
     record["settings"]    = {{"looked_at", r.looked_at}, {"of", r.settings}};
     record["noise_bar"]   = number(r.noise_bar);
     record["kept_in"]     = options.kept_in.empty() ? Json() : Json(options.kept_in);
@@ -360,15 +356,11 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     }
     text += staircase_in_words(r, options);
     text += methods_in_words(r, options) + noise_in_words(r, options);
-    const std::size_t asked = r.settings - r.passed_over.size();
-    const bool all_whole    = std::ranges::all_of(r.candidates, [&](const Candidate& c) {
-        return !c.unfit.empty() || c.is_whole;
-    });
-    text += fmt::format("  {} of {} {} looked at, in {} each{}{}.\n", r.looked_at,
-                        counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
-                        counted_views(static_cast<std::size_t>(options.views)),
-                        all_whole ? "" : " or as many as it took to rule it out",
-                        r.looked_at < asked ? "; bisection saved others" : "");
+    text += fmt::format(
+        "  {} of {} {} looked at, in up to {} of {} x {} pixels each{}.\n",
+        r.looked_at, counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
+        counted_views(static_cast<std::size_t>(options.views)), r.size.width, r.size.height,
+        r.looked_at < r.settings ? "; the others cost more than one within the limits" : "");
     if (!options.kept_in.empty())
         text += fmt::format("  Errors and times are kept in {}; --fresh measures times anew.\n", options.kept_in);
     return text;

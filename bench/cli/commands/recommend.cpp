@@ -52,18 +52,15 @@ int recommend(RecommendLine line, const Common& common) {
     if (line.fresh) lab.measure_anew();
     pass_warnings(lab.scene(), [&](const std::string& warning) { terminal->warn(warning); });
     options.choices = planned_settings(plan, lab.facts());
-    std::optional<FirstAnswer> first;
-    {
-        SceneLab coarse(lab, first_size(lab.size(), options.limits));
-        first = first_answer(coarse, lab, options, kFirstSeconds);
-    }
+    SceneLab small(lab, first_size(lab.size(), options.limits));
+    const std::optional<FirstAnswer> first = first_answer(small, lab, options, kFirstSeconds);
     if (first && !line.as_json) {
         terminal.reset();
         print_out("{}", without_controls(first_answer_text(*first, options)));
         flush_out();  // it is read while the search goes on
         terminal.emplace(common.quiet);
     }
-    const Recommendation found = recommend(lab, options);
+    const Recommendation found = recommend(small, lab, options);
     terminal.reset();
     if (line.as_json) {
         Json record     = recommendation_json(found, options);
