@@ -64,6 +64,7 @@ private:
     bool take_if_within(const MethodChoice& choice, double cost) {
         std::vector<Json> cells;
         for (int view = 0; view < kFirstViews; ++view) {
+            if (is_the_reference(choice, cells)) break;
             cells.push_back(coarse_.cell(choice, view));
             if (!why_unfit({&cells.back(), 1}).empty()) return false;
             for (const Limit& limit : options_.limits) {

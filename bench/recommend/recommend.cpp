@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -18,7 +19,7 @@
 namespace umbra {
 namespace {
 
-constexpr double kInfinite     = std::numeric_limits<double>::infinity();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // More than a busy machine makes of equal settings: by the faster of two runs each, or one that took so long that it had
 // its share of the processors; and by the median of few rounds.
 constexpr double kFar = 2, kLongRunMs = 250, kFarByFewRounds = 5;
@@ -39,14 +40,21 @@ std::optional<double> error_in_view(const Metric& metric, const Json& cell) {
     return why_unfit({&cell, 1}).empty() ? possible_error(metric, cell) : std::nullopt;
 }
 
+// Views of a setting that is beyond a limit are looked at for the sake of the staircase where it would be a step that
+// lowers the error by a fifth, until they have taken so long together.
+constexpr double kStep = 0.8, kStepsSeconds = 3;
+
+/// So many times as long is looked for a setting that is within the limits at all and is not the reference.
+constexpr double kPatience = 4;
+
 /// Looks at settings of one scene, each once. Errors are those of small pictures, whose points are as good a sample of
-/// the scene; times and further views those of whole ones.
+/// the scene; times are of whole ones.
 class Search {
 public:
     Search(SceneLab& small, SceneLab& whole, const RecommendOptions& options, Recommendation& result)
         : small_(small), whole_(whole), options_(options), result_(result) {
         const Size few = small.size(), all = whole.size();
-        more_points_  = static_cast<double>(all.width) * all.height / (static_cast<double>(few.width) * few.height);
+        more_points_ = static_cast<double>(all.width) * all.height / (static_cast<double>(few.width) * few.height);
         result_.size = few;
         families_    = families(options.choices);
         std::ranges::stable_sort(families_, {}, [&](const Family& f) {
@@ -56,24 +64,46 @@ public:
     }
 
     /// The settings that may be the answer, of each family those up to the first within the limits, and the reference,
-    /// which comes first: others are passed over by what is within the limits and costs far less.
+    /// which comes first: others are passed over by what is within the limits and costs far less. Always the family
+    /// whose setting before ran the shortest, so that what takes long is left where the time is up.
     void look_at_families() {
+        struct Line {
+            const Family* family;
+            std::size_t next = 0;
+            double ran_ms    = 0;  ///< the setting before the next one, or the fastest of the method where none did
+        };
+        std::vector<Line> lines;
+        for (const Family& family : families_) lines.push_back({&family});
         result_.passed_over.clear();
-        for (const Family& family : families_) {
-            for (std::size_t k = 0; k < family.settings.size(); ++k) {
-                if (const auto by = passed_over_by(family.settings[k])) {
-                    // Each setting costs more than those before it.
-                    for (; k < family.settings.size(); ++k)
-                        result_.passed_over.push_back({family.settings[k], by->candidate, by->ratio});
-                    break;
-                }
-                if (is_answer(look(family.settings[k]))) break;
+        result_.unasked.clear();
+        const auto method_of = [](const Line& l) { return l.family->settings.front().info; };
+        const auto start     = std::chrono::steady_clock::now();
+        while (!lines.empty()) {
+            const auto line = std::ranges::min_element(
+                lines, {}, [&](const Line& l) { return std::pair(!method_of(l)->reference, l.ran_ms); });
+            const std::vector<MethodChoice>& settings = line->family->settings;
+            const std::span left                      = std::span(settings).subspan(line->next);
+            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            const std::size_t k                       = known(left.front());
+            if (k == kNone && spent.count() > (has_cheap_answer() ? 1 : kPatience) * options_.seconds) {
+                result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
+            } else if (const auto by = passed_over_by(left.front())) {
+                for (const MethodChoice& choice : left)  // each costs more than those before it
+                    result_.passed_over.push_back({choice, by->candidate, by->ratio});
+            } else if (!is_answer(k == kNone ? look(left.front()) : k) && left.size() > 1) {
+                ++line->next;
+                line->ran_ms = ran_ms(left.front());
+                for (Line& other : lines)
+                    if (other.next == 0 && method_of(other) == method_of(*line))
+                        other.ran_ms = other.ran_ms > 0 ? std::min(other.ran_ms, line->ran_ms) : line->ran_ms;
+                continue;
             }
+            lines.erase(line);
         }
         result_.looked_at = result_.candidates.size();
     }
 
-    /// Each candidate gets its price as its cost, and those that may be the answer or a step before it the median of
+    /// Each candidate gets its price as its cost, and those that may be the answer, and the steps by price, the median of
     /// rounds in turns: the fewer take turns, the more rounds fit into the budget. Turns may find another answer than
     /// prices do; what its price does not outdo takes turns with it, too.
     void time_candidates() {
@@ -85,8 +115,15 @@ public:
             c.cost = c.price = price(c.choice);
             if (c.cost) fit.push_back(k);
         }
-        for (const std::size_t k : fit)
-            if (std::ranges::none_of(fit, [&](std::size_t o) { return outdoes(o, k); })) who.push_back(k);
+        std::vector<std::size_t> may = fit;
+        std::erase_if(may, [&](std::size_t k) { return !is_answer(k); });
+        for (const Step& step : staircase()) may.push_back(step.candidate);
+        for (const std::size_t k : may) {
+            const bool is_outdone = std::ranges::any_of(fit, [&](std::size_t o) {
+                return is_answer(o) && costs_far_more(result_.candidates[k].choice, result_.candidates[o].choice);
+            });
+            if (!is_outdone && std::ranges::find(who, k) == who.end()) who.push_back(k);
+        }
         while (!who.empty()) {
             time_in_turns_with_one_another(who);
             const auto cheapest     = std::ranges::min_element(who, {}, [&](std::size_t k) {
@@ -107,10 +144,10 @@ public:
     /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
     [[nodiscard]] std::optional<Dropped> try_on_further_views(std::size_t k) {
         result_.held_out.clear();
-        if (is_the_reference(result_.candidates[k])) return std::nullopt;
+        if (is_the_reference(result_.candidates[k].choice, result_.candidates[k].views)) return std::nullopt;
         for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
-            const Json cell = whole_.cell(result_.candidates[k].choice, view);
-            whole_.release(view);
+            const Json cell = small_.cell(result_.candidates[k].choice, view);
+            small_.release(view);
             if (const auto beyond = beyond_in(cell, view)) {
                 result_.held_out.clear();
                 return Dropped{k, *beyond};
@@ -123,8 +160,44 @@ public:
     /// Its bounds, also where some view is beyond a limit.
     const Candidate& looked_at_whole(std::size_t candidate) {
         Candidate& c = result_.candidates[candidate];
-        if (c.unfit.empty()) look_on(c, false);
+        if (c.unfit.empty()) look_on(c, options_.views, false);
         return c;
+    }
+
+    /// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar.
+    [[nodiscard]] std::vector<Step> staircase() {
+        const Recommendation& r = result_;
+        std::vector<std::size_t> by_cost;
+        for (std::size_t k = 0; k < r.candidates.size(); ++k)
+            if (r.candidates[k].cost) by_cost.push_back(k);
+        std::ranges::stable_sort(by_cost, {}, [&](std::size_t k) { return *r.candidates[k].cost; });
+        const double same = std::isfinite(r.noise_bar) ? 1 + r.noise_bar : 1;
+        std::vector<Step> steps;
+        double cheapest    = 0;  // of those that the last step stands for
+        const auto is_step = [&](const std::optional<double>& error) {
+            return error && (steps.empty() || *error < steps.back().error);
+        };
+        for (const std::size_t k : by_cost) {
+            Candidate& c = result_.candidates[k];
+            while (!c.is_whole && steps_took_.count() < kStepsSeconds) {
+                const auto least = c.least_bound(options_.limits, 0);
+                if (!least || (!steps.empty() && *least > kStep * steps.back().error)) break;
+                const auto start = std::chrono::steady_clock::now();
+                look_on(c, static_cast<int>(c.views.size()) + 1, false);
+                steps_took_ += std::chrono::steady_clock::now() - start;
+                if (!c.unfit.empty()) break;
+            }
+            const auto error = c.bounds[0];
+            if (!is_step(error)) continue;
+            const double cost = *r.candidates[k].cost;
+            if (!steps.empty() && cost <= same * cheapest) {
+                steps.back() = {k, *error};
+                continue;
+            }
+            steps.push_back({k, *error});
+            cheapest = cost;
+        }
+        return steps;
     }
 
     /// The cost of `k` over that of `base`.
@@ -138,35 +211,51 @@ public:
     }
 
 private:
+    /// Than the reference.
+    [[nodiscard]] bool has_cheap_answer() const {
+        for (std::size_t k = 0; k < result_.candidates.size(); ++k)
+            if (!result_.candidates[k].choice.info->reference && is_answer(k)) return true;
+        return false;
+    }
+
     [[nodiscard]] bool is_answer(std::size_t k) const {
         return result_.candidates[k].within(options_.limits) &&
                std::ranges::find(result_.dropped, k, &Dropped::candidate) == result_.dropped.end();
     }
 
-    std::size_t look(const MethodChoice& choice) {
+    static constexpr std::size_t kNone = ~std::size_t{0};
+    [[nodiscard]] std::size_t known(const MethodChoice& choice) const {
         for (std::size_t k = 0; k < result_.candidates.size(); ++k)
             if (result_.candidates[k].choice.info == choice.info &&
                 result_.candidates[k].choice.settings == choice.settings)
                 return k;
+        return kNone;
+    }
+
+    std::size_t look(const MethodChoice& choice) {
         if (options_.progress) options_.progress(choice.text());
         Candidate c{choice, {}, false, {}, {}, {}, {}, {}, {}};
         c.bounds.resize(options_.limits.size());
-        look_on(c, true);
+        look_on(c, options_.views, true);
         result_.candidates.push_back(std::move(c));
         return result_.candidates.size() - 1;
     }
 
-    /// Its views that are missing; `while_within`: up to one that is beyond a limit. Of the reference one is enough.
-    void look_on(Candidate& c, bool while_within) {
-        while (c.views.size() < static_cast<std::size_t>(options_.views)) {
+    /// Its first `count` views, where they are missing; `while_within`: up to one that is beyond a limit. Of the
+    /// reference one is enough.
+    void look_on(Candidate& c, int count, bool while_within) {
+        const auto is_enough = [&] {
+            return static_cast<int>(c.views.size()) == options_.views || is_the_reference(c.choice, c.views);
+        };
+        while (!is_enough() && static_cast<int>(c.views.size()) < count) {
             const int view = static_cast<int>(c.views.size());
-            if (view > 0 && is_the_reference(c)) break;
             c.views.push_back(small_.cell(c.choice, view));
             c.unfit = why_unfit(c.views);
             if (!c.unfit.empty()) return;
             if (!c.beyond) c.beyond = beyond_in(c.views.back(), view);
-            if (while_within && c.beyond) return;
+            if (while_within && c.beyond && !is_enough()) return;
         }
+        if (!is_enough()) return;
         c.is_whole = true;
         for (std::size_t k = 0; k < options_.limits.size(); ++k)
             c.bounds[k] = upper_bound(*options_.limits[k].metric, c.views);
@@ -187,14 +276,6 @@ private:
             if (is_answer(k) && costs_far_more(choice, result_.candidates[k].choice))
                 return PassedOver{choice, k, *price(choice) / *price(result_.candidates[k].choice)};
         return std::nullopt;
-    }
-
-    /// Whether `k` is no answer and no step before it, since `other` is cheaper by far and no worse, or the answer.
-    [[nodiscard]] bool outdoes(std::size_t other, std::size_t k) {
-        const Candidate &a = result_.candidates[other], &b = result_.candidates[k];
-        const auto least = b.least_bound(options_.limits, 0);
-        const bool lower = a.bounds[0] && (!least || *a.bounds[0] <= *least) && !is_answer(k);
-        return (is_answer(other) || lower) && costs_far_more(b.choice, a.choice);
     }
 
     void time_in_turns_with_one_another(const std::vector<std::size_t>& who) {
@@ -224,6 +305,12 @@ private:
         return ratio(1, 1) > kFar && ratio(small_.price(a)->all() > kLongRunMs ? 1 : 2, 2) > kFar;
     }
 
+    /// How long a run took; where it does not serve, no time.
+    [[nodiscard]] double ran_ms(const MethodChoice& choice) {
+        const std::optional<RunTimes> run = small_.price(choice);
+        return run ? run->all() : 0;
+    }
+
     /// Milliseconds a frame, by runs alone; nothing where the setting does not serve.
     [[nodiscard]] std::optional<double> price(const MethodChoice& choice, int runs = 1) {
         const std::optional<RunTimes> times = small_.price(choice, runs);
@@ -243,37 +330,10 @@ private:
     SceneLab &small_, &whole_;
     const RecommendOptions& options_;
     Recommendation& result_;
-    double more_points_ = 1;  ///< of a whole picture, for one of a small one
+    std::chrono::duration<double> steps_took_{0};  ///< views for their sake
+    double more_points_ = 1;                       ///< of a whole picture, for one of a small one
     std::vector<Family> families_;
 };
-
-/// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar. What a
-/// view rules out as a step is looked at in no further one.
-std::vector<Step> staircase_of(Search& search, const Recommendation& r, const RecommendOptions& options) {
-    std::vector<std::size_t> by_cost;
-    for (std::size_t k = 0; k < r.candidates.size(); ++k)
-        if (r.candidates[k].cost) by_cost.push_back(k);
-    std::ranges::stable_sort(by_cost, {}, [&](std::size_t k) { return *r.candidates[k].cost; });
-    const double same = std::isfinite(r.noise_bar) ? 1 + r.noise_bar : 1;
-    std::vector<Step> steps;
-    double cheapest    = 0;  // of those that the last step stands for
-    const auto is_step = [&](const std::optional<double>& error) {
-        return error && (steps.empty() || *error < steps.back().error);
-    };
-    for (const std::size_t k : by_cost) {
-        if (!is_step(r.candidates[k].least_bound(options.limits, 0))) continue;
-        const auto error = search.looked_at_whole(k).bounds[0];
-        if (!is_step(error)) continue;
-        const double cost = *r.candidates[k].cost;
-        if (!steps.empty() && cost <= same * cheapest) {
-            steps.back() = {k, *error};
-            continue;
-        }
-        steps.push_back({k, *error});
-        cheapest = cost;
-    }
-    return steps;
-}
 
 /// Of those that were timed, the one that misses by the smallest factor.
 std::optional<std::size_t> nearest_of(Search& search, std::vector<std::size_t> timed, const Recommendation& r,
@@ -296,6 +356,12 @@ Limit parse_limit(const std::string& text) {
     return {&find_metric(limit.metric), limit.most};
 }
 
+/// Whether the parameter's sweep goes from large numbers to small ones, which cost more.
+bool falls(const Parameter& swept) {
+    const std::string_view sweep = swept.sweep;
+    return std::stod(std::string(sweep)) > std::stod(std::string(sweep.substr(sweep.rfind('|') + 1)));
+}
+
 std::vector<Family> families(std::span<const MethodChoice> choices) {
     std::vector<Family> all;
     for (const MethodChoice& choice : choices) {
@@ -315,9 +381,11 @@ std::vector<Family> families(std::span<const MethodChoice> choices) {
     }
     for (Family& family : all) {
         if (family.settings.size() == 1) family.parameter.clear();
-        if (!family.parameter.empty())
-            std::ranges::stable_sort(family.settings, {},
-                                     [&](const MethodChoice& c) { return c.settings.value(family.parameter); });
+        if (family.parameter.empty()) continue;
+        const Parameter* axis = line_of(*family.settings.front().info);
+        const double sign     = falls(*axis) ? -1 : 1;
+        std::ranges::stable_sort(family.settings, {},
+                                 [&](const MethodChoice& c) { return sign * c.settings.value(family.parameter); });
     }
     return all;
 }
@@ -345,10 +413,9 @@ double Candidate::worst_ratio(std::span<const Limit> limits) const {
     return worst;
 }
 
-bool is_the_reference(const Candidate& c) {
-    return c.choice.info->reference && !c.views.empty() && std::ranges::all_of(c.views, [](const Json& cell) {
-               return cell.at("serves").at("how") == "exactly";
-           });
+bool is_the_reference(const MethodChoice& choice, std::span<const Json> views) {
+    return choice.info->reference && !views.empty() &&
+           std::ranges::all_of(views, [](const Json& cell) { return cell.at("serves").at("how") == "exactly"; });
 }
 
 double price_ms(const Workload& workload, const RunTimes& run, double more_points) {
@@ -383,7 +450,7 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
     rank();
     if (within.empty()) {
         r.nearest   = nearest_of(search, timed, r, options);
-        r.staircase = staircase_of(search, r, options);
+        r.staircase = search.staircase();
         return r;
     }
     const auto compare_others = [&] {
@@ -404,7 +471,7 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
             r.undecided.push_back(within.front());
             for (const Rival& rival : r.tied) r.undecided.push_back(rival.candidate);
             r.tied.clear(), r.untold.clear(), r.runner_up.reset();
-            r.staircase = staircase_of(search, r, options);
+            r.staircase = search.staircase();
             return r;
         }
         if (auto dropped = search.try_on_further_views(within.front())) {
@@ -417,7 +484,7 @@ Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOption
             r.chosen = within.front();
         }
     }
-    r.staircase = staircase_of(search, r, options);
+    r.staircase = search.staircase();
     if (!r.chosen) return r;
     r.cheapest = search.rival(timed.front(), *r.chosen);
     for (const std::size_t k : timed)

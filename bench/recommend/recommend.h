@@ -25,16 +25,17 @@ struct RecommendOptions {
     std::vector<Limit> limits;  ///< at least one
     Workload workload;
     std::vector<MethodChoice> choices;  ///< candidates; those that leave points undefined are not taken
-    int views    = 5;                   ///< that the choice is made on, from view 0
-    int held_out = 10;                  ///< further views that a setting is tried on before it is the answer
+    int views      = 5;                 ///< that the choice is made on, from view 0
+    int held_out   = 10;                ///< further views that a setting is tried on before it is the answer
+    double seconds = 15;                ///< with no setting is begun after as many of the search
     TurnOptions turns{.rounds = 9, .budget_ms = 6000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
     std::string kept_in{};           ///< the folder of cells and times, to be named; empty: it is not
     std::function<void(const std::string&)> progress{};
 };
 
-/// Settings of one method that differ in one number alone whose growth lowers the errors (the parameter has a sweep of
-/// numbers), by ascending number. Other settings are families of one.
+/// Settings of one method that differ in one number alone, as the parameter's sweep has them: from the cheapest on, each
+/// of which has lower errors than the one before. Other settings are families of one.
 struct Family {
     std::string parameter;  ///< empty in a family of one
     std::vector<MethodChoice> settings;
@@ -67,7 +68,7 @@ struct Candidate {
 };
 
 /// Whether further views would compare it with itself.
-[[nodiscard]] bool is_the_reference(const Candidate& c);
+[[nodiscard]] bool is_the_reference(const MethodChoice& choice, std::span<const Json> views);
 
 /// How much dearer: settings are tied where they took turns in the same six rounds or more and the paired ratio of
 /// their costs does not differ from 1 by more than noise. Where there is no such ratio, one of over five times differs,
@@ -127,15 +128,16 @@ struct Recommendation {
     std::optional<Rival> exact;           ///< the reference method, where it was timed
     std::vector<Step> staircase;          ///< by descending error
     std::vector<PassedOver> passed_over;  ///< in the order in which they were met
+    std::vector<MethodChoice> unasked;    ///< those that the time did not suffice for
     std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
                                           ///< None of the reference, which they would compare with itself
-    Size size{};                              ///< of the pictures that it was chosen on
+    Size size{};                          ///< of the pictures that it was chosen on
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all
     double noise_bar = 0;                     ///< as of Turns
 };
 
 /// `small` is the scene of `whole` in pictures of as many points as the limits need (first_size), or `whole` itself.
-/// Settings are looked at in its pictures; times, and the views that nothing was chosen on, are of whole ones.
+/// Settings are looked at in its pictures; times are of whole ones.
 [[nodiscard]] Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOptions& options);
 
 /// What a frame costs by one run on a picture, for one of so many times its points: passes over points count as often.

@@ -160,7 +160,7 @@ std::string held_out_in_words(const Recommendation& r, const RecommendOptions& o
     const std::size_t views = r.held_out.size();
     if (views == 0)
         return errors_in_words(r.candidates[*r.chosen], options) +
-               (is_the_reference(r.candidates[*r.chosen])
+               (is_the_reference(r.candidates[*r.chosen].choice, r.candidates[*r.chosen].views)
                     ? "  It is the reference: further views would compare it with itself.\n"
                     : "  It was tried on no view that it was not chosen on: how many are beyond a limit is not known.\n");
     std::string text;
@@ -207,8 +207,8 @@ std::string methods_in_words(const Recommendation& r, const RecommendOptions& op
         } else if (m.outdone_by) {
             const PassedOver& p = r.passed_over[*m.outdone_by];
             name                = p.choice.text();
-            what                = fmt::format("not looked at: one run costs {:.2g} times as much as one of {}, or more", p.ratio,
-                                              r.candidates[p.candidate].choice.text());
+            what = fmt::format("not looked at: one run costs {:.2g} times as much as one of {}, or more", p.ratio,
+                               r.candidates[p.candidate].choice.text());
         }
         widest = std::max(widest, name.size());
         lines.emplace_back(std::move(name), std::move(what));
@@ -307,12 +307,15 @@ Json recommendation_json(const Recommendation& r, const RecommendOptions& option
                                {"cheaper", r.candidates[p.candidate].choice.text()},
                                {"cost_ratio", number(p.ratio)}});
     record["passed_over"] = std::move(passed_over);
-    record["workload"]    = to_text(options.workload);
-    record["views"]       = options.views;
-    record["size"]        = {{"width", r.size.width}, {"height", r.size.height}};
-    record["settings"]    = {{"looked_at", r.looked_at}, {"of", r.settings}};
-    record["noise_bar"]   = number(r.noise_bar);
-    record["kept_in"]     = options.kept_in.empty() ? Json() : Json(options.kept_in);
+    Json unasked          = Json::array();
+    for (const MethodChoice& choice : r.unasked) unasked.push_back(choice.text());
+    record["unasked"]   = std::move(unasked);
+    record["workload"]  = to_text(options.workload);
+    record["views"]     = options.views;
+    record["size"]      = {{"width", r.size.width}, {"height", r.size.height}};
+    record["settings"]  = {{"looked_at", r.looked_at}, {"of", r.settings}};
+    record["noise_bar"] = number(r.noise_bar);
+    record["kept_in"]   = options.kept_in.empty() ? Json() : Json(options.kept_in);
     return record;
 }
 
@@ -356,11 +359,15 @@ std::string recommendation_text(const Recommendation& r, const RecommendOptions&
     }
     text += staircase_in_words(r, options);
     text += methods_in_words(r, options) + noise_in_words(r, options);
-    text += fmt::format(
-        "  {} of {} {} looked at, in up to {} of {} x {} pixels each{}.\n",
-        r.looked_at, counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
-        counted_views(static_cast<std::size_t>(options.views)), r.size.width, r.size.height,
-        r.looked_at < r.settings ? "; the others cost more than one within the limits" : "");
+    text +=
+        fmt::format("  {} of {} {} looked at, in up to {} of {} x {} pixels each{}.\n", r.looked_at,
+                    counted(static_cast<double>(r.settings), "setting"), r.looked_at == 1 ? "was" : "were",
+                    counted_views(static_cast<std::size_t>(options.views)), r.size.width, r.size.height,
+                    r.looked_at + r.unasked.size() < r.settings ? "; others cost more than one within the limits" : "");
+    if (!r.unasked.empty())
+        text += fmt::format("  {} {} not looked at in time; with --seconds 1000 they are.\n",
+                            counted(static_cast<double>(r.unasked.size()), "setting"),
+                            r.unasked.size() == 1 ? "was" : "were");
     if (!options.kept_in.empty())
         text += fmt::format("  Errors and times are kept in {}; --fresh measures times anew.\n", options.kept_in);
     return text;

@@ -142,8 +142,7 @@ PreparedScene prepare_scene(Scene scene, const std::filesystem::path& file, Size
     std::optional<RayScene> built;
     if (known == nullptr) p.rays_build_ms = timed_ms([&] { built.emplace(p.scene); });
     const RayScene& rays = known != nullptr ? known->rays : *built;
-    p.gbuffer_ms =
-        timed_ms([&] { p.points = primary_points(rays, p.scene, p.scene.camera, size.width, size.height); });
+    p.gbuffer_ms = timed_ms([&] { p.points = primary_points(rays, p.scene, p.scene.camera, size.width, size.height); });
     if (p.pixel_side > 1) p.subpixels = subpixel_points(rays, p.scene, size.width, size.height, p.pixel_side);
     warn_of_picture(p.scene, p.points);
     warn_of_points_off_their_pixels(p.scene, p.points);

@@ -14,10 +14,7 @@
 namespace umbra {
 
 SceneLab::SceneLab(const std::filesystem::path& file, CellOptions options, const CellStore& store)
-    : own_(std::make_shared<OwnScene>(load_scene(file))),
-      file_(file),
-      options_(std::move(options)),
-      store_(store) {}
+    : own_(std::make_shared<OwnScene>(load_scene(file))), file_(file), options_(std::move(options)), store_(store) {}
 
 SceneLab::SceneLab(const SceneLab& other, const Size& size)
     : own_(other.own_), file_(other.file_), options_(other.options_), store_(other.store_) {
@@ -83,9 +80,9 @@ std::optional<RunTimes> SceneLab::price(const MethodChoice& choice, int runs) {
     int paid = 0;
     if (const auto found = measured(key)) {
         const Json& kept = found->at("price");
-        price = RunTimes{kept.at("build_ms").get<double>(), kept.at("aim_ms").get<std::vector<double>>(),
+        price            = RunTimes{kept.at("build_ms").get<double>(), kept.at("aim_ms").get<std::vector<double>>(),
                          kept.at("look_ms").get<double>(), kept.at("visibility_ms").get<std::vector<double>>()};
-        paid  = kept.at("runs").get<int>();
+        paid             = kept.at("runs").get<int>();
     }
     if (paid >= runs) return price;
     for (; paid < runs; ++paid) {

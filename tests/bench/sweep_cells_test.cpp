@@ -765,7 +765,7 @@ TEST(Recommend, PassesOverWhatTheReferenceOutdoes) {
     EXPECT_NE(recommendation_text(r, o).find("shadow_zbuffer:resolution=8192  not looked at: one run costs "),
               std::string::npos);
     EXPECT_NE(recommendation_text(r, o).find("2 of 3 settings were looked at, in up to 2 views of 48 x 27 pixels each; "
-                                             "the others cost more than one within the limits.\n"),
+                                             "others cost more than one within the limits.\n"),
               std::string::npos);
 
     // The price is paid once.
@@ -774,7 +774,7 @@ TEST(Recommend, PassesOverWhatTheReferenceOutdoes) {
     EXPECT_EQ(price->all(), lab.price(o.choices[1])->all());
 
     // Where the reference is over the limit, and where memory is asked for, it says nothing of others.
-    o.limits   = {parse_limit("memory_mb=1000")};
+    o.limits = {parse_limit("memory_mb=1000")};
     EXPECT_TRUE(recommend(lab, lab, o).passed_over.empty());
     o.limits = {parse_limit("rmse=0.9"), parse_limit("memory_mb=0")};
     EXPECT_TRUE(recommend(lab, lab, o).passed_over.empty());

@@ -334,7 +334,8 @@ TEST_F(RecommendByHand, WhatAViewRulesOutIsLookedAtInNoOther) {
     const auto of = [&](std::string_view name) {
         return std::ranges::find_if(r.candidates, [&](const Candidate& c) { return c.choice.info->name == name; });
     };
-    for (const auto& [name, views] : {std::pair("filtered_map", 1u), std::pair("scan_line", 1u), std::pair("cascaded_maps", 2u)}) {
+    for (const auto& [name, views] :
+         {std::pair("filtered_map", 1u), std::pair("scan_line", 1u), std::pair("cascaded_maps", 2u)}) {
         EXPECT_EQ(of(name)->views.size(), views) << name;
         EXPECT_EQ(of(name)->bounds[0].has_value(), views == 2) << name;
         EXPECT_FALSE(of(name)->within(o_.limits));
@@ -400,7 +401,8 @@ TEST_F(RecommendByHand, OneViewIsNoViews) {
         << words;
     o_.views               = 1;
     const std::string from = recommendation_text(recommend(lab_, lab_, o_), o_);
-    EXPECT_NE(from.find("settings were looked at, in up to 1 view of 16 x 9 pixels each.\n"), std::string::npos) << from;
+    EXPECT_NE(from.find("settings were looked at, in up to 1 view of 16 x 9 pixels each.\n"), std::string::npos)
+        << from;
     EXPECT_NE(from.find("with bounds from 1 view:\n"), std::string::npos) << from;
     for (const std::string& text : {words, from}) EXPECT_EQ(text.find("1 views"), std::string::npos) << text;
 }
@@ -444,8 +446,8 @@ TEST_F(RecommendByHand, WhatNoTwoRunsOutdoTakesTurns) {
 /// What only a dropped setting passed over is looked at then.
 TEST_F(RecommendByHand, WhoIsDroppedPassesOverNobody) {
     const std::vector<double> good{0.001, 0.001, 0.001, 0.001};
-    const Recommendation r = recommended({{"ray_traced", {0.001, 0.001, 0.02}, {0, 0, 0, 10}, kDrift},
-                                          {"brute_force", good, {0, 0, 0, 60}, kDrift}});
+    const Recommendation r = recommended(
+        {{"ray_traced", {0.001, 0.001, 0.02}, {0, 0, 0, 10}, kDrift}, {"brute_force", good, {0, 0, 0, 60}, kDrift}});
     ASSERT_TRUE(r.chosen.has_value());
     EXPECT_EQ(text(r, *r.chosen), "brute_force");
     EXPECT_TRUE(r.passed_over.empty());

@@ -94,6 +94,11 @@ Action recommend_command(CLI::App& app, const Common& common) {
         ->capture_default_str()
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
+    app.add_option("--seconds", line->options.seconds,
+                   "After which the search begins with no further setting; views, turns and what has begun come on top")
+        ->capture_default_str()
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("S");
     add_size(app, line->cell.size);
     add_reference(app, line->cell.reference, line->cell.points);
     add_budget(app, line->cell.budget);
