@@ -17,7 +17,7 @@ using Clock = std::chrono::steady_clock;
 
 /// Of n points none of which is wrong, a share of 3 / n may be (upper_share); half of a picture's points may have no
 /// surface, or one that faces away from the light.
-constexpr double kPoints = 6, kFewestPoints = 14400;
+constexpr double kPoints = 6, kFewestPoints = 60000;  ///< the second: so that limits from 0.01 on share their cells
 
 constexpr double kLongMs = 500;  ///< of one run on the whole picture, so that nobody waits for a price
 

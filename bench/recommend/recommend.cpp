@@ -104,8 +104,7 @@ public:
     }
 
     /// Each candidate gets its price as its cost, and those that may be the answer, and the steps by price, the median of
-    /// rounds in turns: the fewer take turns, the more rounds fit into the budget. Turns may find another answer than
-    /// prices do; what its price does not outdo takes turns with it, too.
+    /// rounds in turns: the fewer take turns, the more rounds fit into the budget.
     void time_candidates() {
         std::vector<std::size_t> fit, who;
         for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
@@ -124,21 +123,7 @@ public:
             });
             if (!is_outdone && std::ranges::find(who, k) == who.end()) who.push_back(k);
         }
-        while (!who.empty()) {
-            time_in_turns_with_one_another(who);
-            const auto cheapest     = std::ranges::min_element(who, {}, [&](std::size_t k) {
-                return is_answer(k) ? result_.candidates[k].cost.value_or(kInfinite) : kInfinite;
-            });
-            const Candidate& answer = result_.candidates[*cheapest];
-            const std::size_t timed = who.size();
-            for (const std::size_t k : fit) {
-                const bool rivals = is_answer(*cheapest) && is_answer(k);
-                if (rivals && std::ranges::find(who, k) == who.end() &&
-                    !costs_far_more(result_.candidates[k].choice, answer.choice))
-                    who.push_back(k);
-            }
-            if (who.size() == timed) return;
-        }
+        if (!who.empty()) time_in_turns_with_one_another(who);
     }
 
     /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
@@ -305,10 +290,10 @@ private:
         return ratio(1, 1) > kFar && ratio(small_.price(a)->all() > kLongRunMs ? 1 : 2, 2) > kFar;
     }
 
-    /// How long a run took; where it does not serve, no time.
+    /// How long a run took behind its build, which settings share; where it does not serve, no time.
     [[nodiscard]] double ran_ms(const MethodChoice& choice) {
         const std::optional<RunTimes> run = small_.price(choice);
-        return run ? run->all() : 0;
+        return run ? run->all() - run->build : 0;
     }
 
     /// Milliseconds a frame, by runs alone; nothing where the setting does not serve.

@@ -1,7 +1,8 @@
 // How close the G-buffer, one S_j pass and the build come to bare Embree loops on the same scene.
 //
 // Ours and the bare loops take turns (in_turns.h); ours is divided by the fastest of them. Before the clock starts the
-// answers are compared, and a wrong one gets no number. At the end the ratios are printed once more, as a table.
+// answers are compared, and a wrong one gets no number. Passes also take turns with loops that touch the memory that
+// they must touch, and compute nothing. At the end the ratios are printed once more, as a table.
 //
 //     limits_benchmark [--scene=FILE] [--size=WxH] [Google Benchmark's options]
 #if __has_include(<embree3/rtcore.h>)
@@ -353,6 +354,61 @@ void time_visibility(benchmark::State& state, Bench& bench, LightId light, int a
     state.SetItemsProcessed(static_cast<std::int64_t>(static_cast<double>(state.iterations()) * count * samples));
 }
 
+// ---- what a pass must touch ----------------------------------------------------------------------------------------
+
+/// Against a loop that writes the arrays of a batch and computes nothing.
+void time_gbuffer_touched(benchmark::State& state, Bench& bench) {
+    bench.prepare();
+    PointBatch points, touched = bench.points;
+    const auto touch = [&] {
+        parallel_ranges(touched.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+            const auto fill = [&](auto& array, auto value) {
+                std::fill(array.begin() + static_cast<std::ptrdiff_t>(begin),
+                          array.begin() + static_cast<std::ptrdiff_t>(end), value);
+            };
+            fill(touched.triangle, TriangleId{1});
+            for (auto* array :
+                 {&touched.u, &touched.v, &touched.px, &touched.py, &touched.pz, &touched.nx, &touched.ny, &touched.nz})
+                fill(*array, 1.0f);
+            fill(touched.flipped, std::uint8_t{1});
+            for (auto& facing : touched.facing) fill(facing, Facing::front);
+        });
+        benchmark::ClobberMemory();
+    };
+    in_turns(state, bench.name + "/gbuffer_touched",
+             [&] { primary_points(*bench.rays, bench.scene, bench.scene.camera, bench.width, bench.height, points); },
+             {{"touch", touch}});
+    state.counters["bytes_a_point"] =
+        sizeof(TriangleId) + 8 * sizeof(float) + 1 + static_cast<double>(touched.facing.size());
+}
+
+/// Against a loop that reads triangle, position and facing of each point, and writes S_j.
+void time_visibility_touched(benchmark::State& state, Bench& bench, const char* text) {
+    bench.prepare();
+    const MethodChoice choice = parse_method(text);
+    const SceneFacts facts    = find_facts(bench.scene);
+    const auto method         = choice.make();
+    if (!verdict(*method, facts)) return state.SkipWithError("does not serve");
+    const auto built  = method->build(bench.scene, facts);
+    const auto aimed  = method->aim(*built, 0);
+    const auto looked = method->look(*built, bench.points);
+    VisibilityPlane plane(bench.points.size());
+    std::vector<float> touched(bench.points.size());
+    const PointBatch& points = bench.points;
+    const auto touch         = [&] {
+        parallel_ranges(points.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                touched[i] = points.asks(0, i) && points.triangle[i] != kNoTriangle
+                                         ? points.px[i] + points.py[i] + points.pz[i]
+                                         : 0.0f;
+        });
+        benchmark::ClobberMemory();
+    };
+    in_turns(state, fmt::format("{}/touched/{}", bench.name, text),
+             [&] { method->visibility(*aimed, *looked, plane.out()); }, {{"touch", touch}});
+    state.counters["bytes_a_point"] = sizeof(TriangleId) + 4 * sizeof(float) + sizeof(Facing);
+}
+
 }  // namespace
 }  // namespace umbra
 
@@ -400,6 +456,13 @@ int main(int argc, char** argv) {
             "area16", [&b](benchmark::State& s) { time_visibility(s, b, 1, 4); }, 5);
         add(
             "area64", [&b](benchmark::State& s) { time_visibility(s, b, 1, 8); }, 5);
+        add(
+            "gbuffer_touched", [&b](benchmark::State& s) { time_gbuffer_touched(s, b); }, 11);
+        for (const char* text : {"ray_traced", "shadow_zbuffer", "shadow_zbuffer:filter=pcf", "planar_projection",
+                                 "alias_free", "exact", "shadow_volumes", "shadow_volumes:counting=depth_fail"})
+            add(
+                fmt::format("touched/{}", text).c_str(),
+                [&b, text](benchmark::State& s) { time_visibility_touched(s, b, text); }, 9);
     }
     int count = static_cast<int>(rest.size());
     benchmark::Initialize(&count, rest.data());

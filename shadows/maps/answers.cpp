@@ -85,7 +85,8 @@ void BlockingSamples::name(std::span<TriangleId> blockers, const Owners& owners)
         const std::vector<TriangleId> shown = owners(k, samples);
         for (std::size_t i = 0; i < samples_.size(); ++i)
             if (samples_[i].map == k)
-                blockers[i] = shown[static_cast<std::size_t>(std::ranges::lower_bound(samples, samples_[i].at) - samples.begin())];
+                blockers[i] = shown[static_cast<std::size_t>(std::ranges::lower_bound(samples, samples_[i].at) -
+                                                             samples.begin())];
     }
 }
 

@@ -771,6 +771,29 @@ protected:
 
 const std::vector<double> kWithin(3, 0.005), kBeyond{0.02};
 
+/// The answer takes turns on whole pictures. The price of the other, 60 ms for 8 x 5 points, is 216 for 16 x 9.
+TEST_F(FirstAnswerByHand, TheRecommendationHasErrorsOfSmallPicturesAndCostsOfWholeOnes) {
+    const auto both = [&](MadeUp s, double small_ms, double whole_ms) {
+        o_.choices.push_back(parse_method(s.text));
+        s.ms = {0, 0, 0, small_ms};
+        keep_in(coarse_, s);
+        s.rmse.clear(), s.ms = {0, 0, 0, whole_ms};
+        keep_in(lab_, s, 0.1);
+    };
+    both({"ray_traced", {0.001, 0.001, 0.002, 0.001}, {}, kDrift}, 5, 20);
+    both({"exact", {0}, {}, kDrift}, 60, 250);
+    const Recommendation r = recommend(coarse_, lab_, o_);
+    EXPECT_EQ(coarse_.computed() + lab_.computed(), 0u) << "everything was made up";
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced");
+    EXPECT_EQ(*r.candidates[*r.chosen].cost, 20);
+    EXPECT_EQ(r.held_out.size(), 2u);
+    ASSERT_TRUE(r.exact.has_value());
+    EXPECT_EQ(*r.candidates[r.exact->candidate].cost, 216);
+    EXPECT_EQ(r.exact->ratio.median, 12);
+    EXPECT_EQ(recommendation_json(r, o_)["size"], (Json{{"width", 8}, {"height", 5}}));
+}
+
 TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {
     add("exact", kWithin, 10);
     for (const auto& [texels, ms] :
@@ -818,10 +841,12 @@ TEST_F(FirstAnswerByHand, IsFromFewPointsWhereTheSizeOfThePictureChangesNoError)
         return fmt::format("{} x {}", coarse.width, coarse.height);
     };
     EXPECT_EQ(size("rmse=0.01", {640, 360}), "327 x 184") << "60,000 points";
-    EXPECT_EQ(size("rmse=0.1", {640, 360}), "160 x 90");
+    EXPECT_EQ(size("rmse=0.1", {640, 360}), "327 x 184") << "shared with other limits";
     EXPECT_EQ(size("rmse=0.001", {640, 360}), "640 x 360");
     EXPECT_EQ(size("rmse=0", {640, 360}), "640 x 360");
-    EXPECT_EQ(size("mae=0.01", {320, 180}), "160 x 90");
+    EXPECT_EQ(size("mae=0.01", {640, 360}), "327 x 184");
+    EXPECT_EQ(size("mae=0.00005", {640, 360}), "462 x 260") << "120,000 points";
+    EXPECT_EQ(size("mae=0.01", {320, 180}), "320 x 180");
     EXPECT_EQ(size("image_rmse=0.01", {64, 48}), "64 x 48");
     EXPECT_EQ(size("interior=0.01", {640, 360}), "640 x 360") << "how wide the band at edges is counts in pixels";
     EXPECT_EQ(size("flip=0.01", {640, 360}), "640 x 360");

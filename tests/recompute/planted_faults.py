@@ -232,6 +232,11 @@ def figure_raised(before):
     return change
 
 
+def half_beyond(record):
+    beyond = next(c['beyond'] for c in record['candidates'] if c['beyond'])
+    beyond['error'] /= 2
+
+
 def of_recommendation(change):
     return in_json(change, name='recommendation.json')
 
@@ -384,6 +389,7 @@ FAULTS = {
          of_recommendation(lambda r: r['recommendation']['held_out'].update(share_beyond=0.05))),
         ('a method misses the limit by another factor',
          of_recommendation(lambda r: r['methods'][0].update(factor=2 * r['methods'][0]['factor']))),
+        ('a setting is beyond a limit by half as much', of_recommendation(half_beyond)),
         ('the staircase has another step', of_recommendation(lambda r: r['staircase'].pop())),
     ],
     'laddered': [

@@ -247,6 +247,32 @@ OF_S = ('rmse', 'mae', 'max')
 ENTRIES = ('image_rmse', 'flip', 'flip_hdr', 'undefined', 'memory_mb')
 
 
+def possible(p, view, exactly, name, unit):
+    """What a view leaves possible, p being what it measured."""
+    if exactly:
+        return p[0]
+    if p[2] is not None:
+        return upper_share(p[2], p[3])
+    if p[0] == 0 and not unit:
+        missed = upper_share(0, sum(e['points'] for e in view['errors']))
+        return math.sqrt(missed) if name == 'rmse' else 1 if name == 'max' else missed
+    return p[0]
+
+
+def least_bound(setting, name, unit):
+    """What a bound is no less than by the views that are there."""
+    least = 0.0
+    for view in setting['views']:
+        p = (view['metrics'][name], False, None, None) if name in ENTRIES else pooled(view, name)
+        if p is None or p[0] is None or p[1]:
+            return None
+        exact = setting['serves']['how'] == 'exactly' and (p[0] == 0 or name in OF_S)
+        width = max((e['bracket']['max_half_width'] for e in view['errors'] if e['bracket']),
+                    default=0) if name in OF_S else 0
+        least = max(least, possible(p, view, exact, name, unit) + width)
+    return least
+
+
 def metric_bound(setting, name, unit):
     exactly, values, widths = True, [], []
     for view in setting['views']:
@@ -261,16 +287,7 @@ def metric_bound(setting, name, unit):
         widths.append(width)
     if not values or (not exactly and len(values) < 2):
         return None
-    found = []
-    for (p, view), width in zip(values, widths):
-        v = p[0]
-        if not exactly:
-            if p[2] is not None:
-                v = upper_share(p[2], p[3])
-            elif v == 0 and not unit:
-                missed = upper_share(0, sum(e['points'] for e in view['errors']))
-                v = math.sqrt(missed) if name == 'rmse' else 1 if name == 'max' else missed
-        found.append(v + width)
+    found = [possible(p, view, exactly, name, unit) + width for (p, view), width in zip(values, widths)]
     largest = max(found)
     if exactly:
         return largest
@@ -371,12 +388,13 @@ def recommended(folder, r, tally):
     cells = os.path.join(folder, 'cells')
     cells = cells if os.path.isdir(cells) else r['kept_in'] or cells
     views, how, kept = {}, {}, []
-    points_in = {}  # the first answer is from smaller pictures of the same views
+    points_in = {}  # of pictures of several sizes those of the size that is named, or the next smaller one
+    most = r['size']['width'] * r['size']['height']
     for name in sorted(os.listdir(cells)) if os.path.isdir(cells) else ():
         cell = load(os.path.join(cells, name)) if name.endswith('.json') else {}
         if 'errors' in cell:
             points = sum(e['points'] for e in cell['errors'])
-            if points < points_in.get((cell['text'], cell['view']), 0):
+            if any(e['points'] > most for e in cell['errors']) or points < points_in.get((cell['text'], cell['view']), 0):
                 continue
             points_in[cell['text'], cell['view']] = points
             views.setdefault(cell['text'], {})[cell['view']] = entries_of_cell(cell)
@@ -393,7 +411,7 @@ def recommended(folder, r, tally):
         name.split('.')[0], 'share of points' if name in SHARES else '')
     for c in r['candidates']:
         where, text = f'{folder}: {c["method"]}', c['method']
-        chosen_on = [views.get(text, {}).get(v) for v in range(r['views'])]
+        chosen_on = [views.get(text, {}).get(v) for v in range(c['views'])]
         if None in chosen_on:
             tally.fault(where, 'a view that it was chosen on has no cell')
             continue
@@ -401,13 +419,22 @@ def recommended(folder, r, tally):
         worst = 0.0
         for name, e in c['errors'].items():
             found = [metric_of(v, name) for v in chosen_on]
-            bound = metric_bound({'views': chosen_on, 'serves': how[text]}, name, unit(name))
+            found_of = {'views': chosen_on, 'serves': how[text]}
+            whole = c['views'] == r['views'] or c['beyond'] is None  # of the reference one view is enough
+            bound = metric_bound(found_of, name, unit(name)) if whole else None
+            least = bound if whole else least_bound(found_of, name, unit(name))
             tally.same(kind, f'{where}.{name}.largest', e['largest'],
                        None if None in found else max(v for v, _ in found))
             tally.same(kind, f'{where}.{name}.bound', e['bound'], bound, 1e-6)
             limits[name], bounds[text, name] = e['limit'], bound
-            worst = max(worst, math.inf if bound is None else 0 if bound == 0 else
-                        bound / e['limit'] if e['limit'] else math.inf)
+            worst = max(worst, math.inf if least is None else 0 if least == 0 else
+                        least / e['limit'] if e['limit'] else math.inf)
+            if c['beyond'] and c['beyond']['metric'] == name:
+                v = views[text][c['beyond']['view']]
+                tally.same(kind, f'{where}: beyond', c['beyond']['error'],
+                           least_bound({'views': [v], 'serves': how[text]}, name, unit(name)), 1e-6)
+                if c['beyond']['error'] is not None and c['beyond']['error'] <= e['limit']:
+                    tally.fault(where, f'beyond {e["limit"]} with {c["beyond"]["error"]}')
         factor[text] = worst
         if c['cost'] is not None:
             of = [rows for (ms, rows), _ in timed if abs(ms - c['cost']) <= 1e-9 * ms]
