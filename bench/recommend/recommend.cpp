@@ -283,11 +283,11 @@ private:
     }
 
     [[nodiscard]] bool costs_far_more(const MethodChoice& a, const MethodChoice& b) {
-        const auto ratio = [&](int runs_of_a, int runs_of_b) {
-            const std::optional<double> over = price(a, runs_of_a), under = price(b, runs_of_b);
-            return over && under ? *over / *under : 0;
+        const auto surely = [&](const MethodChoice& choice) {
+            return price(choice, small_.price(choice)->all() > kLongRunMs ? 1 : 2);
         };
-        return ratio(1, 1) > kFar && ratio(small_.price(a)->all() > kLongRunMs ? 1 : 2, 2) > kFar;
+        const std::optional<double> over = price(a), under = price(b);
+        return over && under && *over > kFar * *under && surely(a).value_or(0) > kFar * surely(b).value_or(kInfinite);
     }
 
     /// How long a run took behind its build, which settings share; where it does not serve, no time.

@@ -459,7 +459,7 @@ int main(int argc, char** argv) {
         add(
             "gbuffer_touched", [&b](benchmark::State& s) { time_gbuffer_touched(s, b); }, 11);
         for (const char* text : {"ray_traced", "shadow_zbuffer", "shadow_zbuffer:filter=pcf", "planar_projection",
-                                 "alias_free", "exact", "shadow_volumes", "shadow_volumes:counting=depth_fail"})
+                                 "exact", "shadow_volumes", "shadow_volumes:counting=depth_fail"})
             add(
                 fmt::format("touched/{}", text).c_str(),
                 [&b, text](benchmark::State& s) { time_visibility_touched(s, b, text); }, 9);
