@@ -27,7 +27,8 @@ struct RecommendOptions {
     std::vector<MethodChoice> choices;  ///< candidates; those that leave points undefined are not taken
     int views      = 5;                 ///< that the choice is made on, from view 0
     int held_out   = 10;                ///< further views that a setting is tried on before it is the answer
-    double seconds = 15;                ///< with no setting is begun after as many of the search
+    double seconds = 15;                ///< of the search, after which no setting is begun; four times as many where
+                                        ///< nothing but the reference is within the limits
     TurnOptions turns{.rounds = 9, .budget_ms = 6000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
     std::string kept_in{};           ///< the folder of cells and times, to be named; empty: it is not
