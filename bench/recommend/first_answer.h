@@ -23,8 +23,8 @@ struct FirstAnswer {
 inline constexpr int kFirstViews = 3;
 
 /// The picture that a first answer is from: as many points as it takes to know that an error of 0 is within the limits,
-/// and at least 60,000, so that most limits share their pictures; the whole one where that is no more, or where a limit is of a metric that depends on the size,
-/// as all do but mean errors of S_j and of the linear picture.
+/// and at least 60,000, so that most limits share their pictures; the whole one where that is no more, or where a limit
+/// is of a metric that depends on the size, as all do but mean errors of S_j and of the linear picture.
 [[nodiscard]] Size first_size(const Size& whole, std::span<const Limit> limits);
 
 /// `coarse` is the scene of `whole` at first_size; costs are those of `whole`. The reference is looked at first, then
