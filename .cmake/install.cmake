@@ -4,6 +4,7 @@ include(CMakePackageConfigHelpers)
 
 install(TARGETS umbra_core umbra_shadows umbra_image_io EXPORT umbraTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS umbra_images LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS umbra RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 foreach(folder core shadows)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/umbra

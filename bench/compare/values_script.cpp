@@ -1,12 +1,12 @@
 #include "umbra/bench/compare/values_script.h"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
+#include "umbra/bench/pages/embed.h"
 #include "umbra/bench/pages/values_call.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/image/image_io.h"
@@ -24,7 +24,7 @@ std::string data_url(const PointBatch& points, const Colour& colour) {
         const uvec3 bytes = colour(i);
         for (int k = 0; k < 3; ++k) image.at(i, static_cast<std::size_t>(k)) = static_cast<float>(bytes[k]) / 255;
     }
-    return "data:image/png;base64," + OIIO::Strutil::base64_encode(png_bytes(image));
+    return data_uri("image/png", png_bytes(image));
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "umbra/bench/pages/embed.h"
 
-#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
+#include <openssl/evp.h>
 
 #include <algorithm>
 #include <array>
@@ -186,7 +186,7 @@ private:
                 fmt::format("{}: cannot be opened, expected a file that {} shows", file.string(), beside.string()));
         std::string bytes = bytes_of(file);
         if (file.extension() == ".css") bytes = style(bytes, file);
-        return fmt::format("data:{};base64,{}", media_type(file), OIIO::Strutil::base64_encode(bytes));
+        return data_uri(media_type(file), bytes);
     }
 
     /// A style with the files behind its url() in it.
@@ -214,5 +214,13 @@ private:
 }  // namespace
 
 std::string embedded_page(const fs::path& page) { return Embedder(page).embedded(); }
+
+std::string data_uri(std::string_view media_type, std::string_view bytes) {
+    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the zero that the library writes behind it
+    EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()), reinterpret_cast<const unsigned char*>(bytes.data()),
+                    static_cast<int>(bytes.size()));
+    text.pop_back();
+    return fmt::format("data:{};base64,{}", media_type, text);
+}
 
 }  // namespace umbra

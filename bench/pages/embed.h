@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace umbra {
 
@@ -11,5 +12,8 @@ namespace umbra {
 /// within the page are left as they are. For pages that this program wrote: any file that the page names is read.
 /// Throws InputError where the page or such a file cannot be read; a data-src that is missing is dropped.
 [[nodiscard]] std::string embedded_page(const std::filesystem::path& page);
+
+/// "data:MEDIA_TYPE;base64,...": a file within a page.
+[[nodiscard]] std::string data_uri(std::string_view media_type, std::string_view bytes);
 
 }  // namespace umbra

@@ -407,6 +407,13 @@ TEST_F(Cli, HelpAndVersionAreThereEverywhere) {
     EXPECT_EQ(umbra("--version").exit_code, 0);
 }
 
+// OpenImageIO and the 250 libraries that it brings take 0.4 s: only commands that need image files load them.
+TEST_F(Cli, StartsWithoutTheLibrariesOfImageFiles) {
+    const Answer libraries = run("LD_TRACE_LOADED_OBJECTS=1 " + std::string(UMBRA_PROGRAM));
+    EXPECT_NE(libraries.output.find("libembree"), std::string::npos) << libraries.output;
+    EXPECT_EQ(libraries.output.find("OpenImageIO"), std::string::npos) << libraries.output;
+}
+
 TEST_F(Cli, ScriptPrintsHelpOnAFreshCloneWithoutSettingUp) {
     fs::create_directories(folder_ / "bench/cli");
     fs::copy(std::string(UMBRA_SOURCE) + "/umbra", folder_ / "umbra");
