@@ -30,7 +30,7 @@ struct Timing {
 /// How often a phase is repeated: until `max_runs` or `budget_ms` is spent, whichever is first, at least once.
 struct Repeats {
     int max_runs     = 6;  // the fewest that a ratio has an interval of
-    double budget_ms = 300;
+    double budget_ms = 100;
 };
 
 inline constexpr Repeats kOnce{1, 0};

@@ -343,7 +343,7 @@ void write_pixels(OIIO::ImageOutput& output, const std::filesystem::path& path, 
         // time.
         spec.attribute("png:filter", kPngFilterNone);
     } else {
-        spec.attribute("compression", "piz");
+        spec.attribute("compression", "zips:1");  // 2.5 times as fast as piz, files larger by a quarter
         for (const auto& [name, matrix] : image.matrices) spec.attribute(name, OIIO::TypeMatrix, matrix.data());
         if (!image.integers.empty()) spec.channelformats.assign(channels, OIIO::TypeDesc::FLOAT);
         for (const auto& integer : image.integers) {

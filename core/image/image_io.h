@@ -31,7 +31,7 @@ struct LoadedImage {
 inline constexpr std::size_t kMaxPixels = 1u << 28;
 [[nodiscard]] LoadedImage read_image(const std::filesystem::path& file);
 
-/// Writes .exr (float and 32-bit unsigned channels, ZIP) as is, or .png (8 bit): the first one or three channels (four
+/// Writes .exr (float and 32-bit unsigned channels, ZIPS) as is, or .png (8 bit): the first one or three channels (four
 /// where the fourth is A), which must be display values in [0, 1] already encoded; values are clamped and rounded, NaN
 /// is written as 0. Written beside and moved into place, so that a file that was there stays whole if this fails.
 /// Throws InputError.

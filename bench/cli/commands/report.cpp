@@ -39,8 +39,8 @@ struct ReportLine {
     Budget budget{.seconds = 300};  // one slow method holds up no report
 };
 
-/// Of the times on the pages: a third of what `umbra compare` takes.
-constexpr Repeats kReportRepeats{.max_runs = 6, .budget_ms = 100};
+/// Of the times on the pages: less than half of what `umbra compare` takes.
+constexpr Repeats kReportRepeats{.max_runs = 6, .budget_ms = 40};
 
 /// A part of `umbra sweep` on three of the canonical scenes that takes seconds: presets, and a coarse line a method.
 SweepOptions canonical_sweep(const fs::path& out) {
