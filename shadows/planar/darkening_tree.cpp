@@ -64,7 +64,7 @@ struct DarkeningTree::OneShadow {
         bool all = true;
         for (std::size_t i = 0; i < std::min(kLeaf, tree.points_.size - leaf * kLeaf); ++i) {
             const std::atomic_ref<std::uint8_t> dark(tree.dark_[leaf * kLeaf + i]);
-            if (sure[i] > 0) {
+            if (sure[i] > 0 && !shadow.may_be_none) {
                 dark.store(1, std::memory_order_relaxed);
             } else if (dark.load(std::memory_order_relaxed) == 0) {
                 all = false;
@@ -82,7 +82,7 @@ private:
         const double x  = 0.5 * (static_cast<double>(node.low[0][k]) + static_cast<double>(node.high[0][k]));
         const double y  = 0.5 * (static_cast<double>(node.low[1][k]) + static_cast<double>(node.high[1][k]));
         const double rx = static_cast<double>(node.high[0][k]) - x, ry = static_cast<double>(node.high[1][k]) - y;
-        bool all = true;
+        bool all = !shadow.may_be_none;
         for (const auto& [s, of_side] : sides) {
             const double middle = s.at(x, y);
             const double reach  = std::abs(s.a) * rx + std::abs(s.b) * ry;

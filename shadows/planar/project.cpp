@@ -87,17 +87,17 @@ bool before(dvec3 a, dvec3 b) {
     return a.z < b.z;
 }
 
-/// The part of a triangle on the plane's upper side, a convex polygon.
+/// The part of a triangle at and above a height over the plane, a convex polygon.
 /// [Ivan Sutherland, Gary Hodgman, Reentrant Polygon Clipping, 1974]
-std::vector<dvec3> clip_at_plane(const Triangle& triangle) {
+std::vector<dvec3> clip_below(const Triangle& triangle, double height) {
     std::vector<dvec3> kept;
     for (std::size_t k = 0; k < 3; ++k) {
         dvec3 a = triangle[k], b = triangle[(k + 1) % 3];
-        if (a.z >= 0) kept.push_back(a);
-        if ((a.z < 0 && b.z > 0) || (a.z > 0 && b.z < 0)) {
+        if (a.z >= height) kept.push_back(a);
+        if ((a.z < height && b.z > height) || (a.z > height && b.z < height)) {
             if (before(b, a)) std::swap(a, b);
-            const dvec3 cut = a + (b - a) * (a.z / (a.z - b.z));
-            kept.emplace_back(cut.x, cut.y, 0);
+            const dvec3 cut = a + (b - a) * ((a.z - height) / (a.z - b.z));
+            kept.emplace_back(cut.x, cut.y, height);
         }
     }
     return kept;
@@ -179,19 +179,20 @@ void project_triangle(Shadows& run, const Scene& scene, TriangleId t, const Rece
     const double length = sum_of_magnitudes(source.at), along = source.at_infinity ? 0 : 2 * size;
     const double above = source.at.z - (source.at_infinity ? 0 : std::max(0.0, high));
     const double slope = above > 0 ? 2 + (length + along) / above : kInfinity;
+    const auto add_above = [&](double height, double slack, double margin) {
+        const auto polygon = clip_below(x, height);
+        for (std::size_t k = 2; k < polygon.size(); ++k)
+            add_shadow(run, reach, source, {polygon[0], polygon[k - 1], polygon[k]}, shadow, slack, margin);
+    };
     if (high <= 2 * doubt) {
-        // All of it is as near to the plane as heights are known.
-        add_shadow(run, reach, source, x, shadow, kInfinity, 4 * doubt * slope);
+        // It is below the plane but for what is as near to it as heights are known: so are the sides of a box beside
+        // one of them. If there is a shadow, it is of that part.
+        shadow.may_be_none = true;
+        add_above(-2 * doubt, 16 * kUlp * size + 4 * doubt, 4 * doubt * slope);
         return;
     }
     const double slack = 16 * kUlp * size + 4 * doubt * (1 + 2 * size / (high - low));
-    if (low >= 0) {
-        add_shadow(run, reach, source, x, shadow, slack, slack * slope);
-        return;
-    }
-    const auto polygon = clip_at_plane(x);
-    for (std::size_t k = 2; k < polygon.size(); ++k)
-        add_shadow(run, reach, source, {polygon[0], polygon[k - 1], polygon[k]}, shadow, slack, slack * slope);
+    add_above(0, slack, slack * slope);
 }
 
 }  // namespace

@@ -101,6 +101,7 @@ struct Shadow {
     vec2 low{+kInfinity}, high{-kInfinity};
     std::uint32_t triangle = 0;  ///< index into the scene, or into Shadows::pieces
     bool is_piece          = false;
+    bool may_be_none       = false;  ///< rounding hides whether any of it is: no point is surely within it
     bool from_behind       = false;  ///< the source is behind the triangle, by its winding
 };
 
@@ -109,7 +110,7 @@ struct Shadows {
     std::vector<Shadow> shadows;
     std::vector<Triangle> pieces;
     std::vector<TriangleId> piece_of;  ///< for each piece: the triangle that it was cut from
-    std::vector<double> slack;  ///< for each piece: how far its corners may be off; infinite where it may be none
+    std::vector<double> slack;         ///< for each piece: how far its corners may be off
 
     [[nodiscard]] TriangleId caster(const Shadow& s) const { return s.is_piece ? piece_of[s.triangle] : s.triangle; }
     [[nodiscard]] std::size_t memory_bytes() const;

@@ -311,5 +311,57 @@ TEST(Outline, NamesPointsOnEdges) {
     EXPECT_FALSE(doubtful(3.999999, 0.3));
 }
 
+/// A side of a box that is turned anyhow has corners at rounding's distance from its plane, and so have the triangles
+/// of its neighbours, which are below: they leave points along the edge in doubt at most, and not the side.
+TEST(Projection, NeighboursOfABoxesSideLeaveNoneOfItInDoubt) {
+    std::size_t sides = 0, near_edges = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        Random random(seed);
+        Scene scene;
+        add(scene, "box", make_box({1, 2, 3}),
+            glm::rotate(glm::translate(mat4(1), vec3(random(-9, 9), random(-9, 9), random(-9, 9))), random(0, 3),
+                        glm::normalize(vec3(0.6f, random(-1, 1), 0.8f))));
+        const SceneFacts facts = find_facts(scene);
+        for (const PlanarReceiver& plane : facts.planes) {
+            planar::Occluders occluders{&scene, {}, std::vector(scene.triangles.size(), planar::Occluders::kNoPlane)};
+            for (TriangleId t = 0; t < scene.triangles.size(); ++t) occluders.triangles.push_back(t);
+            for (const TriangleId t : plane.triangles) occluders.plane_of[t] = 0;
+            // The outer side: the corners that are not its own are below.
+            planar::Receiver receiver = planar::make_receiver(scene, plane, 0, +1);
+            const auto lowest         = [&] {
+                double low = 0;
+                for (const vec3 p : scene.positions) low = std::min(low, receiver.local(dvec3(p)).z);
+                return low;
+            };
+            if (lowest() > -0.5) receiver = planar::make_receiver(scene, plane, 0, -1);
+            ASSERT_LT(lowest(), -0.5);
+            const dvec2 middle = 0.5 * (receiver.low + receiver.high);
+            const planar::Source lamp{false, vec3(receiver.origin + middle.x * receiver.e1 + middle.y * receiver.e2 +
+                                                  2.0 * receiver.normal)};
+            constexpr std::size_t side = 32;
+            const planar::PlaneTree points(side * side, [&](auto& to, std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) {
+                    const dvec2 share = (dvec2(i % side, i / side) + 0.5) / double(side);
+                    const dvec2 at    = receiver.low + share * (receiver.high - receiver.low);
+                    to[0][i] = at.x, to[1][i] = at.y;
+                }
+            });
+            planar::DarkeningTree tree(points);
+            const planar::LocalSource source(receiver, lamp);
+            const double far = farthest(reach_of(receiver, source));
+            for (const planar::Shadows& run : project(occluders, occluders.triangles, receiver, lamp))
+                for (const planar::Shadow& shadow : run.shadows) {
+                    near_edges += shadow.may_be_none;
+                    tree.darken(shadow, sides_of(scene, receiver, source, run, shadow, far));
+                }
+            EXPECT_LE(tree.doubtful().size(), points.size / 100) << seed;
+            for (std::size_t i = 0; i < points.size; ++i) EXPECT_FALSE(tree.is_dark(i)) << seed;
+            ++sides;
+        }
+    }
+    EXPECT_EQ(sides, 120u);
+    EXPECT_GT(near_edges, 500u);
+}
+
 }  // namespace
 }  // namespace umbra
