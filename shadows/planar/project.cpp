@@ -177,8 +177,8 @@ void project_triangle(Shadows& run, const Scene& scene, TriangleId t, const Rece
     shadow.is_piece = true;
     // A height that is off moves the cut along the triangle, and its shadow along the ray.
     const double length = sum_of_magnitudes(source.at), along = source.at_infinity ? 0 : 2 * size;
-    const double above = source.at.z - (source.at_infinity ? 0 : std::max(0.0, high));
-    const double slope = above > 0 ? 2 + (length + along) / above : kInfinity;
+    const double above   = source.at.z - (source.at_infinity ? 0 : std::max(0.0, high));
+    const double slope   = above > 0 ? 2 + (length + along) / above : kInfinity;
     const auto add_above = [&](double height, double slack, double margin) {
         const auto polygon = clip_below(x, height);
         for (std::size_t k = 2; k < polygon.size(); ++k)

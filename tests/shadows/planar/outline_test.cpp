@@ -336,8 +336,8 @@ TEST(Projection, NeighboursOfABoxesSideLeaveNoneOfItInDoubt) {
             if (lowest() > -0.5) receiver = planar::make_receiver(scene, plane, 0, -1);
             ASSERT_LT(lowest(), -0.5);
             const dvec2 middle = 0.5 * (receiver.low + receiver.high);
-            const planar::Source lamp{false, vec3(receiver.origin + middle.x * receiver.e1 + middle.y * receiver.e2 +
-                                                  2.0 * receiver.normal)};
+            const planar::Source lamp{
+                false, vec3(receiver.origin + middle.x * receiver.e1 + middle.y * receiver.e2 + 2.0 * receiver.normal)};
             constexpr std::size_t side = 32;
             const planar::PlaneTree points(side * side, [&](auto& to, std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) {
@@ -361,6 +361,40 @@ TEST(Projection, NeighboursOfABoxesSideLeaveNoneOfItInDoubt) {
     }
     EXPECT_EQ(sides, 120u);
     EXPECT_GT(near_edges, 500u);
+}
+
+/// A sheet that lies on a turned floor is above it or below: rounding hides which, and darkens no point.
+TEST(Projection, OfASheetOnATurnedFloorIsInDoubt) {
+    std::size_t sheets = 0;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        Random random(seed);
+        Scene scene;
+        const mat4 turned = glm::rotate(mat4(1), random(0, 3), glm::normalize(vec3(0.6f, random(-1, 1), 0.8f)));
+        add(scene, "floor", make_plane(20, 20), turned);
+        const planar::Receiver receiver = planar::make_receiver(scene, find_facts(scene).planes.at(0), 0, +1);
+        add(scene, "sheet", make_plane(20, 20), turned);
+        planar::Occluders occluders{&scene, {2, 3}, {0, 0, planar::Occluders::kNoPlane, planar::Occluders::kNoPlane}};
+        const planar::Source lamp{false, vec3(receiver.origin + 8.0 * receiver.normal)};
+        const dvec3 within = (receiver.local(dvec3(scene.vertex(2, 0))) + receiver.local(dvec3(scene.vertex(2, 1))) +
+                              receiver.local(dvec3(scene.vertex(2, 2)))) /
+                             3.0;
+        const planar::PlaneTree point(1, [&](auto& to, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) to[0][i] = within.x, to[1][i] = within.y;
+        });
+        planar::DarkeningTree tree(point);
+        const planar::LocalSource source(receiver, lamp);
+        for (const planar::Shadows& run : project(occluders, occluders.triangles, receiver, lamp))
+            for (const planar::Shadow& shadow : run.shadows) {
+                if (!shadow.may_be_none || run.caster(shadow) != 2) continue;
+                ++sheets;
+                tree.darken(shadow,
+                            sides_of(scene, receiver, source, run, shadow, farthest(reach_of(receiver, source))));
+                EXPECT_FALSE(tree.is_dark(0)) << seed;
+                EXPECT_EQ(tree.doubtful().size(), 1u) << seed;
+                break;
+            }
+    }
+    EXPECT_GT(sheets, 5u);
 }
 
 }  // namespace
