@@ -13,7 +13,7 @@ constexpr std::size_t kHugePage = std::size_t{1} << 21;
 /// Null where there is no memory.
 void* allocated(std::size_t bytes) {
     void* const memory = std::malloc(bytes > 0 ? bytes : 1);
-    if (memory == nullptr || bytes < 2 * kHugePage) return memory;
+    if (memory == nullptr || bytes < kHugePage) return memory;
     const auto address      = reinterpret_cast<std::uintptr_t>(memory);
     const std::size_t ahead = (kHugePage - address % kHugePage) % kHugePage;
     // A wish: kernels without them have small pages.
