@@ -1,4 +1,4 @@
-"""EXR and PNG files as Umbra writes them (scan lines, PIZ, ZIP or none; 8 bits), read with Python's own modules."""
+"""EXR and PNG files as Umbra writes them (scan lines, ZIP or none; 8 bits), read with Python's own modules."""
 import struct
 import zlib
 
@@ -25,120 +25,6 @@ def _unzipped(block, size):
     return bytes(out)
 
 
-def _huffman(data, count):
-    """The values of a Huffman block: lengths of codes by value, then codes; the last value repeats the one before."""
-    first, last, _, bits, _ = struct.unpack_from('<5I', data)
-    at, held, have = 20, 0, 0
-
-    def take(n):
-        nonlocal at, held, have
-        while have < n:
-            held, have, at = held << 8 | data[at], have + 8, at + 1
-        have -= n
-        value = held >> have
-        held &= (1 << have) - 1
-        return value
-
-    lengths, value = {}, first
-    while value <= last:
-        length = take(6)
-        if length == 63:
-            value += take(8) + 6
-        elif length >= 59:
-            value += length - 57
-        else:
-            if length:
-                lengths[value] = length
-            value += 1
-    counts = [0] * 59
-    for length in lengths.values():
-        counts[length] += 1
-    code = 0
-    for length in range(58, 0, -1):
-        counts[length], code = code, (code + counts[length]) >> 1
-    values = {}
-    for value in sorted(lengths):
-        length = lengths[value]
-        values[length, counts[length]] = value
-        counts[length] += 1
-    text = bin(int.from_bytes(b'\1' + data[at:at + (bits + 7) // 8], 'big'))[3:]
-    by_text = {format(code, f'0{length}b'): value for (length, code), value in values.items()}
-    least, out, i = min(lengths.values(), default=1), [], 0
-    while i < bits and len(out) < count:
-        n = least
-        while text[i:i + n] not in by_text:
-            n += 1
-            if n > 58:
-                raise ValueError('a Huffman code that is in no table')
-        value, i = by_text[text[i:i + n]], i + n
-        if value == last:
-            out += [out[-1]] * int(text[i:i + 8], 2)
-            i += 8
-        else:
-            out.append(value)
-    return out
-
-
-def _wavelet(a, start, nx, ox, ny, oy, largest):
-    small = largest < 1 << 14
-
-    def two(l, h):
-        if small:
-            l, h = l - 65536 if l > 32767 else l, h - 65536 if h > 32767 else h
-            sum_ = l + (h & 1) + (h >> 1)
-            return sum_ & 65535, (sum_ - h) & 65535
-        b = (l - (h >> 1)) & 65535
-        return (h + b - 32768) & 65535, b
-
-    p2 = 1
-    while p2 * 2 <= min(nx, ny):
-        p2 *= 2
-    p = p2 >> 1
-    while p >= 1:
-        ys, xs = range(0, ny - p2 + 1, p2), range(0, nx - p2 + 1, p2)
-        for y in ys:
-            for x in xs:
-                i = start + y * oy + x * ox
-                j, k = i + ox * p, i + oy * p
-                m = k + ox * p
-                a00, a10 = two(a[i], a[k])
-                a01, a11 = two(a[j], a[m])
-                a[i], a[j] = two(a00, a01)
-                a[k], a[m] = two(a10, a11)
-            if nx & p:
-                i = start + y * oy + len(xs) * p2 * ox
-                a[i], a[i + oy * p] = two(a[i], a[i + oy * p])
-        if ny & p:
-            for x in xs:
-                i = start + len(ys) * p2 * oy + x * ox
-                a[i], a[i + ox * p] = two(a[i], a[i + ox * p])
-        p2, p = p, p >> 1
-
-
-def _unpiz(block, size, rows, width, words):
-    if len(block) >= size:
-        return block
-    low, high = struct.unpack_from('<HH', block)
-    at, bitmap = 4, bytearray(8192)
-    if low <= high:
-        bitmap[low:high + 1] = block[at:at + high - low + 1]
-        at += high - low + 1
-    table = [i for i in range(65536) if i == 0 or bitmap[i >> 3] >> (i & 7) & 1]
-    length, = struct.unpack_from('<i', block, at)
-    values = _huffman(block[at + 4:at + 4 + length], size // 2)
-    start, planes = 0, []
-    for n in words:
-        for j in range(n):
-            _wavelet(values, start + j, width, n, rows, width * n, len(table) - 1)
-        planes.append((start, n))
-        start += n * width * rows
-    out = []
-    for y in range(rows):
-        for begin, n in planes:
-            out += [table[v] for v in values[begin + y * width * n:begin + (y + 1) * width * n]]
-    return struct.pack(f'<{len(out)}H', *out)
-
-
 def read_exr(path):
     data = open(path, 'rb').read()
     magic, version = struct.unpack_from('<II', data)
@@ -155,9 +41,9 @@ def read_exr(path):
     x0, y0, x1, y1 = struct.unpack('<4i', attributes['dataWindow'][1])
     width, height = x1 - x0 + 1, y1 - y0 + 1
     compression = attributes['compression'][1][0]
-    lines = {0: 1, 2: 1, 3: 16, 4: 32}.get(compression)
+    lines = {0: 1, 2: 1, 3: 16}.get(compression)
     if lines is None:
-        raise ValueError(f'{path}: compression {compression} is not read, only none, ZIPS, ZIP and PIZ')
+        raise ValueError(f'{path}: compression {compression} is not read, only none, ZIPS and ZIP')
     kinds, c, listed = [], 0, attributes['channels'][1]
     while listed[c]:
         name, c = _text(listed, c)
@@ -171,9 +57,7 @@ def read_exr(path):
         y, size = struct.unpack_from('<iI', data, offset)
         rows = min(lines, y1 + 1 - y)
         block = data[offset + 8:offset + 8 + size]
-        if compression == 4:
-            block = _unpiz(block, rows * line_bytes, rows, width, [codes[k][1] // 2 for _, k in kinds])
-        elif compression:
+        if compression:
             block = _unzipped(block, rows * line_bytes)
         b = 0
         for _ in range(rows):
