@@ -314,7 +314,7 @@ TEST(Outline, NamesPointsOnEdges) {
 /// A side of a box that is turned anyhow has corners at rounding's distance from its plane, and so have the triangles
 /// of its neighbours, which are below: they leave points along the edge in doubt at most, and not the side.
 TEST(Projection, NeighboursOfABoxesSideLeaveNoneOfItInDoubt) {
-    std::size_t sides = 0, near_edges = 0;
+    std::size_t sides = 0, near_edges = 0, doubtful = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
         Random random(seed);
         Scene scene;
@@ -354,13 +354,15 @@ TEST(Projection, NeighboursOfABoxesSideLeaveNoneOfItInDoubt) {
                     near_edges += shadow.may_be_none;
                     tree.darken(shadow, sides_of(scene, receiver, source, run, shadow, far));
                 }
-            EXPECT_LE(tree.doubtful().size(), points.size / 100) << seed;
+            doubtful += tree.doubtful().size();
             for (std::size_t i = 0; i < points.size; ++i) EXPECT_FALSE(tree.is_dark(i)) << seed;
             ++sides;
         }
     }
     EXPECT_EQ(sides, 120u);
     EXPECT_GT(near_edges, 500u);
+    EXPECT_LT(doubtful, sides / 4)
+        << "of 1024 points a side, of which some 1e-4 are in the band of rounding at an edge";
 }
 
 /// A sheet that lies on a turned floor is above it or below: rounding hides which, and darkens no point.
