@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <future>
 #include <map>
 #include <optional>
 #include <set>
@@ -26,7 +25,7 @@
 #include "umbra/bench/run/steps.h"
 #include "umbra/bench/time/turns.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/image/image_library.h"
+#include "umbra/core/image/image_io.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
@@ -213,7 +212,6 @@ ScenesDone compare_scenes(const std::vector<fs::path>& files, const CompareOptio
     const std::vector<ChosenScene> scenes = chosen_scenes(files);
     for (const std::string& text : options.methods) static_cast<void>(parse_method(text));
     if (options.reference) static_cast<void>(parse_method(*options.reference));
-    const std::future<void> images = begin_loading_images();
     ScenesDone done;
     Results last;
     CompareOptions numbered = options;

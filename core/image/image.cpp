@@ -1,21 +1,11 @@
 #include "umbra/core/image/image.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 namespace umbra {
-namespace {
-
-std::atomic<ImageReader> reader_of_program{nullptr};
-
-}  // namespace
-
-void set_image_reader(ImageReader reader) { reader_of_program = reader; }
-ImageReader image_reader() { return reader_of_program; }
-
 void spread_integers(Image& image) {
     if (!image.channels.empty()) return;
     for (const auto& integer : image.integers) image.channels.push_back(integer.first);

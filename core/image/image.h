@@ -51,12 +51,6 @@ struct Layer {
 /// Throws std::logic_error, which names `who`, where the images differ in size or one of them is empty.
 void check_same_size(const Image& a, const Image& b, std::string_view who);
 
-/// A reader of image files for scenes that need some; null where the program set none. Core has none of its own: the
-/// library behind read_image (image_io.h) makes every start slow.
-using ImageReader = Image (*)(const std::filesystem::path& file);
-void set_image_reader(ImageReader reader);
-[[nodiscard]] ImageReader image_reader();
-
 /// Encodes one linear value to sRGB (IEC 61966-2-1) and back; both for [0, 1], odd beyond.
 [[nodiscard]] float srgb_from_linear(float x);
 [[nodiscard]] float linear_from_srgb(float x);

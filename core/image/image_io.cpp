@@ -23,6 +23,7 @@
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/base/paths.h"
 #include "umbra/core/image/image_headers.h"
+#include "umbra/core/image/image_library.h"
 
 namespace umbra {
 namespace {
@@ -460,3 +461,6 @@ std::string png_bytes(const Image& image) {
 }
 
 }  // namespace umbra
+
+extern "C" __attribute__((visibility("default"))) const umbra::ImageLibrary umbra_image_library = {
+    umbra::layout_differences, umbra::read_image, umbra::write_image, umbra::png_bytes};

@@ -5,15 +5,14 @@
 
 #include <stdexcept>
 
-#include "umbra/core/base/parallel.h"
-
 namespace umbra {
 namespace {
 
 const ImageLibrary& library() {
-    static const ImageLibrary& table = [&]() -> const ImageLibrary& {
+    static const ImageLibrary& table = []() -> const ImageLibrary& {
         std::string reasons;
-        for (const char* file : {UMBRA_IMAGES_BUILT, UMBRA_IMAGES_INSTALLED}) {
+        // Where it was built; where the loader looks, of an installed program.
+        for (const char* file : {UMBRA_IMAGES_FOLDER UMBRA_IMAGES, UMBRA_IMAGES}) {
             void* const loaded = dlopen(file, RTLD_LAZY | RTLD_LOCAL);  // for the life of the process
             if (loaded == nullptr) {
                 reasons += fmt::format("\n  {}", dlerror());
@@ -30,12 +29,6 @@ const ImageLibrary& library() {
 }
 
 }  // namespace
-
-std::future<void> begin_loading_images() {
-    // TBB opens libraries with its first task: it would wait for this one.
-    parallel_pair([] {}, [] {});
-    return std::async(std::launch::async, [] { static_cast<void>(library()); });
-}
 
 std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b) {
     return library().differences(a, b);

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "umbra/core/base/error.h"
-#include "umbra/core/image/image.h"
+#include "umbra/core/image/image_io.h"
 #include "umbra/core/io/gltf/members.h"
 #include "umbra/core/io/limits.h"
 
@@ -233,9 +233,8 @@ Cutout read_cutout(const JsonText& json, GltfData& data, const JsonValue& textur
     }
 
     const JsonValue& source = image_of(json, chosen);
-    if (!image_reader()) json.fail(source, "this program reads no images");
     const MemoryFile file(data.image(source));
-    const Image image = image_reader()(file.path());
+    const Image image = read_image(file.path()).image;
     cutout.width      = image.width;
     cutout.height     = image.height;
     const auto alpha =

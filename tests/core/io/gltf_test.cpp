@@ -693,13 +693,11 @@ TEST(GltfMaterial, MasksByATextureAreCutouts) {
 class GltfMask : public ::testing::Test {
 protected:
     GltfMask() {
-        set_image_reader([](const std::filesystem::path& file) { return read_image(file).image; });
         Image image(2, 2, {"R", "G", "B", "A"});
         image.at(0, 3) = 1;     // above on the left
         image.at(1, 3) = 0.3f;  // above on the right
         write_image(folder_.path() / "leaf.png", image);
     }
-    ~GltfMask() override { set_image_reader(nullptr); }
 
     /// The unit square in z = 0, the texture upright on it, under this material.
     Scene leaf(const std::string& material, const std::string& more = "", const std::string& uri = "leaf.png") const {
