@@ -39,9 +39,6 @@ struct ReportLine {
     Budget budget{.seconds = 300};  // one slow method holds up no report
 };
 
-/// Of the times on the pages: less than half of what `umbra compare` takes.
-constexpr Repeats kReportRepeats{.max_runs = 6, .budget_ms = 40};
-
 /// A part of `umbra sweep` on three of the canonical scenes that takes seconds: presets, and a coarse line a method.
 SweepOptions canonical_sweep(const fs::path& out) {
     SweepOptions sweep;
@@ -160,7 +157,6 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
-    options.repeats       = kReportRepeats;
     options.budget        = budget;
     options.with          = with;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
@@ -181,7 +177,6 @@ int report_course(const ReportLine& line, const Common& common) {
     CompareOptions options;
     options.out = line.out, options.command = common.command, options.threads = thread_count();
     options.pixel_samples             = kPictureSamples;
-    options.repeats                   = kReportRepeats;
     options.budget                    = line.budget;
     std::vector<std::string> problems = on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
         options.progress = tell;
