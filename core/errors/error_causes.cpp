@@ -116,9 +116,12 @@ void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& 
             if (c == ErrorClass::no_surface || c == ErrorClass::unshadowed || c == ErrorClass::not_judged ||
                 c == ErrorClass::undefined || c == ErrorClass::on_boundary)
                 continue;
+            const dvec3 face   = points.normal(i);
+            const auto corners = corner_normals(scene, points.triangle[i], face);
+            if (corners[0] == face && corners[1] == face && corners[2] == face) continue;  // of most scenes' points
             const bool facet   = c != ErrorClass::away;
             const dvec3 normal = shading_normal(scene, points, i);
-            if (glm::length(normal - dvec3(points.normal(i))) <= kSameNormal) continue;
+            if (glm::length(normal - face) <= kSameNormal) continue;
             if (faces(scene.lights[light], dvec3(points.position(i)), normal) == facet) continue;
             c = !facet                   ? ErrorClass::terminator_away
                 : c == ErrorClass::right ? ErrorClass::terminator
