@@ -28,10 +28,10 @@ void write_records(const SweepOptions& options, const SweepDone& done) {
         make_folder(options.out / done.folders[s]);
         check_writable_beside(options.out / done.folders[s]);
         files.push_back(fs::absolute(options.out) / done.folders[s] / "results.json");
-        staged.write(files.back(), json_text(done.records[s]));
+        staged.write(files.back(), json_text(to_record(done.records[s])));
     }
     if (done.records.size() == 1) {
-        staged.write(options.out / "results.json", json_text(done.records.front()));
+        staged.write(options.out / "results.json", json_text(to_record(done.records.front())));
     } else {
         const Json all = {
             {"schema", kResultsSchema}, {"version", version()}, {"command", options.command}, {"sweeps", done.folders}};

@@ -90,8 +90,8 @@ ReferenceRecord reference_record(const Truth& truth, const Scene& scene) {
                            .parameters = parameter_records(reference.choice.settings),
                            .exact      = reference.exact,
                            .note       = reference.note,
-                           .times = {timing_record(run.build), timing_record(total(run.aim)), timing_record(run.look),
-                                     timing_record(total(run.visibility))}};
+                           .times      = TimesRecord{timing_record(run.build), timing_record(total(run.aim)),
+                                                timing_record(run.look), timing_record(total(run.visibility))}};
     if (!ran.stand_in.empty()) record.judged = {ran.judged, ran.of, ran.stand_in};
     if (failed) record.failed = {failure_record(*failed, scene), failed->method};
     return record;

@@ -62,7 +62,7 @@ private:
 
     /// Whether it is within the limits; then it is the best so far.
     bool take_if_within(const MethodChoice& choice, double cost) {
-        std::vector<Json> cells;
+        std::vector<Cell> cells;
         for (int view = 0; view < kFirstViews; ++view) {
             if (is_the_reference(choice, cells)) break;
             cells.push_back(coarse_.cell(choice, view));

@@ -24,19 +24,18 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 // its share of the processors; and by the median of few rounds.
 constexpr double kFar = 2, kLongRunMs = 250, kFarByFewRounds = 5;
 
-std::vector<double> costs_a_round(const Json& times, const Workload& workload) {
-    const auto samples = [&](const char* phase) { return times.at(phase).at("samples").get<std::vector<double>>(); };
-    const auto build = samples("build_ms"), aim = samples("aim_ms"), look = samples("look_ms"),
-               visibility = samples("visibility_ms");
+std::vector<double> costs_a_round(const TurnTimesRecord& times, const Workload& workload) {
+    const TimesRecord& of = times.phases;
     std::vector<double> costs;
-    if (times.at("order").empty()) return costs;  // its one sample is of no round
-    for (std::size_t r = 0; r < build.size(); ++r)
-        costs.push_back(frame_cost_ms(workload, {build[r], aim[r], look[r], visibility[r]}));
+    if (times.order.empty()) return costs;  // its one sample is of no round
+    for (std::size_t r = 0; r < of.build_ms->samples.size(); ++r)
+        costs.push_back(frame_cost_ms(workload, {of.build_ms->samples.at(r), of.aim_ms->samples.at(r),
+                                                 of.look_ms->samples.at(r), of.visibility_ms->samples.at(r)}));
     return costs;
 }
 
 /// Nothing where the setting failed or does not serve there, or leaves too much undefined.
-std::optional<double> error_in_view(const Metric& metric, const Json& cell) {
+std::optional<double> error_in_view(const Metric& metric, const Cell& cell) {
     return why_unfit({&cell, 1}).empty() ? possible_error(metric, cell) : std::nullopt;
 }
 
@@ -131,7 +130,7 @@ public:
         result_.held_out.clear();
         if (is_the_reference(result_.candidates[k].choice, result_.candidates[k].views)) return std::nullopt;
         for (int view = options_.views, left = options_.held_out; left > 0; ++view, --left) {
-            const Json cell = small_.cell(result_.candidates[k].choice, view);
+            const Cell cell = small_.cell(result_.candidates[k].choice, view);
             small_.release(view);
             if (const auto beyond = beyond_in(cell, view)) {
                 result_.held_out.clear();
@@ -246,7 +245,7 @@ private:
             c.bounds[k] = upper_bound(*options_.limits[k].metric, c.views);
     }
 
-    [[nodiscard]] std::optional<Beyond> beyond_in(const Json& cell, int view) const {
+    [[nodiscard]] std::optional<Beyond> beyond_in(const Cell& cell, int view) const {
         for (const Limit& limit : options_.limits)
             if (const auto error = error_in_view(*limit.metric, cell); !error || *error > limit.most)
                 return Beyond{view, limit.metric, error};
@@ -273,11 +272,11 @@ private:
         const TimedTogether together = whole_.times(choices, turns, options_.most_noise);
         result_.noise_bar            = together.noise_bar();
         for (std::size_t t = 0; t < who.size(); ++t) {
-            const Json& times = together.settings[t];
+            const auto& times = together.settings[t];
             Candidate& c      = result_.candidates[who[t]];
             c.cost.reset();
-            if (times.is_null()) continue;
-            c.costs = costs_a_round(times, options_.workload);
+            if (!times) continue;
+            c.costs = costs_a_round(*times, options_.workload);
             c.cost  = cost_of(times, options_.workload);
         }
     }
@@ -380,7 +379,7 @@ bool Candidate::within(std::span<const Limit> limits) const { return is_whole &&
 std::optional<double> Candidate::least_bound(std::span<const Limit> limits, std::size_t limit) const {
     if (is_whole || views.empty()) return bounds[limit];
     double least = 0;
-    for (const Json& cell : views) {
+    for (const Cell& cell : views) {
         const std::optional<double> error = error_in_view(*limits[limit].metric, cell);
         if (!error) return std::nullopt;
         least = std::max(least, *error);
@@ -398,9 +397,9 @@ double Candidate::worst_ratio(std::span<const Limit> limits) const {
     return worst;
 }
 
-bool is_the_reference(const MethodChoice& choice, std::span<const Json> views) {
+bool is_the_reference(const MethodChoice& choice, std::span<const Cell> views) {
     return choice.info->reference && !views.empty() &&
-           std::ranges::all_of(views, [](const Json& cell) { return cell.at("serves").at("how") == "exactly"; });
+           std::ranges::all_of(views, [](const Cell& cell) { return cell.method.serves.how == "exactly"; });
 }
 
 double price_ms(const Workload& workload, const RunTimes& run, double more_points) {

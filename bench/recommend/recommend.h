@@ -31,7 +31,7 @@ struct RecommendOptions {
                                         ///< nothing but the reference is within the limits
     TurnOptions turns{.rounds = 9, .budget_ms = 6000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
-    std::string kept_in{};           ///< the folder of cells and times, to be named; empty: it is not
+    std::string kept_in{};                ///< the folder of cells and times, to be named; empty: it is not
     std::function<void(const std::string&)> progress{};
 };
 
@@ -53,7 +53,7 @@ struct Beyond {
 /// One setting that was looked at.
 struct Candidate {
     MethodChoice choice;
-    std::vector<Json> views;                    ///< cells from view 0 on
+    std::vector<Cell> views;                    ///< cells from view 0 on
     bool is_whole = false;                      ///< views are all that are chosen on
     std::vector<std::optional<double>> bounds;  ///< [limit]; nothing where it is not whole
     std::optional<Beyond> beyond;               ///< the first such view; behind it none was needed
@@ -69,7 +69,7 @@ struct Candidate {
 };
 
 /// Whether further views would compare it with itself.
-[[nodiscard]] bool is_the_reference(const MethodChoice& choice, std::span<const Json> views);
+[[nodiscard]] bool is_the_reference(const MethodChoice& choice, std::span<const Cell> views);
 
 /// How much dearer: settings are tied where they took turns in the same six rounds or more and the paired ratio of
 /// their costs does not differ from 1 by more than noise. Where there is no such ratio, one of over five times differs,
@@ -130,7 +130,7 @@ struct Recommendation {
     std::vector<Step> staircase;          ///< by descending error
     std::vector<PassedOver> passed_over;  ///< in the order in which they were met
     std::vector<MethodChoice> unasked;    ///< those that the time did not suffice for
-    std::vector<Json> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
+    std::vector<Cell> held_out;           ///< cells of the chosen one in views that it was not chosen on; all within.
                                           ///< None of the reference, which they would compare with itself
     Size size{};                          ///< of the pictures that it was chosen on
     std::size_t looked_at = 0, settings = 0;  ///< settings whose cells were needed, of all

@@ -15,9 +15,9 @@ std::string counted_views(std::size_t n) { return counted(static_cast<double>(n)
 
 Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
 
-std::optional<double> largest(const Metric& metric, const std::vector<Json>& views) {
+std::optional<double> largest(const Metric& metric, const std::vector<Cell>& views) {
     std::optional<double> most;
-    for (const Json& cell : views) {
+    for (const Cell& cell : views) {
         const auto value = metric_value(metric, cell);
         if (!value) return std::nullopt;
         most = std::max(most.value_or(*value), *value);
@@ -32,20 +32,11 @@ std::string chosen_on(std::size_t views, std::string_view one, std::string_view 
 }
 
 /// In how many of the cells a metric is at most `bound`. One that is only known to be at least something is not.
-std::size_t held(const Metric& metric, const std::vector<Json>& cells, double bound) {
-    return static_cast<std::size_t>(std::ranges::count_if(cells, [&](const Json& cell) {
+std::size_t held(const Metric& metric, const std::vector<Cell>& cells, double bound) {
+    return static_cast<std::size_t>(std::ranges::count_if(cells, [&](const Cell& cell) {
         const auto value = metric_value(metric, cell);
         return value && *value <= bound && !is_at_least(metric, cell);
     }));
-}
-
-/// The largest share of points of a view that a setting leaves open: its errors are of the others.
-double most_undefined(const Candidate& c) {
-    double most = 0;
-    for (const Json& cell : c.views)
-        if (cell.contains("undefined") && cell.at("undefined").is_number())
-            most = std::max(most, cell.at("undefined").get<double>());
-    return most;
 }
 
 Json beyond_json(const Beyond& beyond) {
@@ -65,7 +56,7 @@ Json candidate_json(const Candidate& c, const RecommendOptions& options) {
             {"views", c.views.size()},
             {"errors", std::move(errors)},
             {"beyond", c.beyond ? beyond_json(*c.beyond) : Json()},
-            {"undefined", number(most_undefined(c))}};
+            {"undefined", number(most_undefined(c.views))}};
 }
 
 Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendOptions& options) {
@@ -98,15 +89,15 @@ std::string with_unit(double value, std::string_view unit) {
 }
 
 /// ", largest 0.02"; nothing where the metric of some view is unknown.
-std::string largest_in_words(const Metric& metric, const std::vector<Json>& views, std::string_view before) {
+std::string largest_in_words(const Metric& metric, const std::vector<Cell>& views, std::string_view before) {
     const auto most = largest(metric, views);
     if (!most) return {};
-    const bool or_more = std::ranges::any_of(views, [&](const Json& cell) { return is_at_least(metric, cell); });
+    const bool or_more = std::ranges::any_of(views, [&](const Cell& cell) { return is_at_least(metric, cell); });
     return fmt::format("{} {}{}", before, or_more ? "at least " : "", with_unit(*most, metric.unit));
 }
 
 std::string open_in_words(const Candidate& c) {
-    const double open = most_undefined(c);
+    const double open = most_undefined(c.views);
     return open > 0 ? fmt::format("    errors are of the points that it answers: all but {:.3g} %\n", 100 * open) : "";
 }
 
@@ -166,7 +157,7 @@ std::string held_out_in_words(const Recommendation& r, const RecommendOptions& o
     std::string text;
     for (const Limit& limit : options.limits) {
         double most = 0;
-        for (const Json& cell : r.held_out) most = std::max(most, possible_error(*limit.metric, cell).value_or(0));
+        for (const Cell& cell : r.held_out) most = std::max(most, possible_error(*limit.metric, cell).value_or(0));
         text += fmt::format("    {}: at most {} in {} that it was not chosen on; limit {}\n", limit.metric->name,
                             with_unit(most, limit.metric->unit), counted_views(views),
                             with_unit(limit.most, limit.metric->unit));

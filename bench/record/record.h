@@ -91,7 +91,7 @@ struct Members : std::vector<std::pair<std::string, T>> {
 template <class T>
 struct Is {};
 
-/// What a member may hold, beyond its type; anything by default.
+/// What a member may hold, beyond its type; anything by default. Of Members it says what each may hold.
 struct Allowed {
     std::vector<std::string_view> words{};  ///< one of these
     std::optional<double> least{}, most{};
@@ -241,7 +241,10 @@ public:
     template <class V, class C>
     void operator()(std::string_view key, V C::*member, std::string_view, const Allowed& allowed = {}) {
         const Field field = field_[key];
-        refuse_unless(allowed, field);
+        if constexpr (Part<V>::members)
+            for (const auto& [name, item] : field.members()) refuse_unless(allowed, item);
+        else
+            refuse_unless(allowed, field);
         read(field, record_.*member);
     }
     template <class V, class C>
@@ -354,8 +357,9 @@ public:
     }
     template <class V, class C>
     void may(std::string_view key, V C::*, std::string_view about, const Allowed& allowed = {}) {
-        Json& property = json_["properties"][std::string(key)] = schema<V>(definitions_);
-        if (!about.empty()) property["description"] = about;
+        Json& whole = json_["properties"][std::string(key)] = schema<V>(definitions_);
+        if (!about.empty()) whole["description"] = about;
+        Json& property = Part<V>::members ? whole["additionalProperties"] : whole;
         for (const std::string_view word : allowed.words) property["enum"].push_back(word);
         if (!allowed.words.empty() && Part<V>::optional) property["enum"].push_back(nullptr);
         if (allowed.least) property["minimum"] = *allowed.least;

@@ -19,16 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-EdgeRecord edge_record(const std::optional<DisplacementRecord>& edges) {
-    if (!edges) return {};
-    return {known(edges->mean),
-            known(edges->p95),
-            known(edges->max),
-            static_cast<double>(edges->pieces),
-            static_cast<double>(edges->unmatched),
-            std::isnan(edges->reach) ? 0 : edges->reach};
-}
-
 json timing(const std::optional<TimingRecord>& time) {
     if (!time) return {{"median", kNone}, {"range", false}};
     json view = {{"median", milliseconds(time->median)}, {"range", false}};
@@ -156,9 +146,10 @@ std::string edge_figure(const std::optional<EdgeFigure>& figure) {
 
 json cause_view(const Results& results) {
     return {{"groups", rows_by_light(results, [](const MethodRecord& method, const ErrorRecord& e) {
-                 const EdgeRecord off = edge_record(e.edge_displacement_px);
-                 const auto width     = e.penumbra_width_px.value_or(PenumbraRecord{});
-                 const auto noise     = e.noise.value_or(NoiseRecord{});
+                 const auto edges = e.edge_displacement_px.value_or(DisplacementRecord{});
+                 const WholeEdge off(edges);
+                 const auto width = e.penumbra_width_px.value_or(PenumbraRecord{});
+                 const auto noise = e.noise.value_or(NoiseRecord{});
                  return json{{"coverage", percent(method.coverage)},
                              {"wrong_lit", count(e.interior.lit)},
                              {"wrong_penumbra", count(e.interior.penumbra)},
@@ -166,9 +157,9 @@ json cause_view(const Results& results) {
                              {"terminator_facet", count(e.terminator.facet_away)},
                              {"terminator_normal", count(e.terminator.normal_away)},
                              {"terminator_wrong", count(e.terminator.wrong)},
-                             {"off_mean", edge_figure(off.whole_mean())},
-                             {"off_p95", edge_figure(off.whole_p95())},
-                             {"off_max", edge_figure(off.whole_max())},
+                             {"off_mean", edge_figure(off.mean())},
+                             {"off_p95", edge_figure(off.p95())},
+                             {"off_max", edge_figure(off.max())},
                              {"off_lost", e.edge_displacement_px ? count(e.edge_displacement_px->unmatched) : kNone},
                              {"width", score(known(width.method))},
                              {"width_reference", score(known(width.reference))},

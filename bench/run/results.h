@@ -369,7 +369,7 @@ struct ReferenceRecord {
     bool exact = false;
     std::string note{};
     std::optional<JudgedRecord> judged{};
-    TimesRecord times{};
+    std::optional<TimesRecord> times{};
     std::optional<FilesRecord> files{};
     std::optional<ReferenceFailureRecord> failed{};
 };
@@ -383,7 +383,7 @@ void describe(Fields& of, Is<ReferenceRecord>) {
     of("exact", &ReferenceRecord::exact, "");
     of("note", &ReferenceRecord::note, "");
     of("judged", &ReferenceRecord::judged, "null where every point of the picture is compared");
-    of("times", &ReferenceRecord::times, "");
+    of.may("times", &ReferenceRecord::times, "absent in records of sweep");
     of.may("failed", &ReferenceRecord::failed, "the exact reference threw: another method replaces it");
     of.may("files", &ReferenceRecord::files, "");
 }

@@ -15,11 +15,10 @@ namespace {
 using Kind = Metric::Kind;
 
 /// The reference's doubt about S_j, the largest of all lights.
-double half_width(const Json& cell) {
+double half_width(const Cell& cell) {
     double widest = 0;
-    for (const Json& error : cell.at("errors"))
-        if (const Json& bracket = error.at("bracket"); bracket.is_object() && bracket.at("max_half_width").is_number())
-            widest = std::max(widest, bracket.at("max_half_width").get<double>());
+    for (const ErrorRecord& error : cell.method.errors)
+        if (error.bracket) widest = std::max(widest, known(error.bracket->max_half_width).value_or(0));
     return widest;
 }
 
@@ -29,13 +28,13 @@ bool is_error_of_s(const Metric& metric) {
 }
 
 /// By proof: the setting serves so, and the metric is one that the proof is about.
-bool is_exact(const Metric& metric, const Json& cell, double value) {
-    return cell.at("serves").at("how") == "exactly" && (value == 0 || is_error_of_s(metric));
+bool is_exact(const Metric& metric, const Cell& cell, double value) {
+    return cell.method.serves.how == "exactly" && (value == 0 || is_error_of_s(metric));
 }
 
 /// What the points of a view leave possible. A share is an estimate from as many points. Of errors of S_j only one that
 /// was measured as 0 is: the points that none was found among may be wrong by all of S_j.
-double possible(const Metric& metric, const Json& cell, double measured) {
+double possible(const Metric& metric, const Cell& cell, double measured) {
     if (const auto c = counted(metric, cell)) return upper_share(c->wrong, c->of);
     if (measured > 0 || !metric.unit.empty()) return measured;
     const double missed = upper_share(0, points_compared(cell));
@@ -67,7 +66,7 @@ double upper_share(std::uint64_t wrong, std::uint64_t of) {
         static_cast<double>(of), static_cast<double>(wrong), 1 - kConfidence);
 }
 
-std::optional<double> possible_error(const Metric& metric, const Json& cell) {
+std::optional<double> possible_error(const Metric& metric, const Cell& cell) {
     const auto value = metric_value(metric, cell);
     if (const bool known = value && !is_at_least(metric, cell); !known) return std::nullopt;
     const double width = is_error_of_s(metric) ? half_width(cell) : 0;
@@ -79,28 +78,26 @@ double share_beyond(int views, std::size_t tried) {
     return 1 - std::pow((1 - kConfidence) / static_cast<double>(tried), 1.0 / views);
 }
 
-double most_undefined(std::span<const Json> views) {
+double most_undefined(std::span<const Cell> views) {
     double undefined = 0;
-    for (const Json& cell : views)
-        if (cell.contains("undefined") && cell.at("undefined").is_number())
-            undefined = std::max(undefined, cell.at("undefined").get<double>());
+    for (const Cell& cell : views) undefined = std::max(undefined, cell.undefined.value_or(0));
     return undefined;
 }
 
-std::string why_unfit(std::span<const Json> views) {
-    for (const Json& cell : views) {
-        if (cell.contains("failed")) return "it failed";
-        if (cell.at("serves").at("how") == "not") return cell.at("serves").at("why").get<std::string>();
+std::string why_unfit(std::span<const Cell> views) {
+    for (const Cell& cell : views) {
+        if (cell.method.failed) return "it failed";
+        if (cell.method.serves.how == "not") return cell.method.serves.why;
     }
     const double undefined = most_undefined(views);
     return undefined > kMostLeftOut ? fmt::format("it leaves {:.3g} % of a view's points undefined", 100 * undefined)
                                     : "";
 }
 
-std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views) {
+std::optional<double> upper_bound(const Metric& metric, std::span<const Cell> views) {
     std::vector<double> values;
     bool exactly = true;
-    for (const Json& cell : views) {
+    for (const Cell& cell : views) {
         const auto value = metric_value(metric, cell);
         if (!value || is_at_least(metric, cell)) return std::nullopt;
         values.push_back(*value);

@@ -17,10 +17,10 @@ inline constexpr double kConfidence = 0.95;
 inline constexpr double kMostLeftOut = 0.01;
 
 /// The largest fraction of the points that a view of them has left undefined; 0 of cells that do not say.
-[[nodiscard]] double most_undefined(std::span<const Json> views);
+[[nodiscard]] double most_undefined(std::span<const Cell> views);
 
 /// Why a setting is on no front and not recommended, from cells of some of its views; empty where it may be.
-[[nodiscard]] std::string why_unfit(std::span<const Json> views);
+[[nodiscard]] std::string why_unfit(std::span<const Cell> views);
 
 /// The largest share of wrong points that `wrong` of `of` points leave possible (Clopper and Pearson 1934, one-sided):
 /// of 0 wrong points about 3 / of.
@@ -29,7 +29,7 @@ inline constexpr double kMostLeftOut = 0.01;
 /// What a view leaves possible: the measured error, or what its count or its number of points leaves possible, as in
 /// upper_bound, and the half width of the reference. Nothing where it was not judged, and where its value is the least
 /// that it may be.
-[[nodiscard]] std::optional<double> possible_error(const Metric& metric, const Json& cell);
+[[nodiscard]] std::optional<double> possible_error(const Metric& metric, const Cell& cell);
 
 /// The largest share of further views that may be beyond a limit where none of `views` is, which were drawn alike and
 /// had no part in the choice: 1 - (1 - kConfidence)^(1 / views), about 3 / views. The k-th setting that is tried on
@@ -48,6 +48,6 @@ inline constexpr double kMostLeftOut = 0.01;
 ///
 /// Nothing where a view was not judged, where a value is the least that it may be (is_at_least), where there are fewer
 /// than two views, and where the method failed or does not serve.
-[[nodiscard]] std::optional<double> upper_bound(const Metric& metric, std::span<const Json> views);
+[[nodiscard]] std::optional<double> upper_bound(const Metric& metric, std::span<const Cell> views);
 
 }  // namespace umbra

@@ -113,9 +113,9 @@ const Rendered& CellView::rendered(const Truth& truth) {
     return rendered_.emplace(&truth, render_planes(p.scene, p.points, truth.ran.run.planes)).first->second;
 }
 
-Json CellView::reference() {
-    Json record = to_record(reference_record(truths().main(), prepared().scene));
-    record.erase("times");
+ReferenceRecord CellView::reference() {
+    ReferenceRecord record = reference_record(truths().main(), prepared().scene);
+    record.times.reset();  // of this machine
     return record;
 }
 
@@ -202,12 +202,12 @@ std::optional<RunTimes> CellView::times_of_one_run(const MethodChoice& choice, b
     }
 }
 
-Json CellView::compute(const MethodChoice& choice) {
+Cell CellView::compute(const MethodChoice& choice) {
     const PreparedScene& p = prepared();
     const Scene& scene     = p.scene;
     const std::string id(choice.info->name);
     const Truth* against = nullptr;
-    Json cell;
+    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice)};
     Trial trial{.noise_runs = kCellNoiseRuns, .budget = options_.budget};
     trial.run = [&](std::optional<LightId>& at) {
         const bool is_there = ran_ && all_settings(ran_->choice) == all_settings(choice);
@@ -220,25 +220,21 @@ Json CellView::compute(const MethodChoice& choice) {
         return against->ran.run;
     };
     trial.then = [&](const Outcome& found) {
-        MethodRecord served = served_record(id, p, found, against->reference.choice.text());
-        served.image =
+        cell.method = served_record(id, p, found, against->reference.choice.text());
+        cell.method.image =
             image_figures(found.run.planes, render_planes(scene, p.points, found.run.planes), rendered(*against))
                 .figures;
-        cell = to_record(served);
-        cell.erase("light_times");
-        cell["undefined"] = served.coverage ? Json(1 - *served.coverage) : Json();
+        if (const auto covered = cell.method.coverage) cell.undefined = 1 - *covered;
     };
     const Outcome found = outcome(choice, scene, p.facts, p.points, trial);
     const auto whole    = [](const std::optional<Failure>& failed) { return !failed || !failed->cut; };
     is_whole_           = whole(found.failed) && (against == nullptr || whole(against->failed));
     if (found.failed) {
         work_.reset();
-        cell = to_record(failed_record(id, choice, scene, *found.failed));
+        cell.method = failed_record(id, choice, scene, *found.failed);
     } else if (!found.run.service) {
-        cell = to_record(unserved_record(id, choice, found.run.service));
+        cell.method = unserved_record(id, choice, found.run.service);
     }
-    cell["view"] = view_;
-    cell["key"]  = key(choice);
     return cell;
 }
 

@@ -12,6 +12,7 @@
 #include "umbra/bench/compare/image_figures.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
+#include "umbra/bench/sweep/cell_record.h"
 #include "umbra/bench/time/turns.h"
 
 namespace umbra {
@@ -58,15 +59,14 @@ public:
     /// Throws InputError, UsageError, and what a reference throws that cannot be replaced.
     [[nodiscard]] const PreparedScene& prepared();
     /// `reference` of the record: the truth of area.
-    [[nodiscard]] Json reference();
+    [[nodiscard]] ReferenceRecord reference();
     /// The key of that, without making the view ready.
     [[nodiscard]] std::string reference_key() const;
 
-    /// Computes the cell: an entry of `methods` of results.json without times and files, with `undefined`, `view` and
-    /// `key`. A method that does not serve has an entry that says so, and one that throws has `failed`. Settings that
-    /// follow one another and differ from a later phase on share the phases before. In view v > 0 methods that have a
-    /// seed run with another one.
-    [[nodiscard]] Json compute(const MethodChoice& choice);
+    /// A method that does not serve has a cell that says so, and one that throws has `failed`. Settings that follow one
+    /// another and differ from a later phase on share the phases before. In view v > 0 methods that have a seed run with
+    /// another one.
+    [[nodiscard]] Cell compute(const MethodChoice& choice);
     /// Times of one run of all phases, alone: of the one that `compute` compared, or of one now, which the next `compute`
     /// of this setting compares; `anew`: of one now in any case. View 0. Nothing where the setting does not serve, or fails.
     [[nodiscard]] std::optional<RunTimes> times_of_one_run(const MethodChoice& choice, bool anew = false);

@@ -4,10 +4,8 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <fstream>
 
 #include "umbra/bench/out/files.h"
-#include "umbra/core/base/error.h"
 
 namespace umbra {
 namespace fs = std::filesystem;
@@ -35,18 +33,21 @@ CellStore::CellStore(fs::path folder) : folder_(std::move(folder)) {
     }
 }
 
-std::optional<Json> CellStore::find(const std::string& key) const {
-    std::ifstream in(folder_ / (key + ".json"), std::ios::binary);
-    if (!in) return std::nullopt;
-    Json cell = Json::parse(in, nullptr, false);
-    if (!cell.is_object() || cell.value("key", "") != key) return std::nullopt;
-    return cell;
+Field CellStore::entry(const std::string& key) const {
+    const fs::path file = folder_ / (key + ".json");
+    if (!fs::exists(file)) return {};
+    try {
+        const Field cell = parse_json(bytes_of(file), file.string());
+        return cell.is_object() && cell["key"].text() == key ? cell : Field();
+    } catch (const InputError&) {  // cut off
+        return {};
+    }
 }
 
-void CellStore::keep(const Json& cell) const {
-    const fs::path file = folder_ / (cell.at("key").get<std::string>() + ".json");
+void CellStore::write(const std::string& key, const std::string& text) const {
+    const fs::path file = folder_ / (key + ".json");
     const fs::path half = file.string() + fmt::format("{}{}", kHalf, getpid());
-    write_text(half, json_text(cell));
+    write_text(half, text);
     move_into_place(half, file);
 }
 

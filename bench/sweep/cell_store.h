@@ -5,7 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/record/record.h"
+#include "umbra/core/base/error.h"
 
 namespace umbra {
 
@@ -17,14 +18,31 @@ public:
     /// InputError.
     explicit CellStore(std::filesystem::path folder);
 
-    [[nodiscard]] std::optional<Json> find(const std::string& key) const;
-    /// `cell["key"]` is its key. Throws InputError.
-    void keep(const Json& cell) const;
+    /// What was kept as a `T`, which has a member `key`.
+    template <class T>
+    [[nodiscard]] std::optional<T> find(const std::string& key) const {
+        const Field cell = entry(key);
+        if (!cell.present()) return std::nullopt;
+        try {
+            return from_record<T>(cell);
+        } catch (const InputError&) {  // changed by hand
+            return std::nullopt;
+        }
+    }
+    [[nodiscard]] bool has(const std::string& key) const { return entry(key).present(); }
+    /// Throws InputError.
+    template <class T>
+    void keep(const T& cell) const {
+        write(cell.key, json_text(to_record(cell)));
+    }
     /// Takes over what `other` has and this has not. Throws InputError.
     void add_all(const CellStore& other) const;
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
 private:
+    [[nodiscard]] Field entry(const std::string& key) const;  ///< absent where there is none of that key
+    void write(const std::string& key, const std::string& text) const;
+
     std::filesystem::path folder_;
 };
 

@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/run/edge_figure.h"
+#include "umbra/bench/sweep/cell_record.h"
+#include "umbra/bench/trade/sweep_results.h"
 
 namespace umbra {
 
@@ -20,12 +22,14 @@ struct Metric {
         largest,  ///< the largest of all lights
         entry     ///< one value a setting
     };
-    std::string_view name;  ///< as typed; of what results.json holds, its path: "edge_displacement_px.p95"
+    std::string_view name;  ///< as typed, and as records name it: "edge_displacement_px.p95"
     std::string_view unit;  ///< empty for pure numbers
     std::string_view doc;   ///< one sentence
     Kind kind;
-    std::string_view paths;  ///< "a.b+c.d": where the summands lie, in an entry of `errors`, or in the cell for `entry`
-    double scale = 1;        ///< of `entry`: from the unit of results.json to `unit`
+    // Where it is found, one of these; nothing where the record does not say.
+    std::optional<double> (*of_light)(const ErrorRecord&)  = nullptr;  ///< a count for `share`
+    std::optional<EdgeFigure> (*of_edge)(const WholeEdge&) = nullptr;
+    std::optional<double> (*of_cell)(const Cell&)          = nullptr;  ///< for `entry`
 };
 
 /// In the order of tables.
@@ -34,32 +38,22 @@ struct Metric {
 /// Throws UsageError with near matches.
 [[nodiscard]] const Metric& find_metric(std::string_view name);
 
-/// A metric of one cell: an entry of `methods` of results.json, or one that a sweep made. Nothing where it was not
-/// judged: no point compared, none of some light that has points, no reference that names the class, no edge there.
-[[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Json& cell);
+/// A metric of one cell. Nothing where it was not judged: no point compared, none of some light that has points, no
+/// reference that names the class, no edge there.
+[[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Cell& cell);
 
 /// Whether the value is the least that it may be: shadow edges lie beyond the reach in which they are looked for.
-[[nodiscard]] bool is_at_least(const Metric& metric, const Json& cell);
+[[nodiscard]] bool is_at_least(const Metric& metric, const Cell& cell);
 
 /// The count behind a share, and the points that it is a share of; nothing for other kinds, and where not judged.
 struct Counted {
     std::uint64_t wrong = 0, of = 0;
 };
-[[nodiscard]] std::optional<Counted> counted(const Metric& metric, const Json& cell);
+[[nodiscard]] std::optional<Counted> counted(const Metric& metric, const Cell& cell);
 
 /// Points compared in a cell, of all lights.
-[[nodiscard]] std::uint64_t points_compared(const Json& cell);
+[[nodiscard]] std::uint64_t points_compared(const Cell& cell);
 
-/// A metric as records and `umbra list` name it.
-struct MetricRecord {
-    std::string name{}, unit{}, doc{};
-};
-template <class Fields>
-void describe(Fields& of, Is<MetricRecord>) {
-    of("name", &MetricRecord::name, "");
-    of("unit", &MetricRecord::unit, "empty for pure numbers");
-    of("doc", &MetricRecord::doc, "");
-}
 [[nodiscard]] std::vector<MetricRecord> metric_records();
 
 /// What is typed for a limit: "rmse=0.01".

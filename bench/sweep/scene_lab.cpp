@@ -6,12 +6,65 @@
 #include <cmath>
 #include <new>
 
-#include "umbra/bench/record/field.h"
+#include "umbra/bench/record/record.h"
 #include "umbra/bench/sweep/content_key.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
+namespace {
+
+struct PriceRecord {
+    double build_ms = 0;
+    std::vector<double> aim_ms{};
+    double look_ms = 0;
+    std::vector<double> visibility_ms{};
+    int runs = 0;
+};
+template <class Fields>
+void describe(Fields& of, Is<PriceRecord>) {
+    of("build_ms", &PriceRecord::build_ms, "");
+    of("aim_ms", &PriceRecord::aim_ms, "");
+    of("look_ms", &PriceRecord::look_ms, "");
+    of("visibility_ms", &PriceRecord::visibility_ms, "");
+    of("runs", &PriceRecord::runs, "");
+}
+
+// What is kept beside cells.
+
+struct KeptPrice {
+    std::string key{};
+    PriceRecord price{};
+};
+template <class Fields>
+void describe(Fields& of, Is<KeptPrice>) {
+    of("key", &KeptPrice::key, "");
+    of("price", &KeptPrice::price, "");
+}
+
+struct KeptTimes {
+    std::string key{};
+    std::optional<TurnTimesRecord> times{};
+    std::optional<SweptTurnsRecord> turns{};
+};
+template <class Fields>
+void describe(Fields& of, Is<KeptTimes>) {
+    of("key", &KeptTimes::key, "");
+    of("times", &KeptTimes::times, "");
+    of("turns", &KeptTimes::turns, "");
+}
+
+struct KeptReference {
+    std::string key{};
+    ReferenceRecord reference{};
+};
+template <class Fields>
+void describe(Fields& of, Is<KeptReference>) {
+    of("key", &KeptReference::key, "");
+    of("reference", &KeptReference::reference, "");
+}
+
+}  // namespace
 
 SceneLab::SceneLab(const std::filesystem::path& file, CellOptions options, const CellStore& store)
     : own_(std::make_shared<OwnScene>(load_scene(file))), file_(file), options_(std::move(options)), store_(store) {}
@@ -31,27 +84,28 @@ CellView& SceneLab::view(int view) {
 }
 
 bool SceneLab::has_cell(const MethodChoice& choice, int view_number) {
-    return store_.find(view(view_number).key(choice)).has_value();
+    return store_.has(view(view_number).key(choice));
 }
 
-Json SceneLab::cell(const MethodChoice& choice, int view_number) {
+Cell SceneLab::cell(const MethodChoice& choice, int view_number) {
     CellView& here = view(view_number);
-    if (auto found = store_.find(here.key(choice))) return std::move(*found);
+    if (auto found = store_.find<Cell>(here.key(choice))) return std::move(*found);
     static_cast<void>(here.reference());  // where there is none, no method is to blame
     if (options_.progress) options_.progress(fmt::format("view {}: {}", view_number, choice.text()));
-    Json made = here.compute(choice);
+    Cell made = here.compute(choice);
     ++computed_;
-    const bool starved = made.contains("failed") && made["failed"]["message"] == std::bad_alloc().what();
+    const bool starved = made.method.failed && made.method.failed->message == std::bad_alloc().what();
     if (!starved && here.is_whole()) store_.keep(made);
     return made;
 }
 
-Json SceneLab::reference() {
+ReferenceRecord SceneLab::reference() {
     const std::string key = view(0).reference_key();
-    if (const auto found = store_.find(key)) return found->at("reference");
-    Json made = {{"key", key}, {"reference", view(0).reference()}};
-    if (!made["reference"].contains("failed") || !made["reference"]["failed"].contains("cut")) store_.keep(made);
-    return made.at("reference");
+    if (auto found = store_.find<KeptReference>(key)) return std::move(found->reference);
+    const KeptReference made{key, view(0).reference()};
+    const auto& failed = made.reference.failed;
+    if (!failed || !failed->failure.cut) store_.keep(made);
+    return made.reference;
 }
 
 std::string SceneLab::machine_key(const std::string& kind, const MethodChoice& choice) {
@@ -59,30 +113,18 @@ std::string SceneLab::machine_key(const std::string& kind, const MethodChoice& c
     return combined_key({kind, machine.cpu, fmt::format("{}", thread_count()), machine.compiler, view(0).key(choice)});
 }
 
-std::optional<Json> SceneLab::measured(const std::string& key) const {
-    if (anew_ && !measured_here_.contains(key)) return std::nullopt;
-    return store_.find(key);
-}
-
-void SceneLab::keep_measured(const Json& entry) {
-    store_.keep(entry);
-    measured_here_.insert(entry.at("key").get<std::string>());
-}
-
 double TimedTogether::noise_bar() const {
-    const bool known = turns.is_object() && turns.at("noise_bar").is_number();
-    return known ? turns.at("noise_bar").get<double>() : std::numeric_limits<double>::infinity();
+    return turns && turns->noise_bar ? *turns->noise_bar : std::numeric_limits<double>::infinity();
 }
 
 std::optional<RunTimes> SceneLab::price(const MethodChoice& choice, int runs) {
     const std::string key = machine_key("price", choice);
     std::optional<RunTimes> price;
     int paid = 0;
-    if (const auto found = measured(key)) {
-        const Json& kept = found->at("price");
-        price            = RunTimes{kept.at("build_ms").get<double>(), kept.at("aim_ms").get<std::vector<double>>(),
-                         kept.at("look_ms").get<double>(), kept.at("visibility_ms").get<std::vector<double>>()};
-        paid             = kept.at("runs").get<int>();
+    if (const auto found = is_fresh(key) ? store_.find<KeptPrice>(key) : std::nullopt) {
+        const PriceRecord& kept = found->price;
+        price                   = RunTimes{kept.build_ms, kept.aim_ms, kept.look_ms, kept.visibility_ms};
+        paid                    = kept.runs;
     }
     if (paid >= runs) return price;
     for (; paid < runs; ++paid) {
@@ -91,26 +133,22 @@ std::optional<RunTimes> SceneLab::price(const MethodChoice& choice, int runs) {
         if (!run) return std::nullopt;
         if (!price || run->all() < price->all()) price = std::move(run);
     }
-    keep_measured({{"key", key},
-                   {"price",
-                    {{"build_ms", price->build},
-                     {"aim_ms", price->aim},
-                     {"look_ms", price->look},
-                     {"visibility_ms", price->visibility},
-                     {"runs", paid}}}});
+    store_.keep(KeptPrice{key, {price->build, price->aim, price->look, price->visibility, paid}});
+    measured_here_.insert(key);
     return price;
 }
 
 std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice> choices) {
     TimedTogether all;
     for (const MethodChoice& choice : choices) {
-        auto found = measured(machine_key("time", choice));
+        const std::string key = machine_key("time", choice);
+        auto found            = is_fresh(key) ? store_.find<KeptTimes>(key) : std::nullopt;
         if (!found) return std::nullopt;
         if (all.settings.empty())
-            all.turns = found->at("turns");
-        else if (found->at("turns") != all.turns)
+            all.turns = found->turns;
+        else if (found->turns != all.turns)
             return std::nullopt;
-        all.settings.push_back(std::move(found->at("times")));
+        all.settings.push_back(std::move(found->times));
     }
     return all;
 }
@@ -128,12 +166,12 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
     const auto together = [&] {
         const Turns turns = time_in_turns(view(0).prepared(), choices, options);
         TimedTogether all;
-        all.turns = {
-            {"pinned", turns.pinned}, {"noise_bar", number(turns.noise_bar)}, {"calibration_ms", Json::array()}};
-        for (const double ms : turns.calibration) all.turns["calibration_ms"].push_back(number(ms));
-        was_cut = std::ranges::any_of(turns.settings, &TurnTimes::cut);
-        for (const TurnTimes& t : turns.settings)
-            all.settings.push_back(!t.build.empty() && t.failed.empty() ? to_record(turn_times_record(t)) : Json());
+        all.turns = SweptTurnsRecord{turns.pinned, known(turns.noise_bar), turns.calibration};
+        was_cut   = std::ranges::any_of(turns.settings, &TurnTimes::cut);
+        for (const TurnTimes& t : turns.settings) {
+            all.settings.emplace_back();
+            if (!t.build.empty() && t.failed.empty()) all.settings.back() = turn_times_record(t);
+        }
         return all;
     };
     TimedTogether all = together();
@@ -142,8 +180,11 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
             options_.progress(fmt::format("noise bar {:.0f} %: timing again", 100 * all.noise_bar()));
         if (TimedTogether again = together(); again.noise_bar() < all.noise_bar()) all = std::move(again);
     }
-    for (std::size_t k = 0; k < choices.size() && !was_cut; ++k)
-        keep_measured({{"key", machine_key("time", choices[k])}, {"times", all.settings[k]}, {"turns", all.turns}});
+    for (std::size_t k = 0; k < choices.size() && !was_cut; ++k) {
+        const std::string key = machine_key("time", choices[k]);
+        store_.keep(KeptTimes{key, all.settings[k], all.turns});
+        measured_here_.insert(key);
+    }
     return all;
 }
 

@@ -13,13 +13,14 @@
 #include "umbra/bench/sweep/cell.h"
 #include "umbra/bench/sweep/cell_store.h"
 #include "umbra/bench/time/turns.h"
+#include "umbra/bench/trade/sweep_results.h"
 
 namespace umbra {
 
 /// Of one run of time_in_turns.
 struct TimedTogether {
-    std::vector<Json> settings{};  ///< `times` of results.json, as given; null for one that does not serve or failed
-    Json turns{};                  ///< {"pinned", "noise_bar", "calibration_ms"}; null where nothing was timed
+    std::vector<std::optional<TurnTimesRecord>> settings{};  ///< as given; none for one that does not serve or failed
+    std::optional<SweptTurnsRecord> turns{};                 ///< none where nothing was timed
 
     [[nodiscard]] double noise_bar() const;  ///< as of Turns
 };
@@ -38,14 +39,14 @@ public:
     [[nodiscard]] CellView& view(int view);
     [[nodiscard]] const SceneFacts& facts() const { return own_->facts(); }
     /// `reference` of the record of view 0.
-    [[nodiscard]] Json reference();
+    [[nodiscard]] ReferenceRecord reference();
     /// Frees what a view holds; its cells stay on disk.
     void release(int view) { views_.erase(view); }
 
     [[nodiscard]] bool has_cell(const MethodChoice& choice, int view);
     /// Settings of one method and build that follow one another cost one build. A cell that failed for want of
     /// memory, or that a budget cut short, is not kept: it is computed again when it is asked for.
-    [[nodiscard]] Json cell(const MethodChoice& choice, int view);
+    [[nodiscard]] Cell cell(const MethodChoice& choice, int view);
     [[nodiscard]] std::size_t computed() const { return computed_; }  ///< cells that were not found
 
     /// The fastest of `runs` runs of a setting on view 0 at least, alone: a price, not a time to compare closely. It is
@@ -66,9 +67,8 @@ public:
     [[nodiscard]] std::string machine_key(const std::string& kind, const MethodChoice& choice);
 
 private:
-    /// What this machine measured, where it need not be measured anew.
-    [[nodiscard]] std::optional<Json> measured(const std::string& key) const;
-    void keep_measured(const Json& entry);
+    /// Whether what this machine measured need not be measured anew.
+    [[nodiscard]] bool is_fresh(const std::string& key) const { return !anew_ || measured_here_.contains(key); }
     [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);
 
     std::shared_ptr<OwnScene> own_;

@@ -36,16 +36,46 @@ std::vector<MethodChoice> typed_settings(const SweepPlan& plan) {
     return all;
 }
 
-Json plan_json(const SweepPlan& plan) {
-    Json scenes = Json::array();
-    for (const fs::path& scene : plan.scenes) scenes.push_back(scene.string());
-    return {{"scenes", std::move(scenes)},
-            {"settings", plan.settings},
-            {"views", plan.views},
-            {"width", plan.size.width},
-            {"height", plan.size.height},
-            {"reference", plan.reference ? Json(*plan.reference) : Json()},
-            {"points", plan.points ? Json(*plan.points) : Json()}};
+struct PlanRecord {
+    std::vector<std::string> scenes{}, settings{};
+    std::uint64_t views = 1, width = 0, height = 0;
+    std::optional<std::string> reference{};
+    std::optional<std::uint64_t> points{};
+    friend bool operator==(const PlanRecord&, const PlanRecord&) = default;
+};
+template <class Fields>
+void describe(Fields& of, Is<PlanRecord>) {
+    of("scenes", &PlanRecord::scenes, "");
+    of("settings", &PlanRecord::settings, "");
+    of("views", &PlanRecord::views, "", {.least = 1, .most = 1000});
+    of("width", &PlanRecord::width, "", {.least = 0, .most = 1e6});
+    of("height", &PlanRecord::height, "", {.least = 0, .most = 1e6});
+    of("reference", &PlanRecord::reference, "");
+    of("points", &PlanRecord::points, "");
+}
+
+/// plan.json
+struct PlanFile {
+    int schema = kResultsSchema;
+    std::string version{};
+    PlanRecord plan{};
+};
+template <class Fields>
+void describe(Fields& of, Is<PlanFile>) {
+    of("schema", &PlanFile::schema, "");
+    of("version", &PlanFile::version, "");
+    of.must("plan", &PlanFile::plan, "");
+}
+
+PlanRecord plan_record(const SweepPlan& plan) {
+    PlanRecord record{.settings  = plan.settings,
+                      .views     = static_cast<std::uint64_t>(plan.views),
+                      .width     = static_cast<std::uint64_t>(plan.size.width),
+                      .height    = static_cast<std::uint64_t>(plan.size.height),
+                      .reference = plan.reference,
+                      .points    = plan.points};
+    for (const fs::path& scene : plan.scenes) record.scenes.push_back(scene.string());
+    return record;
 }
 
 SweepPlan plan_in(const fs::path& folder) {
@@ -53,52 +83,40 @@ SweepPlan plan_in(const fs::path& folder) {
     if (!fs::exists(file))
         throw InputError(
             fmt::format("{}: holds no plan.json, expected a folder that umbra sweep wrote", folder.string()));
-    const Field root = read_results(file);
-    const Field plan = root["plan"];
-    if (!plan.present()) plan.refuse("the plan of a sweep");
-    SweepPlan p;
-    for (const Field& scene : plan["scenes"].items()) p.scenes.emplace_back(scene.required_text());
-    for (const Field& setting : plan["settings"].items()) p.settings.push_back(setting.required_text());
-    const auto whole = [&](const Field& field) { return static_cast<int>(field.number().value_or(0)); };
-    p.views          = whole(plan["views"]);
-    p.size           = {whole(plan["width"]), whole(plan["height"])};
-    if (plan["reference"].present()) p.reference = plan["reference"].required_text();
-    if (const auto points = plan["points"].number()) p.points = static_cast<std::uint64_t>(*points);
-    if (p.scenes.empty() || p.views < 1) plan.refuse("scenes and at least one view");
-    return p;
+    const Field root        = read_results(file);
+    const PlanRecord record = from_record<PlanFile>(root).plan;
+    if (record.scenes.empty()) root["plan"]["scenes"].refuse("one scene or more");
+    return {.scenes    = {record.scenes.begin(), record.scenes.end()},
+            .settings  = record.settings,
+            .views     = static_cast<int>(record.views),
+            .size      = {static_cast<int>(record.width), static_cast<int>(record.height)},
+            .reference = record.reference,
+            .points    = record.points};
 }
 
 void write_plan(const SweepPlan& plan, const fs::path& out) {
-    const Json record      = {{"schema", kResultsSchema}, {"version", version()}, {"plan", plan_json(plan)}};
-    const std::string text = json_text(record);
+    const std::string text =
+        json_text(to_record(PlanFile{.version = std::string(version()), .plan = plan_record(plan)}));
     if (bytes_of(out / "plan.json") != text) write_text(out / "plan.json", text);
 }
 
 /// A setting that failed, in words.
-std::string failure_of(const Scene& scene, const Json& cell) {
-    const Json& failed = cell.at("failed");
-    FailureRecord failure{.message = failed.at("message"), .cut = failed.contains("cut")};
-    if (failed.at("light").is_string()) failure.light = failed.at("light");
-    return failure_in_words(scene.name, cell.at("text"), failure);
+std::string failure_of(const Scene& scene, const MethodRecord& method) {
+    return failure_in_words(scene.name, method.text, *method.failed);
 }
 
-Json swept_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
-                  const Json& turns) {
-    const bool own = options.plan.size.width == 0;
-    Json record    = {{"schema", kResultsSchema},
-                      {"version", version()},
-                      {"command", options.command},
-                      {"machine", to_record(machine_record(options.threads))},
-                      {"scene", to_record(scene_record(lab.scene()))},
-                      {"facts", to_record(facts_record(lab.facts()))},
-                      {"size",
-                       {{"width", own ? lab.scene().width : options.plan.size.width},
-                        {"height", own ? lab.scene().height : options.plan.size.height}}},
-                      {"lights", to_record(light_records(lab.facts()))},
-                      {"reference", lab.reference()},
-                      {"sweep", sweep_json(swept, options.plan.views, options.workload, turns)}};
-    if (const auto budget = budget_record(options.plan.budget)) record["budget"] = to_record(*budget);
-    return record;
+SweepResults swept_record(SceneLab& lab, const SweepOptions& options, const std::vector<MeasuredSetting>& swept,
+                          const std::optional<SweptTurnsRecord>& turns) {
+    const Size size = lab.size();
+    return {.head      = head_record(options.command),
+            .machine   = machine_record(options.threads),
+            .scene     = scene_record(lab.scene()),
+            .facts     = facts_record(lab.facts()),
+            .size      = {static_cast<std::uint64_t>(size.width), static_cast<std::uint64_t>(size.height)},
+            .lights    = light_records(lab.facts()),
+            .reference = lab.reference(),
+            .sweep     = sweep_record(swept, options.plan.views, options.workload, turns),
+            .budget    = budget_record(options.plan.budget)};
 }
 
 }  // namespace
@@ -164,9 +182,9 @@ std::size_t sweep_pack(const SweepOptions& options, Pack pack, std::vector<std::
         if (cells[k].view != view) lab->release(view);
         view            = cells[k].view;
         const auto done = lab->computed();
-        const Json made = lab->cell(parse_method(cells[k].setting), view);
+        const Cell made = lab->cell(parse_method(cells[k].setting), view);
         computed += lab->computed() - done;
-        if (made.contains("failed")) failed.push_back(failure_of(lab->scene(), made));
+        if (made.method.failed) failed.push_back(failure_of(lab->scene(), made.method));
     }
     return computed;
 }
@@ -205,8 +223,8 @@ SweepDone sweep(const SweepOptions& options) {
             for (std::size_t k = 0; k < choices.size(); ++k) {
                 if (next < missing.size() && missing[next] == std::pair(view, k)) ++next, steps->next();
                 swept[k].views.push_back(lab.cell(choices[k], view));
-                if (view == 0 && swept[k].views[0].contains("failed"))
-                    done.failed.push_back(failure_of(lab.scene(), swept[k].views[0]));
+                if (view == 0 && swept[k].views[0].method.failed)
+                    done.failed.push_back(failure_of(lab.scene(), swept[k].views[0].method));
             }
             if (view > 0) lab.release(view);
         }
@@ -214,13 +232,13 @@ SweepDone sweep(const SweepOptions& options) {
         done.computed += lab.computed();
         done.cells += choices.size() * static_cast<std::size_t>(options.plan.views);
 
-        Json turns;
+        std::optional<SweptTurnsRecord> turns;
         if (options.times) {
             std::vector<std::size_t> timed;
             std::vector<MethodChoice> to_time;
             for (std::size_t k = 0; k < swept.size(); ++k) {
-                const Json& first = swept[k].views.front();
-                if (first.contains("failed") || first.at("serves").at("how") == "not") continue;
+                const MethodRecord& first = swept[k].views.front().method;
+                if (first.failed || first.serves.how == "not") continue;
                 timed.push_back(k);
                 to_time.push_back(choices[k]);
             }
@@ -240,7 +258,7 @@ SweepPlan merged_plan(const std::vector<fs::path>& folders, const fs::path& out)
     if (folders.empty()) throw UsageError("--merge: no folder given, expected folders that umbra sweep wrote");
     SweepPlan plan = plan_in(folders.front());
     for (const fs::path& folder : folders)
-        if (plan_json(plan_in(folder)) != plan_json(plan))
+        if (plan_record(plan_in(folder)) != plan_record(plan))
             throw InputError(fmt::format("{}: its plan is not that of {}, expected parts of one sweep",
                                          (folder / "plan.json").string(), folders.front().string()));
     const CellStore store(out / "cells");

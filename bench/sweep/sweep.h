@@ -11,6 +11,7 @@
 #include "umbra/bench/sweep/cell.h"
 #include "umbra/bench/time/turns.h"
 #include "umbra/bench/time/workload.h"
+#include "umbra/bench/trade/sweep_results.h"
 
 namespace umbra {
 
@@ -68,7 +69,7 @@ std::size_t sweep_pack(const SweepOptions& options, Pack pack, std::vector<std::
 /// Computes what OUT/cells lacks, measures times, and returns the record of each scene; the caller writes them. An
 /// interrupted run goes on where it stopped.
 struct SweepDone {
-    std::vector<Json> records;  ///< one a scene
+    std::vector<SweepResults> records;  ///< one a scene
     std::vector<std::string> folders;
     std::vector<std::string> failed;
     std::size_t computed = 0, cells = 0;

@@ -14,24 +14,18 @@
 namespace umbra {
 namespace {
 
-Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
-
-Json view_json(const Json& cell) {
-    Json metrics_here = Json::object(), at_least = Json::array();
+SweptViewRecord view_record(const Cell& cell) {
+    SweptViewRecord view{.view = cell.view, .errors = cell.method.errors, .image = cell.method.image};
     for (const Metric& m : metrics()) {
-        metrics_here[std::string(m.name)] = optional_number(metric_value(m, cell));
-        if (is_at_least(m, cell)) at_least.push_back(std::string(m.name));
+        view.metrics(m.name) = metric_value(m, cell);
+        if (is_at_least(m, cell)) view.at_least.emplace_back(m.name);
     }
-    Json view = {{"view", cell.at("view")}, {"metrics", std::move(metrics_here)}};
-    if (!at_least.empty()) view["at_least"] = std::move(at_least);
-    for (const char* member : {"errors", "image"})
-        if (cell.contains(member)) view[member] = cell.at(member);
     return view;
 }
 
-std::optional<double> worst_of(const Metric& metric, std::span<const Json> views) {
+std::optional<double> worst_of(const Metric& metric, std::span<const Cell> views) {
     std::optional<double> worst;
-    for (const Json& cell : views) {
+    for (const Cell& cell : views) {
         const auto value = metric_value(metric, cell);
         if (!value) return std::nullopt;
         worst = std::max(worst.value_or(*value), *value);
@@ -39,83 +33,87 @@ std::optional<double> worst_of(const Metric& metric, std::span<const Json> views
     return worst;
 }
 
-Json setting_entry(const MeasuredSetting& s, const Workload& workload) {
-    const Json& cell  = s.views.front();
-    const auto preset = preset_of(s.choice);
-    std::string why   = why_unfit(s.views);
-    if (why.empty() && s.times.is_null()) why = "it was not timed";
-    Json entry;
-    for (const char* member : {"text", "name", "title"}) entry[member] = cell.at(member);
-    entry["preset"] = preset.empty() ? Json() : Json(preset);
-    for (const char* member :
-         {"parameters", "serves", "failed", "measures", "compared_with", "memory_bytes", "points_bytes", "coverage"})
-        if (cell.contains(member)) entry[member] = cell.at(member);
+SweptSettingRecord setting_record(const MeasuredSetting& s, const Workload& workload) {
+    const MethodRecord& first = s.views.front().method;
+    const auto preset         = preset_of(s.choice);
+    std::string why           = why_unfit(s.views);
+    if (why.empty() && !s.times) why = "it was not timed";
+    SweptSettingRecord entry{.text          = first.text,
+                             .name          = first.name,
+                             .title         = first.title,
+                             .parameters    = first.parameters,
+                             .serves        = first.serves,
+                             .failed        = first.failed,
+                             .measures      = first.measures,
+                             .compared_with = first.compared_with,
+                             .memory_bytes  = first.memory_bytes,
+                             .points_bytes  = first.points_bytes,
+                             .times         = s.times,
+                             .cost_ms       = cost_of(s.times, workload)};
+    if (!preset.empty()) entry.preset = preset;
     // As the errors, of the worst view.
-    if (entry.contains("coverage") && entry["coverage"].is_number()) entry["coverage"] = 1 - most_undefined(s.views);
-    entry["excluded"] = why.empty() ? Json() : Json(why);
-    entry["views"]    = Json::array();
-    for (const Json& view : s.views) entry["views"].push_back(view_json(view));
-    entry["values"] = Json::object();
-    entry["bounds"] = Json::object();
+    if (first.coverage) entry.coverage = 1 - most_undefined(s.views);
+    if (!why.empty()) entry.excluded = std::move(why);
+    for (const Cell& cell : s.views) entry.views.push_back(view_record(cell));
     for (const Metric& m : metrics()) {
-        entry["values"][std::string(m.name)] = optional_number(worst_of(m, s.views));
-        entry["bounds"][std::string(m.name)] = optional_number(upper_bound(m, s.views));
+        entry.values(m.name) = worst_of(m, s.views);
+        entry.bounds(m.name) = upper_bound(m, s.views);
     }
-    if (!s.times.is_null()) entry["times"] = s.times;
-    entry["cost_ms"] = optional_number(cost_of(s.times, workload));
     return entry;
+}
+
+std::optional<double> figure_of(const Figures& figures, std::string_view metric) {
+    const auto* figure = figures.find(metric);
+    return figure != nullptr ? *figure : std::nullopt;
+}
+
+bool may_be_on_front(const SweptSettingRecord& s, std::string_view metric) {
+    return !s.excluded && s.cost_ms && figure_of(s.values, metric);
 }
 
 }  // namespace
 
-std::optional<double> cost_of(const Json& times, const Workload& workload) {
-    if (times.is_null()) return std::nullopt;
-    const auto phase = [&](const char* name) { return times.at(name).at("median").get<double>(); };
-    return frame_cost_ms(workload, {phase("build_ms"), phase("aim_ms"), phase("look_ms"), phase("visibility_ms")});
+std::optional<double> cost_of(const std::optional<TurnTimesRecord>& times, const Workload& workload) {
+    if (!times) return std::nullopt;
+    const TimesRecord& of = times->phases;
+    const auto ms         = [](const std::optional<TimingRecord>& t) { return t ? t->median : kUnknown; };
+    return frame_cost_ms(workload, {ms(of.build_ms), ms(of.aim_ms), ms(of.look_ms), ms(of.visibility_ms)});
 }
 
-Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload, const Json& turns) {
-    Json record = {{"views", views},
-                   {"metrics", to_record(metric_records())},
-                   {"turns", turns},
-                   {"workload", {{"camera", workload.camera}, {"light", workload.light}, {"object", workload.object}}},
-                   {"settings", Json::array()},
-                   {"fronts", Json::object()}};
-    for (const MeasuredSetting& s : settings) record["settings"].push_back(setting_entry(s, workload));
+SweepRecord sweep_record(std::span<const MeasuredSetting> settings, int views, const Workload& workload,
+                         const std::optional<SweptTurnsRecord>& turns) {
+    SweepRecord record{
+        .views = static_cast<std::uint64_t>(views), .metrics = metric_records(), .turns = turns, .workload = workload};
+    for (const MeasuredSetting& s : settings) record.settings.push_back(setting_record(s, workload));
     for (const Metric& m : metrics()) {
-        const std::string name(m.name);
         std::vector<CostError> points;
         std::vector<std::string> texts;
-        for (const Json& entry : record["settings"]) {
-            if (!entry["excluded"].is_null() || !entry["cost_ms"].is_number() || !entry["values"][name].is_number())
-                continue;
-            points.push_back({entry["cost_ms"], entry["values"][name]});
-            texts.push_back(entry["text"]);
+        for (const SweptSettingRecord& s : record.settings) {
+            if (!may_be_on_front(s, m.name)) continue;
+            points.push_back({*s.cost_ms, *figure_of(s.values, m.name)});
+            texts.push_back(s.text);
         }
-        Json front = Json::array();
+        std::vector<std::string>& front = record.fronts(m.name);
         for (const std::size_t i : pareto_front(points)) front.push_back(texts[i]);
-        record["fronts"][name] = std::move(front);
     }
     return record;
 }
 
-std::string front_in_words(const Json& record) {
-    const Json &sweep = record["sweep"], &turns = sweep["turns"];
+Json sweep_schema() {
+    return schema_of<SweepResults>("results.json of umbra sweep: many settings of shadow methods on one scene");
+}
+
+std::string front_in_words(const std::string& scene, const SweepRecord& sweep) {
     // Without times nothing is ranked by them; of too few rounds nobody knows how far they vary.
-    const double bar       = !turns.is_object()               ? 0
-                             : turns["noise_bar"].is_number() ? turns["noise_bar"].get<double>()
-                                                              : noise_bar({});
-    const std::string what = record["scene"]["name"].get<std::string>() +
-                             ": cost of a frame, S_j error (rmse), its upper bound; ",
+    const double bar       = !sweep.turns ? 0 : sweep.turns->noise_bar.value_or(noise_bar({}));
+    const std::string what = scene + ": cost of a frame, S_j error (rmse), its upper bound; ",
                       vary = fmt::format("{:.0f} %", std::ceil(100 * bar));
     std::vector<std::string> texts;
-    if (is_too_noisy(bar)) {
-        for (const Json& s : sweep["settings"])
-            if (s["excluded"].is_null() && s["cost_ms"].is_number() && s["values"]["rmse"].is_number())
-                texts.push_back(s["text"]);
-    } else {
-        for (const Json& text : sweep["fronts"]["rmse"]) texts.push_back(text);
-    }
+    if (!is_too_noisy(bar))
+        texts = *sweep.fronts.find("rmse");
+    else
+        for (const SweptSettingRecord& s : sweep.settings)
+            if (may_be_on_front(s, "rmse")) texts.push_back(s.text);
     std::string words =
         what + (is_too_noisy(bar) ? (std::isfinite(bar) ? "not ranked, as times vary by " + vary + ":\n"
                                                         : "not ranked, as times are of fewer than six rounds:\n")
@@ -123,12 +121,10 @@ std::string front_in_words(const Json& record) {
                                 " are not told apart:\n"
                           : "settings that no other beats in both:\n");
     for (const std::string& text : texts) {
-        const Json& s =
-            *std::ranges::find(sweep["settings"], text, [](const Json& of) { return of["text"].get<std::string>(); });
-        const Json& bound = s["bounds"]["rmse"];
-        words += fmt::format("  {:>9.3f} ms  {:<9.3g}  {:<9}  {}\n", s["cost_ms"].get<double>(),
-                             s["values"]["rmse"].get<double>(),
-                             bound.is_number() ? fmt::format("{:.3g}", bound.get<double>()) : "-", text);
+        const SweptSettingRecord& s = *std::ranges::find(sweep.settings, text, &SweptSettingRecord::text);
+        const auto bound            = figure_of(s.bounds, "rmse");
+        words += fmt::format("  {:>9.3f} ms  {:<9.3g}  {:<9}  {}\n", *s.cost_ms, *figure_of(s.values, "rmse"),
+                             bound ? fmt::format("{:.3g}", *bound) : "-", text);
     }
     return words;
 }

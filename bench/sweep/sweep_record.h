@@ -1,12 +1,14 @@
-// results.json of a sweep (bench/sweep/sweep.schema.json), from cells and times.
+// A sweep's settings as its record has them, from cells and times.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "umbra/bench/run/describe.h"
+#include "umbra/bench/sweep/cell_record.h"
 #include "umbra/bench/time/workload.h"
+#include "umbra/bench/trade/sweep_results.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -14,21 +16,22 @@ namespace umbra {
 /// One setting of a sweep.
 struct MeasuredSetting {
     MethodChoice choice;
-    std::vector<Json> views;  ///< cells, view 0 first
-    Json times;               ///< of SceneLab::times; null where it has none
+    std::vector<Cell> views;                 ///< view 0 first
+    std::optional<TurnTimesRecord> times{};  ///< of SceneLab::times, where it has some
 };
 
 /// Milliseconds of a frame of this workload, by the medians of the times; nothing where there are none.
-[[nodiscard]] std::optional<double> cost_of(const Json& times, const Workload& workload);
+[[nodiscard]] std::optional<double> cost_of(const std::optional<TurnTimesRecord>& times, const Workload& workload);
 
-/// `sweep` of results.json. The fronts hold, for each metric, the settings that no other one beats in both the cost of
-/// a frame and the error of the worst view, of those that answer the points and have a time. `turns` as of
-/// TimedTogether; null where nothing was timed.
-[[nodiscard]] Json sweep_json(std::span<const MeasuredSetting> settings, int views, const Workload& workload,
-                              const Json& turns);
+/// The fronts hold, for each metric, the settings that no other one beats in both the cost of a frame and the error of
+/// the worst view, of those that answer the points and have a time. `turns` as of TimedTogether.
+[[nodiscard]] SweepRecord sweep_record(std::span<const MeasuredSetting> settings, int views, const Workload& workload,
+                                       const std::optional<SweptTurnsRecord>& turns);
 
-/// Of a scene's results.json: the front of the first metric, a line a setting. All settings that may be on a front, in
-/// the order of the record, where times vary too much to rank them.
-[[nodiscard]] std::string front_in_words(const Json& record);
+[[nodiscard]] Json sweep_schema();  ///< JSON Schema, draft 4, of SweepResults
+
+/// The front of the first metric, a line a setting. All settings that may be on a front, in the order of the record,
+/// where times vary too much to rank them.
+[[nodiscard]] std::string front_in_words(const std::string& scene, const SweepRecord& sweep);
 
 }  // namespace umbra

@@ -8,6 +8,7 @@
 
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/trade/sweep_results.h"
 
 namespace umbra {
 namespace {
@@ -20,46 +21,34 @@ constexpr std::array kShown = {KnownMetric{"rmse", "RMSE of S"},
                                KnownMetric{"edge_displacement_px.p95", "Edge displacement (95 %), pixels"},
                                KnownMetric{"flip", "FLIP of the picture, mean"}};
 
-double not_negative(const Field& field) {
-    const double value = field.number().value_or(-1);
-    if (!(value >= 0) || !std::isfinite(value)) field.refuse("a number of at least 0");
-    return value;
-}
-
-std::optional<double> not_negative_if_there(const Field& field) {
-    if (!field.present()) return std::nullopt;
-    return not_negative(field);
-}
-
-std::vector<SweptMetric> shown_metrics(const Field& sweep) {
+std::vector<SweptMetric> shown_metrics(const SweepRecord& sweep) {
     std::vector<SweptMetric> all, shown;
-    for (const Field& metric : sweep["metrics"].items()) {
-        SweptMetric m{metric["name"].required_text(), {}, metric["doc"].text()};
-        const std::string unit = metric["unit"].text();
-        m.title                = in_words(m.name) + (unit.empty() ? "" : ", " + unit);
-        all.push_back(std::move(m));
-    }
+    for (const MetricRecord& m : sweep.metrics)
+        all.push_back({m.name, in_words(m.name) + (m.unit.empty() ? "" : ", " + m.unit), m.doc});
     for (const KnownMetric& known : kShown)
         for (const SweptMetric& metric : all)
             if (metric.name == known.name) shown.push_back({metric.name, known.title, metric.doc});
     return shown.empty() ? all : shown;
 }
 
-std::optional<SweptError> error_of(const Field& setting, const std::string& metric) {
+std::optional<double> figure_of(const Figures& figures, const std::string& metric) {
+    const auto* figure = figures.find(metric);
+    return figure != nullptr ? *figure : std::nullopt;
+}
+
+std::optional<SweptError> error_of(const SweptSettingRecord& setting, const std::string& metric) {
     std::optional<SweptError> error;
-    for (const Field& view : setting["views"].items()) {
-        const Field value = view["metrics"][metric];
-        if (!value.present()) continue;
-        const double e = not_negative(value);
-        if (!error) error = SweptError{.least = e, .worst = e};
-        error->least = std::min(error->least, e);
-        error->worst = std::max(error->worst, e);
-        for (const Field& name : view["at_least"].items()) error->at_least = error->at_least || name.text() == metric;
+    for (const SweptViewRecord& view : setting.views) {
+        const auto e = figure_of(view.metrics, metric);
+        if (!e) continue;
+        if (!error) error = SweptError{.least = *e, .worst = *e};
+        error->least    = std::min(error->least, *e);
+        error->worst    = std::max(error->worst, *e);
+        error->at_least = error->at_least || std::ranges::find(view.at_least, metric) != view.at_least.end();
     }
-    if (error) {
-        error->bound = not_negative_if_there(setting["bounds"][metric]);
-        if (error->bound) error->bound = std::max(*error->bound, error->worst);
-    }
+    if (!error) return error;
+    error->bound = figure_of(setting.bounds, metric);
+    if (error->bound) error->bound = std::max(*error->bound, error->worst);
     return error;
 }
 
@@ -72,83 +61,76 @@ double quantile(std::vector<double> values, double fraction) {
     return values[below] + (at - double(below)) * (values[above] - values[below]);
 }
 
-std::optional<FrameCost> cost_of(const SweptScene& scene, const Field& setting) {
-    const auto median = not_negative_if_there(setting["cost_ms"]);
-    if (!median) return std::nullopt;
-    FrameCost cost{*median, *median, *median};
-    const auto phase = [&](const char* name, const char* member) { return setting["times"][name][member]; };
-    const auto build = phase("build_ms", "samples").items(), aim = phase("aim_ms", "samples").items(),
-               look = phase("look_ms", "samples").items(),  // none in records of older versions
-        visibility  = phase("visibility_ms", "samples").items();
+std::optional<FrameCost> cost_of(const Workload& workload, const SweptSettingRecord& setting) {
+    if (!setting.cost_ms) return std::nullopt;
+    FrameCost cost{*setting.cost_ms, *setting.cost_ms, *setting.cost_ms};
+    const TimesRecord times  = setting.times.value_or(TurnTimesRecord{}).phases;
+    const auto phase         = [](const std::optional<TimingRecord>& of) { return of.value_or(TimingRecord{}); };
+    const TimingRecord build = phase(times.build_ms), aim = phase(times.aim_ms),
+                       look = phase(times.look_ms),  // none in records of older versions
+        visibility          = phase(times.visibility_ms);
     std::vector<double> rounds;
-    if (build.size() == visibility.size() && aim.size() == visibility.size())
-        for (std::size_t r = 0; r < visibility.size(); ++r)
-            rounds.push_back(frame_cost_ms(scene.workload,
-                                           {not_negative(build[r]), not_negative(aim[r]),
-                                            r < look.size() ? not_negative(look[r]) : 0, not_negative(visibility[r])}));
+    if (build.samples.size() == visibility.samples.size() && aim.samples.size() == visibility.samples.size())
+        for (std::size_t r = 0; r < visibility.samples.size(); ++r)
+            rounds.push_back(
+                frame_cost_ms(workload, {build.samples[r], aim.samples[r],
+                                         r < look.samples.size() ? look.samples[r] : 0, visibility.samples[r]}));
     if (!rounds.empty()) {
-        cost.low  = std::min(*median, quantile(rounds, 0.25));
-        cost.high = std::max(*median, quantile(rounds, 0.75));
+        cost.low  = std::min(*setting.cost_ms, quantile(rounds, 0.25));
+        cost.high = std::max(*setting.cost_ms, quantile(rounds, 0.75));
     } else {
-        const auto end = [&](const char* member) {
-            return frame_cost_ms(
-                scene.workload,
-                {phase("build_ms", member).number().value_or(0), phase("aim_ms", member).number().value_or(0),
-                 phase("look_ms", member).number().value_or(0), phase("visibility_ms", member).number().value_or(0)});
+        const auto end = [&](double TimingRecord::*of) {
+            const auto ms = [&](const TimingRecord& timing) { return known(timing.*of).value_or(0); };
+            return frame_cost_ms(workload, {ms(build), ms(aim), ms(look), ms(visibility)});
         };
-        if (phase("visibility_ms", "min").present()) cost.low = std::min(*median, end("min"));
-        if (phase("visibility_ms", "max").present()) cost.high = std::max(*median, end("max"));
+        if (known(visibility.min)) cost.low = std::min(*setting.cost_ms, end(&TimingRecord::min));
+        if (known(visibility.max)) cost.high = std::max(*setting.cost_ms, end(&TimingRecord::max));
     }
     return cost;
 }
 
-SweptSetting read_setting(const SweptScene& scene, const Field& field) {
+SweptSetting setting_of(const SweptScene& scene, const SweptSettingRecord& record) {
     SweptSetting s;
-    s.text           = field["text"].required_text();
-    s.method         = field["name"].required_text();
-    s.title          = field["title"].text().empty() ? in_words(s.method) : field["title"].text();
+    s.text           = record.text;
+    s.method         = record.name;
+    s.title          = record.title.empty() ? in_words(s.method) : record.title;
     const auto colon = s.text.find(':');
     s.label          = colon == std::string::npos ? "defaults" : s.text.substr(colon + 1);
-    s.preset         = field["preset"].text();
-    s.failed         = field["failed"].present();
-    s.excluded       = field["excluded"].text();
+    s.preset         = record.preset.value_or("");
+    s.failed         = record.failed.has_value();
+    s.excluded       = record.excluded.value_or("");
     if (s.failed)
-        s.note = "failed: " + field["failed"]["message"].text();
-    else if (field["serves"]["how"].text() == "not")
-        s.note = "not served: " + field["serves"]["why"].text();
-    if (s.note.empty()) s.cost = cost_of(scene, field);
-    s.memory_bytes = field["memory_bytes"].number();
-    s.coverage     = field["coverage"].number();
+        s.note = "failed: " + record.failed->message;
+    else if (record.serves.how == "not")
+        s.note = "not served: " + record.serves.why;
+    if (s.note.empty()) s.cost = cost_of(scene.workload, record);
+    if (record.memory_bytes) s.memory_bytes = double(*record.memory_bytes);
+    s.coverage = record.coverage;
     for (const SweptMetric& metric : scene.metrics)
-        s.errors.push_back(s.note.empty() ? error_of(field, metric.name) : std::nullopt);
+        s.errors.push_back(s.note.empty() ? error_of(record, metric.name) : std::nullopt);
     return s;
 }
 
 }  // namespace
 
 SweptScene read_swept_scene(const std::filesystem::path& file) {
-    const Field root = read_results(file);
-    SweptScene scene{.head    = from_record<HeadRecord>(root),
-                     .machine = from_record<MachineRecord>(root["machine"]),
-                     .file    = file,
-                     .name    = {},
-                     .title   = {}};
-    const Field sweep = root["sweep"];
-    if (!sweep.present()) sweep.refuse("an object, as umbra sweep writes it");
-    scene.name  = root["scene"]["name"].required_text();
-    scene.title = root["scene"]["title"].text();
+    const Field root           = read_results(file);
+    const SweepResults results = from_record<SweepResults>(root);
+    const SweepRecord& sweep   = results.sweep;
+    SweptScene scene{.head      = results.head,
+                     .machine   = results.machine,
+                     .file      = file,
+                     .name      = root["scene"]["name"].required_text(),
+                     .title     = results.scene.title,
+                     .triangles = double(results.facts.triangles),
+                     .views     = int(std::clamp<std::uint64_t>(sweep.views, 1, 1000000)),
+                     .workload  = sweep.workload};
     if (scene.title.empty()) scene.title = in_words(scene.name);
-    scene.triangles = root["facts"]["triangles"].number().value_or(0);
-    scene.views     = int(std::clamp(sweep["views"].number().value_or(1), 1.0, 1e6));
-    scene.noise_bar = not_negative_if_there(sweep["turns"]["noise_bar"]);
-    if (sweep["turns"].present() && !scene.noise_bar) scene.noise_bar = noise_bar({});  // of too few rounds
-    if (const Field w = sweep["workload"]; w.present()) {
-        scene.workload = {not_negative(w["camera"]), not_negative(w["light"]), not_negative(w["object"])};
-        if (!(scene.workload.camera + scene.workload.light + scene.workload.object > 0))
-            w.refuse("something that moves");
-    }
+    if (sweep.turns) scene.noise_bar = sweep.turns->noise_bar.value_or(noise_bar({}));  // of too few rounds
+    if (!(scene.workload.camera + scene.workload.light + scene.workload.object > 0))
+        root["sweep"]["workload"].refuse("something that moves");
     scene.metrics = shown_metrics(sweep);
-    for (const Field& setting : sweep["settings"].items()) scene.settings.push_back(read_setting(scene, setting));
+    for (const SweptSettingRecord& setting : sweep.settings) scene.settings.push_back(setting_of(scene, setting));
     return scene;
 }
 

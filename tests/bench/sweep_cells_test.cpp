@@ -13,6 +13,7 @@
 #include <set>
 #include <type_traits>
 
+#include "made_cell.h"
 #include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/run/outcome.h"
 #include "umbra/bench/sweep/bounds.h"
@@ -345,7 +346,7 @@ TEST(CellView, HasRandomNumbersOfItsOwn) {
         const MethodRun run = run_method(parse_method(text), p.scene, p.facts, p.points, {1, 0});
         return explain(p.scene, p.points, 0, run, truth.run).error.rmse;
     };
-    const double found = view.compute(parse_method("ray_traced:samples=1"))["errors"][0]["rmse"];
+    const double found = view.compute(parse_method("ray_traced:samples=1")).method.errors[0].rmse.value();
     EXPECT_NE(found, rmse("ray_traced:samples=1"));
     EXPECT_EQ(found, rmse("ray_traced:samples=1,seed=15838"));
 }
@@ -354,11 +355,11 @@ TEST(CellView, ComparesWithTheTruthOfTheMethodsOwnMeasure) {
     const TemporaryFolder folder;
     const auto own = std::make_shared<OwnScene>(load_scene(scene_file("umbra_penumbra")));
     CellView view(own, scene_file("umbra_penumbra"), 0, {.size = {32, 18}}, folder.path());
-    const Json area       = view.compute(parse_method("ray_traced")),
-               irradiance = view.compute(parse_method("ray_traced:measure=irradiance"));
-    EXPECT_EQ(area["measures"], "area");
-    EXPECT_EQ(irradiance["measures"], "irradiance");
-    EXPECT_NE(area["compared_with"], irradiance["compared_with"]);
+    const MethodRecord area       = view.compute(parse_method("ray_traced")).method,
+                       irradiance = view.compute(parse_method("ray_traced:measure=irradiance")).method;
+    EXPECT_EQ(area.measures, "area");
+    EXPECT_EQ(irradiance.measures, "irradiance");
+    EXPECT_NE(area.compared_with, irradiance.compared_with);
 }
 
 /// A cell's picture is that of a comparison, colours of filters included.
@@ -373,14 +374,15 @@ TEST(CellView, HasColouredShadows) {
     const auto own  = std::make_shared<OwnScene>(load_scene(file));
     CellView view(own, file, 0, {.size = {48, 27}}, folder.path());
     const MethodChoice choice = parse_method("brute_force");
-    const Json cell           = view.compute(choice);
+    const Cell cell           = view.compute(choice);
     const PreparedScene& p    = view.prepared();
     const MethodRun run       = run_method(choice, p.scene, p.facts, p.points, kOnce);
     const MethodRun truth     = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt).run;
     ASSERT_TRUE(run.planes.size() == 1 && !run.planes[0].colour.empty()) << run.service.why;
-    EXPECT_EQ(cell["image"], to_record(image_figures(run.planes, render_planes(p.scene, p.points, run.planes),
-                                                     render_planes(p.scene, p.points, truth.planes))
-                                           .figures));
+    EXPECT_EQ(to_record(cell.method.image),
+              to_record(image_figures(run.planes, render_planes(p.scene, p.points, run.planes),
+                                      render_planes(p.scene, p.points, truth.planes))
+                            .figures));
 }
 
 /// Coloured shadows, which three channels of S_j make.
@@ -454,7 +456,13 @@ SweepOptions small_sweep(const fs::path& out) {
     return o;
 }
 
-Json settings_of(const SweepDone& done) { return done.records.at(0).at("sweep").at("settings"); }
+std::vector<Json> records_of(const SweepDone& done) {
+    std::vector<Json> all;
+    for (const SweepResults& record : done.records) all.push_back(to_record(record));
+    return all;
+}
+
+Json settings_of(const SweepDone& done) { return records_of(done).at(0).at("sweep").at("settings"); }
 
 TEST(Sweep, ComputesEveryCellOnceAndSharingABuildChangesNothing) {
     const TemporaryFolder folder;
@@ -463,7 +471,7 @@ TEST(Sweep, ComputesEveryCellOnceAndSharingABuildChangesNothing) {
     EXPECT_EQ(first.computed, 14u);
     const SweepDone again = sweep(small_sweep(folder.path() / "a"));
     EXPECT_EQ(again.computed, 0u);
-    EXPECT_EQ(again.records, first.records);
+    EXPECT_EQ(records_of(again), records_of(first));
 
     // Each setting alone, in a folder of its own.
     std::size_t k = 0;
@@ -506,7 +514,7 @@ TEST(Sweep, MergedPacksAreTheUnbrokenRun) {
     merged.plan              = merged_plan(parts, merged.out);
     const SweepDone together = sweep(merged);
     EXPECT_EQ(together.computed, 0u);
-    EXPECT_EQ(together.records, whole.records);
+    EXPECT_EQ(records_of(together), records_of(whole));
 
     // Two of three parts are not the whole, and parts of another plan do not fit.
     const auto error = [&](const std::vector<fs::path>& folders, const char* out) -> std::string {
@@ -537,59 +545,57 @@ TEST(Sweep, FrontsHoldWhatNothingBeats) {
                              {"serves", {{"how", "approximately"}, {"why", "."}}},
                              {"undefined", undefined},
                              {"errors", {e}}};
-        const auto timing = [](double median) { return Json{{"median", median}}; };
+        const auto timing = [](double median) { return TimingRecord{.median = median}; };
         return MeasuredSetting{
-            parse_method(text),
-            {c},
-            {{"build_ms", timing(100)}, {"aim_ms", timing(10)}, {"look_ms", timing(3)}, {"visibility_ms", timing(ms)}}};
+            parse_method(text), {cell_from(c)}, TurnTimesRecord{{timing(100), timing(10), timing(3), timing(ms)}}};
     };
     const std::vector<MeasuredSetting> settings = {
         swept("ray_traced:samples=1", 1, 0.1, 0), swept("ray_traced:samples=2", 2, 0.2, 0),
         swept("ray_traced:samples=4", 3, 0, 0), swept("ray_traced:samples=8", 0.5, 0, 0.5)};
-    const Json record = sweep_json(settings, 1, {60, 0, 0}, {});
+    const Json record = to_record(sweep_record(settings, 1, {60, 0, 0}, {}));
     EXPECT_EQ(record["fronts"]["rmse"], (Json{"ray_traced:samples=1", "ray_traced:samples=4"}));
     EXPECT_EQ(record["settings"][0]["cost_ms"], 3 + 1);
     EXPECT_EQ(record["settings"][3]["excluded"], "it leaves 50 % of a view's points undefined");
     EXPECT_TRUE(record["settings"][0]["excluded"].is_null());
     // Half of the frames have a light that moved: aim is paid in half of them.
-    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 0}, {})["settings"][1]["cost_ms"].get<double>(), 3 + 2 + 0.5 * 10,
-                1e-12);
-    EXPECT_NEAR(sweep_json(settings, 1, {60, 30, 60}, {})["settings"][1]["cost_ms"].get<double>(), 3 + 2 + 10 + 100,
-                1e-12);
+    EXPECT_NEAR(sweep_record(settings, 1, {60, 30, 0}, {}).settings[1].cost_ms.value(), 3 + 2 + 0.5 * 10, 1e-12);
+    EXPECT_NEAR(sweep_record(settings, 1, {60, 30, 60}, {}).settings[1].cost_ms.value(), 3 + 2 + 10 + 100, 1e-12);
 
     // In words, the front is ranked where times can tell: the second setting is beaten, the last one is unfit.
-    const auto words = [&](const Json& turns) {
-        return front_in_words({{"scene", {{"name", "court"}}}, {"sweep", sweep_json(settings, 1, {60, 0, 0}, turns)}});
+    const auto words = [&](const std::optional<SweptTurnsRecord>& turns) {
+        return front_in_words("court", sweep_record(settings, 1, {60, 0, 0}, turns));
     };
     const std::string head = "court: cost of a frame, S_j error (rmse), its upper bound; ",
                       one  = "      4.000 ms  0.1        -          ray_traced:samples=1\n",
                       two  = "      5.000 ms  0.2        -          ray_traced:samples=2\n",
                       four = "      6.000 ms  0          -          ray_traced:samples=4\n";
     EXPECT_EQ(words({}), head + "settings that no other beats in both:\n" + one + four);
-    EXPECT_EQ(words({{"noise_bar", 0.042}}), head +
-                                                 "settings that no other beats in both, costs that differ by less "
-                                                 "than 5 % are not told apart:\n" +
-                                                 one + four);
-    EXPECT_EQ(words({{"noise_bar", 0.31}}), head + "not ranked, as times vary by 31 %:\n" + one + two + four);
-    EXPECT_EQ(words({{"noise_bar", nullptr}}),
+    EXPECT_EQ(words(SweptTurnsRecord{.noise_bar = 0.042}),
+              head +
+                  "settings that no other beats in both, costs that differ by less "
+                  "than 5 % are not told apart:\n" +
+                  one + four);
+    EXPECT_EQ(words(SweptTurnsRecord{.noise_bar = 0.31}),
+              head + "not ranked, as times vary by 31 %:\n" + one + two + four);
+    EXPECT_EQ(words(SweptTurnsRecord{}),
               head + "not ranked, as times are of fewer than six rounds:\n" + one + two + four);
 }
 
 /// What a sweep says of a setting is its error in the view that is hardest for it.
 TEST(Sweep, ValuesAreThoseOfTheWorstView) {
     const auto cell = [](int view, double rmse) {
-        return Json{{"text", "ray_traced:samples=1"},
-                    {"name", "ray_traced"},
-                    {"title", "t"},
-                    {"parameters", Json::object()},
-                    {"view", view},
-                    {"key", "k"},
-                    {"serves", {{"how", "approximately"}, {"why", "."}}},
-                    {"undefined", 0},
-                    {"errors", {{{"light", "l"}, {"points", 1000}, {"rmse", rmse}, {"bracket", nullptr}}}}};
+        return cell_from({{"text", "ray_traced:samples=1"},
+                          {"name", "ray_traced"},
+                          {"title", "t"},
+                          {"parameters", Json::object()},
+                          {"view", view},
+                          {"key", "k"},
+                          {"serves", {{"how", "approximately"}, {"why", "."}}},
+                          {"undefined", 0},
+                          {"errors", {{{"light", "l"}, {"points", 1000}, {"rmse", rmse}, {"bracket", nullptr}}}}});
     };
     const MeasuredSetting setting{parse_method("ray_traced:samples=1"), {cell(0, 0.1), cell(1, 0.3), cell(2, 0.2)}, {}};
-    const Json record = sweep_json({{setting}}, 3, {60, 0, 0}, {});
+    const Json record = to_record(sweep_record({{setting}}, 3, {60, 0, 0}, {}));
     EXPECT_EQ(record["settings"][0]["values"]["rmse"], 0.3);
     EXPECT_EQ(record["settings"][0]["views"][2]["metrics"]["rmse"], 0.2);
 }
@@ -605,21 +611,16 @@ TEST(SweepRecord, NamesTheFiguresThatMayBeLarger) {
              {"points", 1000},
              {"edge_displacement_px",
               {{"mean", 0.5}, {"p95", 1}, {"max", 2}, {"pieces", 100}, {"unmatched", unmatched}, {"reach", 8}}}}};
-        return one;
+        return cell_from(one);
     };
     const MeasuredSetting setting{parse_method("ray_traced"), {cell(0, 0), cell(1, 1), cell(2, 50)}, {}};
-    const Json record = sweep_json({{setting}}, 3, {60, 0, 0}, {});
+    const Json record = to_record(sweep_record({{setting}}, 3, {60, 0, 0}, {}));
     const Json& views = record["settings"][0]["views"];
     EXPECT_FALSE(views[0].contains("at_least"));
     // One of 100 pieces is in the mean and is the farthest, but is not among the first 95.
     EXPECT_EQ(views[1]["at_least"], (Json{"edge_displacement_px.mean", "edge_displacement_px.max"}));
     EXPECT_EQ(views[2]["at_least"],
               (Json{"edge_displacement_px.mean", "edge_displacement_px.p95", "edge_displacement_px.max"}));
-}
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 TEST(Sweep, WritesWhatItsSchemaSays) {
@@ -631,7 +632,7 @@ TEST(Sweep, WritesWhatItsSchemaSays) {
     o.turns              = {.rounds = 2, .budget_ms = 1e6};  // both rounds, however slow the machine
     const SweepDone done = sweep(o);
     rapidjson::Document schema_document;
-    schema_document.Parse(text_of(UMBRA_SWEEP_SCHEMA).c_str());
+    schema_document.Parse(sweep_schema().dump().c_str());
     ASSERT_FALSE(schema_document.HasParseError());
     const rapidjson::SchemaDocument schema(schema_document);
     const auto invalid_at = [&](const Json& record) -> std::string {
@@ -644,15 +645,15 @@ TEST(Sweep, WritesWhatItsSchemaSays) {
         return where.GetString();
     };
     ASSERT_EQ(done.records.size(), 2u);
-    for (const Json& record : done.records) EXPECT_EQ(invalid_at(record), "nowhere");
-    Json bad                               = done.records[0];
+    for (const Json& record : records_of(done)) EXPECT_EQ(invalid_at(record), "nowhere");
+    Json bad                               = records_of(done)[0];
     bad["sweep"]["settings"][0]["cost_ms"] = "1";
     EXPECT_EQ(invalid_at(bad), "#/sweep/settings/0/cost_ms");
-    bad = done.records[0];
+    bad = records_of(done)[0];
     bad["sweep"]["settings"][0].erase("bounds");
     EXPECT_EQ(invalid_at(bad), "#/sweep/settings/0");
 
-    for (const Json& record : done.records) {
+    for (const Json& record : records_of(done)) {
         EXPECT_EQ(record["sweep"]["turns"]["calibration_ms"].size(), 2u);
         for (const Json& s : record["sweep"]["settings"])
             EXPECT_TRUE(s["times"]["build_ms"]["samples"].is_array()) << s["text"];
@@ -660,8 +661,8 @@ TEST(Sweep, WritesWhatItsSchemaSays) {
 
     // Times are this machine's, and are found again, also those of some of the settings; for a further one all of them
     // take turns again.
-    EXPECT_EQ(sweep(o).records, done.records);
-    const auto turns_of = [](const SweepDone& d) { return d.records.at(1).at("sweep").at("turns"); };
+    EXPECT_EQ(records_of(sweep(o)), records_of(done));
+    const auto turns_of = [](const SweepDone& d) { return records_of(d).at(1).at("sweep").at("turns"); };
     SweepOptions fewer  = o;
     fewer.plan.settings = {"ray_traced:samples=4", "exact"};
     EXPECT_EQ(turns_of(sweep(fewer)), turns_of(done));
@@ -709,7 +710,7 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
 
     // Errors fall with the samples: a tighter limit asks for more of them.
     const auto bound_of = [&](int samples) {
-        std::vector<Json> views;
+        std::vector<Cell> views;
         const MethodChoice choice = parse_method(fmt::format("ray_traced:samples={}", samples));
         for (int v = 0; v < 3; ++v) views.push_back(lab.cell(choice, v));
         return *upper_bound(find_metric("rmse"), views);

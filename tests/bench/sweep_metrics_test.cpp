@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "made_cell.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/core/base/error.h"
@@ -31,23 +32,23 @@ Json light_error(int points, double scale) {
             {"edge_displacement_px", {{"mean", 0.2 * scale}, {"p95", 0.4 * scale}, {"max", 0.8 * scale}}}};
 }
 
-Json cell(std::vector<Json> errors) {
-    return {{"text", "m"},
-            {"serves", {{"how", "approximately"}, {"why", ""}}},
-            {"undefined", 0.25},
-            {"memory_bytes", 3000000},
-            {"image", {{"rmse", 0.004}, {"flip", 0.005}, {"flip_hdr", 0.006}}},
-            {"errors", std::move(errors)}};
+Cell cell(std::vector<Json> errors) {
+    return cell_from({{"text", "m"},
+                      {"serves", {{"how", "approximately"}, {"why", ""}}},
+                      {"undefined", 0.25},
+                      {"memory_bytes", 3000000},
+                      {"image", {{"rmse", 0.004}, {"flip", 0.005}, {"flip_hdr", 0.006}}},
+                      {"errors", std::move(errors)}});
 }
 
-double value(const char* name, const Json& c) {
+double value(const char* name, const Cell& c) {
     const auto v = metric_value(find_metric(name), c);
     EXPECT_TRUE(v.has_value()) << name;
     return v.value_or(-1);
 }
 
 TEST(Metrics, ReadTheirOwnPlaces) {
-    const Json c                                               = cell({light_error(1000, 1)});
+    const Cell c                                               = cell({light_error(1000, 1)});
     const std::vector<std::pair<const char*, double>> expected = {{"rmse", 0.03},
                                                                   {"mae", 0.01},
                                                                   {"max", 0.1},
@@ -76,7 +77,7 @@ TEST(Metrics, ReadTheirOwnPlaces) {
 }
 
 TEST(Metrics, PoolLightsByTheirPoints) {
-    const Json c = cell({light_error(1000, 1), light_error(3000, 2)});
+    const Cell c = cell({light_error(1000, 1), light_error(3000, 2)});
     EXPECT_NEAR(value("rmse", c), std::sqrt((1000 * 0.03 * 0.03 + 3000 * 0.06 * 0.06) / 4000), 1e-15);
     EXPECT_NEAR(value("mae", c), (1000 * 0.01 + 3000 * 0.02) / 4000, 1e-15);
     EXPECT_NEAR(value("max", c), 0.2, 1e-15);
@@ -86,7 +87,7 @@ TEST(Metrics, PoolLightsByTheirPoints) {
 
 TEST(Metrics, SayNothingOfWhatWasNotJudged) {
     const Json empty = light_error(0, 0);
-    const Json c     = cell({light_error(1000, 1), empty});
+    const Cell c     = cell({light_error(1000, 1), empty});
     EXPECT_NEAR(value("rmse", c), 0.03, 1e-15);
     Json unnamed                    = light_error(1000, 1);
     unnamed["false_light"]["leak"]  = nullptr;
@@ -99,7 +100,7 @@ TEST(Metrics, SayNothingOfWhatWasNotJudged) {
             EXPECT_EQ(metric_value(m, cell({empty})), std::nullopt) << m.name;
         }
     }
-    const Json unserved = {{"text", "m"}, {"serves", {{"how", "not"}, {"why", "x"}}}};
+    const Cell unserved = cell_from({{"text", "m"}, {"serves", {{"how", "not"}, {"why", "x"}}}});
     for (const Metric& m : metrics()) EXPECT_EQ(metric_value(m, unserved), std::nullopt) << m.name;
     EXPECT_THROW(static_cast<void>(find_metric("psnr")), UsageError);
 }
@@ -124,7 +125,7 @@ TEST(Metrics, EdgesThatAreNotFoundAreTheReachAway) {
     }
     EXPECT_FALSE(is_at_least(find_metric("max"), cell({lost})));
     // 9 pieces at 1 on average and one beyond 8; of 10 pieces in order the ninth is the 95th percentile.
-    const Json torn = cell({with_edges(1, 1.5, 2, 10, 1)});
+    const Cell torn = cell({with_edges(1, 1.5, 2, 10, 1)});
     EXPECT_NEAR(value("edge_displacement_px.mean", torn), (9 * 1 + 8) / 10.0, 1e-15);
     EXPECT_EQ(value("edge_displacement_px.p95", torn), 2);
     EXPECT_FALSE(is_at_least(find_metric("edge_displacement_px.p95"), torn));
@@ -160,18 +161,18 @@ TEST(UpperShare, IsAboutThreeOverNForNone) {
     EXPECT_NEAR(sum, 0.05, 1e-9);
 }
 
-Json with_rmse(double rmse, int points = 10000) {
+Cell with_rmse(double rmse, int points = 10000) {
     Json e    = light_error(points, 0);
     e["rmse"] = rmse;
     return cell({e});
 }
 
-std::optional<double> bound(const char* name, const std::vector<Json>& views) {
+std::optional<double> bound(const char* name, const std::vector<Cell>& views) {
     return upper_bound(find_metric(name), views);
 }
 
 TEST(UpperBound, IsTheLogNormalPrediction) {
-    const std::vector<Json> views = {with_rmse(0.01), with_rmse(0.02), with_rmse(0.04)};
+    const std::vector<Cell> views = {with_rmse(0.01), with_rmse(0.02), with_rmse(0.04)};
     // ln: mean ln 0.02, deviation ln 2; t of 2 degrees of freedom at 95 %: 2.919986.
     EXPECT_NEAR(*bound("rmse", views), 0.02 * std::pow(2.0, 2.919986 * std::sqrt(4.0 / 3.0)), 1e-6);
     EXPECT_NEAR(*bound("rmse", {with_rmse(0.01), with_rmse(0.01)}), 0.01, 1e-12);
@@ -190,17 +191,17 @@ TEST(UpperBound, OfNoErrorIsWhatNonePointsLeavePossible) {
 }
 
 TEST(UpperBound, OfAProvenMethodIsTheReferencesHalfWidth) {
-    Json e                 = light_error(10000, 0);
-    e["bracket"]           = {{"max_half_width", 2e-6}};
-    Json exact             = cell({e});
-    exact["serves"]["how"] = "exactly";
+    Json e                  = light_error(10000, 0);
+    e["bracket"]            = {{"max_half_width", 2e-6}};
+    Cell exact              = cell({e});
+    exact.method.serves.how = "exactly";
     EXPECT_EQ(*bound("rmse", {exact, exact}), 2e-6);
     EXPECT_EQ(*bound("rmse", {exact}), 2e-6);
     EXPECT_EQ(*bound("interior", {exact, exact}), 0);
     // One that says so and is wrong is treated as any other.
-    Json wrong            = light_error(10000, 1);
-    Json liar             = cell({wrong});
-    liar["serves"]["how"] = "exactly";
+    Json wrong             = light_error(10000, 1);
+    Cell liar              = cell({wrong});
+    liar.method.serves.how = "exactly";
     EXPECT_EQ(bound("interior", {liar}), std::nullopt);
     EXPECT_GE(*bound("interior", {liar, exact}), upper_share(10, 10000));
 }
@@ -211,7 +212,7 @@ TEST(UpperBound, HoldsInNineteenOfTwentyFurtherViews) {
     int held              = 0;
     constexpr int kTrials = 2000;
     for (int trial = 0; trial < kTrials; ++trial) {
-        std::vector<Json> views;
+        std::vector<Cell> views;
         for (int v = 0; v < 5; ++v) views.push_back(with_rmse(std::exp(normal(random))));
         held += std::exp(normal(random)) <= *bound("rmse", views);
     }

@@ -10,6 +10,7 @@
 #include <random>
 #include <utility>
 
+#include "made_cell.h"
 #include "umbra/bench/recommend/first_answer.h"
 #include "umbra/bench/recommend/recommend.h"
 #include "umbra/bench/sweep/bounds.h"
@@ -166,40 +167,42 @@ protected:
         const MethodChoice choice = parse_method(s.text);
         for (int v = 0; v < static_cast<int>(s.rmse.size()); ++v) {
             const Json inner = {{"interior", s.interior}, {"edge", 0}}, none = {{"interior", 0}, {"edge", 0}};
-            store_.keep({{"key", lab.view(v).key(choice)},
-                         {"view", v},
-                         {"serves", {{"how", choice.info->reference ? "exactly" : "approximately"}, {"why", "."}}},
-                         {"undefined", s.undefined},
-                         {"errors",
-                          {{{"light", "l"},
-                            {"points", 1000000},
-                            {"bracket", nullptr},
-                            {"rmse", s.rmse[static_cast<std::size_t>(v)]},
-                            {"false_shadow", inner},
-                            {"false_light", none}}}}});
+            keep_made(store_,
+                      {{"key", lab.view(v).key(choice)},
+                       {"name", choice.info->name},
+                       {"view", v},
+                       {"serves", {{"how", choice.info->reference ? "exactly" : "approximately"}, {"why", "."}}},
+                       {"undefined", s.undefined},
+                       {"errors",
+                        {{{"light", "l"},
+                          {"points", 1000000},
+                          {"bracket", nullptr},
+                          {"rmse", s.rmse[static_cast<std::size_t>(v)]},
+                          {"false_shadow", inner},
+                          {"false_light", none}}}}});
         }
         const Phases once = s.price > 0 ? Phases{0, 0, 0, s.price} : s.ms;
-        store_.keep({{"key", lab.machine_key("price", choice)},
-                     {"price",
-                      {{"build_ms", once.build},
-                       {"aim_ms", {once.aim}},
-                       {"look_ms", once.look},
-                       {"visibility_ms", {once.visibility}},
-                       {"runs", 2}}}});
+        keep_made(store_, {{"key", lab.machine_key("price", choice)},
+                           {"price",
+                            {{"build_ms", once.build},
+                             {"aim_ms", {once.aim}},
+                             {"look_ms", once.look},
+                             {"visibility_ms", {once.visibility}},
+                             {"runs", 2}}}});
         if (!noise_bar) return;
         const auto timing = [&](double ms) {
             Json samples = Json::array();
             for (const double round : s.rounds) samples.push_back(ms * round);
             return Json{{"median", ms}, {"samples", std::move(samples)}};
         };
-        store_.keep({{"key", lab.machine_key("time", choice)},
-                     {"turns", {{"pinned", true}, {"noise_bar", *noise_bar}, {"calibration_ms", Json::array()}}},
-                     {"times",
-                      {{"build_ms", timing(s.ms.build)},
-                       {"aim_ms", timing(s.ms.aim)},
-                       {"look_ms", timing(s.ms.look)},
-                       {"visibility_ms", timing(s.ms.visibility)},
-                       {"order", std::vector<int>(s.rounds.size(), 0)}}}});
+        keep_made(store_, {{"key", lab.machine_key("time", choice)},
+                           {"turns", {{"pinned", true}, {"noise_bar", *noise_bar}, {"calibration_ms", Json::array()}}},
+                           {"times",
+                            {{"build_ms", timing(s.ms.build)},
+                             {"aim_ms", timing(s.ms.aim)},
+                             {"look_ms", timing(s.ms.look)},
+                             {"visibility_ms", timing(s.ms.visibility)},
+                             {"order", std::vector<int>(s.rounds.size(), 0)}}}});
     }
     [[nodiscard]] static std::string text(const Recommendation& r, std::size_t candidate) {
         return r.candidates.at(candidate).choice.text();
@@ -457,12 +460,12 @@ TEST_F(RecommendByHand, WhoIsDroppedPassesOverNobody) {
 /// Edges of the second further view lie 8 pixels off or farther, however large the bound is.
 TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
     Recommendation r     = recommended(four_methods());
-    const auto with_edge = [&](std::size_t view, const Json& max, int unmatched) {
-        r.held_out.at(view)["errors"][0]["edge_displacement_px"] = {
-            {"mean", max}, {"p95", max}, {"max", max}, {"pieces", 100}, {"unmatched", unmatched}, {"reach", 8}};
+    const auto with_edge = [&](std::size_t view, double max, std::uint64_t unmatched) {
+        r.held_out.at(view).method.errors[0].edge_displacement_px =
+            DisplacementRecord{max, max, max, 100, unmatched, 8};
     };
     with_edge(0, 7, 0);
-    with_edge(1, nullptr, 100);
+    with_edge(1, kUnknown, 100);
     o_.limits                         = {parse_limit("edge_displacement_px.max=40")};
     r.candidates.at(*r.chosen).bounds = {12.0};
     const Json held                   = recommendation_json(r, o_)["recommendation"]["held_out"];
@@ -647,9 +650,9 @@ struct ErrorModel {
     }
 };
 
-Json cell_of(double rmse) {
-    return {{"serves", {{"how", "approximately"}, {"why", "."}}},
-            {"errors", {{{"light", "l"}, {"points", 1000000}, {"bracket", nullptr}, {"rmse", rmse}}}}};
+Cell cell_of(double rmse) {
+    return cell_from({{"serves", {{"how", "approximately"}, {"why", "."}}},
+                      {"errors", {{{"light", "l"}, {"points", 1000000}, {"bracket", nullptr}, {"rmse", rmse}}}}});
 }
 
 struct Said {
@@ -668,7 +671,7 @@ Said said(int settings, int held_out, bool two_modes, int experiments, unsigned 
             const ErrorModel model =
                 two_modes ? ErrorModel{std::log(kLimit * (0.05 + 0.2 * even(dice))), 0.2, 0.3 * even(dice)}
                           : ErrorModel{std::log(kLimit) - 0.9 * even(dice), 0.3, 0};
-            std::vector<Json> views;
+            std::vector<Cell> views;
             for (int v = 0; v < 5; ++v) views.push_back(cell_of(model.draw(dice)));
             if (upper_bound(rmse, views).value() > kLimit) continue;
             ++tried;
@@ -735,8 +738,8 @@ TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {
     TurnOptions turns{.rounds = 2, .budget_ms = 1e6};
     keep({"ray_traced", good, {123456, 1, 1, 1}}, 0.1);
     EXPECT_EQ(lab_.price(rays)->build, 123456);
-    EXPECT_EQ(lab_.times({&rays, 1}, turns).settings[0]["build_ms"]["median"], 123456.0);
-    EXPECT_NE(lab_.times({&rays, 1}, turns, 0.05).settings[0]["build_ms"]["median"], 123456.0)
+    EXPECT_EQ(lab_.times({&rays, 1}, turns).settings[0]->phases.build_ms->median, 123456.0);
+    EXPECT_NE(lab_.times({&rays, 1}, turns, 0.05).settings[0]->phases.build_ms->median, 123456.0)
         << "a noise bar of 10 % is too much";
     keep({"ray_traced", good, {123456, 1, 1, 1}}, 0.1);
     SceneLab lab(std::filesystem::path(UMBRA_SCENES) / "umbra_penumbra.json", {.size = {16, 9}}, store_);
@@ -744,9 +747,9 @@ TEST_F(RecommendByHand, TimesThatAreKeptAreMeasuredAnewWhenAsked) {
     const double price = lab.price(rays)->build;
     EXPECT_NE(price, 123456);
     EXPECT_EQ(lab.price(rays)->build, price) << "once is enough";
-    const Json times = lab.times({&rays, 1}, turns).settings[0];
+    const Json times = to_record(lab.times({&rays, 1}, turns).settings[0]);
     EXPECT_NE(times["build_ms"]["median"], 123456.0);
-    EXPECT_EQ(lab.times({&rays, 1}, turns).settings[0], times);
+    EXPECT_EQ(to_record(lab.times({&rays, 1}, turns).settings[0]), times);
 }
 
 // ---- The first answer: errors in pictures of 8 x 5 pixels, costs in those of 16 x 9.

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <map>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
@@ -12,6 +13,7 @@
 #include "umbra/bench/motion/motion_record.h"
 #include "umbra/bench/run/results.h"
 #include "umbra/bench/sweep/metrics.h"
+#include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/io/scene_io.h"
@@ -111,12 +113,15 @@ int list_one(const std::string& name, bool as_json) {
         fmt::format("\"{}\" is not a method, ladder or canonical scene{}", name, did_you_mean(name, known)));
 }
 
+const std::map<std::string, Json (*)()> kSchemas = {{"results", results_schema},
+                                                    {"ladders", ladders_schema},
+                                                    {"motion", motion_schema},
+                                                    {"growth", growth_schema},
+                                                    {"sweep", sweep_schema}};
+
 int list(const ListLine& line) {
     if (!line.schema.empty()) {
-        print_out("{}", json_text(line.schema == "ladders"  ? ladders_schema()
-                                  : line.schema == "motion" ? motion_schema()
-                                  : line.schema == "growth" ? growth_schema()
-                                                            : results_schema()));
+        print_out("{}", json_text(kSchemas.at(line.schema)()));
         return kDone;
     }
     return line.name.empty() ? list_all(line.as_json) : list_one(line.name, line.as_json);
@@ -130,9 +135,9 @@ Action list_command(CLI::App& app, const Common& /*common*/) {
         ->type_name("");
     app.add_flag("--json", line->as_json, "Print JSON");
     app.add_option("--schema", line->schema,
-                   "Print the JSON Schema of results.json as compare, ladder, motion or growth writes it")
-        ->check(CLI::IsMember({"results", "ladders", "motion", "growth"}))
-        ->type_name("results|ladders|motion|growth");
+                   "Print the JSON Schema of results.json as compare, ladder, motion, growth or sweep writes it")
+        ->check(CLI::IsMember(kSchemas))
+        ->type_name("results|ladders|motion|growth|sweep");
     return [line] { return list(*line); };
 }
 

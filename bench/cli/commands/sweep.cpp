@@ -78,9 +78,9 @@ int sweep(SweepLine line, const Common& common) {
     }
     const SweepDone done = sweep_on_terminal(options, common);
     if (line.as_json) {
-        for (const Json& record : done.records) print_out("{}", json_text(record));
+        for (const SweepResults& record : done.records) print_out("{}", json_text(to_record(record)));
     } else if (!common.quiet) {
-        for (const Json& record : done.records) print_out("{}", front_in_words(record));
+        for (const SweepResults& r : done.records) print_out("{}", front_in_words(r.scene.name, r.sweep));
         print_out("{}, {} of them computed now\n{}\n", counted(static_cast<double>(done.cells), "cell"), done.computed,
                   (options.out / "index.html").string());
     }

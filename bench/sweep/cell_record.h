@@ -1,0 +1,25 @@
+// A cell as a record: what one setting gets wrong in one view of a scene.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "umbra/bench/run/results.h"
+
+namespace umbra {
+
+struct Cell {
+    MethodRecord method{};              ///< without times and files
+    std::optional<double> undefined{};  ///< the fraction of the points that it does not answer
+    std::uint64_t view = 0;
+    std::string key{};  ///< of what the cell depends on
+};
+template <class Fields>
+void describe(Fields& of, Is<Cell>) {
+    of.all(&Cell::method);
+    of.may("undefined", &Cell::undefined, "");
+    of("view", &Cell::view, "");
+    of("key", &Cell::key, "");
+}
+
+}  // namespace umbra
