@@ -77,6 +77,7 @@ public:
         result_.unasked.clear();
         const auto method_of = [](const Line& l) { return l.family->settings.front().info; };
         const auto start     = std::chrono::steady_clock::now();
+        if (options_.first && known(*options_.first) == kNone) look(*options_.first);
         while (!lines.empty()) {
             const auto line = std::ranges::min_element(
                 lines, {}, [&](const Line& l) { return std::pair(!method_of(l)->reference, l.ran_ms); });

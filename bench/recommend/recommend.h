@@ -31,6 +31,8 @@ struct RecommendOptions {
                                         ///< nothing but the reference is within the limits
     TurnOptions turns{.rounds = 9, .budget_ms = 6000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
+    std::optional<MethodChoice> first{};  ///< looked at before all others: where it is within the limits, none that
+                                          ///< costs far more is looked at, and none after `seconds`
     std::string kept_in{};                ///< the folder of cells and times, to be named; empty: it is not
     std::function<void(const std::string&)> progress{};
 };

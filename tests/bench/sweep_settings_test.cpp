@@ -457,6 +457,18 @@ TEST_F(RecommendByHand, WhoIsDroppedPassesOverNobody) {
     EXPECT_TRUE(r.passed_over.empty());
 }
 
+/// Where there is no time for any other, the first answer is the last one.
+TEST_F(RecommendByHand, TheFirstAnswerIsLookedAtBeforeAllOthers) {
+    o_.seconds = 0;
+    EXPECT_FALSE(recommended(four_methods()).chosen.has_value());
+    o_.first               = parse_method("ray_traced");
+    const Recommendation r = recommend(lab_, lab_, o_);
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced");
+    EXPECT_EQ(r.looked_at, 1u);
+    EXPECT_EQ(r.unasked.size(), 3u);
+}
+
 /// Edges of the second further view lie 8 pixels off or farther, however large the bound is.
 TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
     Recommendation r     = recommended(four_methods());

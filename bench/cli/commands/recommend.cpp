@@ -60,6 +60,7 @@ int recommend(RecommendLine line, const Common& common) {
         flush_out();  // it is read while the search goes on
         terminal.emplace(common.quiet);
     }
+    if (first) options.first = first->choice;
     const Recommendation found = recommend(small, lab, options);
     terminal.reset();
     if (line.as_json) {
