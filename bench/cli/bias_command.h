@@ -1,7 +1,7 @@
 // `umbra bias`: studies the bias of the shadow z-buffer on scenes and writes the results as data and heat maps.
 #pragma once
 
-#include "umbra/bench/studies/bias/bias_study.h"
+#include "umbra/bench/studies/bias/bias_record.h"
 
 namespace umbra {
 
@@ -18,7 +18,7 @@ struct BiasOptions {
 /// messages of unreadable scenes, or scenes whose meshes are missing, are appended to `failed`; these are skipped.
 /// Scenes on which a method threw are in the record's `failed`; without any study nothing is written. Throws
 /// UsageError, InputError.
-Json study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
-                  std::vector<std::string>& failed);
+BiasRecord study_biases(const std::vector<std::filesystem::path>& files, const BiasOptions& options,
+                        std::vector<std::string>& failed);
 
 }  // namespace umbra

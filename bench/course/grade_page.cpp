@@ -216,10 +216,8 @@ ClassRecord write_class(const RubricRecord& rubric, const std::vector<GradeRecor
     check_writable_beside(out, {"grades.csv"});
     const StudyReport report = class_report(record);
     StagedFiles staged;
-    Json json = to_record(record);
-    write_study_files(report, json, out, staged);
+    write_study_files(report, record, out, staged);
     staged.commit();
-    record.csv = {"grades.csv"};
     return record;
 }
 

@@ -13,12 +13,6 @@
 
 namespace umbra {
 
-template <class Fields>
-void describe(Fields& of, Is<VisibilityError::Kind>) {
-    of("interior", &VisibilityError::Kind::interior, "");
-    of("edge", &VisibilityError::Kind::edge, "");
-}
-
 /// RungOutcome; where the method did not run to its end, without figures.
 struct RungOutcomeRecord {
     ServiceRecord serves{};

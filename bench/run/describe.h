@@ -9,6 +9,7 @@
 
 #include "umbra/bench/record/record.h"
 #include "umbra/bench/run/run.h"
+#include "umbra/core/errors/visibility_error.h"
 #include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/scene.h"
 #include "umbra/shadows/method.h"
@@ -239,6 +240,12 @@ void describe(Fields& of, Is<TurnTimesRecord>) {
     of("cold", &TurnTimesRecord::cold, "the first run, which is part of no median unless it is the only one");
     of("order", &TurnTimesRecord::order,
        "the position within each round, from 0; empty where the cold run is the only sample");
+}
+
+template <class Fields>
+void describe(Fields& of, Is<VisibilityError::Kind>) {
+    of("interior", &VisibilityError::Kind::interior, "");
+    of("edge", &VisibilityError::Kind::edge, "");
 }
 
 struct LoadRecord {

@@ -211,9 +211,9 @@ std::string table_csv(const StudyTable& table) {
     return text;
 }
 
-void write_study_page(const StudyReport& report, const Json& record, const fs::path& folder, StagedFiles& staged) {
+void write_study_page(const StudyReport& report, const HeadRecord& head, const fs::path& folder, StagedFiles& staged) {
     Json view       = report.words;
-    view["command"] = without_folders(record["command"].get<std::string>()), view["version"] = record["version"];
+    view["command"] = without_folders(head.command), view["version"] = head.version;
     view["tables"] = Json::object(), view["pictures"] = Json::object();
     view["curves"] = Json::array(), view["sentences"] = Json::array();
     for (const StudyTable& table : shown(report.tables, Shown::on_page))
@@ -222,30 +222,9 @@ void write_study_page(const StudyReport& report, const Json& record, const fs::p
     for (const StudyCurve& curve : report.curves) view["curves"].push_back(curve_view(curve));
     for (const StudySentence& sentence : shown(report.sentences, Shown::on_page))
         view["sentences"].push_back({{"parts", marked(sentence.text)}});
-    const PageHead head = {report.title, "", {}};
-    staged.write(folder / "index.html", render_page(report.page, head, view));
-    write_page_assets(folder, head.scripts, staged);
-}
-
-void write_study_files(const StudyReport& report, Json& record, const fs::path& folder, StagedFiles& staged) {
-    record["csv"] = Json::array();
-    for (const StudyTable& table : report.tables) {
-        record["csv"].push_back(table.name + ".csv");
-        staged.write(folder / (table.name + ".csv"), table_csv(table));
-    }
-    staged.write(folder / "results.json", json_text(record));
-    write_study_page(report, record, folder, staged);
-}
-
-Json write_study(const fs::path& out, const std::function<Json(const fs::path&)>& make,
-                 const std::function<StudyReport(const Json&)>& report) {
-    StagedFolder folder(out);
-    Json record = make(folder.folder());
-    StagedFiles files;
-    write_study_files(report(record), record, folder.folder(), files);
-    files.commit();
-    folder.commit();
-    return record;
+    const PageHead page = {report.title, "", {}};
+    staged.write(folder / "index.html", render_page(report.page, page, view));
+    write_page_assets(folder, page.scripts, staged);
 }
 
 }  // namespace umbra

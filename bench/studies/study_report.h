@@ -3,11 +3,9 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "umbra/bench/out/staged_files.h"
@@ -81,13 +79,9 @@ struct StudyReport {
 /// Names of columns, then a line a row: numbers in full, text quoted where it must be.
 [[nodiscard]] std::string table_csv(const StudyTable& table);
 
-/// FOLDER/index.html and its style. The record's command and version are at the foot.
-void write_study_page(const StudyReport& report, const Json& record, const std::filesystem::path& folder,
+/// FOLDER/index.html and its style. The command and the version are at the foot.
+void write_study_page(const StudyReport& report, const HeadRecord& head, const std::filesystem::path& folder,
                       StagedFiles& staged);
-
-/// The page, a CSV file a table, and results.json, whose member `csv` names these files.
-void write_study_files(const StudyReport& report, Json& record, const std::filesystem::path& folder,
-                       StagedFiles& staged);
 
 /// A record that a study writes: `csv`, its last member, names the files of the tables.
 template <class Record>
@@ -96,20 +90,24 @@ concept StudyRecord = requires(Record& record) {
     record.csv.emplace_back("");
 };
 
+/// The page, a CSV file a table, and results.json, whose member `csv` names these files.
+template <StudyRecord Record>
+void write_study_files(const StudyReport& report, Record& record, const std::filesystem::path& folder,
+                       StagedFiles& staged) {
+    for (const StudyTable& table : report.tables)
+        staged.write(folder / record.csv.emplace_back(table.name + ".csv"), table_csv(table));
+    staged.write(folder / "results.json", json_text(to_record(record)));
+    write_study_page(report, record.head, folder, staged);
+}
+
 /// Writes the folder `out` whole or not at all: `make` writes pictures into the folder that it is given and returns the
 /// record, `report` says what is shown of it. Returns the record. Throws InputError, and what the two throw.
-Json write_study(const std::filesystem::path& out, const std::function<Json(const std::filesystem::path& folder)>& make,
-                 const std::function<StudyReport(const Json& record)>& report);
 template <class Make, class Report>
-requires StudyRecord<std::invoke_result_t<Make, const std::filesystem::path&>>
 auto write_study(const std::filesystem::path& out, const Make& make, const Report& report) {
     StagedFolder folder(out);
-    auto record             = make(folder.folder());
-    const StudyReport shown = report(record);
-    for (const StudyTable& table : shown.tables) record.csv.push_back(table.name + ".csv");
-    Json json = to_record(record);
+    auto record = make(folder.folder());
     StagedFiles files;
-    write_study_files(shown, json, folder.folder(), files);
+    write_study_files(report(record), record, folder.folder(), files);
     files.commit();
     folder.commit();
     return record;

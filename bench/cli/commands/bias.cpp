@@ -25,18 +25,17 @@ int bias(BiasLine line, const Common& common) {
     check_writable_beside(options.out, {"bias.csv"});
     const PlaceLock lock = PlaceLock::inside(options.out);
     std::vector<std::string> failed;
-    Json record = on_terminal(common, [&](const auto& progress) {
+    const BiasRecord record = on_terminal(common, [&](const auto& progress) {
         options.progress = progress;
         return study_biases(files, options, failed);
     });
     if (line.as_json)
-        print_out("{}", json_text(record));
-    else if (!common.quiet && !record["bias"].empty())
+        print_out("{}", json_text(to_record(record)));
+    else if (!common.quiet && !record.bias.empty())
         print_out("{}{}\n", study_text(bias_report(record)), (options.out / "index.html").string());
     for (const std::string& message : failed) print_error("{}\n", message);
-    for (const Json& failure : record["failed"])
-        print_error("{}: {}\n", failure["scene"].get<std::string>(), failure["message"].get<std::string>());
-    return !record["failed"].empty() ? kInternal : failed.empty() ? kDone : kUnreadable;
+    for (const ListedFailureRecord& f : record.failed) print_error("{}: {}\n", f.scene, f.failure.message);
+    return !record.failed.empty() ? kInternal : failed.empty() ? kDone : kUnreadable;
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ int whitted(const WhittedLine& line, const Common& common) {
             return kNo;
         }
     }
-    Json record;
+    WhittedRecord record;
     {
         const Terminal terminal(common.quiet);
         pass_warnings(prepared.scene, [&](const std::string& warning) { terminal.warn(warning); });
@@ -56,7 +56,7 @@ int whitted(const WhittedLine& line, const Common& common) {
                       line.out, [&](const std::filesystem::path& folder) { return trace_whitted(prepared, options, folder); },
                       whitted_report);
     }
-    print_record(line.as_json, common, record, [&] {
+    print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(whitted_report(record)), (line.out / "index.html").string());
     });
     return kDone;

@@ -1,6 +1,7 @@
 #include "umbra/bench/studies/bias/bias_report.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -31,10 +32,10 @@ std::string half_cell(double x, double y, std::size_t kind, double cell) {
 /// One path per colour with all its half cells: thousands of elements would make a slow page.
 class Paths {
 public:
-    void add(double x, double y, const Json& errors) {
+    void add(double x, double y, const BiasErrors& errors) {
+        const std::array wrong{errors.false_shadow.interior, errors.false_light.interior};
         for (std::size_t kind = 0; kind < kErrors.size(); ++kind)
-            if (const int d = decade(errors[kErrors[kind]]["interior"].get<std::uint64_t>()); d > 0)
-                paths_[kind][d - 1] += half_cell(x, y, kind, kCell);
+            if (const int d = decade(wrong[kind]); d > 0) paths_[kind][d - 1] += half_cell(x, y, kind, kCell);
     }
     [[nodiscard]] json view() const {
         json all = json::array();
@@ -54,16 +55,17 @@ std::string tick(double v) {
     return v > 0 && v < 1 && 1 / v == std::round(1 / v) ? fmt::format("1/{:g}", 1 / v) : fmt::format("{:.3g}", v);
 }
 
-json ticks(const Json& values, double first, double step, double offset) {
+json ticks(const std::vector<double>& values, double first, double step, double offset) {
     json all = json::array();
     for (std::size_t i = 0; i < values.size(); ++i)
-        all.push_back({{"at", fmt::format("{:g}", first + step * static_cast<double>(i) + offset)},
-                       {"label", tick(values[i].get<double>())}});
+        all.push_back(
+            {{"at", fmt::format("{:g}", first + step * static_cast<double>(i) + offset)}, {"label", tick(values[i])}});
     return all;
 }
 
-json slice_view(const Json& record, const Json& study, const Json& slice) {
-    const Json &constants = record["constants"], &slopes = record["slopes"], &best = study["best_manual"];
+json slice_view(const BiasGrid& grid, const BiasSceneRecord& study, const BiasSliceRecord& slice) {
+    const std::vector<double>&constants = grid.constants, &slopes = grid.slopes;
+    const BiasCell& best = study.best_manual;
     const double columns = static_cast<double>(constants.size()), rows = static_cast<double>(slopes.size());
     const double bottom = kTop + rows * kCell, side = kLeft + columns * kCell + 14;
     Paths paths;
@@ -72,16 +74,16 @@ json slice_view(const Json& record, const Json& study, const Json& slice) {
         for (std::size_t column = 0; column < constants.size(); ++column) {
             const double x = kLeft + static_cast<double>(column) * kCell;
             const double y = bottom - static_cast<double>(row + 1) * kCell;
-            paths.add(x, y, slice["rows"][row][column]);
-            if (best["normal_offset"] == slice["normal_offset"] && best["slope"] == slopes[row] &&
-                best["constant"] == constants[column])
+            paths.add(x, y, slice.rows[row][column]);
+            if (best.normal_offset == slice.normal_offset && best.slope == slopes[row] &&
+                best.constant == constants[column])
                 marks.push_back({{"x", fmt::format("{:g}", x + kCell / 2)}, {"y", fmt::format("{:g}", y + kCell / 2)}});
         }
     // Beside the grid: neither has a position in it.
-    paths.add(side, kTop + kCell, study["automatic"]);
-    paths.add(side, kTop + 4 * kCell, study["receiver_plane"]);
+    paths.add(side, kTop + kCell, study.automatic);
+    paths.add(side, kTop + 4 * kCell, study.receiver_plane);
     const auto text = [](double v) { return fmt::format("{:g}", v); };
-    return {{"normal_offset", text(slice["normal_offset"].get<double>())},
+    return {{"normal_offset", text(slice.normal_offset)},
             {"width", text(side + 3 * kCell + 4)},
             {"height", text(bottom + 40)},
             {"left", text(kLeft)},
@@ -111,13 +113,13 @@ void add_errors(std::vector<Column>& columns, const std::string& member, const s
         columns.push_back({fmt::format("{}.{}.interior", member, kind), head, kCount, "", group});
 }
 
-StudyTable summary(const Json& record) {
+StudyTable summary(const BiasRecord& record) {
     StudyTable table{.name    = "bias",
                      .caption = "Wrong interior points, sums over all lights of a scene",
                      .columns = {{.key = "scene", .head = "scene", .shown = Shown::in_terminal},
                                  {.key = "title", .head = "scene", .shown = Shown::on_page, .link = "scene"},
                                  {"points", "points", kCount}},
-                     .rows    = record["bias"]};
+                     .rows    = to_record(record.bias)};
     add_errors(table.columns, "automatic", "auto");
     add_errors(table.columns, "best_manual", "best manual");
     for (const char* setting : {"constant", "slope", "normal_offset"})
@@ -125,16 +127,15 @@ StudyTable summary(const Json& record) {
             {std::string("best_manual.") + setting, in_words(setting), kGeneral, "", "best manual"});
     add_errors(table.columns, "receiver_plane", "receiver plane");
     table.columns.push_back({"better", "settings better than auto"});
-    for (Json& row : table.rows)
-        row["better"] = fmt::format("{} of {}", row["settings_better_than_automatic"].get<std::size_t>(),
-                                    row["settings"].get<std::size_t>());
+    for (std::size_t k = 0; k < record.bias.size(); ++k)
+        table.rows[k]["better"] =
+            fmt::format("{} of {}", record.bias[k].settings_better_than_automatic, record.bias[k].settings);
     return table;
 }
 
-StudyTable notable(const Json& study) {
-    const Json& best = study["best_manual"];
-    const auto value = [&](const char* name) { return best[name].get<double>(); };
-    StudyTable table{.name    = "settings-" + study["scene"].get<std::string>(),
+StudyTable notable(const BiasSceneRecord& study) {
+    const BiasCell& best = study.best_manual;
+    StudyTable table{.name    = "settings-" + study.scene,
                      .caption = "Notable settings",
                      .columns = {{"name", "setting", kCode},
                                  {"how", "what it is"},
@@ -142,30 +143,27 @@ StudyTable notable(const Json& study) {
                                  {"false_shadow.edge", "edge band", kCount, "", "false shadow"},
                                  {"false_light.interior", "interior", kCount, "", "false light"},
                                  {"false_light.edge", "edge band", kCount, "", "false light"}},
-                     .rows    = {study["automatic"], best, study["receiver_plane"]}};
+                     .rows    = {to_record(study.automatic), to_record(best), to_record(study.receiver_plane)}};
     table.rows[0]["name"] = "auto", table.rows[0]["how"] = "the default";
     table.rows[1]["name"] = "best manual";
-    table.rows[1]["how"]  = fmt::format("constant={:g}, slope={:g}, normal_offset={:g}", value("constant"),
-                                        value("slope"), value("normal_offset"));
+    table.rows[1]["how"] =
+        fmt::format("constant={:g}, slope={:g}, normal_offset={:g}", best.constant, best.slope, best.normal_offset);
     table.rows[2]["name"] = "receiver_plane", table.rows[2]["how"] = "no bias beyond a rounding margin";
     return table;
 }
 
-json study_view(const Json& record, const Json& study) {
-    const Json& best = study["best_manual"];
-    json slices      = json::array();
-    for (const Json& slice : study["slices"]) slices.push_back(slice_view(record, study, slice));
+json study_view(const BiasGrid& grid, const BiasSceneRecord& study) {
+    json slices = json::array();
+    for (const BiasSliceRecord& slice : study.slices) slices.push_back(slice_view(grid, study, slice));
     json first = slices.front();
     slices.erase(0);
-    std::string lights;
-    for (const Json& light : study["lights"]) lights += (lights.empty() ? "" : ", ") + light.get<std::string>();
-    return {{"id", study["scene"]},
-            {"title", study["title"]},
-            {"lights", lights},
-            {"points", count(study["points"].get<double>())},
+    return {{"id", study.scene},
+            {"title", study.title},
+            {"lights", fmt::format("{}", fmt::join(study.lights, ", "))},
+            {"points", count(double(study.points))},
             {"first", json::array({std::move(first)})},
             {"others", std::move(slices)},
-            {"best_below", best["normal_offset"] != study["slices"][0]["normal_offset"]},
+            {"best_below", study.best_manual.normal_offset != study.slices.front().normal_offset},
             {"settings", json::array({table_view(notable(study))})}};
 }
 
@@ -186,19 +184,18 @@ json legend() {
 
 }  // namespace
 
-StudyReport bias_report(const Json& record) {
+StudyReport bias_report(const BiasRecord& record) {
     json studies = json::array();
-    for (const Json& study : record["bias"]) studies.push_back(study_view(record, study));
+    for (const BiasSceneRecord& study : record.bias) studies.push_back(study_view(record.grid, study));
     json failures = json::array();
-    for (const Json& failure : record["failed"])
-        failures.push_back(
-            fmt::format("{}: {}", failure["scene"].get<std::string>(), failure["message"].get<std::string>()));
+    for (const ListedFailureRecord& failed : record.failed)
+        failures.push_back(fmt::format("{}: {}", failed.scene, failed.failure.message));
     return {.title  = "The shadow z-buffer’s bias: acne against detachment",
             .page   = assets::bias_html,
             .tables = {summary(record)},
-            .words  = {{"width", fmt::format("{}", record["size"]["width"].get<int>())},
-                       {"height", fmt::format("{}", record["size"]["height"].get<int>())},
-                       {"map", record["map"]},
+            .words  = {{"width", fmt::format("{}", record.size.width.value_or(0))},
+                       {"height", fmt::format("{}", record.size.height.value_or(0))},
+                       {"map", record.map},
                        {"legend", legend()},
                        {"has_failures", !failures.empty()},
                        {"failures", std::move(failures)},

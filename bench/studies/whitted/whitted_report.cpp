@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -44,78 +45,80 @@ std::string in(const Names& names, const std::string& name) {
     return found == names.end() ? name : found->second;
 }
 
-std::string figure(const Json& value, int digits) {
-    return value.is_null() ? kNone : fmt::format("{:.{}f}", value.get<double>(), digits);
+std::string figure(double value, int digits) {
+    return std::isnan(value) ? kNone : fmt::format("{:.{}f}", value, digits);
 }
 
-std::string how_many(const Json& value, const char* noun = "ray") { return counted(value.get<double>(), noun); }
-std::string digits(const Json& value) { return value.is_null() ? kNone : score(value.get<double>()); }
-std::string amount(const Json& value) { return count(value.get<double>()); }
+std::string how_many(std::uint64_t value, const char* noun = "ray") { return counted(double(value), noun); }
+std::string digits(double value) { return score(known(value)); }
+std::string amount(std::uint64_t value) { return count(value); }
 
 /// "RMSE 0.01 from the picture, FLIP 0.02".
-std::string errors_of(const Json& picture, const char* whole = "the picture") {
-    return fmt::format("RMSE {} from {}, FLIP {}", figure(picture["rmse"], 5), whole, figure(picture["flip"], 4));
+template <class Record>
+std::string errors_of(const Record& picture, const char* whole = "the picture") {
+    return fmt::format("RMSE {} from {}, FLIP {}", figure(picture.rmse, 5), whole, figure(picture.flip, 4));
 }
 
-/// The entries, each with what its name means.
-Json explained(Json entries, const Names& names) {
-    for (Json& entry : entries) entry["about"] = in(names, entry["name"]);
-    return entries;
+/// The rows of a table, each with what its name means.
+template <class Record>
+Json explained(const std::vector<Record>& records, const Names& names) {
+    Json rows = to_record(records);
+    for (std::size_t k = 0; k < records.size(); ++k) rows[k]["about"] = in(names, records[k].name);
+    return rows;
 }
 
 /// Eye, reflected, refracted and shadow rays of all depths, and the time.
-std::string lead(const Json& record) {
+std::string lead(const WhittedRecord& record) {
     std::string text;
-    for (const auto& [key, noun] : {std::pair{"eye", "eye ray"},
-                                    {"reflected", "reflected ray"},
-                                    {"refracted", "refracted ray"},
-                                    {"shadow", "shadow ray"}}) {
-        double all = 0;
-        for (const Json& d : record["depths"]) all += d[key].get<double>();
-        text += (text.empty() ? "" : ", ") + counted(all, noun);
+    for (const auto& [rays, noun] : {std::pair{&WhittedDepthRecord::eye, "eye ray"},
+                                     {&WhittedDepthRecord::reflected, "reflected ray"},
+                                     {&WhittedDepthRecord::refracted, "refracted ray"},
+                                     {&WhittedDepthRecord::shadow, "shadow ray"}}) {
+        std::uint64_t all = 0;
+        for (const WhittedDepthRecord& d : record.depths) all += d.*rays;
+        text += (text.empty() ? "" : ", ") + how_many(all, noun);
     }
-    return fmt::format("{}; {} ms without building.", text, figure(record["total_ms"], 1));
+    return fmt::format("{}; {} ms without building.", text, figure(record.total_ms, 1));
 }
 
-void show_picture(const Json& record, StudyReport& report) {
+void show_picture(const WhittedRecord& record, StudyReport& report) {
     std::vector<StudyPicture>& seen = report.pictures["seen"];
+    seen.push_back({record.picture, "The scene with mirrors and glass",
+                    fmt::format("The picture: {} a pixel{}, up to depth {}.", how_many(record.pixel_samples, "eye ray"),
+                                in(kAboutPlaces, record.pixel_places), amount(record.depth))});
     seen.push_back(
-        {record["picture"], "The scene with mirrors and glass",
-         fmt::format("The picture: {} a pixel{}, up to depth {}.", how_many(record["pixel_samples"], "eye ray"),
-                     in(kAboutPlaces, record["pixel_places"]), amount(record["depth"]))});
-    seen.push_back({record["rays_picture"], "The scene, brighter where a pixel has more rays",
-                    fmt::format("Size of the tree of rays: black 1 ray an eye ray, white {:.3g}.",
-                                record["most_rays_a_pixel"].get<double>())});
-    if (const Json& blind = record["blind"]; !blind.is_null()) {
-        seen.push_back({blind["picture"], "The scene, coloured where light arrives by way of a mirror",
+        {record.rays_picture, "The scene, brighter where a pixel has more rays",
+         fmt::format("Size of the tree of rays: black 1 ray an eye ray, white {:.3g}.", record.most_rays_a_pixel)});
+    if (const auto& blind = record.blind) {
+        seen.push_back({blind->picture, "The scene, coloured where light arrives by way of a mirror",
                         fmt::format("Not seen: {} of diffuse surfaces to which a plane mirror sends light, {} of them "
                                     "(orange) in shadow of that light.",
-                                    how_many(blind["points"], "pixel"), amount(blind["points_in_shadow"]))});
+                                    how_many(blind->points, "pixel"), amount(blind->points_in_shadow))});
         report.sentences.push_back({fmt::format("light by way of a plane mirror, not seen: {} pixels, {} of them in "
                                                 "shadow",
-                                                amount(blind["points"]), amount(blind["points_in_shadow"])),
+                                                amount(blind->points), amount(blind->points_in_shadow)),
                                     Shown::in_terminal});
     }
-    if (const Json& door = record["screen_door"]; !door.is_null()) {
-        seen.push_back({door["picture"], "The scene with surfaces drawn through a screen of eye rays",
+    if (const auto& door = record.screen_door) {
+        seen.push_back({door->picture, "The scene with surfaces drawn through a screen of eye rays",
                         fmt::format("Screen door instead of blending: each eye ray sees a surface that lets light "
                                     "through alone, or what is behind it alone. {}; {}. Surfaces of equal opacity hide "
                                     "one another.",
-                                    how_many(door["rays"]), errors_of(door))});
-        report.sentences.push_back({fmt::format("screen door instead of blending: RMSE {}, {}", figure(door["rmse"], 5),
-                                                how_many(door["rays"])),
-                                    Shown::in_terminal});
+                                    how_many(door->rays), errors_of(*door))});
+        report.sentences.push_back(
+            {fmt::format("screen door instead of blending: RMSE {}, {}", figure(door->rmse, 5), how_many(door->rays)),
+             Shown::in_terminal});
     }
-    if (const Json& single = record["single"]; !single.is_null())
-        seen.push_back({single["picture"], "The scene with one eye ray a pixel",
-                        fmt::format("One eye ray a pixel: {}.", errors_of(single))});
-    for (const Json& d : record["depths"])
-        report.pictures["depths"].push_back({d["picture"], "The scene with rays up to depth " + amount(d["depth"]),
-                                             fmt::format("Up to depth {}.", amount(d["depth"]))});
+    if (const auto& single = record.single)
+        seen.push_back({single->picture, "The scene with one eye ray a pixel",
+                        fmt::format("One eye ray a pixel: {}.", errors_of(*single))});
+    for (const WhittedDepthRecord& d : record.depths)
+        report.pictures["depths"].push_back({d.picture, "The scene with rays up to depth " + amount(d.depth),
+                                             fmt::format("Up to depth {}.", amount(d.depth))});
 }
 
-void show_tables(const Json& record, StudyReport& report) {
-    Json phases = explained(record["phases"], kAboutPhases);
+void show_tables(const WhittedRecord& record, StudyReport& report) {
+    Json phases = explained(record.phases, kAboutPhases);
     for (Json& phase : phases) phase["percent"] = 100 * phase["fraction"].get<double>();
     report.tables = {
         {"depths",
@@ -132,7 +135,7 @@ void show_tables(const Json& record, StudyReport& report) {
           {"too_deep", "too deep", kCount},
           {"rmse", "RMSE", decimals(5)},
           {.key = "flip", .head = "FLIP", .notation = decimals(4), .shown = Shown::on_page}},
-         record["depths"]},
+         to_record(record.depths)},
         {"phases",
          "Time of the picture by phase",
          {{.key = "name", .head = "phase", .shown = Shown::in_terminal},
@@ -149,46 +152,43 @@ void show_tables(const Json& record, StudyReport& report) {
           {"different_pixels", "pixels that differ", kCount},
           {.key = "max_difference", .head = "largest difference", .notation = kSignificant, .shown = Shown::on_page},
           {.key = "growth", .head = "factor from depth to depth", .notation = kSignificant, .shown = Shown::on_page}},
-         explained(record["ways"], kAboutWays)}};
+         explained(record.ways, kAboutWays)}};
 }
 
 constexpr std::array<std::array<const char*, 2>, 5> kKindsOfBodies{
     {{"spheres", "sphere"}, {"boxes", "box"}, {"cylinders", "cylinder"}, {"cones", "cone"}, {"tori", "torus"}}};
 
 /// "2 spheres, 1 box", or "spheres: 2, boxes: 1"; records of earlier versions have spheres and boxes alone.
-std::string bodies_in_words(const Json& bodies, bool plural_first) {
+std::string bodies_in_words(const Members<std::uint64_t>& bodies, bool plural_first) {
     std::vector<std::string> parts;
     for (const auto& [plural, one] : kKindsOfBodies) {
-        const double many = bodies.value(plural, 0.0);
-        if (many > 0)
-            parts.push_back(plural_first ? fmt::format("{}: {}", plural, count(many))
-                                         : fmt::format("{} {}", count(many), many == 1 ? one : plural));
+        const std::uint64_t* many = bodies.find(plural);
+        if (many != nullptr && *many > 0)
+            parts.push_back(plural_first ? fmt::format("{}: {}", plural, amount(*many))
+                                         : fmt::format("{} {}", amount(*many), *many == 1 ? one : plural));
     }
     return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-void show_formula(const Json& record, StudyReport& report) {
+void show_formula(const WhittedRecord& record, StudyReport& report) {
     report.words["formula"] = Json::array();
-    const Json& formula     = record["formula"];
-    if (formula.is_null()) return;
-    const Json& samples = formula["light_samples"];
-    report.words["formula"].push_back({{"bodies", bodies_in_words(formula["bodies"], false)},
-                                       {"replaced", how_many(formula["triangles_replaced"], "triangle")},
-                                       {"left", how_many(formula["triangles_left"], "triangle")},
-                                       {"samples", samples.is_null() ? "" : amount(samples)}});
+    if (!record.formula) return;
+    const WhittedFormulaRecord& formula = *record.formula;
+    report.words["formula"].push_back({{"bodies", bodies_in_words(formula.bodies, false)},
+                                       {"replaced", how_many(formula.triangles_replaced, "triangle")},
+                                       {"left", how_many(formula.triangles_left, "triangle")},
+                                       {"samples", formula.light_samples ? amount(*formula.light_samples) : ""}});
     report.pictures["formula"] = {
-        {record["picture"], "The scene with its bodies as triangles",
-         fmt::format("Triangles: {} ms.", figure(record["total_ms"], 1))},
-        {formula["picture"], "The scene with its bodies by formula",
-         fmt::format("By formula: {}, {} ms; {}, largest difference {}.", how_many(formula["rays"]),
-                     figure(formula["ms"], 1), errors_of(formula, "the picture of triangles"),
-                     digits(formula["max_difference"]))}};
+        {record.picture, "The scene with its bodies as triangles",
+         fmt::format("Triangles: {} ms.", figure(record.total_ms, 1))},
+        {formula.picture, "The scene with its bodies by formula",
+         fmt::format("By formula: {}, {} ms; {}, largest difference {}.", how_many(formula.rays), figure(formula.ms, 1),
+                     errors_of(formula, "the picture of triangles"), digits(formula.max_difference))}};
     report.sentences.push_back(
         {fmt::format("by formula ({}, instead of {} triangles): {} ms; RMSE {}, FLIP {}, largest "
                      "difference {}",
-                     bodies_in_words(formula["bodies"], true), amount(formula["triangles_replaced"]),
-                     figure(formula["ms"], 1), figure(formula["rmse"], 5), figure(formula["flip"], 4),
-                     fmt::format("{:.4g}", formula["max_difference"].get<double>())),
+                     bodies_in_words(formula.bodies, true), amount(formula.triangles_replaced), figure(formula.ms, 1),
+                     figure(formula.rmse, 5), figure(formula.flip, 4), fmt::format("{:.4g}", formula.max_difference)),
          Shown::in_terminal});
     StudyTable kinds{.name    = "formula",
                      .caption = "Rays of all depths",
@@ -197,26 +197,28 @@ void show_formula(const Json& record, StudyReport& report) {
                                  {"triangles", "triangles", kCount},
                                  {"formula", "by formula", kCount}},
                      .rows    = Json::array()};
-    for (const auto& [kind, found] : formula["totals"].items())
+    for (const auto& [kind, found] : formula.totals) {
+        const std::uint64_t* triangles = formula.totals_of_triangles.find(kind);
         kinds.rows.push_back({{"kind", kind},
                               {"about", in(kAboutKinds, kind)},
-                              {"triangles", formula["totals_of_triangles"][kind]},
+                              {"triangles", triangles != nullptr ? Json(*triangles) : Json()},
                               {"formula", found}});
+    }
     report.tables.push_back(std::move(kinds));
 }
 
-void show_kept(const Json& kept, StudyReport& report) {
-    if (kept.is_null()) return;
-    Json moves = kept;
-    for (Json& move : moves) {
-        move["percent"] = 100 * move["part"].get<double>();
+void show_kept(const std::vector<WhittedKeptRecord>& kept, StudyReport& report) {
+    Json moves = Json::array();
+    for (const WhittedKeptRecord& move : kept) {
         report.pictures["kept"].push_back(
-            {move["picture"], "The scene with kept mirror images",
-             fmt::format("Mirror images of before, the eye moved by {:g} %: RMSE {} on mirrors.",
-                         move["percent"].get<double>(), figure(move["rmse"], 5))});
-        move["kept_percent"] = 100 * move["kept"].get<double>();
+            {move.picture, "The scene with kept mirror images",
+             fmt::format("Mirror images of before, the eye moved by {:g} %: RMSE {} on mirrors.", 100 * move.part,
+                         figure(move.rmse, 5))});
+        moves.push_back(to_record(move));
+        moves.back()["percent"]      = 100 * move.part;
+        moves.back()["kept_percent"] = 100 * move.kept;
     }
-    report.pictures["kept"].push_back({kept.back()["truth"], "The scene from the moved eye", "The last, traced anew."});
+    report.pictures["kept"].push_back({kept.back().truth, "The scene from the moved eye", "The last, traced anew."});
     report.tables.push_back({"kept",
                              "Mirror images kept as textures while the eye moves",
                              {{"percent", "eye moved by", kGeneral, "%"},
@@ -226,21 +228,18 @@ void show_kept(const Json& kept, StudyReport& report) {
                              std::move(moves)});
 }
 
-void show_search(const Json& search, StudyReport& report) {
-    report.words["search"] = Json::array();
-    if (search.is_null()) return;
-    report.words["search"].push_back({{"rays", amount(search["rays"])},
-                                      {"of", amount(search["of"])},
-                                      {"triangles", amount(search["triangles"])},
-                                      {"tree", digits(search["tree_us"])},
-                                      {"search", digits(search["search_us"])},
-                                      {"ratio", digits(search["ratio"])},
-                                      {"seconds", score(search["all_by_search_ms"].get<double>() / 1000)},
-                                      {"different", amount(search["different"])}});
+void show_search(const WhittedSearchRecord& search, StudyReport& report) {
+    report.words["search"].push_back({{"rays", amount(search.rays)},
+                                      {"of", amount(search.of)},
+                                      {"triangles", amount(search.triangles)},
+                                      {"tree", digits(search.tree_us)},
+                                      {"search", digits(search.search_us)},
+                                      {"ratio", digits(search.ratio)},
+                                      {"seconds", digits(search.all_by_search_ms / 1000)},
+                                      {"different", amount(search.different)}});
     report.sentences.push_back(
         {fmt::format("a ray: {} µs by the tree of boxes, {} µs against all {} triangles ({} rays)",
-                     digits(search["tree_us"]), digits(search["search_us"]), amount(search["triangles"]),
-                     amount(search["rays"])),
+                     digits(search.tree_us), digits(search.search_us), amount(search.triangles), amount(search.rays)),
          Shown::in_terminal});
     report.tables.push_back({"search",
                              "The same rays in other ways, without vector instructions",
@@ -251,32 +250,32 @@ void show_search(const Json& search, StudyReport& report) {
                               {"volumes", "volumes tested a ray", kSignificant},
                               {"triangles", "triangles tested a ray", kSignificant},
                               {"different", "met another place", kCount}},
-                             explained(search["ways"], kAboutSearch)});
+                             explained(search.ways, kAboutSearch)});
 }
 
 }  // namespace
 
-StudyReport whitted_report(const Json& record) {
-    const std::string title = record["scene"]["title"].get<std::string>();
-    const double undefined  = record["undefined"].get<double>();
+StudyReport whitted_report(const WhittedRecord& record) {
+    const std::string& title = record.scene.title;
     StudyReport report{.title = "Ray tracing: " + title, .page = assets::whitted_html};
     report.words = {{"title", title},
                     {"lead", lead(record)},
-                    {"method", record["method"].is_null() ? Json("none") : record["method"]},
-                    {"warnings", record["scene"]["warnings"]},
-                    {"depth", amount(record["depth"])},
-                    {"least_weight", fmt::format("{:g}", record["least_weight"].get<double>())},
-                    {"has_mirrors", !record["blind"].is_null()},
-                    {"glossy", record["glossy"]},
-                    {"undefined", undefined > 0 ? count(undefined) : ""}};
+                    {"method", record.method.value_or("none")},
+                    {"warnings", record.scene.warnings},
+                    {"depth", amount(record.depth)},
+                    {"least_weight", fmt::format("{:g}", record.least_weight)},
+                    {"has_mirrors", record.blind.has_value()},
+                    {"glossy", record.glossy},
+                    {"search", Json::array()},
+                    {"undefined", record.undefined > 0 ? amount(record.undefined) : ""}};
     show_tables(record, report);
-    show_search(record["search"], report);
-    show_kept(record["kept"], report);
+    if (record.search) show_search(*record.search, report);
+    if (record.kept) show_kept(*record.kept, report);
     show_picture(record, report);
     show_formula(record, report);
-    if (undefined > 0)
+    if (record.undefined > 0)
         report.sentences.push_back(
-            {fmt::format("S_j left undefined and taken as lit: {}", count(undefined)), Shown::in_terminal});
+            {fmt::format("S_j left undefined and taken as lit: {}", amount(record.undefined)), Shown::in_terminal});
     return report;
 }
 

@@ -111,21 +111,21 @@ Traced trace(const Study& study, Way way, AskedMethod& shadows) {
     return fastest;
 }
 
-Json counts_json(std::size_t level, const RayCounts& counts) {
-    return {{"depth", level + 1},
-            {"eye", counts.eye},
-            {"reflected", counts.reflected},
-            {"refracted", counts.refracted},
-            {"met", counts.met},
-            {"left", counts.traced() - counts.met},
-            {"shadow", counts.shadow},
-            {"total_reflections", counts.total},
-            {"too_light", counts.too_light},
-            {"too_deep", counts.too_deep}};
+WhittedDepthRecord counts_record(std::size_t level, const RayCounts& counts) {
+    return {.depth             = level + 1,
+            .eye               = counts.eye,
+            .reflected         = counts.reflected,
+            .refracted         = counts.refracted,
+            .met               = counts.met,
+            .left              = counts.traced() - counts.met,
+            .shadow            = counts.shadow,
+            .total_reflections = counts.total,
+            .too_light         = counts.too_light,
+            .too_deep          = counts.too_deep};
 }
 
 /// Rays of all depths by kind.
-Json totals_json(const RayTree& tree) {
+Members<std::uint64_t> totals(const RayTree& tree) {
     RayCounts all;
     for (const RayLevel& level : tree.levels) {
         all.eye += level.counts.eye, all.reflected += level.counts.reflected;
@@ -136,8 +136,8 @@ Json totals_json(const RayTree& tree) {
             {"met", all.met}, {"shadow", all.shadow},       {"total_reflections", all.total}};
 }
 
-Json depths_json(const Study& study, const Traced& traced, const fs::path& folder) {
-    Json depths        = Json::array();
+std::vector<WhittedDepthRecord> depth_records(const Study& study, const Traced& traced, const fs::path& folder) {
+    std::vector<WhittedDepthRecord> depths;
     const Image& whole = traced.linear;
     const Image shown  = study.shown(whole);
     for (std::size_t level = 0; level < traced.tree.levels.size(); ++level) {
@@ -146,21 +146,18 @@ Json depths_json(const Study& study, const Traced& traced, const fs::path& folde
         const Image picture    = study.shown(linear);
         const std::string file = fmt::format("depth_{}.png", depth);
         write_image(folder / file, picture);
-        Json counts       = counts_json(level, traced.tree.levels[level].counts);
-        counts["rmse"]    = number(image_error(whole, linear).rmse);
-        counts["flip"]    = number(flip_ldr(shown, picture).mean);
-        counts["picture"] = file;
-        depths.push_back(std::move(counts));
+        WhittedDepthRecord& record = depths.emplace_back(counts_record(level, traced.tree.levels[level].counts));
+        record.rmse                = image_error(whole, linear).rmse;
+        record.flip                = flip_ldr(shown, picture).mean;
+        record.picture             = file;
     }
     return depths;
 }
 
-Json phases_json(const Traced& traced) {
-    Json phases      = Json::array();
+std::vector<WhittedPhaseRecord> phase_records(const Traced& traced) {
+    std::vector<WhittedPhaseRecord> phases;
     const double all = traced.ms();
-    const auto add   = [&](const char* name, double ms) {
-        phases.push_back({{"name", name}, {"ms", number(ms)}, {"fraction", number(all > 0 ? ms / all : 0)}});
-    };
+    const auto add   = [&](const char* name, double ms) { phases.push_back({name, ms, all > 0 ? ms / all : 0}); };
     add("eye_rays", traced.eye_ms);
     add("secondary_rays", traced.tree.trace_ms);
     add("shadows", traced.tree.face_ms + traced.light.shadow_ms);
@@ -170,17 +167,17 @@ Json phases_json(const Traced& traced) {
     return phases;
 }
 
-Json way_json(Way way, const Traced& traced, const Traced& raster) {
+WhittedWayRecord way_record(Way way, const Traced& traced, const Traced& raster) {
     const ImageError error = image_error(raster.linear, traced.linear);
     std::vector<double> secondary;  // rays by depth
     for (std::size_t level = 1; level < traced.tree.levels.size(); ++level)
         secondary.push_back(static_cast<double>(traced.tree.levels[level].rays.size()));
-    return {{"name", kWayNames[static_cast<std::size_t>(way)]},
-            {"rays", traced.rays()},
-            {"ms", number(traced.ms())},
-            {"different_pixels", error.differing},
-            {"max_difference", number(error.max)},
-            {"growth", secondary.size() < 2 ? Json() : number(growth_factor(secondary))}};
+    return {.name             = std::string(kWayNames[static_cast<std::size_t>(way)]),
+            .rays             = traced.rays(),
+            .ms               = traced.ms(),
+            .different_pixels = error.differing,
+            .max_difference   = error.max,
+            .growth           = secondary.size() < 2 ? kUnknown : growth_factor(secondary)};
 }
 
 /// Whether a ray meets both triangles, or none, at one place: at an edge it may meet either neighbour.
@@ -192,12 +189,13 @@ bool same_place(const Scene& scene, const Ray& ray, TriangleId one, TriangleId o
 }
 
 /// The same rays in the ways that the lecture names, against what the search of every triangle found.
-Json search_ways_json(const Study& study, const std::vector<Ray>& sample, const std::vector<TriangleId>& by_search) {
+std::vector<WhittedSearchWayRecord> search_way_records(const Study& study, const std::vector<Ray>& sample,
+                                                       const std::vector<TriangleId>& by_search) {
     const Scene& scene = study.scene();
     const auto rays    = static_cast<double>(sample.size());
     std::vector<double> starts;
     for (const Ray& ray : sample) starts.push_back(least_distance(study.rays, ray));
-    Json ways = Json::array();
+    std::vector<WhittedSearchWayRecord> ways;
     for (const SearchWay way : kSearchWays) {
         std::optional<SpaceSearch> search;
         const double build_ms = timed_ms([&] { search.emplace(way, scene); });
@@ -209,18 +207,18 @@ Json search_ways_json(const Study& study, const std::vector<Ray>& sample, const 
         std::size_t different = 0;
         for (std::size_t k = 0; k < sample.size(); ++k)
             different += same_place(scene, sample[k], met[k], by_search[k]) ? 0 : 1;
-        ways.push_back({{"name", to_string(way)},
-                        {"build_ms", number(build_ms)},
-                        {"us", number(1000 * ms / rays)},
-                        {"volumes", number(static_cast<double>(steps.volumes) / rays)},
-                        {"triangles", number(static_cast<double>(steps.triangles) / rays)},
-                        {"different", different}});
+        ways.push_back({.name      = std::string(to_string(way)),
+                        .build_ms  = build_ms,
+                        .us        = 1000 * ms / rays,
+                        .volumes   = static_cast<double>(steps.volumes) / rays,
+                        .triangles = static_cast<double>(steps.triangles) / rays,
+                        .different = different});
     }
     return ways;
 }
 
 /// Secondary rays by the tree of boxes and against every triangle, one thread each.
-Json search_json(const Study& study, const RayTree& tree) {
+std::optional<WhittedSearchRecord> search_record(const Study& study, const RayTree& tree) {
     std::size_t all = 0;
     for (std::size_t level = 1; level < tree.levels.size(); ++level) all += tree.levels[level].rays.size();
     if (all == 0) return {};
@@ -250,15 +248,15 @@ Json search_json(const Study& study, const RayTree& tree) {
     for (std::size_t k = 0; k < sample.size(); ++k)
         different += same_place(study.scene(), sample[k], by_tree[k], by_search[k]) ? 0 : 1;
     const auto rays = static_cast<double>(sample.size());
-    return {{"triangles", triangles},
-            {"rays", sample.size()},
-            {"of", all},
-            {"tree_us", number(1000 * tree_ms / rays)},
-            {"search_us", number(1000 * search_ms / rays)},
-            {"ratio", tree_ms > 0 ? number(search_ms / tree_ms) : Json()},
-            {"all_by_search_ms", number(search_ms / rays * static_cast<double>(all))},
-            {"different", different},
-            {"ways", search_ways_json(study, sample, by_search)}};
+    return WhittedSearchRecord{.triangles        = triangles,
+                               .rays             = sample.size(),
+                               .of               = all,
+                               .tree_us          = 1000 * tree_ms / rays,
+                               .search_us        = 1000 * search_ms / rays,
+                               .ratio            = search_ms / tree_ms,
+                               .all_by_search_ms = search_ms / rays * static_cast<double>(all),
+                               .different        = different,
+                               .ways             = search_way_records(study, sample, by_search)};
 }
 
 /// Rays a pixel, black 1, white the most.
@@ -277,7 +275,8 @@ Image ray_picture(const Study& study, const RayTree& tree, double& most) {
 bool is_diffuse(const Material& material) { return material.k_d * material.O_d != vec3(0); }
 
 /// Pixel centres that lights reach over plane mirrors, orange where S_j of such a light is 0, in a dim picture.
-Json blind_json(const Study& study, AskedMethod& shadows, const Image& shown, const fs::path& folder) {
+std::optional<WhittedBlindRecord> blind_record(const Study& study, AskedMethod& shadows, const Image& shown,
+                                               const fs::path& folder) {
     const PointBatch& points              = study.prepared.points;
     const std::vector<MirrorPlane> planes = mirror_planes(study.scene());
     if (planes.empty()) return {};
@@ -303,28 +302,23 @@ Json blind_json(const Study& study, AskedMethod& shadows, const Image& shown, co
     const auto marked = [](const std::vector<std::uint8_t>& marks) {
         return static_cast<std::uint64_t>(std::ranges::count(marks, std::uint8_t{1}));
     };
-    return {{"planes", planes.size()},
-            {"points", marked(reached)},
-            {"points_in_shadow", marked(dark)},
-            {"picture", "blind.png"}};
+    return WhittedBlindRecord{planes.size(), marked(reached), marked(dark), "blind.png"};
 }
 
 /// Null where the eye sees through no surface.
-Json screen_door_json(const Study& study, const Traced& blended, AskedMethod& shadows, const Image& shown,
-                      const fs::path& folder) {
+std::optional<WhittedOtherRecord> screen_door_record(const Study& study, const Traced& blended, AskedMethod& shadows,
+                                                     const Image& shown, const fs::path& folder) {
     if (std::ranges::all_of(blended.tree.levels, [](const RayLevel& level) { return level.own.empty(); })) return {};
     const Traced traced = trace_once(study, Way::raster, shadows, Transparency::screen_door);
     const Image picture = study.shown(traced.linear);
     write_image(folder / "screen_door.png", picture);
-    return {{"rmse", number(image_error(blended.linear, traced.linear).rmse)},
-            {"flip", number(flip_ldr(shown, picture).mean)},
-            {"rays", traced.rays()},
-            {"ms", number(traced.ms())},
-            {"picture", "screen_door.png"}};
+    return WhittedOtherRecord{image_error(blended.linear, traced.linear).rmse, flip_ldr(shown, picture).mean,
+                              traced.rays(), traced.ms(), "screen_door.png"};
 }
 
 /// The picture of one eye ray a pixel, of those that the whole has. Null where it has no more.
-Json single_json(const Study& study, const Traced& traced, const Image& shown, const fs::path& folder) {
+std::optional<WhittedOtherRecord> single_record(const Study& study, const Traced& traced, const Image& shown,
+                                                const fs::path& folder) {
     if (study.side == 1) return {};
     const Image fine = gather(study.scene(), traced.tree, traced.light, study.options.depth);
     Image linear(study.width(), study.height(), fine.channels);
@@ -335,9 +329,9 @@ Json single_json(const Study& study, const Traced& traced, const Image& shown, c
     }
     const Image picture = study.shown(linear);
     write_image(folder / "single.png", picture);
-    return {{"rmse", number(image_error(traced.linear, linear).rmse)},
-            {"flip", number(flip_ldr(shown, picture).mean)},
-            {"picture", "single.png"}};
+    return WhittedOtherRecord{.rmse    = image_error(traced.linear, linear).rmse,
+                              .flip    = flip_ldr(shown, picture).mean,
+                              .picture = "single.png"};
 }
 
 /// The picture of eye rays that look from `camera`; the scene is the study's.
@@ -354,7 +348,8 @@ Traced trace_from(const Study& study, const Camera& camera, AskedMethod& shadows
 
 /// Where mirror images are kept as textures of their surfaces while the eye moves: each point of a mirror shows what it
 /// mirrored to the eye before. Sideways, by parts of the distance to the target. Null without mirrored rays.
-Json kept_mirrors_json(const Study& study, const Traced& before, AskedMethod& shadows, const fs::path& folder) {
+std::optional<std::vector<WhittedKeptRecord>> kept_records(const Study& study, const Traced& before,
+                                                           AskedMethod& shadows, const fs::path& folder) {
     if (before.tree.levels.size() < 2 || study.options.places != EyePlaces::regular) return {};
     const auto mirrored_in = [&](const Traced& traced) {
         Image all          = gather(study.scene(), traced.tree, traced.light, study.options.depth);
@@ -370,7 +365,7 @@ Json kept_mirrors_json(const Study& study, const Traced& before, AskedMethod& sh
     const Camera camera          = study.scene().camera;
     const CameraFrame& raster    = *old_points.raster;
     const dvec3 way              = glm::length(dvec3(camera.target) - dvec3(camera.eye)) * raster.right;
-    Json moves                   = Json::array();
+    std::vector<WhittedKeptRecord> moves;
     for (const double part : {0.0, 0.01, 0.03, 0.1}) {
         Camera moved             = camera;
         moved.eye                = vec3(dvec3(camera.eye) + part * way);
@@ -398,14 +393,14 @@ Json kept_mirrors_json(const Study& study, const Traced& before, AskedMethod& sh
         }
         const std::string file = fmt::format("kept_{}.png", moves.size());
         write_image(folder / file, study.shown(box_filtered(shown, study.side)));
-        moves.push_back({{"part", part},
-                         {"mirrors", of},
-                         {"kept", number(of > 0 ? static_cast<double>(known) / static_cast<double>(of) : 0)},
-                         {"rmse", number(known > 0 ? std::sqrt(squares / static_cast<double>(known)) : 0)},
-                         {"picture", file}});
+        moves.push_back({.part    = part,
+                         .mirrors = of,
+                         .kept    = of > 0 ? static_cast<double>(known) / static_cast<double>(of) : 0,
+                         .rmse    = known > 0 ? std::sqrt(squares / static_cast<double>(known)) : 0,
+                         .picture = file});
         if (moves.size() == 4) {
             write_image(folder / "moved.png", study.shown(box_filtered(truth, study.side)));
-            moves.back()["truth"] = "moved.png";
+            moves.back().truth = "moved.png";
         }
     }
     return moves;
@@ -435,7 +430,8 @@ Traced trace_formula(const Study& study, const FormulaScene& bodies) {
 }
 
 /// Null without bodies.
-Json formula_json(const Study& study, const Traced& triangles, const Image& shown, const fs::path& folder) {
+std::optional<WhittedFormulaRecord> formula_record(const Study& study, const Traced& triangles, const Image& shown,
+                                                   const fs::path& folder) {
     if (!study.options.bodies) return {};
     const Bodies& bodies = *study.options.bodies;
     std::optional<FormulaScene> scene;
@@ -447,28 +443,26 @@ Json formula_json(const Study& study, const Traced& triangles, const Image& show
     write_image(folder / "formula.png", picture);
     const ImageError error = image_error(triangles.linear, traced.linear);
     const bool sampled     = study.options.method && std::ranges::any_of(study.scene().lights, is_area, &Light::kind);
-    Json depths            = Json::array();
+    WhittedFormulaRecord record{.bodies              = {{"spheres", bodies.count(BodyKind::sphere)},
+                                                        {"boxes", bodies.count(BodyKind::box)},
+                                                        {"cylinders", bodies.count(BodyKind::cylinder)},
+                                                        {"cones", bodies.count(BodyKind::cone)},
+                                                        {"tori", bodies.count(BodyKind::torus)}},
+                                .triangles_replaced  = bodies.triangles(),
+                                .triangles_left      = study.scene().triangles.size() - bodies.triangles(),
+                                .totals              = totals(traced.tree),
+                                .totals_of_triangles = totals(triangles.tree),
+                                .rays                = traced.rays(),
+                                .build_ms            = build_ms,
+                                .ms                  = traced.ms(),
+                                .rmse                = error.rmse,
+                                .max_difference      = error.max,
+                                .flip                = flip_ldr(shown, picture).mean,
+                                .picture             = "formula.png"};
+    if (sampled) record.light_samples = kFormulaLightSamples;
     for (std::size_t level = 0; level < traced.tree.levels.size(); ++level)
-        depths.push_back(counts_json(level, traced.tree.levels[level].counts));
-    return {{"bodies",
-             {{"spheres", bodies.count(BodyKind::sphere)},
-              {"boxes", bodies.count(BodyKind::box)},
-              {"cylinders", bodies.count(BodyKind::cylinder)},
-              {"cones", bodies.count(BodyKind::cone)},
-              {"tori", bodies.count(BodyKind::torus)}}},
-            {"triangles_replaced", bodies.triangles()},
-            {"triangles_left", study.scene().triangles.size() - bodies.triangles()},
-            {"light_samples", sampled ? Json(kFormulaLightSamples) : Json()},
-            {"depths", std::move(depths)},
-            {"totals", totals_json(traced.tree)},
-            {"totals_of_triangles", totals_json(triangles.tree)},
-            {"rays", traced.rays()},
-            {"build_ms", number(build_ms)},
-            {"ms", number(traced.ms())},
-            {"rmse", number(error.rmse)},
-            {"max_difference", number(error.max)},
-            {"flip", number(flip_ldr(shown, picture).mean)},
-            {"picture", "formula.png"}};
+        record.depths.push_back(counts_record(level, traced.tree.levels[level].counts));
+    return record;
 }
 
 }  // namespace
@@ -486,7 +480,7 @@ std::string refusal_of(const MethodInfo& method) {
     return "it answers for the points of a raster alone, and what mirrors and glass show lies elsewhere";
 }
 
-Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options, const fs::path& folder) {
+WhittedRecord trace_whitted(const PreparedScene& prepared, const WhittedOptions& options, const fs::path& folder) {
     const int side = samples_along_side(options.pixel_samples);
     check_memory(prepared.scene, prepared.scene.source, prepared.points.raster->width, prepared.points.raster->height,
                  options.pixel_samples, Work::picture);
@@ -504,43 +498,37 @@ Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
     double most_rays = 0;
     write_image(folder / "rays.png", ray_picture(study, raster.tree, most_rays));
 
-    Json ways = Json::array();
+    std::vector<WhittedWayRecord> ways;
     for (const Way way : kWays) {
         study.say(fmt::format("tracing: {}", kWayNames[static_cast<std::size_t>(way)]));
-        ways.push_back(way_json(way, way == Way::raster ? raster : trace(study, way, *shadows), raster));
+        ways.push_back(way_record(way, way == Way::raster ? raster : trace(study, way, *shadows), raster));
     }
+    WhittedRecord record{.head              = head_record(options.command),
+                         .scene             = scene_record(prepared.scene),
+                         .depth             = static_cast<std::uint64_t>(options.depth),
+                         .least_weight      = options.least_weight,
+                         .pixel_samples     = static_cast<std::uint64_t>(options.pixel_samples),
+                         .pixel_places      = std::string(to_string(options.places)),
+                         .glossy            = options.glossy,
+                         .picture           = "whitted.png",
+                         .rays_picture      = "rays.png",
+                         .most_rays_a_pixel = most_rays,
+                         .undefined         = raster.light.undefined,
+                         .depths            = depth_records(study, raster, folder),
+                         .build_ms          = {rays_ms, method_ms},
+                         .total_ms          = raster.ms(),
+                         .phases            = phase_records(raster),
+                         .ways              = std::move(ways)};
+    if (options.method) record.method = options.method->text();
     study.say("testing every triangle");
-    Json search = search_json(study, raster.tree);
-    Json blind  = blind_json(study, *shadows, shown, folder);
-    Json door   = screen_door_json(study, raster, *shadows, shown, folder);
-    Json single = single_json(study, raster, shown, folder);
+    record.search      = search_record(study, raster.tree);
+    record.blind       = blind_record(study, *shadows, shown, folder);
+    record.screen_door = screen_door_record(study, raster, *shadows, shown, folder);
+    record.single      = single_record(study, raster, shown, folder);
     study.say("moving the eye");
-    Json kept = kept_mirrors_json(study, raster, *shadows, folder);
+    record.kept = kept_records(study, raster, *shadows, folder);
     if (options.bodies) study.say("tracing: formula");
-    Json formula = formula_json(study, raster, shown, folder);
-    Json record  = to_record(head_record(options.command));
-    record.update({{"scene", to_record(scene_record(prepared.scene))},
-                   {"method", options.method ? Json(options.method->text()) : Json()},
-                   {"depth", options.depth},
-                   {"least_weight", number(options.least_weight)},
-                   {"pixel_samples", options.pixel_samples},
-                   {"pixel_places", to_string(options.places)},
-                   {"glossy", options.glossy},
-                   {"picture", "whitted.png"},
-                   {"rays_picture", "rays.png"},
-                   {"most_rays_a_pixel", number(most_rays)},
-                   {"undefined", raster.light.undefined},
-                   {"depths", depths_json(study, raster, folder)},
-                   {"build_ms", {{"tree_of_boxes", number(rays_ms)}, {"method", number(method_ms)}}},
-                   {"total_ms", number(raster.ms())},
-                   {"phases", phases_json(raster)},
-                   {"ways", std::move(ways)},
-                   {"search", std::move(search)},
-                   {"blind", std::move(blind)},
-                   {"kept", std::move(kept)},
-                   {"screen_door", std::move(door)},
-                   {"single", std::move(single)},
-                   {"formula", std::move(formula)}});
+    record.formula = formula_record(study, raster, shown, folder);
     return record;
 }
 

@@ -15,6 +15,7 @@
 #include "umbra/bench/studies/light/bodies.h"
 #include "umbra/bench/studies/light/ray_tree.h"
 #include "umbra/bench/studies/study_report.h"
+#include "umbra/bench/studies/whitted/whitted_record.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -46,26 +47,11 @@ void correct_warnings(Scene& scene);
 /// what they mirrored before, and moved.png, the last of them as it should be; screen_door.png, the picture with Transparency::screen_door, where a
 /// surface is seen through; formula.png, where bodies are given, the picture in which rays meet these by formula;
 /// single.png, one of the eye rays of each pixel alone, where there are more.
-/// Returns the record, whose members whitted_report shows:
-///
-/// depths: by depth, RayCounts, `left` (met nothing), errors of depth_D.png from the picture. phases: milliseconds of
-/// the fastest run and their fractions. ways: `raster` (eye rays from the raster, rays from mirrors and glass alone),
-/// `eye_rays` (each eye ray by itself), `everywhere` (mirrored rays from every surface, too), `any_weight` (as
-/// `raster`, but no ray is too light): rays, milliseconds, pixels that differ from `raster`, by how much at most, growth:
-/// the factor by which secondary rays grow from depth to depth (growth_factor), null where they have no two depths.
-/// search: a sample of secondary rays by the tree, against every triangle, and in each SearchWay: milliseconds to build,
-/// microseconds, volumes and triangles a ray; null without secondary rays. blind:
-/// diffuse points that a light reaches over a plane mirror, those of them where its S_j is 0; null without plane
-/// mirrors. kept: by how far the eye moved (a part of its distance to the target), the fraction of mirrors' points whose
-/// mirror image was kept, and its error there (RMSE, scene-linear); null without mirrored rays. screen_door, single: that picture's errors from the whole; null where there is none. formula: bodies
-/// by kind, how many triangles they replace, RayCounts by depth, milliseconds, rays to a light with an area (null: none
-/// is asked), and the picture's errors from the whole; null without bodies.
-///
 /// Throws InputError, UsageError.
-[[nodiscard]] Json trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
-                                 const std::filesystem::path& folder);
+[[nodiscard]] WhittedRecord trace_whitted(const PreparedScene& prepared, const WhittedOptions& options,
+                                          const std::filesystem::path& folder);
 
 /// The picture by depth, rays by kind, times, and what ray tracing does not see, of the record of trace_whitted.
-[[nodiscard]] StudyReport whitted_report(const Json& record);
+[[nodiscard]] StudyReport whitted_report(const WhittedRecord& record);
 
 }  // namespace umbra

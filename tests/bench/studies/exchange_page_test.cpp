@@ -73,7 +73,7 @@ TEST(LightExchange, PageShowsTheRecord) {
                           .arrived = 0.625};
     record.scene.title = "T", record.elements = {{"lamp", "elements_1.png"}};
     StagedFiles staged;
-    write_study_page(exchange_report(record), to_record(record), folder.path(), staged);
+    write_study_page(exchange_report(record), record.head, folder.path(), staged);
     staged.commit();
     const std::string page = text_of(folder.path() / "index.html");
     EXPECT_NE(page.find(count(1234) + " patches, 2 steps, 1 % of the power unshot"), std::string::npos) << page;
@@ -85,7 +85,7 @@ TEST(LightExchange, PageShowsTheRecord) {
 
     record.unshot = {1.0, 0.9996};
     StagedFiles again;
-    write_study_page(exchange_report(record), to_record(record), folder.path(), again);
+    write_study_page(exchange_report(record), record.head, folder.path(), again);
     again.commit();
     EXPECT_NE(text_of(folder.path() / "index.html").find("2 steps, 100 % of the power unshot"), std::string::npos);
 }

@@ -190,7 +190,7 @@ TEST(ShadingStudy, TableAndPageShowTheRecord) {
     EXPECT_NE(text().find("0.12500          -   2.50"), std::string::npos) << text();
     record.models[0].highlight = 0.75;
     StagedFiles staged;
-    write_study_page(shading_report(record), to_record(record), folder.path(), staged);
+    write_study_page(shading_report(record), record.head, folder.path(), staged);
     staged.commit();
     std::ifstream in(folder.path() / "index.html");
     const std::string page{std::istreambuf_iterator<char>(in), {}};

@@ -59,7 +59,7 @@ TEST(StudyReport, CsvHasNumbersInFullAndQuotesText) {
 TEST(StudyReport, PageShowsTheSameCells) {
     const TemporaryFolder folder;
     StagedFiles staged;
-    write_study_page(known(), {{"command", "umbra known"}, {"version", "1"}}, folder.path(), staged);
+    write_study_page(known(), {.version = "1", .command = "umbra known"}, folder.path(), staged);
     staged.commit();
     const std::string page = text_of(folder.path() / "index.html");
     for (const std::string& part : std::vector<std::string>{
@@ -72,15 +72,23 @@ TEST(StudyReport, PageShowsTheSameCells) {
         EXPECT_NE(page.find(part), std::string::npos) << part << '\n' << page;
 }
 
+struct KnownRecord {
+    HeadRecord head{};
+    std::vector<std::string> csv{};
+};
+template <class Fields>
+void describe(Fields& of, Is<KnownRecord>) {
+    of.all(&KnownRecord::head);
+    of("csv", &KnownRecord::csv, "");
+}
+
 TEST(StudyReport, FolderIsReplacedAsAWholeAndNamesItsFiles) {
     const TemporaryFolder folder;
     const fs::path out = folder.path() / "out";
-    const auto make    = [](const fs::path&) {
-        return Json{{"schema", kResultsSchema}, {"version", "1"}, {"command", "umbra known"}};
-    };
-    const auto report = [](const Json&) { return known(); };
+    const auto make    = [](const fs::path&) { return KnownRecord{head_record("umbra known")}; };
+    const auto report  = [](const KnownRecord&) { return known(); };
     for (int time = 0; time < 2; ++time) {
-        const Json record = write_study(out, make, report);
+        const Json record = to_record(write_study(out, make, report));
         EXPECT_EQ(record["csv"], Json{"rays.csv"});
         EXPECT_EQ(Json::parse(text_of(out / "results.json")), record);
         EXPECT_EQ(text_of(out / "rays.csv"), table_csv(known().tables[0]));

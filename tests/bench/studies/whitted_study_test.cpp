@@ -60,6 +60,12 @@ WhittedOptions quick() {
     return options;
 }
 
+WhittedRecord typed(const Json& record) { return from_record<WhittedRecord>(parse_json(record.dump(), "record")); }
+
+Json traced(const PreparedScene& prepared, const WhittedOptions& options, const std::filesystem::path& folder) {
+    return to_record(trace_whitted(prepared, options, folder));
+}
+
 Image file_of(const TemporaryFolder& folder, const Json& name) {
     return read_image(folder.path() / name.get<std::string>()).image;
 }
@@ -70,7 +76,7 @@ double largest_difference(const Image& a, const Image& b) { return image_error(a
 TEST(WhittedStudy, RecordAndPicturesAreWhatWasTraced) {
     const TemporaryFolder folder;
     const PreparedScene prepared = prepared_mirrors();
-    const Json record            = trace_whitted(prepared, quick(), folder.path());
+    const Json record            = traced(prepared, quick(), folder.path());
 
     const Scene& scene = prepared.scene;
     const RayScene rays(scene);
@@ -124,7 +130,7 @@ TEST(WhittedStudy, WaysMakeOnePictureAndSearchFindsTheSame) {
     const TemporaryFolder folder;
     WhittedOptions options = quick();
     options.least_weight   = 0.05;  // cuts rays that are mirrored twice by glass
-    const Json record      = trace_whitted(prepared_mirrors(), options, folder.path());
+    const Json record      = traced(prepared_mirrors(), options, folder.path());
     ASSERT_EQ(record["ways"].size(), 4u);
     std::vector<double> rays;
     for (const Json& way : record["ways"]) {
@@ -157,7 +163,7 @@ TEST(WhittedStudy, WaysMakeOnePictureAndSearchFindsTheSame) {
 /// Mirror images that are kept are right where the eye has not moved, and err the more the farther it moves.
 TEST(WhittedStudy, KeptMirrorImagesErrAsTheEyeMoves) {
     const TemporaryFolder folder;
-    const Json record = trace_whitted(prepared_mirrors(), quick(), folder.path());
+    const Json record = traced(prepared_mirrors(), quick(), folder.path());
     const Json& kept  = record["kept"];
     ASSERT_EQ(kept.size(), 4u);
     EXPECT_EQ(kept[0]["rmse"], 0.0);
@@ -172,7 +178,7 @@ TEST(WhittedStudy, KeptMirrorImagesErrAsTheEyeMoves) {
 /// The square's shadow lies where the mirror sends the lamp's light: dark under S_j, and marked.
 TEST(WhittedStudy, MarksLightThatNoMethodSees) {
     const TemporaryFolder folder;
-    const Json record = trace_whitted(prepared_mirrors(), quick(), folder.path());
+    const Json record = traced(prepared_mirrors(), quick(), folder.path());
     const Json& blind = record["blind"];
     EXPECT_EQ(blind["planes"], 1);
     EXPECT_GT(blind["points"].get<int>(), blind["points_in_shadow"].get<int>());
@@ -185,7 +191,7 @@ TEST(WhittedStudy, MarksLightThatNoMethodSees) {
 
     Scene dull                = mirror_scene();
     dull.materials[1].reflect = 0;
-    const Json none           = trace_whitted(prepare_scene(std::move(dull), "dull", {}), quick(), folder.path());
+    const Json none           = traced(prepare_scene(std::move(dull), "dull", {}), quick(), folder.path());
     EXPECT_TRUE(none["blind"].is_null());
 }
 
@@ -200,7 +206,7 @@ TEST(WhittedStudy, WithoutMirrorsIsWhatRenderDraws) {
         ASSERT_TRUE(render_scene(file, render));
         WhittedOptions options = quick();
         options.pixel_samples  = samples;
-        const Json record      = trace_whitted(prepare_scene(file, {96, 54}), options, folder.path());
+        const Json record      = traced(prepare_scene(file, {96, 54}), options, folder.path());
         EXPECT_EQ(file_of(folder, record["picture"]).data, read_image(render.out).image.data) << samples;
         EXPECT_EQ(record["depths"].size(), 1u);
         EXPECT_TRUE(record["search"].is_null());
@@ -214,7 +220,7 @@ TEST(WhittedStudy, MoreRaysAPixelComeCloserToManyRays) {
     const auto picture           = [&](int samples) {
         WhittedOptions options = quick();
         options.pixel_samples  = samples;
-        return file_of(folder, trace_whitted(prepared, options, folder.path())["picture"]);
+        return file_of(folder, traced(prepared, options, folder.path())["picture"]);
     };
     const Image many = picture(64);
     const auto error = [&](int samples) {  // of pixels that show the mirror
@@ -233,7 +239,7 @@ TEST(WhittedStudy, MoreRaysAPixelComeCloserToManyRays) {
     EXPECT_LT(sixteen, 0.85 * four);
     WhittedOptions options = quick();
     options.pixel_samples  = 4;
-    EXPECT_EQ(trace_whitted(prepared, options, folder.path())["depths"][0]["eye"], 4 * 64 * 48);
+    EXPECT_EQ(traced(prepared, options, folder.path())["depths"][0]["eye"], 4 * 64 * 48);
 }
 
 TEST(WhittedStudy, WarnsOfWhatItDoesNotComputeAlone) {
@@ -263,7 +269,7 @@ TEST(WhittedStudy, ScreenDoorIsComparedWithBlending) {
                    "triangles": [[0, 1, 2]]}]})");
     WhittedOptions options;
     options.pixel_samples = 1;
-    const Json record     = trace_whitted(prepare_scene(file, {}), options, folder.path());
+    const Json record     = traced(prepare_scene(file, {}), options, folder.path());
     const Json& door      = record["screen_door"];
     ASSERT_FALSE(door.is_null());
     EXPECT_NEAR(door["rmse"].get<double>(), 0.5, 1e-6);
@@ -280,10 +286,10 @@ TEST(WhittedStudy, ScreenDoorIsComparedWithBlending) {
 TEST(WhittedStudy, SinglePictureHasOneOfThePixelsRays) {
     const TemporaryFolder folder, coarse;
     const PreparedScene prepared = prepare_scene(mirror_scene(), "mirrors", {48, 28});
-    const Json record = trace_whitted(prepared, {.method = {}, .pixel_samples = 9, .command = ""}, folder.path());
+    const Json record            = traced(prepared, {.method = {}, .pixel_samples = 9, .command = ""}, folder.path());
     ASSERT_FALSE(record["single"].is_null());
     // The middle one of nine regular places is the pixel's centre, through which the only ray of a pixel passes.
-    const Json centres = trace_whitted(prepared, {.method = {}, .pixel_samples = 1, .command = ""}, coarse.path());
+    const Json centres = traced(prepared, {.method = {}, .pixel_samples = 1, .command = ""}, coarse.path());
     EXPECT_TRUE(centres["single"].is_null());
     const Image single = read_image(folder.path() / record["single"]["picture"].get<std::string>()).image,
                 centre = read_image(coarse.path() / "whitted.png").image,
@@ -308,7 +314,7 @@ TEST(WhittedStudy, FormulaRecordAndPictureAreWhatWasTraced) {
         WhittedOptions options       = quick();
         options.bodies               = find_bodies(prepared.scene);
         if (!shadows) options.method.reset();
-        const Json record        = trace_whitted(prepared, options, folder.path());
+        const Json record        = traced(prepared, options, folder.path());
         const Json& found        = record["formula"];
         const CameraFrame raster = frame(scene.camera, 64, 48);
         const FormulaScene formula(prepared.scene, *options.bodies);
@@ -357,9 +363,9 @@ TEST(WhittedStudy, FormulaRecordAndPictureAreWhatWasTraced) {
     const PreparedScene prepared = prepare_scene(scene, "mirrors", {});
     WhittedOptions options       = quick();
     options.bodies               = find_bodies(prepared.scene);
-    EXPECT_EQ(trace_whitted(prepared, options, folder.path())["formula"]["light_samples"], kFormulaLightSamples);
+    EXPECT_EQ(traced(prepared, options, folder.path())["formula"]["light_samples"], kFormulaLightSamples);
     options.bodies.reset();
-    EXPECT_TRUE(trace_whitted(prepared, options, folder.path())["formula"].is_null());
+    EXPECT_TRUE(traced(prepared, options, folder.path())["formula"].is_null());
 }
 
 TEST(WhittedStudy, RefusesMethodsThatNeedARaster) {
@@ -451,7 +457,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
                               {"max_difference", 0.875},
                               {"flip", 0.046875},
                               {"picture", "formula.png"}};
-    const std::string text = study_text(whitted_report(record));
+    const std::string text = study_text(whitted_report(typed(record)));
     EXPECT_NE(
         text.find(
             "by formula (spheres: 31, boxes: 32, cones: 1, instead of 3301 triangles): 48.5 ms; RMSE 0.03125, FLIP 0.0469, "
@@ -474,7 +480,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
 
     const TemporaryFolder folder;
     StagedFiles staged;
-    write_study_page(whitted_report(record), record, folder.path(), staged);
+    write_study_page(whitted_report(typed(record)), typed(record).head, folder.path(), staged);
     staged.commit();
     std::ifstream in(folder.path() / "index.html");
     const std::string page{std::istreambuf_iterator<char>(in), {}};
@@ -520,7 +526,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
         nullptr,
     record["undefined"] = 0;
     StagedFiles again;
-    write_study_page(whitted_report(record), record, folder.path(), again);
+    write_study_page(whitted_report(typed(record)), typed(record).head, folder.path(), again);
     again.commit();
     std::ifstream other(folder.path() / "index.html");
     const std::string plain{std::istreambuf_iterator<char>(other), {}};
@@ -528,7 +534,7 @@ TEST(WhittedStudy, TableAndPageShowTheRecord) {
     EXPECT_EQ(plain.find("Not seen:"), std::string::npos);
     EXPECT_EQ(plain.find("Screen door"), std::string::npos);
     EXPECT_EQ(plain.find("by formula"), std::string::npos);
-    EXPECT_EQ(study_text(whitted_report(record)).find("by formula"), std::string::npos);
+    EXPECT_EQ(study_text(whitted_report(typed(record))).find("by formula"), std::string::npos);
     EXPECT_EQ(plain.find("every mirror here is perfect"), std::string::npos);
     EXPECT_EQ(plain.find("were undefined"), std::string::npos);
     EXPECT_NE(plain.find("This scene has no plane mirror."), std::string::npos);
