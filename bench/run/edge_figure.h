@@ -15,7 +15,8 @@ struct EdgeFigure {
     bool at_least = false;  ///< it counts a piece that lies beyond the reach, at an unknown distance, as the reach
 };
 
-/// The edges of one light; mean, p95 and max of a record are of the matched pieces, NaN if there are none.
+/// The edges of one light, whose record must outlive it; mean, p95 and max of a record are of the matched pieces, NaN if
+/// there are none.
 class WholeEdge {
 public:
     explicit WholeEdge(const DisplacementRecord& edges)

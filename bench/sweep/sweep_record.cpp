@@ -62,11 +62,6 @@ SweptSettingRecord setting_record(const MeasuredSetting& s, const Workload& work
     return entry;
 }
 
-std::optional<double> figure_of(const Figures& figures, std::string_view metric) {
-    const auto* figure = figures.find(metric);
-    return figure != nullptr ? *figure : std::nullopt;
-}
-
 bool may_be_on_front(const SweptSettingRecord& s, std::string_view metric) {
     return !s.excluded && s.cost_ms && figure_of(s.values, metric);
 }

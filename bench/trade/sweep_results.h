@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "umbra/bench/run/describe.h"
@@ -30,6 +31,10 @@ void describe(Fields& of, Is<Workload>) {
 }
 
 using Figures = Members<std::optional<double>>;  ///< by the names of metrics; nothing where a view was not judged
+[[nodiscard]] inline std::optional<double> figure_of(const Figures& figures, std::string_view metric) {
+    const auto* figure = figures.find(metric);
+    return figure != nullptr ? *figure : std::nullopt;
+}
 
 struct SweptViewRecord {
     std::uint64_t view = 0;

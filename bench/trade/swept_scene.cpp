@@ -31,11 +31,6 @@ std::vector<SweptMetric> shown_metrics(const SweepRecord& sweep) {
     return shown.empty() ? all : shown;
 }
 
-std::optional<double> figure_of(const Figures& figures, const std::string& metric) {
-    const auto* figure = figures.find(metric);
-    return figure != nullptr ? *figure : std::nullopt;
-}
-
 std::optional<SweptError> error_of(const SweptSettingRecord& setting, const std::string& metric) {
     std::optional<SweptError> error;
     for (const SweptViewRecord& view : setting.views) {
