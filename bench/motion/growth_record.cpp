@@ -15,8 +15,6 @@ struct TheirRatio {
 };
 constexpr TheirRatio kTheirs[] = {{512, 1.86, 3.61}, {1024, 2.85, 6.66}, {2048, 6.04, 9.89}, {4096, 23.6, 18.7}};
 
-std::vector<double> ends(const Interval& interval) { return {interval.low, interval.high}; }
-
 QuantityRecord quantity_record(const GrowthRun& run, const GrowthSeries& series, Quantity quantity) {
     QuantityRecord record{.quantity = std::string(to_string(quantity))};
     const auto fit = fit_growth(series, quantity);

@@ -3,8 +3,6 @@
 namespace umbra {
 namespace {
 
-std::vector<double> ends(const Interval& interval) { return {interval.low, interval.high}; }
-
 RatioRecord ratio_record(const Ratio& ratio) {
     RatioRecord record{.median = ratio.median, .pairs = static_cast<std::uint64_t>(ratio.pairs)};
     if (ratio.has_interval()) record.interval = ends(ratio.interval), record.coverage = ratio.coverage;

@@ -141,16 +141,4 @@ std::string first_answer_text(const FirstAnswer& a, const RecommendOptions& opti
         a.in_time ? "" : ", before all settings were looked at");
 }
 
-Json first_answer_json(const FirstAnswer& a, const RecommendOptions& options) {
-    Json bounds = Json::object();
-    for (std::size_t k = 0; k < options.limits.size(); ++k)
-        bounds[std::string(options.limits[k].metric->name)] = number(a.bounds[k]);
-    return {{"method", a.choice.text()},
-            {"cost", number(a.cost)},
-            {"bounds", std::move(bounds)},
-            {"size", {{"width", a.size.width}, {"height", a.size.height}}},
-            {"views", a.views},
-            {"in_time", a.in_time}};
-}
-
 }  // namespace umbra

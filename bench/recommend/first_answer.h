@@ -37,7 +37,4 @@ inline constexpr int kFirstViews = 3;
 /// "ray_traced: about 3.1 ms a frame ...", two lines.
 [[nodiscard]] std::string first_answer_text(const FirstAnswer& answer, const RecommendOptions& options);
 
-/// As `umbra recommend --json` has it in `first`.
-[[nodiscard]] Json first_answer_json(const FirstAnswer& answer, const RecommendOptions& options);
-
 }  // namespace umbra

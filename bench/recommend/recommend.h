@@ -149,8 +149,7 @@ struct Recommendation {
 /// Every method of the candidates, in the order in which the options name them.
 [[nodiscard]] std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options);
 
-/// As `umbra recommend --json` prints it, and in words.
-[[nodiscard]] Json recommendation_json(const Recommendation& r, const RecommendOptions& options);
+/// In words; as a record: recommendation_record.h.
 [[nodiscard]] std::string recommendation_text(const Recommendation& r, const RecommendOptions& options);
 
 }  // namespace umbra

@@ -1,4 +1,4 @@
-// A recommendation as JSON and in words.
+// A recommendation in words.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,74 +13,10 @@ namespace {
 
 std::string counted_views(std::size_t n) { return counted(static_cast<double>(n), "view"); }
 
-Json optional_number(const std::optional<double>& value) { return value ? number(*value) : Json(); }
-
-std::optional<double> largest(const Metric& metric, const std::vector<Cell>& views) {
-    std::optional<double> most;
-    for (const Cell& cell : views) {
-        const auto value = metric_value(metric, cell);
-        if (!value) return std::nullopt;
-        most = std::max(most.value_or(*value), *value);
-    }
-    return most;
-}
-
 /// "1 view that was chosen on", "5 views that were chosen on", and what follows.
 std::string chosen_on(std::size_t views, std::string_view one, std::string_view more) {
     return fmt::format("{} that {} chosen on{}", counted_views(views), views == 1 ? "was" : "were",
                        views == 1 ? one : more);
-}
-
-/// In how many of the cells a metric is at most `bound`. One that is only known to be at least something is not.
-std::size_t held(const Metric& metric, const std::vector<Cell>& cells, double bound) {
-    return static_cast<std::size_t>(std::ranges::count_if(cells, [&](const Cell& cell) {
-        const auto value = metric_value(metric, cell);
-        return value && *value <= bound && !is_at_least(metric, cell);
-    }));
-}
-
-Json beyond_json(const Beyond& beyond) {
-    return {{"view", beyond.view}, {"metric", beyond.metric->name}, {"error", optional_number(beyond.error)}};
-}
-
-Json candidate_json(const Candidate& c, const RecommendOptions& options) {
-    Json errors = Json::object();
-    for (std::size_t k = 0; k < options.limits.size(); ++k) {
-        const Limit& limit                      = options.limits[k];
-        errors[std::string(limit.metric->name)] = {{"limit", limit.most},
-                                                   {"largest", optional_number(largest(*limit.metric, c.views))},
-                                                   {"bound", optional_number(c.bounds[k])}};
-    }
-    return {{"method", c.choice.text()},
-            {"cost", optional_number(c.cost)},
-            {"views", c.views.size()},
-            {"errors", std::move(errors)},
-            {"beyond", c.beyond ? beyond_json(*c.beyond) : Json()},
-            {"undefined", number(most_undefined(c.views))}};
-}
-
-Json method_json(const TriedMethod& m, const Recommendation& r, const RecommendOptions& options) {
-    Json entry = {
-        {"method", m.info->name}, {"settings", m.settings}, {"looked_at", m.looked_at}, {"passed_over", m.passed_over},
-        {"within", m.within},     {"best", nullptr},        {"factor", nullptr},        {"unfit", nullptr}};
-    if (!m.candidate) return entry;
-    const Candidate& c = r.candidates[*m.candidate];
-    entry["best"]      = candidate_json(c, options);
-    if (c.unfit.empty())
-        entry["factor"] = number(c.worst_ratio(options.limits));
-    else
-        entry["unfit"] = c.unfit;
-    return entry;
-}
-
-Json rival_json(const Rival& rival, const Recommendation& r, const RecommendOptions& options) {
-    Json entry          = candidate_json(r.candidates[rival.candidate], options);
-    const Ratio& ratio  = rival.ratio;
-    const auto bound    = [&](double value) { return ratio.has_interval() ? number(value) : Json(); };
-    entry["cost_ratio"] = {{"median", number(ratio.median)},     {"low", bound(ratio.interval.low)},
-                           {"high", bound(ratio.interval.high)}, {"rounds", ratio.pairs},
-                           {"coverage", ratio.coverage},         {"differs", rival.differs}};
-    return entry;
 }
 
 std::string with_unit(double value, std::string_view unit) {
@@ -90,7 +26,7 @@ std::string with_unit(double value, std::string_view unit) {
 
 /// ", largest 0.02"; nothing where the metric of some view is unknown.
 std::string largest_in_words(const Metric& metric, const std::vector<Cell>& views, std::string_view before) {
-    const auto most = largest(metric, views);
+    const auto most = largest_value(metric, views);
     if (!most) return {};
     const bool or_more = std::ranges::any_of(views, [&](const Cell& cell) { return is_at_least(metric, cell); });
     return fmt::format("{} {}{}", before, or_more ? "at least " : "", with_unit(*most, metric.unit));
@@ -235,80 +171,6 @@ std::string staircase_in_words(const Recommendation& r, const RecommendOptions& 
 }
 
 }  // namespace
-
-Json recommendation_json(const Recommendation& r, const RecommendOptions& options) {
-    Json record = {{"recommendation", nullptr},
-                   {"tied", Json::array()},
-                   {"runner_up", nullptr},
-                   {"cheapest", nullptr},
-                   {"exact", nullptr},
-                   {"nearest", nullptr},
-                   {"undecided", Json::array()},
-                   {"staircase", Json::array()},
-                   {"methods", Json::array()},
-                   {"dropped", Json::array()},
-                   {"not_compared", Json::array()}};
-    if (r.chosen) {
-        Json chosen   = candidate_json(r.candidates[*r.chosen], options);
-        Json held_out = {{"views", r.held_out.size()}, {"holds", Json::object()}, {"largest", Json::object()}};
-        for (std::size_t k = 0; k < options.limits.size(); ++k) {
-            const Metric& metric                        = *options.limits[k].metric;
-            held_out["holds"][std::string(metric.name)] = held(metric, r.held_out, *r.candidates[*r.chosen].bounds[k]);
-            held_out["largest"][std::string(metric.name)] = optional_number(largest(metric, r.held_out));
-        }
-        const std::size_t tried  = r.dropped.size() + 1;
-        held_out["beyond"]       = 0;
-        held_out["share_beyond"] = share_beyond(static_cast<int>(r.held_out.size()), tried);
-        held_out["confidence"]   = kConfidence;
-        held_out["tried"]        = tried;
-        chosen["held_out"]       = std::move(held_out);
-        record["recommendation"] = std::move(chosen);
-    }
-    for (const std::size_t k : r.undecided) record["undecided"].push_back(candidate_json(r.candidates[k], options));
-    for (const TriedMethod& m : tried_methods(r, options)) record["methods"].push_back(method_json(m, r, options));
-    for (const Rival& rival : r.tied) record["tied"].push_back(rival_json(rival, r, options));
-    for (const Rival& rival : r.untold) record["not_compared"].push_back(rival_json(rival, r, options));
-    for (const Dropped& d : r.dropped) {
-        record["dropped"].push_back(candidate_json(r.candidates[d.candidate], options));
-        record["dropped"].back()["beyond"] = beyond_json(d.beyond);
-    }
-    if (r.runner_up) record["runner_up"] = rival_json(*r.runner_up, r, options);
-    if (r.cheapest) record["cheapest"] = rival_json(*r.cheapest, r, options);
-    if (r.exact) record["exact"] = rival_json(*r.exact, r, options);
-    if (r.nearest) {
-        record["nearest"]           = candidate_json(r.candidates[*r.nearest], options);
-        record["nearest"]["factor"] = number(r.candidates[*r.nearest].worst_ratio(options.limits));
-    }
-    for (const Step& step : r.staircase)
-        record["staircase"].push_back({{"error", number(step.error)},
-                                       {"method", r.candidates[step.candidate].choice.text()},
-                                       {"cost", optional_number(r.candidates[step.candidate].cost)}});
-    Json unfit = Json::array(), candidates = Json::array();
-    for (const Candidate& c : r.candidates) {
-        if (!c.unfit.empty())
-            unfit.push_back({{"method", c.choice.text()}, {"why", c.unfit}});
-        else
-            candidates.push_back(candidate_json(c, options));
-    }
-    record["unfit"]      = std::move(unfit);
-    record["candidates"] = std::move(candidates);
-    Json passed_over     = Json::array();
-    for (const PassedOver& p : r.passed_over)
-        passed_over.push_back({{"method", p.choice.text()},
-                               {"cheaper", r.candidates[p.candidate].choice.text()},
-                               {"cost_ratio", number(p.ratio)}});
-    record["passed_over"] = std::move(passed_over);
-    Json unasked          = Json::array();
-    for (const MethodChoice& choice : r.unasked) unasked.push_back(choice.text());
-    record["unasked"]   = std::move(unasked);
-    record["workload"]  = to_text(options.workload);
-    record["views"]     = options.views;
-    record["size"]      = {{"width", r.size.width}, {"height", r.size.height}};
-    record["settings"]  = {{"looked_at", r.looked_at}, {"of", r.settings}};
-    record["noise_bar"] = number(r.noise_bar);
-    record["kept_in"]   = options.kept_in.empty() ? Json() : Json(options.kept_in);
-    return record;
-}
 
 std::string recommendation_text(const Recommendation& r, const RecommendOptions& options) {
     std::string text;

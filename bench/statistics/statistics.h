@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace umbra {
 
@@ -14,6 +15,8 @@ namespace umbra {
 struct Interval {
     double low = 0, high = 0;
 };
+/// As records have it: low, high.
+[[nodiscard]] inline std::vector<double> ends(const Interval& interval) { return {interval.low, interval.high}; }
 
 /// What an interval states at least: the probability with which it holds the true value.
 inline constexpr double kCoverage = 0.95;

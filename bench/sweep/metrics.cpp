@@ -152,6 +152,16 @@ std::optional<double> metric_value(const Metric& metric, const Cell& cell) {
     return metric.kind == Kind::rms ? std::sqrt(sum / points) : sum / points;
 }
 
+std::optional<double> largest_value(const Metric& metric, std::span<const Cell> views) {
+    std::optional<double> largest;
+    for (const Cell& cell : views) {
+        const auto value = metric_value(metric, cell);
+        if (!value) return std::nullopt;
+        largest = std::max(largest.value_or(*value), *value);
+    }
+    return largest;
+}
+
 bool is_at_least(const Metric& metric, const Cell& cell) {
     if (metric.of_edge == nullptr) return false;
     return std::ranges::any_of(cell.method.errors, [&](Error error) {

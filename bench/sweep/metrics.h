@@ -42,6 +42,9 @@ struct Metric {
 /// reference that names the class, no edge there.
 [[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Cell& cell);
 
+/// The largest of the views; nothing where one was not judged, or where there is none.
+[[nodiscard]] std::optional<double> largest_value(const Metric& metric, std::span<const Cell> views);
+
 /// Whether the value is the least that it may be: shadow edges lie beyond the reach in which they are looked for.
 [[nodiscard]] bool is_at_least(const Metric& metric, const Cell& cell);
 

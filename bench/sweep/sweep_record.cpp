@@ -23,16 +23,6 @@ SweptViewRecord view_record(const Cell& cell) {
     return view;
 }
 
-std::optional<double> worst_of(const Metric& metric, std::span<const Cell> views) {
-    std::optional<double> worst;
-    for (const Cell& cell : views) {
-        const auto value = metric_value(metric, cell);
-        if (!value) return std::nullopt;
-        worst = std::max(worst.value_or(*value), *value);
-    }
-    return worst;
-}
-
 SweptSettingRecord setting_record(const MeasuredSetting& s, const Workload& workload) {
     const MethodRecord& first = s.views.front().method;
     const auto preset         = preset_of(s.choice);
@@ -56,7 +46,7 @@ SweptSettingRecord setting_record(const MeasuredSetting& s, const Workload& work
     if (!why.empty()) entry.excluded = std::move(why);
     for (const Cell& cell : s.views) entry.views.push_back(view_record(cell));
     for (const Metric& m : metrics()) {
-        entry.values(m.name) = worst_of(m, s.views);
+        entry.values(m.name) = largest_value(m, s.views);
         entry.bounds(m.name) = upper_bound(m, s.views);
     }
     return entry;

@@ -451,7 +451,7 @@ TEST_F(Cli, ListPrintsTheSchemasOfRecords) {
     std::ifstream in(file("schemas/results.json"));
     const std::string compared{std::istreambuf_iterator<char>(in), {}};
     EXPECT_TRUE(umbra::fits(umbra("list --schema results").output, compared));
-    for (const char* other : {"ladders", "motion", "growth"})
+    for (const char* other : {"ladders", "motion", "growth", "sweep", "recommend"})
         EXPECT_FALSE(umbra::fits(umbra(fmt::format("list --schema {}", other)).output, compared)) << other;
     EXPECT_EQ(umbra("list --schema colours").exit_code, 64);
 }

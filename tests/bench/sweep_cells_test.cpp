@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "made_cell.h"
-#include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/recommend/recommendation_record.h"
 #include "umbra/bench/run/outcome.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/content_key.h"
@@ -701,7 +701,7 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
     EXPECT_EQ(r.settings, 5u);
     EXPECT_LT(r.looked_at, 5u);
     EXPECT_EQ(r.held_out.size(), 1u);
-    const Json json = recommendation_json(r, o);
+    const Json json = to_record(recommendation_record(r, o));
     EXPECT_EQ(json["recommendation"]["method"], r.candidates[*r.chosen].choice.text());
     EXPECT_LE(json["recommendation"]["errors"]["rmse"]["bound"].get<double>(), 0.9);
     EXPECT_GE(json["recommendation"]["errors"]["rmse"]["bound"].get<double>(),
@@ -735,7 +735,7 @@ TEST(Recommend, TakesTheCheapestWithinTheLimits) {
     const Recommendation none = recommend(lab, lab, o);
     EXPECT_FALSE(none.chosen.has_value());
     ASSERT_TRUE(none.nearest.has_value());
-    EXPECT_TRUE(recommendation_json(none, o)["recommendation"].is_null());
+    EXPECT_TRUE(to_record(recommendation_record(none, o))["recommendation"].is_null());
     EXPECT_NE(recommendation_text(none, o).find("No setting stays within the limits."), std::string::npos);
 }
 
@@ -760,7 +760,7 @@ TEST(Recommend, PassesOverWhatTheReferenceOutdoes) {
     EXPECT_EQ(r.looked_at, 2u);
     EXPECT_EQ(r.settings, 3u);
     EXPECT_FALSE(lab.has_cell(o.choices[1], 0));
-    const Json json = recommendation_json(r, o);
+    const Json json = to_record(recommendation_record(r, o));
     EXPECT_EQ(json["passed_over"].at(0).at("method"), "shadow_zbuffer:resolution=8192");
     EXPECT_EQ(json["passed_over"].at(0).at("cheaper"), "exact");
     EXPECT_NE(recommendation_text(r, o).find("shadow_zbuffer:resolution=8192  not looked at: one run costs "),

@@ -11,12 +11,12 @@
 #include <utility>
 
 #include "made_cell.h"
-#include "umbra/bench/recommend/first_answer.h"
-#include "umbra/bench/recommend/recommend.h"
+#include "umbra/bench/recommend/recommendation_record.h"
 #include "umbra/bench/sweep/bounds.h"
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
+#include "umbra/tests/support/json_schema.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -252,7 +252,7 @@ TEST_F(RecommendByHand, TheCheapestWithinTheLimitsItsRivalsAndTheStaircase) {
     }
 
     // Of two further views one is within the bound of 0.008.
-    const Json json = recommendation_json(r, o_), &chosen = json["recommendation"];
+    const Json json = to_record(recommendation_record(r, o_)), &chosen = json["recommendation"];
     EXPECT_EQ(chosen["held_out"]["views"], 2);
     EXPECT_EQ(chosen["held_out"]["holds"]["rmse"], 1);
     EXPECT_EQ(chosen["held_out"]["largest"]["rmse"], 0.0095);
@@ -265,6 +265,7 @@ TEST_F(RecommendByHand, TheCheapestWithinTheLimitsItsRivalsAndTheStaircase) {
     EXPECT_NEAR(json["runner_up"]["cost_ratio"]["low"].get<double>(), 2, 1e-12);
     EXPECT_EQ(json["runner_up"]["cost_ratio"]["rounds"], 6);
     EXPECT_EQ(json["runner_up"]["cost_ratio"]["coverage"], 31.0 / 32);
+    EXPECT_TRUE(fits(recommendation_schema().dump(), json.dump()));
     const std::string words = recommendation_text(r, o_);
     EXPECT_EQ(
         words.substr(0, words.find("  Next")),
@@ -288,7 +289,7 @@ TEST_F(RecommendByHand, WhatIsBeyondALimitInAFurtherViewIsDropped) {
     EXPECT_EQ(r.dropped[0].beyond.view, 3);
     EXPECT_EQ(r.dropped[0].beyond.error, 0.05);
     EXPECT_EQ(text(r, r.runner_up->candidate), "brute_force") << "what is dropped is no rival";
-    const Json json = recommendation_json(r, o_), &held = json["recommendation"]["held_out"];
+    const Json json = to_record(recommendation_record(r, o_)), &held = json["recommendation"]["held_out"];
     EXPECT_EQ(held["tried"], 2);
     EXPECT_EQ(held["views"], 2);
     EXPECT_NEAR(held["share_beyond"].get<double>(), 1 - std::sqrt(0.025), 1e-12);
@@ -350,7 +351,7 @@ TEST_F(RecommendByHand, WhatAViewRulesOutIsLookedAtInNoOther) {
                              "    cascaded_maps       0.900 ms  rmse at most 0.4: 40 times a limit\n",
                              "  7 of 7 settings were looked at, in up to 2 views of 16 x 9 pixels each.\n"})
         EXPECT_NE(words.find(line), std::string::npos) << line << words;
-    const Json json = recommendation_json(r, o_);
+    const Json json = to_record(recommendation_record(r, o_));
     const auto entry =
         std::ranges::find_if(json["candidates"], [](const Json& c) { return c["method"] == "filtered_map"; });
     EXPECT_EQ((*entry)["views"], 1);
@@ -379,7 +380,7 @@ TEST_F(RecommendByHand, TheReferenceIsTriedOnNoFurtherView) {
                          "  It is the reference: further views would compare it with itself.\n"),
               std::string::npos)
         << words;
-    EXPECT_EQ(recommendation_json(r, o_)["recommendation"]["held_out"]["views"], 0);
+    EXPECT_EQ(to_record(recommendation_record(r, o_))["recommendation"]["held_out"]["views"], 0);
 }
 
 TEST_F(RecommendByHand, WhereAllAreDroppedNothingIsChosen) {
@@ -387,7 +388,7 @@ TEST_F(RecommendByHand, WhereAllAreDroppedNothingIsChosen) {
     EXPECT_FALSE(r.chosen.has_value());
     EXPECT_EQ(r.dropped.size(), 1u);
     EXPECT_EQ(r.dropped[0].beyond.view, 2) << "the view behind it was not needed";
-    EXPECT_TRUE(recommendation_json(r, o_)["recommendation"].is_null());
+    EXPECT_TRUE(to_record(recommendation_record(r, o_))["recommendation"].is_null());
     EXPECT_TRUE(
         recommendation_text(r, o_).starts_with("No setting stays within the limits.\n  Dropped: ray_traced (1.000 ms), "
                                                "within the limits in the views that were "
@@ -415,7 +416,7 @@ TEST_F(RecommendByHand, WithoutFurtherViewsNothingIsSaidOfThem) {
     o_.held_out            = 0;
     const Recommendation r = recommended(four_methods());
     ASSERT_TRUE(r.chosen.has_value());
-    EXPECT_EQ(recommendation_json(r, o_)["recommendation"]["held_out"]["share_beyond"], 1.0);
+    EXPECT_EQ(to_record(recommendation_record(r, o_))["recommendation"]["held_out"]["share_beyond"], 1.0);
     const std::string words = recommendation_text(r, o_);
     EXPECT_NE(
         words.find("    rmse: bound 0.008 from 2 views that were chosen on, their largest 0.008; limit 0.01\n  It "
@@ -480,7 +481,7 @@ TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
     with_edge(1, kUnknown, 100);
     o_.limits                         = {parse_limit("edge_displacement_px.max=40")};
     r.candidates.at(*r.chosen).bounds = {12.0};
-    const Json held                   = recommendation_json(r, o_)["recommendation"]["held_out"];
+    const Json held                   = to_record(recommendation_record(r, o_))["recommendation"]["held_out"];
     EXPECT_EQ(held["holds"]["edge_displacement_px.max"], 1);
     EXPECT_EQ(held["largest"]["edge_displacement_px.max"], 8);
     const Metric& metric = find_metric("edge_displacement_px.max");
@@ -515,7 +516,7 @@ TEST_F(RecommendByHand, EveryMethodThatWasTriedHasALine) {
                              "  Costs that differ by less than 10 % are not told apart on this machine now.\n",
                              "  6 of 6 settings were looked at, in up to 2 views of 16 x 9 pixels each.\n"})
         EXPECT_NE(words.find(line), std::string::npos) << line << words;
-    const Json json = recommendation_json(r, o_);
+    const Json json = to_record(recommendation_record(r, o_));
     ASSERT_EQ(json["methods"].size(), 5u);
     EXPECT_EQ(json["methods"][0]["best"]["method"], "shadow_zbuffer");
     EXPECT_NEAR(json["methods"][0]["factor"].get<double>(), 2, 1e-9);
@@ -531,7 +532,7 @@ TEST_F(RecommendByHand, TheBoundIsJudgedNotTheLargestView) {
     EXPECT_FALSE(r.chosen.has_value()) << "both views are within 0.01";
     ASSERT_TRUE(r.nearest.has_value());
     EXPECT_NEAR(r.candidates[*r.nearest].worst_ratio(o_.limits), 1.6155, 1e-3);
-    EXPECT_EQ(recommendation_json(r, o_)["nearest"]["errors"]["rmse"]["largest"], 0.009);
+    EXPECT_EQ(to_record(recommendation_record(r, o_))["nearest"]["errors"]["rmse"]["largest"], 0.009);
 }
 
 TEST_F(RecommendByHand, TheNearestMissesByTheSmallestFactor) {
@@ -541,7 +542,7 @@ TEST_F(RecommendByHand, TheNearestMissesByTheSmallestFactor) {
     EXPECT_FALSE(r.chosen.has_value());
     ASSERT_TRUE(r.nearest.has_value());
     EXPECT_EQ(text(r, *r.nearest), "ray_traced");
-    EXPECT_NEAR(recommendation_json(r, o_)["nearest"]["factor"].get<double>(), 2, 1e-9);
+    EXPECT_NEAR(to_record(recommendation_record(r, o_))["nearest"]["factor"].get<double>(), 2, 1e-9);
     EXPECT_TRUE(r.held_out.empty());
 }
 
@@ -553,7 +554,7 @@ TEST_F(RecommendByHand, EachLimitIsOfItsOwnMetric) {
                                           {"ray_traced", {0.009, 0.009, 0.009, 0.009}, {0, 0, 0, 9}, kDrift, 100}});
     ASSERT_TRUE(r.chosen.has_value());
     EXPECT_EQ(text(r, *r.chosen), "ray_traced");
-    const Json errors = recommendation_json(r, o_)["recommendation"]["errors"];
+    const Json errors = to_record(recommendation_record(r, o_))["recommendation"]["errors"];
     EXPECT_EQ(errors["rmse"]["largest"], 0.009);
     EXPECT_EQ(errors["rmse"]["limit"], 0.01);
     EXPECT_EQ(errors["interior"]["largest"], 0.0001);
@@ -597,7 +598,7 @@ TEST_F(RecommendByHand, OneRunOfEachHasNoInterval) {
                                          std::numeric_limits<double>::infinity());
     EXPECT_TRUE(r.tied.empty());
     ASSERT_EQ(r.untold.size(), 2u);
-    const Json json = recommendation_json(r, o_);
+    const Json json = to_record(recommendation_record(r, o_));
     EXPECT_TRUE(json["tied"].empty());
     EXPECT_TRUE(json["not_compared"][0]["cost_ratio"]["low"].is_null());
     EXPECT_TRUE(json["not_compared"][0]["cost_ratio"]["high"].is_null());
@@ -636,7 +637,7 @@ TEST_F(RecommendByHand, NothingIsChosenBelowALoudNoiseBar) {
     EXPECT_FALSE(r.nearest.has_value());
     EXPECT_EQ(r.undecided.size(), 2u);
     EXPECT_TRUE(r.held_out.empty());
-    const Json json = recommendation_json(r, o_);
+    const Json json = to_record(recommendation_record(r, o_));
     EXPECT_TRUE(json["recommendation"].is_null());
     EXPECT_EQ(json["undecided"].size(), 2u);
     EXPECT_EQ(recommendation_text(r, o_).substr(0, 18), "Nothing is chosen:");
@@ -807,7 +808,7 @@ TEST_F(FirstAnswerByHand, TheRecommendationHasErrorsOfSmallPicturesAndCostsOfWho
     ASSERT_TRUE(r.exact.has_value());
     EXPECT_EQ(*r.candidates[r.exact->candidate].cost, 216);
     EXPECT_EQ(r.exact->ratio.median, 12);
-    EXPECT_EQ(recommendation_json(r, o_)["size"], (Json{{"width", 8}, {"height", 5}}));
+    EXPECT_EQ(to_record(recommendation_record(r, o_))["size"], (Json{{"width", 8}, {"height", 5}}));
 }
 
 TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {
@@ -833,7 +834,7 @@ TEST_F(FirstAnswerByHand, IsTheCheapestWithinTheLimits) {
     EXPECT_EQ(first_answer_text(*answer, o_),
               "Provisional: shadow_zbuffer, about 6 ms a frame with camera=2,light=1,object=0\n"
               "  rmse at most 0.005, by 3 views of 8 x 5 pixels; the final answer follows.\n");
-    const Json json = first_answer_json(*answer, o_);
+    const Json json = to_record(first_answer_record(*answer, o_));
     EXPECT_EQ(json["method"], "shadow_zbuffer");
     EXPECT_EQ(json["cost"], 6.0);
     EXPECT_EQ(json["views"], 3);

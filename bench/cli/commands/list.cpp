@@ -11,6 +11,7 @@
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/motion/growth_record.h"
 #include "umbra/bench/motion/motion_record.h"
+#include "umbra/bench/recommend/recommendation_record.h"
 #include "umbra/bench/run/results.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/sweep_record.h"
@@ -113,11 +114,9 @@ int list_one(const std::string& name, bool as_json) {
         fmt::format("\"{}\" is not a method, ladder or canonical scene{}", name, did_you_mean(name, known)));
 }
 
-const std::map<std::string, Json (*)()> kSchemas = {{"results", results_schema},
-                                                    {"ladders", ladders_schema},
-                                                    {"motion", motion_schema},
-                                                    {"growth", growth_schema},
-                                                    {"sweep", sweep_schema}};
+const std::map<std::string, Json (*)()> kSchemas = {{"results", results_schema}, {"ladders", ladders_schema},
+                                                    {"motion", motion_schema},   {"growth", growth_schema},
+                                                    {"sweep", sweep_schema},     {"recommend", recommendation_schema}};
 
 int list(const ListLine& line) {
     if (!line.schema.empty()) {
@@ -134,10 +133,11 @@ Action list_command(CLI::App& app, const Common& /*common*/) {
     app.add_option("NAME", line->name, "A method, ladder or canonical scene to show in full, or metrics")
         ->type_name("");
     app.add_flag("--json", line->as_json, "Print JSON");
-    app.add_option("--schema", line->schema,
-                   "Print the JSON Schema of results.json as compare, ladder, motion, growth or sweep writes it")
+    app.add_option(
+           "--schema", line->schema,
+           "Print the JSON Schema of results.json as compare, ladder, motion, growth or sweep writes it, or of recommend --json")
         ->check(CLI::IsMember(kSchemas))
-        ->type_name("results|ladders|motion|growth|sweep");
+        ->type_name("results|ladders|motion|growth|sweep|recommend");
     return [line] { return list(*line); };
 }
 

@@ -1,4 +1,4 @@
-#include "umbra/bench/recommend/first_answer.h"
+#include "umbra/bench/recommend/recommendation_record.h"
 
 #include <fmt/format.h>
 
@@ -64,9 +64,9 @@ int recommend(RecommendLine line, const Common& common) {
     const Recommendation found = recommend(small, lab, options);
     terminal.reset();
     if (line.as_json) {
-        Json record     = recommendation_json(found, options);
-        record["first"] = first ? first_answer_json(*first, options) : Json();
-        print_out("{}", json_text(record));
+        RecommendationRecord record = recommendation_record(found, options);
+        if (first) record.first = first_answer_record(*first, options);
+        print_out("{}", json_text(to_record(record)));
     } else {
         print_out("{}", without_controls(recommendation_text(found, options)));
     }
