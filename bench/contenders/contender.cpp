@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// S_j from a file: one a scene's raster.
-class Answers final : public Method {
+class AnswersMethod final : public Method {
 public:
-    Answers(fs::path file, Measure measure) : file_(std::move(file)), measure_(measure) {}
+    AnswersMethod(fs::path file, Measure measure) : file_(std::move(file)), measure_(measure) {}
     [[nodiscard]] Service serves(const SceneFacts&) const override {
         return {How::approximately, fmt::format("its answers are those of the file {}", file_.filename().string())};
     }
@@ -128,7 +128,7 @@ const MethodInfo& answers_method(const NamedAnswers& given) {
                          .by_default   = false,
                          .needs_raster = true,
                          .create       = [file, measure](const Settings&) -> std::unique_ptr<const Method> {
-                     return std::make_unique<Answers>(file, measure);
+                     return std::make_unique<AnswersMethod>(file, measure);
                  },
                          .outside  = "file of answers",
                          .is_timed = false};

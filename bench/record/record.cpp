@@ -7,8 +7,8 @@
 namespace umbra {
 
 std::string text_of(const Scalar& value) {
-    const Json json = record_parts::write(value);
-    return json.is_string() ? json.get<std::string>() : json.dump();
+    const Json written = record_parts::write(value);
+    return written.is_string() ? written.get<std::string>() : written.dump();
 }
 
 namespace record_parts {
@@ -38,10 +38,10 @@ Json rooted(std::string_view title, Json root, Definitions definitions) {
         root                   = definitions.named[name];
         definitions.named.erase(name);
     }
-    Json json = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", title}};
-    for (auto& [key, value] : root.items()) json[key] = value;
-    if (!definitions.named.empty()) json["definitions"] = std::move(definitions.named);
-    return json;
+    Json schema = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", title}};
+    for (auto& [key, value] : root.items()) schema[key] = value;
+    if (!definitions.named.empty()) schema["definitions"] = std::move(definitions.named);
+    return schema;
 }
 
 }  // namespace record_parts

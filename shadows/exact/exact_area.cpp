@@ -46,7 +46,7 @@ constexpr std::uint64_t kStepsOfPoint = 20, kRationalSteps = 300;
 /// In half axes: narrower gaps join what they part, and corners less far from a line lie on it.
 constexpr double kNarrow = 1e-9;
 
-double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
+double turn(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
 
 /// Outlines of the area under trapezoids, which come row by row from bottom to top, each row from left to right.
 ///
@@ -114,7 +114,7 @@ private:
 /// Twice the area; negative where the outline goes clockwise.
 double twice_area(const std::vector<dvec2>& outline) {
     double sum = 0;
-    for (std::size_t k = 0; k < outline.size(); ++k) sum += cross(outline[k], outline[(k + 1) % outline.size()]);
+    for (std::size_t k = 0; k < outline.size(); ++k) sum += turn(outline[k], outline[(k + 1) % outline.size()]);
     return sum;
 }
 
@@ -127,7 +127,7 @@ std::vector<dvec2> corners_of(std::vector<dvec2> outline) {
     for (const dvec2 p : outline) {
         for (; corners.size() >= 2; corners.pop_back()) {
             const dvec2 a = corners[corners.size() - 2];
-            if (std::abs(cross(corners.back() - a, p - a)) > kNarrow * glm::length(p - a)) break;
+            if (std::abs(turn(corners.back() - a, p - a)) > kNarrow * glm::length(p - a)) break;
         }
         corners.push_back(p);
     }
