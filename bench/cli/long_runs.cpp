@@ -55,24 +55,36 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
         options.progress = [&](const std::string& what) { terminal.progress(what); };
         options.warn     = [&](const std::string& what) { terminal.warn(what); };
         options.add_page = write_scene_page;
-        // Whatever happens to this run, the first page fits the folders beside it.
-        options.scene_done = [&] {
+        // Whatever happens to this run, the first page fits the folders beside it; and it shows the scenes that are done,
+        // in a twentieth of the time at most.
+        using Clock            = std::chrono::steady_clock;
+        const fs::path first   = options.out / "index.html";
+        Clock::time_point next = Clock::now();
+        options.scene_done     = [&, next]() mutable {
+            const Clock::time_point begun = Clock::now();
+            if (begun < next && links_hold(first)) return;
             try {
-                if (!links_hold(options.out / "index.html")) write_report({options.out}, options.out, {});
+                write_report({options.out}, options.out, {.language = output.language});
             } catch (const InputError&) {  // an older result beside is not readable
             }
+            next = Clock::now() + 20 * (Clock::now() - begun);
         };
         done = compare_scenes(files, options);
     }
     std::vector<fs::path> folders;
     for (const std::string& name : done.names) folders.push_back(options.out / name);
-    if (!folders.empty()) {
-        folders.insert(folders.end(), output.also.begin(), output.also.end());
-        write_report(folders, options.out, {.failed = done.failed, .language = output.language});
+    const auto write_pages = [&] {
+        if (!done.names.empty())
+            write_report(folders, options.out, {.failed = done.failed, .language = output.language});
+    };
+    write_pages();
+    if (output.then) {
+        for (fs::path& folder : output.then()) folders.push_back(std::move(folder));
+        write_pages();
     }
     if (output.as_json)
         for (const std::string& name : done.names) print_out("{}", bytes_of(options.out / name / "results.json"));
-    else if (!common.quiet && !folders.empty())
+    else if (!common.quiet && !done.names.empty())
         print_out("{}\n", (options.out / "index.html").string());
     for (const std::string& message : done.failed) print_error("{}\n", message);
     for (const std::string& message : done.stopped) print_error("{}\n", message);

@@ -9,6 +9,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "umbra/bench/cli/long_runs.h"
+#include "umbra/bench/out/files.h"
+#include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/image/image_io.h"
 #include "umbra/tests/support/json_schema.h"
@@ -451,6 +454,30 @@ TEST_F(Compare, ScenesOfOneNameHaveFoldersOfTheirOwn) {
               (std::vector<std::string>{"lamp_over_box", "lamp_over_box-2"}));
     EXPECT_TRUE(fs::exists(options_.out / "lamp_over_box-2/results.json"));
     EXPECT_THROW((void)compare_scenes({scene_, scene_}, options_), UsageError);
+}
+
+/// Whoever waits for the ladders of a report can read its scenes.
+TEST_F(Compare, PagesOfAllScenesAreThereBeforeWhatFollows) {
+    const fs::path first = options_.out / "index.html";
+    const auto linked    = [&](const char* scene) {
+        return bytes_of(first).find(fmt::format("href=\"{}/index.html\"", scene)) != std::string::npos;
+    };
+    options_.methods = {"ray_traced"};
+    int asked        = 0;
+    const auto then  = [&]() -> std::vector<fs::path> {
+        ++asked;
+        EXPECT_TRUE(linked("lamp_over_box"));
+        EXPECT_TRUE(linked("lamp_over_box-2"));
+        EXPECT_TRUE(links_hold(first));
+        return {};
+    };
+    fs::create_directories(folder_ / "other");
+    fs::copy_file(scene_, folder_ / "other/lamp_over_box.json");
+    Common common;
+    common.quiet = true;
+    compare_on_terminal({scene_, folder_ / "other/lamp_over_box.json"}, options_, common, {.then = then});
+    EXPECT_EQ(asked, 1);
+    EXPECT_TRUE(linked("lamp_over_box-2"));
 }
 
 TEST(ParseSize, TakesSizesOnly) {

@@ -131,29 +131,34 @@ std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& commo
     return folders;
 }
 
-/// All canonical scenes, all ladders, the trade on some scenes, and studies of the lectures' other topics.
+/// All canonical scenes, and then all ladders, the trade on some scenes, and studies of the lectures' other topics.
 int run_everything(const fs::path& out, Language language, const Budget& budget, const std::vector<MethodChoice>& with,
                    const Common& common) {
-    LadderOptions ladders;
-    ladders.out             = out / "ladders";
-    ladders.only_by_default = true;
-    ladders.budget          = budget;
-    const bool climbed      = climb_on_terminal(ladders, common).failed.empty();
-    SweepOptions sweep      = canonical_sweep(out / "trade");
-    sweep.plan.budget       = budget;
-    std::vector<fs::path> also{ladders.out};
-    bool swept = true;
-    if (!sweep.plan.scenes.empty()) {
-        swept = sweep_on_terminal(sweep, common).failed.empty();
-        also.push_back(sweep.out);
-    }
-    Terminal(common.quiet).progress("experiments of the lectures");
-    also.push_back(out / "lectures");
-    const auto experiments_failed = draw_experiments(also.back(), scenes_folder(), "umbra report");
-    for (const ListedFailureRecord& failed : experiments_failed)
-        print_error("{}: {}: {}\n", failed.scene, failed.method, failed.failure.message);
-    int studies_failed = 0;
-    for (fs::path& folder : study_on_terminal(out, common, studies_failed)) also.push_back(std::move(folder));
+    bool whole      = true;
+    const auto then = [&] {
+        LadderOptions ladders;
+        ladders.out             = out / "ladders";
+        ladders.only_by_default = true;
+        ladders.budget          = budget;
+        whole                   = climb_on_terminal(ladders, common).failed.empty();
+        std::vector<fs::path> folders{ladders.out};
+        SweepOptions sweep = canonical_sweep(out / "trade");
+        sweep.plan.budget  = budget;
+        if (!sweep.plan.scenes.empty()) {
+            whole = sweep_on_terminal(sweep, common).failed.empty() && whole;
+            folders.push_back(sweep.out);
+        }
+        Terminal(common.quiet).progress("experiments of the lectures");
+        folders.push_back(out / "lectures");
+        for (const ListedFailureRecord& failed : draw_experiments(folders.back(), scenes_folder(), "umbra report")) {
+            print_error("{}: {}: {}\n", failed.scene, failed.method, failed.failure.message);
+            whole = false;
+        }
+        int failed = 0;
+        for (fs::path& folder : study_on_terminal(out, common, failed)) folders.push_back(std::move(folder));
+        whole = whole && failed == 0;
+        return folders;
+    };
     CompareOptions options;
     options.out           = out;
     options.pixel_samples = kPictureSamples;
@@ -161,9 +166,9 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
     options.with          = with;
     // A canonical scene without its mesh, which set-up could not fetch, is skipped with a message: that is no failure.
     const ScenesDone done =
-        compare_on_terminal(compared_scenes(), options, common, {.also = also, .language = language});
+        compare_on_terminal(compared_scenes(), options, common, {.then = then, .language = language});
     const int code = exit_code(done);
-    if (!climbed || !swept || !experiments_failed.empty() || studies_failed > 0) return kInternal;
+    if (!whole) return kInternal;
     return code == kDone && done.names.empty() ? kUnreadable : code;
 }
 
