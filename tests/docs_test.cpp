@@ -162,6 +162,29 @@ TEST(Docs, TheCommandsPageHasEveryCommand) {
     EXPECT_EQ(shown, listed);
 }
 
+/// "FILE: PATH" for each path below core, shadows or bench that a comment names and that does not exist.
+std::vector<std::string> lost_paths(const fs::path& top) {
+    static const std::regex path(R"((?:^|[^\w/])((?:core|shadows|bench)/[a-z0-9_/]+\.(?:h|cpp|def)))");
+    std::vector<std::string> lost;
+    for (const char* folder : {"core", "shadows", "bench"})
+        for (const auto& entry : fs::recursive_directory_iterator(top / folder)) {
+            if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+            for (const std::string& line : lines_of(entry.path())) {
+                const std::size_t comment = line.find("//");
+                std::smatch found;
+                if (comment == std::string::npos) continue;
+                const std::string words = line.substr(comment + 2);
+                if (std::regex_search(words, found, path) && !fs::exists(top / found[1].str()))
+                    lost.push_back(
+                        fmt::format("{}: {}", fs::relative(entry.path(), top).generic_string(), found[1].str()));
+            }
+        }
+    std::ranges::sort(lost);
+    return lost;
+}
+
+TEST(Docs, FilesThatCommentsNameExist) { EXPECT_EQ(lost_paths(UMBRA_TOP), std::vector<std::string>()); }
+
 TEST(Docs, PlantedFaultsAreFound) {
     const TemporaryFolder top;
     (void)top.write("README.md", "# Top\n");
@@ -171,7 +194,10 @@ TEST(Docs, PlantedFaultsAreFound) {
         "[out](https://example.org/x.md#y)\n```cpp\n[&](int)\n```\n    [&](long)\n");
     (void)top.write("docs/a.md", "# What the times are, and whom they favour\n[gone](b.md), [`c`](../core/c.h)\n");
     (void)top.write("docs/lost.md", "[none](a.md#none)\n");
-    (void)top.write("core/c.h", "");
+    (void)top.write("core/c.h", "// As bench/a.h says, and core/c.h.\n#include \"core/d.h\"\n");
+    (void)top.write("bench/e.cpp", "int x;  ///< (core/c.h)\n");
+    fs::create_directories(top.path() / "shadows");
+    EXPECT_EQ(lost_paths(top.path()), (std::vector<std::string>{"core/c.h: bench/a.h"}));
     EXPECT_EQ(faults_of_links(top.path()),
               (std::vector<std::string>{"docs/a.md: link to docs/b.md, which does not exist",
                                         "docs/lost.md: no chain of links from docs/README.md leads here",

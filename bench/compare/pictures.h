@@ -17,7 +17,7 @@ namespace umbra {
 [[nodiscard]] Image difference_picture(const PointBatch& points, LightId light, const VisibilityPlane& plane,
                                        const VisibilityPlane& reference);
 
-/// Each wrong point in the colour of its class (bench/error_palette.h); what is right in a grey that shows the
+/// Each wrong point in the colour of its class (bench/pages/error_palette.h); what is right in a grey that shows the
 /// reference's S_j. Points that the light is behind are dark, undefined ones hatched, no surface: dark blue.
 [[nodiscard]] Image class_picture(const PointBatch& points, const ClassPlane& classes,
                                   const VisibilityPlane& reference);

@@ -1,7 +1,7 @@
 // Ladders: families of scenes over one extreme, in geometric steps from harmless to absurd.
 //
 // A ladder is one function and one line in ladders.def, or a file (ladder_file.h). On each rung `exact` is the truth; a method breaks at the first
-// rung where its interior errors exceed a stated fraction (bench/ladder_run.h).
+// rung where its interior errors exceed a stated fraction (bench/ladders/ladder_run.h).
 #pragma once
 
 #include <functional>

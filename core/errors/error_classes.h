@@ -12,7 +12,7 @@
 namespace umbra {
 
 /// Two planes tell whether a point is wrong, which way, and whether it lies in the edge band. Why it is wrong takes the
-/// scene and the triangles that the methods hold responsible: core/error_causes.h turns the general class of an
+/// scene and the triangles that the methods hold responsible: core/errors/error_causes.h turns the general class of an
 /// interior error, `false_shadow` and `false_light`, into the special one.
 enum class ErrorClass : std::uint8_t {
     no_surface,        ///< the eye ray met nothing

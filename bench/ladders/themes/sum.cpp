@@ -87,7 +87,7 @@ Scene spot_scene(double n) {
 
 constexpr std::array kDistances = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
 
-/// The most that f_att may be, where it is not limited to 1 (core/lights.h).
+/// The most that f_att may be, where it is not limited to 1 (core/scene/lights.h).
 constexpr double kMostAttenuation = 1e30;
 
 Scene near_light_scene(double distance) {
