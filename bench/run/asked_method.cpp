@@ -7,7 +7,7 @@
 namespace umbra {
 
 AskedMethod::AskedMethod(const Scene& scene, const SceneFacts& facts, const std::optional<MethodChoice>& choice)
-    : scene_(&scene), is_coloured_(facts.has_coloured_filters) {
+    : scene_(&scene) {
     if (!choice) return;
     work_.emplace(*choice, scene, facts);
     work_->build();

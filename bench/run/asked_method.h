@@ -33,7 +33,6 @@ public:
 private:
     const Scene* scene_;
     std::optional<MethodAtWork> work_;
-    bool is_coloured_;  ///< S_j has three channels
     std::size_t asked_ = 0;
 };
 
