@@ -55,11 +55,6 @@ std::string Field::required_text() const {
     return s;
 }
 
-std::string Field::scalar() const {
-    if (value_ && value_->is_structured()) refuse("a string, a number, true or false");
-    return !value_ ? "" : value_->is_string() ? value_->get<std::string>() : value_->dump();
-}
-
 std::variant<bool, std::int64_t, double, std::string> Field::scalar_value() const {
     if (!value_) return std::string();
     if (value_->is_string()) return value_->get<std::string>();

@@ -27,7 +27,6 @@ public:
 
     [[nodiscard]] std::string text() const;           ///< empty where absent
     [[nodiscard]] std::string required_text() const;  ///< neither absent nor empty
-    [[nodiscard]] std::string scalar() const;         ///< a string as it is, a number or a boolean as JSON writes it
     [[nodiscard]] std::variant<bool, std::int64_t, double, std::string> scalar_value() const;  ///< "" where absent
     [[nodiscard]] Json json() const;  ///< whatever it is; null where absent
     [[nodiscard]] std::optional<double> number() const;

@@ -33,12 +33,6 @@ void MethodAtWork::set(const MethodChoice& choice) {
     is_warm_ = false;
 }
 
-MethodAtWork MethodAtWork::sibling(const MethodChoice& choice) const {
-    MethodAtWork other = *this;
-    other.set(choice);
-    return other;
-}
-
 void MethodAtWork::forget_build() {
     forget_look();
     forget_aims();

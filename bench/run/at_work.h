@@ -32,9 +32,6 @@ public:
     /// Another setting of the same method. What the phases before the first changed one made stays.
     void set(const MethodChoice& choice);
 
-    /// The same scene under another setting of the same method, which shares what both settings have in common.
-    [[nodiscard]] MethodAtWork sibling(const MethodChoice& choice) const;
-
     [[nodiscard]] const MethodChoice& choice() const { return choice_; }
     [[nodiscard]] const Method& method() const { return *method_; }
     [[nodiscard]] Service service() const { return verdict(*method_, *facts_); }
