@@ -59,7 +59,7 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
         // in a twentieth of the time at most.
         using Clock            = std::chrono::steady_clock;
         const fs::path first   = options.out / "index.html";
-        Clock::time_point next = Clock::now();
+        Clock::time_point next = Clock::now() + std::chrono::seconds(5);  // a short run writes its pages at its end
         options.scene_done     = [&, next]() mutable {
             const Clock::time_point begun = Clock::now();
             if (begun < next && links_hold(first)) return;
