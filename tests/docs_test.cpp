@@ -171,12 +171,11 @@ std::vector<std::string> lost_paths(const fs::path& top) {
             if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
             for (const std::string& line : lines_of(entry.path())) {
                 const std::size_t comment = line.find("//");
-                std::smatch found;
                 if (comment == std::string::npos) continue;
                 const std::string words = line.substr(comment + 2);
-                if (std::regex_search(words, found, path) && !fs::exists(top / found[1].str()))
-                    lost.push_back(
-                        fmt::format("{}: {}", fs::relative(entry.path(), top).generic_string(), found[1].str()));
+                for (std::sregex_iterator at(words.begin(), words.end(), path), end; at != end; ++at)
+                    if (const std::string named = (*at)[1].str(); !fs::exists(top / named))
+                        lost.push_back(fmt::format("{}: {}", fs::relative(entry.path(), top).generic_string(), named));
             }
         }
     std::ranges::sort(lost);
@@ -194,7 +193,7 @@ TEST(Docs, PlantedFaultsAreFound) {
         "[out](https://example.org/x.md#y)\n```cpp\n[&](int)\n```\n    [&](long)\n");
     (void)top.write("docs/a.md", "# What the times are, and whom they favour\n[gone](b.md), [`c`](../core/c.h)\n");
     (void)top.write("docs/lost.md", "[none](a.md#none)\n");
-    (void)top.write("core/c.h", "// As bench/a.h says, and core/c.h.\n#include \"core/d.h\"\n");
+    (void)top.write("core/c.h", "// As core/c.h says, and bench/a.h.\n#include \"core/d.h\"\n");
     (void)top.write("bench/e.cpp", "int x;  ///< (core/c.h)\n");
     fs::create_directories(top.path() / "shadows");
     EXPECT_EQ(lost_paths(top.path()), (std::vector<std::string>{"core/c.h: bench/a.h"}));
