@@ -11,23 +11,28 @@ constexpr double kNormalError = 0x1p-20;  ///< a rounded unit normal is off by l
 
 }  // namespace
 
-SilhouetteEdges::SilhouetteEdges(const Occluders& occluders)
-    : occluders_(occluders),
-      tree_(find_candidates()),
-      cones_(tree_.summaries([&](std::uint32_t e) { return cone_of(edges_[e]); }, NormalCone::joined)) {}
+SilhouetteEdges::SilhouetteEdges(const Occluders& occluders) : occluders_(occluders), tree_(find_candidates()) {
+    std::vector<CandidateEdge> ordered;
+    ordered.reserve(edges_.size());
+    for (const std::uint32_t e : tree_.renumber()) ordered.push_back(edges_[e]);
+    edges_ = std::move(ordered);
+    cones_ = tree_.summaries([&](std::uint32_t e) { return cone_of(edges_[e]); }, NormalCone::joined);
+}
 
 /// Fills `edges_`, and returns the edges' boxes.
 std::vector<Box> SilhouetteEdges::find_candidates() {
     std::vector<Box> boxes;
     for (std::size_t e = 0; e < occluders_.edges.size(); ++e) {
         CandidateEdge edge{occluders_.edges[e]};
+        edge.at = occluders_.position(edge.a);
         for (std::uint32_t k = 0; edge.count <= 2 && k < edge.count; ++k) {
-            const auto corner = [&](int c) { return occluders_.scene.vertex(uses(edge)[k].triangle, c); };
-            edge.normal[k]    = normal_unless_thin(corner(0), corner(1), corner(2));
+            const PackedUse use = uses(edge)[k];
+            const auto corner   = [&](int c) { return occluders_.scene.vertex(use.triangle, c); };
+            edge.normal[k]      = turned(normal_unless_thin(corner(0), corner(1), corner(2)), use);
         }
         if (edge.count == 2 && continue_each_other(edge)) continue;
         edges_.push_back(edge);
-        boxes.push_back(extend(extend(Box{}, occluders_.position(edge.a)), occluders_.position(edge.b)));
+        boxes.push_back(extend(extend(Box{}, edge.at), occluders_.position(edge.b)));
     }
     return boxes;
 }
@@ -38,7 +43,7 @@ bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge) const {
     const TriangleId first = uses(edge)[0].triangle, second = uses(edge)[1].triangle;
     const bool alike = uses(edge)[0].forward != uses(edge)[1].forward;
     const bool thin  = edge.normal[0] == vec3(0) || edge.normal[1] == vec3(0);
-    if (!thin && (glm::dot(edge.normal[0], edge.normal[1]) > 0) != alike) return false;
+    if (!thin && glm::dot(edge.normal[0], edge.normal[1]) > 0) return false;
     int opposite  = 0;
     const uvec3 v = occluders_.corners[second];
     while (v[opposite] == edge.a || v[opposite] == edge.b) ++opposite;
@@ -54,21 +59,27 @@ bool SilhouetteEdges::continue_each_other(const CandidateEdge& edge) const {
 }
 
 NormalCone SilhouetteEdges::cone_of(const CandidateEdge& edge) const {
-    const vec3 &n = edge.normal[0], &m = edge.normal[1];
-    if (edge.count != 2 || n == vec3(0) || m == vec3(0)) return {};
-    const bool alike = uses(edge)[0].forward != uses(edge)[1].forward;
-    return NormalCone::joined(NormalCone::around(n, 0), NormalCone::around(alike ? m : -m, 0));
+    if (edge.count != 2 || edge.normal[0] == vec3(0) || edge.normal[1] == vec3(0)) return {};
+    // Turned back, so that neighbours of one winding have one direction.
+    const PackedUse first = uses(edge)[0];
+    return NormalCone::joined(NormalCone::around(turned(edge.normal[0], first), 0),
+                              NormalCone::around(-turned(edge.normal[1], first), 0));
 }
 
 int SilhouetteEdges::change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const {
-    const Entries d    = viewpoint.point().to(occluders_.position(edge.a));
-    const double sure  = kNormalError * largest(d.value) + 4 * d.error;
-    const vec3* normal = edge.count <= 2 ? edge.normal : nullptr;  // of the next triangle
-    return change_of(uses(edge), [&](TriangleId t) {
-        const double over = normal != nullptr ? glm::dot(d.value, dvec3(*normal++)) : 0;
-        if (t == viewpoint.own()) return 0;
-        return std::abs(over) > sure ? (over > 0 ? 1 : -1) : viewpoint.side_of(t);
-    });
+    const Entries d   = viewpoint.point().to(edge.at);
+    const double sure = kNormalError * largest(d.value) + 4 * d.error;
+    int change        = 0;
+    for (std::uint32_t k = 0; k < edge.count; ++k) {
+        const PackedUse use = uses(edge)[k];
+        const double over   = edge.count <= 2 ? glm::dot(d.value, dvec3(edge.normal[k])) : 0;
+        if (use.triangle == viewpoint.own()) continue;
+        if (std::abs(over) > sure)
+            change += over > 0 ? 1 : -1;
+        else
+            change += use.forward != 0 ? viewpoint.side_of(use.triangle) : -viewpoint.side_of(use.triangle);
+    }
+    return change;
 }
 
 void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,
@@ -88,33 +99,27 @@ void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space
     tree_.visit(region, enter, take);
 }
 
-/// Whether the edge's two triangles surely cancel for all points at most `around` from this one in every coordinate.
-bool SilhouetteEdges::cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const {
-    if (edge.count != 2) return false;
-    const Entries d   = viewpoint.point().to(occluders_.position(edge.a));
-    const double sure = kNormalError * (largest(d.value) + around) + 4 * d.error;
-    int change        = 0;
-    for (std::uint32_t k = 0; k < 2; ++k) {
-        const dvec3 n(edge.normal[k]);
-        const double over = glm::dot(d.value, n);
-        if (!(std::abs(over) > sure + around * sum_of_magnitudes(n))) return false;
-        change += (over > 0) == (uses(edge)[k].forward != 0) ? 1 : -1;
-    }
-    return change == 0;
-}
-
 bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, BoxTree::Region region, double around, std::size_t most,
                                     EdgeGroup& group) const {
     group.origin = viewpoint.point().rounded();
     group.edges.clear();
     // From a point p + d the light lies in p's region moved by at most d.
     region.slack += around;
-    const double far = 1.75 * around;  // more than the root of three
+    const double far   = 1.75 * around;  // more than the root of three
+    const double slack = 4 * viewpoint.point().slack() + 2 * kNormalError * around + far;
+    // Whether the edge's two triangles surely cancel for all these points. Twice the normals' error is more than that
+    // and the rounding of d.
+    const auto cancels = [&](const CandidateEdge& edge) {
+        const dvec3 d     = dvec3(edge.at) - group.origin;
+        const double sure = 2 * kNormalError * largest(d) + slack;
+        const double one = glm::dot(d, dvec3(edge.normal[0])), other = glm::dot(d, dvec3(edge.normal[1]));
+        return edge.count == 2 && std::min(one, other) < -sure && std::max(one, other) > sure;
+    };
     const auto enter = [&](std::uint32_t node, const Box& box) {
         return !cones_[node].one_sided(box, region.from, far);
     };
     tree_.visit(region, enter, [&](std::uint32_t e) {
-        if (!cancels_around(viewpoint, edges_[e], around)) group.edges.push_back(e);
+        if (!cancels(edges_[e])) group.edges.push_back(e);
         return group.edges.size() <= most;
     });
     const std::size_t n = group.edges.size();
@@ -126,11 +131,10 @@ bool SilhouetteEdges::gather_around(const Viewpoint& viewpoint, BoxTree::Region 
     };
     for (std::size_t e = 0; e < n; ++e) {
         const CandidateEdge& edge = edges_[group.edges[e]];
-        put(group.a, e, vec3(dvec3(occluders_.position(edge.a)) - group.origin));
+        put(group.a, e, vec3(dvec3(edge.at) - group.origin));
         put(group.b, e, vec3(dvec3(occluders_.position(edge.b)) - group.origin));
-        const bool two = edge.count == 2;
-        put(group.first, e, two ? turned(edge.normal[0], uses(edge)[0]) : vec3(0));
-        put(group.second, e, two ? turned(edge.normal[1], uses(edge)[1]) : vec3(0));
+        put(group.first, e, edge.normal[0]);
+        put(group.second, e, edge.normal[1]);
     }
     return true;
 }

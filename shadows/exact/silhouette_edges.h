@@ -21,7 +21,8 @@ namespace umbra::exact_visibility {
 
 /// An edge that may be a silhouette edge.
 struct CandidateEdge : Edge {
-    vec3 normal[2]{vec3(0), vec3(0)};  ///< where it has one triangle or two: normal_unless_thin
+    vec3 at{0};                        ///< a
+    vec3 normal[2]{vec3(0), vec3(0)};  ///< where it has one triangle or two: normal_unless_thin, turned
 };
 
 /// A candidate and its change as the point sees it with the world's orientation. Not 0.
@@ -75,10 +76,9 @@ private:
     [[nodiscard]] bool continue_each_other(const CandidateEdge& edge) const;
     [[nodiscard]] NormalCone cone_of(const CandidateEdge& edge) const;
     [[nodiscard]] int change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const;
-    [[nodiscard]] bool cancels_around(const Viewpoint& viewpoint, const CandidateEdge& edge, double around) const;
 
     const Occluders& occluders_;
-    std::vector<CandidateEdge> edges_{};
+    std::vector<CandidateEdge> edges_{};  ///< in the order of the tree
     BoxTree tree_;                   ///< of the edges
     std::vector<NormalCone> cones_;  ///< one a node: normals of its triangles, so turned that the two of an edge see
                                      ///< the point from one side unless it is a silhouette edge

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -82,6 +83,15 @@ public:
             for (std::uint32_t k = 1; k < node.count; ++k) all[n] = join(all[n], of(order_[node.first + k]));
         }
         return all;
+    }
+
+    /// Numbers the items in the order of the leaves, so that what lies together is numbered so. What they were before,
+    /// by their new numbers.
+    [[nodiscard]] std::vector<Item> renumber() {
+        std::vector<Item> before(order_.size());
+        std::iota(before.begin(), before.end(), Item{0});
+        before.swap(order_);
+        return before;
     }
 
     [[nodiscard]] std::size_t memory_bytes() const {
