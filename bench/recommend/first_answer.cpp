@@ -37,6 +37,18 @@ public:
     [[nodiscard]] bool is_over() const { return Clock::now() >= until_; }
     [[nodiscard]] const std::optional<FirstAnswer>& best() const { return best_; }
 
+    /// Settings that earlier questions have looked at, the cheapest first, up to an answer.
+    void look_at_kept(std::span<const Family> families) {
+        std::vector<std::pair<double, const MethodChoice*>> kept;
+        for (const Family& family : families)
+            for (const MethodChoice& choice : family.settings)
+                if (!choice.info->reference && coarse_.spent_on(choice) > 0 && coarse_.has_cell(choice, 0))
+                    if (const auto few = coarse_.price(choice)) kept.emplace_back(scaled_cost(*few), &choice);
+        std::ranges::stable_sort(kept, {}, [](const auto& one) { return one.first; });
+        for (const auto& [cost, choice] : kept)
+            if (is_over() || take_if_within(*choice, cost)) return;
+    }
+
     /// The next setting of a family: each costs more than those before it, and errs less. What it costs; nothing where
     /// no further one of the family can be the answer.
     [[nodiscard]] std::optional<double> look_at(const MethodChoice& choice) {
@@ -51,13 +63,19 @@ private:
     [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice) {
         const std::optional<RunTimes> few = coarse_.price(choice);
         if (!few) return std::nullopt;
-        const Size small = coarse_.size(), large = whole_.size();
-        const double more =
-            static_cast<double>(large.width) * large.height / (static_cast<double>(small.width) * small.height);
-        if (more * few->all() > kLongMs) return price_ms(options_.workload, *few, more);
+        if (more_points() * few->all() > kLongMs) return scaled_cost(*few);
         if (const double least = price_ms(options_.workload, *few); best_ && least >= best_->cost) return least;
         const std::optional<RunTimes> all = whole_.price(choice);
         return all ? std::optional(price_ms(options_.workload, *all)) : std::nullopt;
+    }
+
+    /// Of a whole picture, for one of a coarse one.
+    [[nodiscard]] double more_points() const {
+        const Size small = coarse_.size(), large = whole_.size();
+        return static_cast<double>(large.width) * large.height / (static_cast<double>(small.width) * small.height);
+    }
+    [[nodiscard]] double scaled_cost(const RunTimes& few) const {
+        return price_ms(options_.workload, few, more_points());
     }
 
     /// Whether it is within the limits; then it is the best so far.
@@ -65,6 +83,7 @@ private:
         std::vector<Cell> cells;
         for (int view = 0; view < kFirstViews; ++view) {
             if (is_the_reference(choice, cells)) break;
+            if (view > 0 && is_over()) return false;
             cells.push_back(coarse_.cell(choice, view));
             if (!why_unfit({&cells.back(), 1}).empty()) return false;
             for (const Limit& limit : options_.limits) {
@@ -105,6 +124,9 @@ Size first_size(const Size& whole, std::span<const Limit> limits) {
 std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const RecommendOptions& options,
                                         double seconds) {
     FirstSearch search(coarse, whole, options, seconds);
+    std::vector<Family> all = families(options.choices);
+    search.look_at_kept(all);
+    const bool is_kept = search.best().has_value();
     struct Line {
         Family family;
         bool other;            ///< than the reference
@@ -112,12 +134,12 @@ std::optional<FirstAnswer> first_answer(SceneLab& coarse, SceneLab& whole, const
         std::size_t next = 0;
     };
     std::vector<Line> lines;
-    for (Family& family : families(options.choices)) {
+    for (Family& family : all) {
         const bool other = !family.settings.front().info->reference;
         lines.push_back({std::move(family), other});
     }
     // Always where the last one was cheapest: what costs a lot is looked at if nothing that costs little is an answer.
-    while (!lines.empty() && !search.is_over()) {
+    while (!is_kept && !lines.empty() && !search.is_over()) {
         const auto line = std::ranges::min_element(lines, {}, [](const Line& l) { return std::pair(l.other, l.last); });
         const auto cost = search.look_at(line->family.settings[line->next]);
         if (cost && ++line->next < line->family.settings.size())

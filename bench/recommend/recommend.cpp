@@ -64,7 +64,8 @@ public:
 
     /// The settings that may be the answer, of each family those up to the first within the limits, and the reference,
     /// which comes first: others are passed over by what is within the limits and costs far less. Always the family
-    /// whose setting before ran the shortest, so that what takes long is left where the time is up.
+    /// whose setting before ran the shortest, so that what takes long is left where the time is up. What was looked at
+    /// for an earlier question comes before all others, and the time that it took is spent.
     void look_at_families() {
         struct Line {
             const Family* family;
@@ -77,15 +78,18 @@ public:
         result_.unasked.clear();
         const auto method_of = [](const Line& l) { return l.family->settings.front().info; };
         const auto start     = std::chrono::steady_clock::now();
+        const double before  = result_.candidates.empty() ? look_at_kept() : 0;  // behind a drop: anew
         if (options_.first && known(*options_.first) == kNone) look(*options_.first);
         while (!lines.empty()) {
             const auto line = std::ranges::min_element(
                 lines, {}, [&](const Line& l) { return std::pair(!method_of(l)->reference, l.ran_ms); });
             const std::vector<MethodChoice>& settings = line->family->settings;
             const std::span left                      = std::span(settings).subspan(line->next);
-            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            const auto begin                          = std::chrono::steady_clock::now();
             const std::size_t k                       = known(left.front());
-            if (k == kNone && spent.count() > (has_cheap_answer() ? 1 : kPatience) * options_.seconds) {
+            const bool is_late                        = has_cheap_answer() ? before + since(start) > options_.seconds
+                                                                           : since(start) > kPatience * options_.seconds;
+            if (k == kNone && is_late) {
                 result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
             } else if (const auto by = passed_over_by(left.front())) {
                 for (const MethodChoice& choice : left)  // each costs more than those before it
@@ -96,8 +100,10 @@ public:
                 for (Line& other : lines)
                     if (other.next == 0 && method_of(other) == method_of(*line))
                         other.ran_ms = other.ran_ms > 0 ? std::min(other.ran_ms, line->ran_ms) : line->ran_ms;
+                if (k == kNone) small_.spend_on(left.front(), since(begin));
                 continue;
             }
+            if (k == kNone && !is_late) small_.spend_on(left.front(), since(begin));
             lines.erase(line);
         }
         result_.looked_at = result_.candidates.size();
@@ -217,6 +223,24 @@ private:
         return kNone;
     }
 
+    /// Settings that earlier questions have looked at, the cheapest first; those that cost far more than an answer are left. The
+    /// seconds that they have spent on all settings.
+    double look_at_kept() {
+        std::vector<std::pair<double, const MethodChoice*>> kept;
+        double spent = 0;
+        for (const Family& family : families_)
+            for (const MethodChoice& choice : family.settings) {
+                const double seconds = small_.spent_on(choice);
+                spent += seconds;
+                if (seconds > 0 && known(choice) == kNone && small_.has_cell(choice, 0))
+                    kept.emplace_back(price(choice).value_or(0), &choice);
+            }
+        std::ranges::stable_sort(kept, {}, [](const auto& one) { return one.first; });
+        for (const auto& [ms, choice] : kept)
+            if (!passed_over_by(*choice)) look(*choice);
+        return spent;
+    }
+
     std::size_t look(const MethodChoice& choice) {
         if (options_.progress) options_.progress(choice.text());
         Candidate c{choice, {}, false, {}, {}, {}, {}, {}, {}};
@@ -300,6 +324,10 @@ private:
     [[nodiscard]] std::optional<double> price(const MethodChoice& choice, int runs = 1) {
         const std::optional<RunTimes> times = small_.price(choice, runs);
         return times ? std::optional(price_ms(options_.workload, *times, more_points_)) : std::nullopt;
+    }
+
+    [[nodiscard]] static double since(std::chrono::steady_clock::time_point start) {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
 
     /// Whether only rounding can make it err.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "umbra/bench/compare/record.h"
@@ -69,9 +70,15 @@ std::string CellView::what_truth_depends_on() const {
                          code_of_truth(options_.reference)});
 }
 
-std::string CellView::key(const MethodChoice& choice) const {
-    return combined_key({"cell", what_truth_depends_on(), fmt::format("{}", kCellNoiseRuns), all_settings(choice),
-                         code_key(*choice.info)});
+bool CellView::tells_noise(const MethodChoice& choice) const {
+    return options_.tells_noise || choice.info->seed.empty() ||
+           std::ranges::none_of(own_->scene().lights, [](const Light& light) { return is_area(light.kind); });
+}
+
+std::string CellView::key(const MethodChoice& choice, bool tells_noise) const {
+    const int runs = tells_noise ? kCellNoiseRuns : 0;
+    return combined_key(
+        {"cell", what_truth_depends_on(), fmt::format("{}", runs), all_settings(choice), code_key(*choice.info)});
 }
 
 std::string CellView::reference_key() const { return combined_key({"reference", what_truth_depends_on()}); }
@@ -207,8 +214,9 @@ Cell CellView::compute(const MethodChoice& choice) {
     const Scene& scene     = p.scene;
     const std::string id(choice.info->name);
     const Truth* against = nullptr;
-    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice)};
-    Trial trial{.noise_runs = kCellNoiseRuns, .budget = options_.budget};
+    const bool noise     = tells_noise(choice);
+    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice, noise)};
+    Trial trial{.noise_runs = noise ? kCellNoiseRuns : 0, .budget = options_.budget};
     trial.run = [&](std::optional<LightId>& at) {
         const bool is_there = ran_ && all_settings(ran_->choice) == all_settings(choice);
         MethodRun made      = is_there ? std::move(*ran_) : run(choice, at);

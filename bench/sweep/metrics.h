@@ -42,6 +42,11 @@ struct Metric {
 /// reference that names the class, no edge there.
 [[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Cell& cell);
 
+/// Whether it counts points by their classes, of which noise is one.
+[[nodiscard]] inline bool needs_noise(const Metric& metric) {
+    return metric.kind == Metric::Kind::share || metric.of_edge != nullptr;
+}
+
 /// The largest of the views; nothing where one was not judged, or where there is none.
 [[nodiscard]] std::optional<double> largest_value(const Metric& metric, std::span<const Cell> views);
 

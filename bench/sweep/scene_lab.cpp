@@ -54,6 +54,16 @@ void describe(Fields& of, Is<KeptTimes>) {
     of("turns", &KeptTimes::turns, "");
 }
 
+struct KeptSpent {
+    std::string key{};
+    double seconds = 0;
+};
+template <class Fields>
+void describe(Fields& of, Is<KeptSpent>) {
+    of("key", &KeptSpent::key, "");
+    of("seconds", &KeptSpent::seconds, "");
+}
+
 struct KeptReference {
     std::string key{};
     ReferenceRecord reference{};
@@ -83,13 +93,22 @@ CellView& SceneLab::view(int view) {
     return views_.emplace(view, CellView(own_, file_, view, options_, store_.folder())).first->second;
 }
 
+/// Where a cell may be found: one that tells noise serves where nobody asks for that, too.
+std::vector<std::string> SceneLab::keys_of(const MethodChoice& choice, int view_number) {
+    const CellView& here = view(view_number);
+    std::vector<std::string> keys{here.key(choice)};
+    if (!here.tells_noise(choice)) keys.push_back(here.key(choice, false));
+    return keys;
+}
+
 bool SceneLab::has_cell(const MethodChoice& choice, int view_number) {
-    return store_.has(view(view_number).key(choice));
+    return std::ranges::any_of(keys_of(choice, view_number), [&](const std::string& key) { return store_.has(key); });
 }
 
 Cell SceneLab::cell(const MethodChoice& choice, int view_number) {
+    for (const std::string& key : keys_of(choice, view_number))
+        if (auto found = store_.find<Cell>(key)) return std::move(*found);
     CellView& here = view(view_number);
-    if (auto found = store_.find<Cell>(here.key(choice))) return std::move(*found);
     static_cast<void>(here.reference());  // where there is none, no method is to blame
     if (options_.progress) options_.progress(fmt::format("view {}: {}", view_number, choice.text()));
     Cell made = here.compute(choice);
@@ -136,6 +155,18 @@ std::optional<RunTimes> SceneLab::price(const MethodChoice& choice, int runs) {
     store_.keep(KeptPrice{key, {price->build, price->aim, price->look, price->visibility, paid}});
     measured_here_.insert(key);
     return price;
+}
+
+double SceneLab::spent_on(const MethodChoice& choice) {
+    const std::string key = machine_key("spent", choice);
+    const auto found      = is_fresh(key) ? store_.find<KeptSpent>(key) : std::nullopt;
+    return found ? found->seconds : 0;
+}
+
+void SceneLab::spend_on(const MethodChoice& choice, double seconds) {
+    const std::string key = machine_key("spent", choice);
+    store_.keep(KeptSpent{key, spent_on(choice) + seconds});
+    measured_here_.insert(key);
 }
 
 std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice> choices) {

@@ -53,6 +53,10 @@ public:
     /// found where runs on this machine have paid it. Nothing where the setting does not serve, or failed.
     [[nodiscard]] std::optional<RunTimes> price(const MethodChoice& choice, int runs = 1);
 
+    /// Seconds that were spent on looking at a setting, in this run and in those before, as their callers have said.
+    [[nodiscard]] double spent_on(const MethodChoice& choice);
+    void spend_on(const MethodChoice& choice, double seconds);
+
     /// Times of settings that took turns with one another. They are found where a run on this machine timed all of
     /// these together; otherwise all of them are timed now, also those that an earlier run has timed among others: a
     /// ratio of times from two runs would say as much of the machine as of the settings. Where the noise bar is above
@@ -63,10 +67,11 @@ public:
     /// Prices and times that the store has already are measured anew.
     void measure_anew() { anew_ = true; }
 
-    /// The key of what was measured on this machine: `kind` is "time" or "price".
+    /// The key of what was measured on this machine: `kind` is "time", "price" or "spent".
     [[nodiscard]] std::string machine_key(const std::string& kind, const MethodChoice& choice);
 
 private:
+    [[nodiscard]] std::vector<std::string> keys_of(const MethodChoice& choice, int view_number);
     /// Whether what this machine measured need not be measured anew.
     [[nodiscard]] bool is_fresh(const std::string& key) const { return !anew_ || measured_here_.contains(key); }
     [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);

@@ -196,6 +196,38 @@ TEST(CellKey, ChangesWithEverythingThatIsAskedFor) {
     add("another method", 0, {.size = {48, 27}}, "ray_traced");
 }
 
+/// A cell that does not tell noise has the same values of all metrics that do not need it, and is kept apart; one that
+/// does is taken by those who do not ask for it.
+TEST(Cell, WithoutNoiseHasTheSameOtherValues) {
+    const TemporaryFolder folder;
+    const CellStore store(folder.path() / "cells");
+    const MethodChoice rays = parse_method("ray_traced:samples=4"), map = parse_method("shadow_zbuffer");
+    SceneLab plain(scene_file("umbra_penumbra"), {.size = {96, 54}, .tells_noise = false}, store);
+    SceneLab telling(scene_file("umbra_penumbra"), {.size = {96, 54}}, store);
+    const Cell without = plain.cell(rays, 0);
+    EXPECT_TRUE(plain.has_cell(rays, 0));
+    EXPECT_FALSE(telling.has_cell(rays, 0));
+    const Cell with = telling.cell(rays, 0);
+    EXPECT_NE(without.key, with.key);
+    std::size_t same = 0, other = 0;
+    for (const Metric& metric : metrics()) {
+        const auto a = metric_value(metric, without), b = metric_value(metric, with);
+        if (needs_noise(metric))
+            other += a != b;
+        else
+            EXPECT_EQ(a, b) << metric.name;
+        same += !needs_noise(metric) && a && *a > 0;
+    }
+    EXPECT_GE(same, 6u);
+    EXPECT_GE(other, 2u);
+    // Where nothing is noise, one cell serves both.
+    static_cast<void>(telling.cell(map, 0));
+    EXPECT_TRUE(plain.has_cell(map, 0));
+    SceneLab later(scene_file("umbra_penumbra"), {.size = {96, 54}, .tells_noise = false}, store);
+    EXPECT_EQ(later.cell(rays, 0).key, with.key);
+    EXPECT_EQ(later.computed(), 0u);
+}
+
 /// Of this machine's own: a time is no price, and with other threads it is another one.
 TEST(MachineKey, ChangesWithWhatATimeDependsOn) {
     const TemporaryFolder folder;

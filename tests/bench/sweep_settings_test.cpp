@@ -470,6 +470,32 @@ TEST_F(RecommendByHand, TheFirstAnswerIsLookedAtBeforeAllOthers) {
     EXPECT_EQ(r.unasked.size(), 3u);
 }
 
+/// Another question begins with what an earlier one has looked at, whose time is spent: with an answer there, it looks
+/// at no other setting; without one, it does.
+TEST_F(RecommendByHand, WhatEarlierQuestionsLookedAtIsKnownAndItsTimeIsSpent) {
+    const MethodChoice rays = parse_method("ray_traced");
+    lab_.spend_on(rays, 9);
+    lab_.spend_on(rays, 7);
+    EXPECT_EQ(lab_.spent_on(rays), 16);
+    o_.seconds             = 15;
+    const Recommendation r = recommended(four_methods());
+    ASSERT_TRUE(r.chosen.has_value());
+    EXPECT_EQ(text(r, *r.chosen), "ray_traced");
+    EXPECT_EQ(r.looked_at, 1u);
+    EXPECT_EQ(r.unasked.size(), 3u);
+    o_.seconds = 17;
+    EXPECT_GT(recommend(lab_, lab_, o_).looked_at, 1u);
+    EXPECT_GT(lab_.spent_on(parse_method("shadow_zbuffer")), 0);
+    EXPECT_EQ(lab_.spent_on(rays), 16) << "it was known";
+    o_.seconds = 1;
+    o_.limits  = {parse_limit("rmse=0.0001")};
+    EXPECT_EQ(recommend(lab_, lab_, o_).unasked.size(), 0u) << "nothing that is known is within the limits";
+    SceneLab anew(std::filesystem::path(UMBRA_SCENES) / "umbra_penumbra.json", {.size = {16, 9}}, store_);
+    EXPECT_EQ(anew.spent_on(rays), 16);
+    anew.measure_anew();
+    EXPECT_EQ(anew.spent_on(rays), 0);
+}
+
 /// Edges of the second further view lie 8 pixels off or farther, however large the bound is.
 TEST_F(RecommendByHand, EdgesThatAreNotFoundAreWithinNoBound) {
     Recommendation r     = recommended(four_methods());
@@ -849,6 +875,22 @@ TEST_F(FirstAnswerByHand, IsBeyondALimitInNoViewNorByItsBoundAndLeavesNothingUnd
     add("ray_traced", kWithin, 4);
     EXPECT_EQ(first()->choice.text(), "ray_traced");
     EXPECT_FALSE(first(0)) << "nothing is begun behind the time";
+}
+
+/// Of several the cheapest that is within the limits, and nothing else is begun.
+TEST_F(FirstAnswerByHand, IsFromAnEarlierQuestionWhereOneKnowsIt) {
+    add("exact", {}, 10);
+    add("shadow_zbuffer", {}, 1);
+    add("scan_line", kWithin, 12);
+    add("ray_traced", kWithin, 11);
+    add("filtered_map", kBeyond, 2);
+    for (const char* known : {"exact", "scan_line", "ray_traced", "filtered_map"})
+        coarse_.spend_on(parse_method(known), 1);
+    const auto answer = first();
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->choice.text(), "ray_traced");
+    EXPECT_NEAR(answer->cost, 11 / 2.0 * (16 * 9) / (8 * 5), 1e-9) << "by the small picture";
+    EXPECT_FALSE(answer->in_time);
 }
 
 TEST_F(FirstAnswerByHand, IsFromFewPointsWhereTheSizeOfThePictureChangesNoError) {

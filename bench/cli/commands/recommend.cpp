@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
 #include "umbra/bench/sweep/grid.h"
+#include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/sweep.h"
 #include "umbra/core/base/error.h"
 
@@ -44,6 +46,8 @@ int recommend(RecommendLine line, const Common& common) {
     SweepPlan plan;
     plan.settings     = line.methods;
     CellOptions& cell = line.cell;
+    cell.tells_noise =
+        std::ranges::any_of(options.limits, [](const Limit& limit) { return needs_noise(*limit.metric); });
     const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
     options.kept_in = store.folder().string();
     std::optional<Terminal> terminal(std::in_place, common.quiet);
@@ -96,7 +100,8 @@ Action recommend_command(CLI::App& app, const Common& common) {
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
     app.add_option("--seconds", line->options.seconds,
-                   "After which the search begins with no further setting; views, turns and what has begun come on top")
+                   "After which the search begins with no further setting, those of earlier questions to the folder "
+                   "included; views, turns and what has begun come on top")
         ->capture_default_str()
         ->check(CLI::NonNegativeNumber)
         ->type_name("S");
