@@ -30,7 +30,7 @@ std::vector<TriangleId> blamed(const MethodRun& run, const PointBatch& points, L
 }  // namespace
 
 Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
-                  const MethodRun& reference, const NoiseMeter* meter) {
+                  const MethodRun& reference, const NoiseMeter* meter, bool named) {
     const VisibilityPlane &s = run.planes[light], &truth = reference.planes[light];
     const float tolerance = visibility_tolerance(scene.lights[light].kind);
 
@@ -41,6 +41,10 @@ Explained explain(const Scene& scene, const PointBatch& points, LightId light, c
     if (meter != nullptr) {
         meter->mark(e.classes, truth, tolerance);
         e.noise = meter->result(e.classes, truth);
+    }
+    if (!named) {
+        e.error = count_errors(points, e.classes, s, truth);
+        return e;
     }
     const auto dark = points_of_class(e.classes, ErrorClass::false_shadow);
     mark_acne(e.classes, scene, points, dark, blamed(run, points, light, dark));
@@ -102,7 +106,8 @@ Outcome outcome(const MethodChoice& choice, const Scene& scene, const SceneFacts
         if (trial.noise_runs > 0) noise = noise_runs(*found.run.work, scene, points, trial.noise_runs);
         for (LightId j = 0; j < scene.lights.size(); ++j) {
             at = j;
-            found.explained.push_back(explain(scene, points, j, found.run, truth, noise[j] ? &*noise[j] : nullptr));
+            found.explained.push_back(
+                explain(scene, points, j, found.run, truth, noise[j] ? &*noise[j] : nullptr, trial.named));
         }
         at.reset();
         if (trial.then) trial.then(found);

@@ -25,9 +25,10 @@ struct Explained {
 
 /// Sorts every point into its class and counts them; measures edges and penumbrae. `meter`, fed with runs of the same
 /// method with other seeds, tells noise from other errors; none: no point is of class `noise`. Both runs are of this
-/// scene and batch, and serve it; their methods are asked again where interior errors need a name.
+/// scene and batch, and serve it; their methods are asked again where interior errors need a name. `named`: whether
+/// they get one, and edges and penumbrae are measured.
 [[nodiscard]] Explained explain(const Scene& scene, const PointBatch& points, LightId light, const MethodRun& run,
-                                const MethodRun& reference, const NoiseMeter* meter = nullptr);
+                                const MethodRun& reference, const NoiseMeter* meter = nullptr, bool named = true);
 
 /// The setting with another seed, `step` farther, which must be one that the method has: within the range of its seed.
 [[nodiscard]] MethodChoice with_seed(MethodChoice choice, std::int64_t step);
@@ -55,6 +56,7 @@ struct Trial {
     std::function<MethodRun(std::optional<LightId>& at)> run{};
     std::function<const MethodRun&(const MethodRun& run)> truth{};  ///< what the run is compared with
     int noise_runs = kNoiseRuns;                                    ///< 0: noise is not told from other errors
+    bool named     = true;                                          ///< as of `explain`
     Budget budget{};                                   ///< of the run, and again of what is asked behind it
     std::function<void(const Outcome& found)> then{};  ///< what else asks the method; may be empty
 };

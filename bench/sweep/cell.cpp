@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "umbra/bench/compare/record.h"
@@ -33,6 +32,14 @@ std::string code_of_truth(const std::optional<std::string>& reference) {
         if (info->reference) codes += code_key(*info);
     codes += code_key(*parse_method(kStandIn).info);
     return codes;
+}
+
+/// Of a brief cell.
+void leave_out_what_is_not_known(MethodRecord& method) {
+    method.memory_bytes.reset();
+    for (ErrorRecord& error : method.errors) {
+        error.false_shadow.reset(), error.false_light.reset(), error.edge_displacement_px.reset();
+    }
 }
 
 /// The setting with another seed in views other than the scene's own.
@@ -70,15 +77,9 @@ std::string CellView::what_truth_depends_on() const {
                          code_of_truth(options_.reference)});
 }
 
-bool CellView::tells_noise(const MethodChoice& choice) const {
-    return options_.tells_noise || choice.info->seed.empty() ||
-           std::ranges::none_of(own_->scene().lights, [](const Light& light) { return is_area(light.kind); });
-}
-
-std::string CellView::key(const MethodChoice& choice, bool tells_noise) const {
-    const int runs = tells_noise ? kCellNoiseRuns : 0;
-    return combined_key(
-        {"cell", what_truth_depends_on(), fmt::format("{}", runs), all_settings(choice), code_key(*choice.info)});
+std::string CellView::key(const MethodChoice& choice, bool brief) const {
+    return combined_key({"cell", what_truth_depends_on(), brief ? "brief" : fmt::format("{}", kCellNoiseRuns),
+                         all_settings(choice), code_key(*choice.info)});
 }
 
 std::string CellView::reference_key() const { return combined_key({"reference", what_truth_depends_on()}); }
@@ -137,6 +138,11 @@ void CellView::build(const MethodChoice& choice) {
     if (!work_->service() || work_->is_built()) return;
     aim_ms_.clear();
     build_ms_.reset();
+    if (options_.brief) {
+        work_->warm_up();
+        build_ms_ = timed_ms([&] { work_->build(); });
+        return;
+    }
     // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
     const ThreadLimit one(1);
     work_->build();
@@ -214,9 +220,9 @@ Cell CellView::compute(const MethodChoice& choice) {
     const Scene& scene     = p.scene;
     const std::string id(choice.info->name);
     const Truth* against = nullptr;
-    const bool noise     = tells_noise(choice);
-    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice, noise)};
-    Trial trial{.noise_runs = noise ? kCellNoiseRuns : 0, .budget = options_.budget};
+    const bool brief     = options_.brief;
+    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice, brief)};
+    Trial trial{.noise_runs = brief ? 0 : kCellNoiseRuns, .named = !brief, .budget = options_.budget};
     trial.run = [&](std::optional<LightId>& at) {
         const bool is_there = ran_ && all_settings(ran_->choice) == all_settings(choice);
         MethodRun made      = is_there ? std::move(*ran_) : run(choice, at);
@@ -233,6 +239,7 @@ Cell CellView::compute(const MethodChoice& choice) {
             image_figures(found.run.planes, render_planes(scene, p.points, found.run.planes), rendered(*against))
                 .figures;
         if (const auto covered = cell.method.coverage) cell.undefined = 1 - *covered;
+        if (brief) leave_out_what_is_not_known(cell.method);
     };
     const Outcome found = outcome(choice, scene, p.facts, p.points, trial);
     const auto whole    = [](const std::optional<Failure>& failed) { return !failed || !failed->cut; };

@@ -27,7 +27,7 @@ struct CellOptions {
     std::optional<std::string> reference{};  ///< as typed; none: `default_reference`
     std::optional<std::uint64_t> points{};   ///< at which area lights are scored; none: as `run_reference` chooses
     Budget budget{};                         ///< of each cell, and of a reference that nobody names
-    bool tells_noise = true;                 ///< from other errors, by runs with other seeds: needs_noise of metrics
+    bool brief = false;  ///< without classes of errors, edges and memory: see needs_whole_cell(metric)
     std::function<void(const std::string&)> progress{};  ///< receives what takes long; may be empty
 };
 
@@ -56,9 +56,7 @@ public:
 
     [[nodiscard]] int view() const { return view_; }
     /// The key of a cell of this view, without making the view ready.
-    [[nodiscard]] std::string key(const MethodChoice& choice, bool tells_noise = true) const;
-    /// Whether runs with other seeds tell noise from other errors in a cell, or there is nothing to tell.
-    [[nodiscard]] bool tells_noise(const MethodChoice& choice) const;
+    [[nodiscard]] std::string key(const MethodChoice& choice, bool brief = false) const;
     /// Throws InputError, UsageError, and what a reference throws that cannot be replaced.
     [[nodiscard]] const PreparedScene& prepared();
     /// `reference` of the record: the truth of area.

@@ -42,9 +42,10 @@ struct Metric {
 /// reference that names the class, no edge there.
 [[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Cell& cell);
 
-/// Whether it counts points by their classes, of which noise is one.
-[[nodiscard]] inline bool needs_noise(const Metric& metric) {
-    return metric.kind == Metric::Kind::share || metric.of_edge != nullptr;
+/// Whether a brief cell has no value of it.
+[[nodiscard]] inline bool needs_whole_cell(const Metric& metric) {
+    return (metric.kind == Metric::Kind::share && metric.name != "terminator.wrong") || metric.of_edge != nullptr ||
+           metric.name == "memory_mb";
 }
 
 /// The largest of the views; nothing where one was not judged, or where there is none.

@@ -93,11 +93,11 @@ CellView& SceneLab::view(int view) {
     return views_.emplace(view, CellView(own_, file_, view, options_, store_.folder())).first->second;
 }
 
-/// Where a cell may be found: one that tells noise serves where nobody asks for that, too.
+/// Where a cell may be found: a whole one serves in place of a brief one.
 std::vector<std::string> SceneLab::keys_of(const MethodChoice& choice, int view_number) {
     const CellView& here = view(view_number);
     std::vector<std::string> keys{here.key(choice)};
-    if (!here.tells_noise(choice)) keys.push_back(here.key(choice, false));
+    if (options_.brief) keys.push_back(here.key(choice, true));
     return keys;
 }
 

@@ -46,8 +46,8 @@ int recommend(RecommendLine line, const Common& common) {
     SweepPlan plan;
     plan.settings     = line.methods;
     CellOptions& cell = line.cell;
-    cell.tells_noise =
-        std::ranges::any_of(options.limits, [](const Limit& limit) { return needs_noise(*limit.metric); });
+    cell.brief =
+        std::ranges::none_of(options.limits, [](const Limit& limit) { return needs_whole_cell(*limit.metric); });
     const CellStore store(line.cells.empty() ? cache_folder() : fs::path(line.cells) / "cells");
     options.kept_in = store.folder().string();
     std::optional<Terminal> terminal(std::in_place, common.quiet);
