@@ -17,8 +17,9 @@ constexpr Answer kAllVisible{.visibility = 1, .irradiance = 1};
 /// which edges are kept. Where the plane is rougher, an edge that was left out might lie over the light.
 constexpr double kRoughest = (kCutReach - 1) / 4;
 
-/// Candidates are few where every point may ask each of them: kFew, or one kPart-th of all edges.
-constexpr std::size_t kFew = 64, kPart = 12;
+/// Candidates are few where every point may ask each of them: kFew, or one kPart-th of all edges up to kMostEdges, whose
+/// ends and normals fill a cache of a megabyte.
+constexpr std::size_t kFew = 64, kPart = 12, kMostEdges = 24576;
 
 /// A value and its half width. Numbers within `unsure`, rounding, of 0 or 1 may be 0 or 1.
 std::pair<float, float> value_of(const Bracket& bracket, double unsure) {
@@ -207,7 +208,7 @@ bool ExactArea::look_around(const PointBatch& points, std::span<const std::uint3
     // The planes of two points differ by twice what each may be off.
     const std::optional<BoxTree::Region> region = light_.region_from(viewpoint.point(), kGatherReach + 4 * kRoughest);
     if (!region) return false;
-    const std::size_t most = std::max(kFew, edges_.candidates() / kPart);
+    const std::size_t most = std::clamp(edges_.candidates() / kPart, kFew, kMostEdges);
     around                 = (1 + 4 * kUnit) * (around + viewpoint.point().slack());
     if (!edges_.gather_around(viewpoint, *region, around, most, work.group)) return false;
     const dvec2 place = counting_place(0);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "umbra/core/render/points.h"
+#include "umbra/core/render/tiles.h"
 #include "umbra/shadows/exact/visible_part.h"
 
 namespace umbra::exact_visibility {
@@ -57,7 +58,9 @@ public:
         std::vector<SilhouetteEdge> silhouette;
         EdgeGroup group;     ///< edges for all points of a group
         TrianglesOver over;  ///< triangles for all of them
-        bool in_group = false;
+        bool in_group             = false;
+        std::size_t most_together = PointTile::kPoints;  ///< for more points a search has failed lately, which costs
+                                                         ///< as much as one that succeeds
         std::vector<TriangleId> between;
         PartialCovering<double> in_double;
         PartialCovering<Rational> in_rationals;
@@ -74,7 +77,11 @@ public:
     /// together have one search: while it runs, `seen` may be called with this workspace for i alone.
     template <class See>
     void for_all(const PointBatch& points, std::span<std::uint32_t> which, Workspace& work, const See& see) const {
-        work.in_group = look_around(points, which, work);
+        work.in_group = which.size() <= work.most_together && look_around(points, which, work);
+        if (work.in_group)
+            work.most_together = std::max(work.most_together, 2 * which.size());
+        else if (which.size() <= work.most_together)
+            work.most_together = std::max(2 * kFewest, which.size() / 2);
         if (work.in_group || which.size() < 2 * kFewest) {
             for (const std::uint32_t i : which) see(i);
             work.in_group = false;

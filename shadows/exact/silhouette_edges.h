@@ -79,7 +79,7 @@ private:
 
     const Occluders& occluders_;
     std::vector<CandidateEdge> edges_{};  ///< in the order of the tree
-    BoxTree tree_;                   ///< of the edges
+    BoxTree tree_;                        ///< of the edges
     std::vector<NormalCone> cones_;  ///< one a node: normals of its triangles, so turned that the two of an edge see
                                      ///< the point from one side unless it is a silhouette edge
 };
