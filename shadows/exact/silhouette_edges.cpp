@@ -69,17 +69,14 @@ NormalCone SilhouetteEdges::cone_of(const CandidateEdge& edge) const {
 int SilhouetteEdges::change_at(const Viewpoint& viewpoint, const CandidateEdge& edge) const {
     const Entries d   = viewpoint.point().to(edge.at);
     const double sure = kNormalError * largest(d.value) + 4 * d.error;
-    int change        = 0;
-    for (std::uint32_t k = 0; k < edge.count; ++k) {
-        const PackedUse use = uses(edge)[k];
-        const double over   = edge.count <= 2 ? glm::dot(d.value, dvec3(edge.normal[k])) : 0;
-        if (use.triangle == viewpoint.own()) continue;
-        if (std::abs(over) > sure)
-            change += over > 0 ? 1 : -1;
-        else
-            change += use.forward != 0 ? viewpoint.side_of(use.triangle) : -viewpoint.side_of(use.triangle);
-    }
-    return change;
+    std::uint32_t k   = 0;
+    return change_of(uses(edge), [&](TriangleId t) {
+        const bool forward = uses(edge)[k].forward != 0;
+        const double over  = edge.count <= 2 ? glm::dot(d.value, dvec3(edge.normal[k])) : 0;  // turned
+        ++k;
+        if (t == viewpoint.own()) return 0;
+        return std::abs(over) > sure ? ((over > 0) == forward ? 1 : -1) : viewpoint.side_of(t);
+    });
 }
 
 void SilhouetteEdges::gather(const Viewpoint& viewpoint, const FloatSpace& space, double reach,

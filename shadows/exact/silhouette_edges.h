@@ -37,8 +37,8 @@ struct EdgeGroup {
     dvec3 origin{0};
     std::vector<std::uint32_t> edges{};
     std::array<std::vector<float>, 3> a{}, b{};           ///< both ends
-    std::array<std::vector<float>, 3> first{}, second{};  ///< normals of the two triangles, turned; 0 where they are
-                                                          ///< not two, or thin
+    std::array<std::vector<float>, 3> first{}, second{};  ///< turned normals of two triangles; 0 where there is
+                                                          ///< none, or it is thin
 
     // For one point.
     std::vector<std::int32_t> out{};                       ///< 1: surely not a silhouette edge before the light
