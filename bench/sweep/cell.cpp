@@ -34,14 +34,6 @@ std::string code_of_truth(const std::optional<std::string>& reference) {
     return codes;
 }
 
-/// Of a brief cell.
-void leave_out_what_is_not_known(MethodRecord& method) {
-    method.memory_bytes.reset();
-    for (ErrorRecord& error : method.errors) {
-        error.false_shadow.reset(), error.false_light.reset(), error.edge_displacement_px.reset();
-    }
-}
-
 /// The setting with another seed in views other than the scene's own.
 MethodChoice seeded(const MethodChoice& choice, int view) {
     return view == 0 || choice.info->seed.empty() ? choice : with_seed(choice, 7919LL * view);
@@ -221,7 +213,7 @@ Cell CellView::compute(const MethodChoice& choice) {
     const std::string id(choice.info->name);
     const Truth* against = nullptr;
     const bool brief     = options_.brief;
-    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice, brief)};
+    Cell cell{.view = static_cast<std::uint64_t>(view_), .key = key(choice, brief), .brief = brief};
     Trial trial{.noise_runs = brief ? 0 : kCellNoiseRuns, .named = !brief, .budget = options_.budget};
     trial.run = [&](std::optional<LightId>& at) {
         const bool is_there = ran_ && all_settings(ran_->choice) == all_settings(choice);
@@ -239,7 +231,6 @@ Cell CellView::compute(const MethodChoice& choice) {
             image_figures(found.run.planes, render_planes(scene, p.points, found.run.planes), rendered(*against))
                 .figures;
         if (const auto covered = cell.method.coverage) cell.undefined = 1 - *covered;
-        if (brief) leave_out_what_is_not_known(cell.method);
     };
     const Outcome found = outcome(choice, scene, p.facts, p.points, trial);
     const auto whole    = [](const std::optional<Failure>& failed) { return !failed || !failed->cut; };

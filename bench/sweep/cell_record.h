@@ -12,7 +12,8 @@ struct Cell {
     MethodRecord method{};              ///< without times and files
     std::optional<double> undefined{};  ///< the fraction of the points that it does not answer
     std::uint64_t view = 0;
-    std::string key{};  ///< of what the cell depends on
+    std::string key{};   ///< of what the cell depends on
+    bool brief = false;  ///< as of CellOptions: what its record says of classes, edges and memory is not their value
 };
 template <class Fields>
 void describe(Fields& of, Is<Cell>) {
@@ -20,6 +21,7 @@ void describe(Fields& of, Is<Cell>) {
     of.may("undefined", &Cell::undefined, "");
     of("view", &Cell::view, "");
     of("key", &Cell::key, "");
+    of("brief", &Cell::brief, "");
 }
 
 }  // namespace umbra

@@ -75,7 +75,7 @@ constexpr std::array kMetrics{
            [](const Cell& c) { return c.undefined; }},
     Metric{"memory_mb", "MB", "Memory held after build and aim.", Kind::entry, nullptr, nullptr,
            [](const Cell& c) {
-               const Count bytes = c.method.memory_bytes;
+               const Count bytes = c.brief ? std::nullopt : c.method.memory_bytes;
                return bytes ? std::optional(double(*bytes) / 1e6) : std::nullopt;
            }},
 };
@@ -89,6 +89,7 @@ bool unanswered(Error error) { return points_of(error) == 0 && error.undefined +
 /// where there is none, where one of them has no value, and where a light is unanswered.
 template <class Add>
 bool each_judged_light(const Metric& metric, const Cell& cell, const Add& add) {
+    if (cell.brief && needs_whole_cell(metric)) return false;
     bool any = false;
     for (Error error : cell.method.errors) {
         if (unanswered(error)) return false;

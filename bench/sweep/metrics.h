@@ -39,7 +39,7 @@ struct Metric {
 [[nodiscard]] const Metric& find_metric(std::string_view name);
 
 /// A metric of one cell. Nothing where it was not judged: no point compared, none of some light that has points, no
-/// reference that names the class, no edge there.
+/// reference that names the class, no edge there, or a brief cell that does not know it.
 [[nodiscard]] std::optional<double> metric_value(const Metric& metric, const Cell& cell);
 
 /// Whether a brief cell has no value of it.
