@@ -37,16 +37,10 @@ public:
     [[nodiscard]] bool is_over() const { return Clock::now() >= until_; }
     [[nodiscard]] const std::optional<FirstAnswer>& best() const { return best_; }
 
-    /// Settings that earlier questions have looked at, the cheapest first, up to an answer.
+    /// Of what earlier questions have looked at, up to an answer.
     void look_at_kept(std::span<const Family> families) {
-        std::vector<std::pair<double, const MethodChoice*>> kept;
-        for (const Family& family : families)
-            for (const MethodChoice& choice : family.settings)
-                if (!choice.info->reference && coarse_.spent_on(choice) > 0 && coarse_.has_cell(choice, 0))
-                    if (const auto few = coarse_.price(choice)) kept.emplace_back(scaled_cost(*few), &choice);
-        std::ranges::stable_sort(kept, {}, [](const auto& one) { return one.first; });
-        for (const auto& [cost, choice] : kept)
-            if (is_over() || take_if_within(*choice, cost)) return;
+        for (const KeptSetting& kept : kept_settings(coarse_, whole_, families, options_.workload))
+            if (!kept.choice.info->reference && (is_over() || take_if_within(kept.choice, kept.cost))) return;
     }
 
     /// The next setting of a family: each costs more than those before it, and errs less. What it costs; nothing where
@@ -63,19 +57,11 @@ private:
     [[nodiscard]] std::optional<double> cost_of(const MethodChoice& choice) {
         const std::optional<RunTimes> few = coarse_.price(choice);
         if (!few) return std::nullopt;
-        if (more_points() * few->all() > kLongMs) return scaled_cost(*few);
+        const double more = more_points(coarse_, whole_);
+        if (more * few->all() > kLongMs) return price_ms(options_.workload, *few, more);
         if (const double least = price_ms(options_.workload, *few); best_ && least >= best_->cost) return least;
         const std::optional<RunTimes> all = whole_.price(choice);
         return all ? std::optional(price_ms(options_.workload, *all)) : std::nullopt;
-    }
-
-    /// Of a whole picture, for one of a coarse one.
-    [[nodiscard]] double more_points() const {
-        const Size small = coarse_.size(), large = whole_.size();
-        return static_cast<double>(large.width) * large.height / (static_cast<double>(small.width) * small.height);
-    }
-    [[nodiscard]] double scaled_cost(const RunTimes& few) const {
-        return price_ms(options_.workload, few, more_points());
     }
 
     /// Whether it is within the limits; then it is the best so far.

@@ -52,9 +52,7 @@ class Search {
 public:
     Search(SceneLab& small, SceneLab& whole, const RecommendOptions& options, Recommendation& result)
         : small_(small), whole_(whole), options_(options), result_(result) {
-        const Size few = small.size(), all = whole.size();
-        more_points_ = static_cast<double>(all.width) * all.height / (static_cast<double>(few.width) * few.height);
-        result_.size = few;
+        result_.size = small.size();
         families_    = families(options.choices);
         std::ranges::stable_sort(families_, {}, [&](const Family& f) {
             return std::pair(!f.settings.front().info->reference, !is_by_proof(f.settings.front()));
@@ -89,6 +87,7 @@ public:
             const std::size_t k                       = known(left.front());
             const bool is_late                        = has_cheap_answer() ? before + since(start) > options_.seconds
                                                                            : since(start) > kPatience * options_.seconds;
+            bool goes_on                              = false;
             if (k == kNone && is_late) {
                 result_.unasked.insert(result_.unasked.end(), left.begin(), left.end());
             } else if (const auto by = passed_over_by(left.front())) {
@@ -100,11 +99,10 @@ public:
                 for (Line& other : lines)
                     if (other.next == 0 && method_of(other) == method_of(*line))
                         other.ran_ms = other.ran_ms > 0 ? std::min(other.ran_ms, line->ran_ms) : line->ran_ms;
-                if (k == kNone) small_.spend_on(left.front(), since(begin));
-                continue;
+                goes_on = true;
             }
             if (k == kNone && !is_late) small_.spend_on(left.front(), since(begin));
-            lines.erase(line);
+            if (!goes_on) lines.erase(line);
         }
         result_.looked_at = result_.candidates.size();
     }
@@ -223,21 +221,14 @@ private:
         return kNone;
     }
 
-    /// Settings that earlier questions have looked at, the cheapest first; those that cost far more than an answer are left. The
-    /// seconds that they have spent on all settings.
+    /// Of what earlier questions have looked at, all but what costs far more than an answer. The seconds that they have
+    /// spent on all settings.
     double look_at_kept() {
-        std::vector<std::pair<double, const MethodChoice*>> kept;
         double spent = 0;
         for (const Family& family : families_)
-            for (const MethodChoice& choice : family.settings) {
-                const double seconds = small_.spent_on(choice);
-                spent += seconds;
-                if (seconds > 0 && known(choice) == kNone && small_.has_cell(choice, 0))
-                    kept.emplace_back(price(choice).value_or(0), &choice);
-            }
-        std::ranges::stable_sort(kept, {}, [](const auto& one) { return one.first; });
-        for (const auto& [ms, choice] : kept)
-            if (!passed_over_by(*choice)) look(*choice);
+            for (const MethodChoice& choice : family.settings) spent += small_.spent_on(choice);
+        for (const KeptSetting& kept : kept_settings(small_, whole_, families_, options_.workload))
+            if (!passed_over_by(kept.choice)) look(kept.choice);
         return spent;
     }
 
@@ -323,7 +314,7 @@ private:
     /// Milliseconds a frame, by runs alone; nothing where the setting does not serve.
     [[nodiscard]] std::optional<double> price(const MethodChoice& choice, int runs = 1) {
         const std::optional<RunTimes> times = small_.price(choice, runs);
-        return times ? std::optional(price_ms(options_.workload, *times, more_points_)) : std::nullopt;
+        return times ? std::optional(price_ms(options_.workload, *times, more_points(small_, whole_))) : std::nullopt;
     }
 
     [[nodiscard]] static double since(std::chrono::steady_clock::time_point start) {
@@ -344,7 +335,6 @@ private:
     const RecommendOptions& options_;
     Recommendation& result_;
     std::chrono::duration<double> steps_took_{0};  ///< views for their sake
-    double more_points_ = 1;                       ///< of a whole picture, for one of a small one
     std::vector<Family> families_;
 };
 
@@ -437,6 +427,24 @@ double price_ms(const Workload& workload, const RunTimes& run, double more_point
     };
     return frame_cost_ms(workload,
                          {run.build, sum(run.aim), more_points * run.look, more_points * sum(run.visibility)});
+}
+
+double more_points(const SceneLab& small, const SceneLab& whole) {
+    const Size few = small.size(), all = whole.size();
+    return static_cast<double>(all.width) * all.height / (static_cast<double>(few.width) * few.height);
+}
+
+std::vector<KeptSetting> kept_settings(SceneLab& small, const SceneLab& whole, std::span<const Family> families,
+                                       const Workload& workload) {
+    std::vector<KeptSetting> kept;
+    for (const Family& family : families)
+        for (const MethodChoice& choice : family.settings) {
+            if (!(small.spent_on(choice) > 0) || !small.has_cell(choice, 0)) continue;
+            const std::optional<RunTimes> run = small.price(choice);
+            kept.push_back({choice, run ? price_ms(workload, *run, more_points(small, whole)) : 0});
+        }
+    std::ranges::stable_sort(kept, {}, &KeptSetting::cost);
+    return kept;
 }
 
 Recommendation recommend(SceneLab& small, SceneLab& whole, const RecommendOptions& options) {

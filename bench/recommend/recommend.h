@@ -146,6 +146,19 @@ struct Recommendation {
 /// What a frame costs by one run on a picture, for one of so many times its points: passes over points count as often.
 [[nodiscard]] double price_ms(const Workload& workload, const RunTimes& run, double more_points = 1);
 
+/// Points of the whole picture for one of a small one.
+[[nodiscard]] double more_points(const SceneLab& small, const SceneLab& whole);
+
+/// A setting that earlier questions have looked at, and what it costs by one run in small pictures; 0 where it does not
+/// serve.
+struct KeptSetting {
+    MethodChoice choice;
+    double cost;
+};
+/// From the cheapest on.
+[[nodiscard]] std::vector<KeptSetting> kept_settings(SceneLab& small, const SceneLab& whole,
+                                                     std::span<const Family> families, const Workload& workload);
+
 /// Every method of the candidates, in the order in which the options name them.
 [[nodiscard]] std::vector<TriedMethod> tried_methods(const Recommendation& r, const RecommendOptions& options);
 
