@@ -11,10 +11,9 @@ namespace umbra {
 struct LitAreaRecord {
     double area = kUnknown, lit_area = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<LitAreaRecord>) {
-    of("area", &LitAreaRecord::area, "of the triangles that the light does not see edge-on");
-    of("lit_area", &LitAreaRecord::lit_area, "");
+DESCRIBE(LitAreaRecord) {
+    of(MEMBER(area), "of the triangles that the light does not see edge-on");
+    MEMBERS(lit_area);
 }
 
 struct LitPlaneRecord {
@@ -22,11 +21,10 @@ struct LitPlaneRecord {
     std::vector<double> normal{};
     LitAreaRecord lit{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LitPlaneRecord>) {
-    of("drawing", &LitPlaneRecord::drawing, "its file");
-    of("normal", &LitPlaneRecord::normal, "");
-    of.all(&LitPlaneRecord::lit);
+DESCRIBE(LitPlaneRecord) {
+    of(MEMBER(drawing), "its file");
+    MEMBERS(normal);
+    of.all(&R::lit);
 }
 
 struct LitLightRecord {
@@ -34,12 +32,11 @@ struct LitLightRecord {
     LitAreaRecord lit{};
     std::vector<LitPlaneRecord> planes{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LitLightRecord>) {
-    of("name", &LitLightRecord::name, "");
-    of("mesh", &LitLightRecord::mesh, "its file");
-    of.all(&LitLightRecord::lit);
-    of("planes", &LitLightRecord::planes, "the scene's large planes, largest first");
+DESCRIBE(LitLightRecord) {
+    MEMBERS(name);
+    of(MEMBER(mesh), "its file");
+    of.all(&R::lit);
+    of(MEMBER(planes), "the scene's large planes, largest first");
 }
 
 struct LitPolygonsRecord {
@@ -48,13 +45,7 @@ struct LitPolygonsRecord {
     SceneRecord scene{};
     std::vector<LitLightRecord> lights{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LitPolygonsRecord>) {
-    of("schema", &LitPolygonsRecord::schema, "");
-    of("version", &LitPolygonsRecord::version, "");
-    of("scene", &LitPolygonsRecord::scene, "");
-    of("lights", &LitPolygonsRecord::lights, "");
-}
+DESCRIBE(LitPolygonsRecord) { MEMBERS(schema, version, scene, lights); }
 
 /// Writes into `folder`, of each light: LIGHT.obj, its lit polygons in world space, cut into triangles, an object of
 /// the file for each of the scene's; and LIGHT_plane_K.svg for each of facts.planes, from 1, largest first: lit

@@ -21,15 +21,14 @@ struct ContenderRecord {
     std::string checked{};
     IntroductionRecord says{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ContenderRecord>) {
+DESCRIBE(ContenderRecord) {
     of.name("contender", "a program from outside");
-    of("command", &ContenderRecord::command,
+    of(MEMBER(command),
        "the program and its arguments; {run} in a word stands for the folder of files that is exchanged");
-    of.may("folder", &ContenderRecord::folder, "where it is started, from the folder of this file; that folder itself");
-    of.may("timeout_s", &ContenderRecord::timeout_s, "seconds that an answer may take; 120 where it is not given");
-    of.may("checked", &ContenderRecord::checked, "the version of the program that passed `umbra contender check`");
-    of("says", &ContenderRecord::says, "its own answer to `hello`");
+    of.may(MEMBER(folder), "where it is started, from the folder of this file; that folder itself");
+    of.may(MEMBER(timeout_s), "seconds that an answer may take; 120 where it is not given");
+    of.may(MEMBER(checked), "the version of the program that passed `umbra contender check`");
+    of(MEMBER(says), "its own answer to `hello`");
 }
 
 /// A program as a method, called `name`, in a list of those that live as long as the process. Commands are started in

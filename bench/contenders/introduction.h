@@ -17,18 +17,16 @@ struct IntroductionRecord {
     std::vector<std::string> lights{};
     std::vector<ParameterRecord> parameters{};
 };
-template <class Fields>
-void describe(Fields& of, Is<IntroductionRecord>) {
+DESCRIBE(IntroductionRecord) {
     of.name("introduction", "what a program from outside says of itself");
-    of.must("name", &IntroductionRecord::name, "");
-    of.must("version", &IntroductionRecord::version, "");
-    of.may("summary", &IntroductionRecord::summary, "one sentence");
-    of.may("measure", &IntroductionRecord::measure, "which share of an area light it answers",
-           one_of({"area", "irradiance"}));
-    of.may("takes", &IntroductionRecord::takes, "any points, or whole pictures alone", one_of({"points", "raster"}));
-    of.may("seed", &IntroductionRecord::seed, "the parameter that seeds its noise");
-    of("lights", &IntroductionRecord::lights, "the kinds that it serves");
-    of("parameters", &IntroductionRecord::parameters, "");
+    of.must(MEMBER(name));
+    of.must(MEMBER(version));
+    of.may(MEMBER(summary), "one sentence");
+    of.may(MEMBER(measure), "which share of an area light it answers", one_of({"area", "irradiance"}));
+    of.may(MEMBER(takes), "any points, or whole pictures alone", one_of({"points", "raster"}));
+    of.may(MEMBER(seed), "the parameter that seeds its noise");
+    of(MEMBER(lights), "the kinds that it serves");
+    MEMBERS(parameters);
 }
 
 /// Throws InputError where the members contradict the protocol; `from` names their source in messages.

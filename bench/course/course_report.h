@@ -16,11 +16,10 @@ namespace umbra {
 struct ExerciseRecord {
     std::string question{}, answer{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExerciseRecord>) {
-    of.name("exercise", "");
-    of.must("question", &ExerciseRecord::question, "");
-    of.may("answer", &ExerciseRecord::answer, "shown where the course shows answers");
+DESCRIBE(ExerciseRecord) {
+    of.name("exercise");
+    of.must(MEMBER(question));
+    of.may(MEMBER(answer), "shown where the course shows answers");
 }
 
 struct ChapterRecord {
@@ -28,14 +27,13 @@ struct ChapterRecord {
     std::vector<std::string> scenes{}, methods{};
     std::vector<ExerciseRecord> exercises{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ChapterRecord>) {
-    of.name("chapter", "");
-    of.must("title", &ChapterRecord::title, "");
-    of.may("text", &ChapterRecord::text, "paragraphs are parted by empty lines");
-    of("scenes", &ChapterRecord::scenes, "names of scenes, or files beside this one");
-    of("methods", &ChapterRecord::methods, "instead of the course's");
-    of("exercises", &ChapterRecord::exercises, "");
+DESCRIBE(ChapterRecord) {
+    of.name("chapter");
+    of.must(MEMBER(title));
+    of.may(MEMBER(text), "paragraphs are parted by empty lines");
+    of(MEMBER(scenes), "names of scenes, or files beside this one");
+    of(MEMBER(methods), "instead of the course's");
+    MEMBERS(exercises);
 }
 
 struct CourseRecord {
@@ -44,16 +42,15 @@ struct CourseRecord {
     bool answers = false;
     std::vector<ChapterRecord> chapters{};
 };
-template <class Fields>
-void describe(Fields& of, Is<CourseRecord>) {
+DESCRIBE(CourseRecord) {
     of.name("course", "a report of a lecturer's own");
-    of.must("title", &CourseRecord::title, "");
-    of.may("text", &CourseRecord::text, "");
-    of.may("language", &CourseRecord::language, "en, de, el, or a folder beside this file that holds texts.json");
-    of.may("size", &CourseRecord::size, "WIDTHxHEIGHT of all scenes; their own");
-    of("methods", &CourseRecord::methods, "those that are compared, with settings; all");
-    of.may("answers", &CourseRecord::answers, "true: with the answers of exercises");
-    of("chapters", &CourseRecord::chapters, "");
+    of.must(MEMBER(title));
+    of.may(MEMBER(text));
+    of.may(MEMBER(language), "en, de, el, or a folder beside this file that holds texts.json");
+    of.may(MEMBER(size), "WIDTHxHEIGHT of all scenes; their own");
+    of(MEMBER(methods), "those that are compared, with settings; all");
+    of.may(MEMBER(answers), "true: with the answers of exercises");
+    MEMBERS(chapters);
 }
 
 struct Course {

@@ -19,16 +19,14 @@ struct GradedSceneRecord {
     double credit   = kUnknown;
     bool unanswered = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<GradedSceneRecord>) {
+DESCRIBE(GradedSceneRecord) {
     of.name("graded_scene", "what an item found on one scene");
-    of("scene", &GradedSceneRecord::scene, "its folder");
-    of.may("light", &GradedSceneRecord::light, "the one with the largest figure");
-    of("figure", &GradedSceneRecord::figure, "of the rubric's kind; a part of 1 where that is of points; null: none");
-    of("credit", &GradedSceneRecord::credit, "null: nothing on this scene asks for it, and it does not count",
-       kFraction);
-    of.may("why", &GradedSceneRecord::why, "why there is no figure");
-    of.may("unanswered", &GradedSceneRecord::unanswered, "true: it failed there, or has no answers");
+    of(MEMBER(scene), "its folder");
+    of.may(MEMBER(light), "the one with the largest figure");
+    of(MEMBER(figure), "of the rubric's kind; a part of 1 where that is of points; null: none");
+    of(MEMBER(credit), "null: nothing on this scene asks for it, and it does not count", kFraction);
+    of.may(MEMBER(why), "why there is no figure");
+    of.may(MEMBER(unanswered), "true: it failed there, or has no answers");
 }
 
 struct GradedItemRecord {
@@ -36,16 +34,14 @@ struct GradedItemRecord {
     double points = kUnknown, max = kUnknown;
     std::vector<GradedSceneRecord> scenes{};
 };
-template <class Fields>
-void describe(Fields& of, Is<GradedItemRecord>) {
+DESCRIBE(GradedItemRecord) {
     of.name("graded_item", "points for one cause of error");
-    of.must("name", &GradedItemRecord::name, "");
-    of.may("about", &GradedItemRecord::about, "");
-    of("of", &GradedItemRecord::of, "the figure");
-    of("points", &GradedItemRecord::points, "");
-    of("max", &GradedItemRecord::max, "");
-    of("sentence", &GradedItemRecord::sentence, "what was found, and why points are lost");
-    of("scenes", &GradedItemRecord::scenes, "");
+    of.must(MEMBER(name));
+    of.may(MEMBER(about));
+    of(MEMBER(of), "the figure");
+    MEMBERS(points, max);
+    of(MEMBER(sentence), "what was found, and why points are lost");
+    MEMBERS(scenes);
 }
 
 /// What kept a program apart while it ran.
@@ -54,14 +50,12 @@ struct ApartRecord {
     bool network      = false;
     double memory_mib = kUnknown, answer_s = kUnknown, scene_s = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ApartRecord>) {
+DESCRIBE(ApartRecord) {
     of.name("apart", "what kept the program apart");
-    of("by", &ApartRecord::by, "what kept files and network from it", one_of({"bwrap", "nothing"}));
-    of("network", &ApartRecord::network, "true: it could use the network");
-    of("memory_mib", &ApartRecord::memory_mib, "null: any");
-    of("answer_s", &ApartRecord::answer_s, "");
-    of("scene_s", &ApartRecord::scene_s, "");
+    of(MEMBER(by), "what kept files and network from it", one_of({"bwrap", "nothing"}));
+    of(MEMBER(network), "true: it could use the network");
+    of(MEMBER(memory_mib), "null: any");
+    MEMBERS(answer_s, scene_s);
 }
 
 struct GradeRecord {
@@ -72,22 +66,20 @@ struct GradeRecord {
     std::vector<GradedItemRecord> items{};
     std::vector<std::string> scenes{}, not_compared{}, files{};
 };
-template <class Fields>
-void describe(Fields& of, Is<GradeRecord>) {
-    of.all(&GradeRecord::head);
-    of("rubric", &GradeRecord::rubric, "its title");
-    of("handed_in", &GradeRecord::handed_in, "the folder's name, or the method");
-    of("method", &GradeRecord::method, "what its records call it");
-    of.may("failed", &GradeRecord::failed, "why nothing could be asked of it");
-    of("points", &GradeRecord::points, "");
-    of("max", &GradeRecord::max, "");
-    of("seconds", &GradeRecord::seconds, "that judging it took");
-    of.may("apart", &GradeRecord::apart, "of a program");
-    of("items", &GradeRecord::items, "");
-    of("scenes", &GradeRecord::scenes, "folders that hold the results.json of each scene");
-    of.may("not_compared", &GradeRecord::not_compared, "scenes that could not be read, in words");
-    of("files", &GradeRecord::files, "beside this record");
-    of.may("key", &GradeRecord::key, "equal keys: nothing that the points depend on has changed");
+DESCRIBE(GradeRecord) {
+    of.all(&R::head);
+    of(MEMBER(rubric), "its title");
+    of(MEMBER(handed_in), "the folder's name, or the method");
+    of(MEMBER(method), "what its records call it");
+    of.may(MEMBER(failed), "why nothing could be asked of it");
+    MEMBERS(points, max);
+    of(MEMBER(seconds), "that judging it took");
+    of.may(MEMBER(apart), "of a program");
+    MEMBERS(items);
+    of(MEMBER(scenes), "folders that hold the results.json of each scene");
+    of.may(MEMBER(not_compared), "scenes that could not be read, in words");
+    of(MEMBER(files), "beside this record");
+    of.may(MEMBER(key), "equal keys: nothing that the points depend on has changed");
 }
 
 /// A scene's comparison, in which the method handed in is the one of this id.

@@ -23,14 +23,13 @@ struct ClassRowRecord {
     double points = kUnknown;
     std::vector<double> items{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ClassRowRecord>) {
+DESCRIBE(ClassRowRecord) {
     of.name("class_row", "one that was handed in");
-    of("handed_in", &ClassRowRecord::handed_in, "");
-    of("folder", &ClassRowRecord::folder, "its results");
-    of.may("failed", &ClassRowRecord::failed, "why nothing could be asked of it");
-    of("points", &ClassRowRecord::points, "");
-    of("items", &ClassRowRecord::items, "points of each, in the order of the record's `items`");
+    MEMBERS(handed_in);
+    of(MEMBER(folder), "its results");
+    of.may(MEMBER(failed), "why nothing could be asked of it");
+    MEMBERS(points);
+    of(MEMBER(items), "points of each, in the order of the record's `items`");
 }
 
 struct ClassRecord {
@@ -41,14 +40,11 @@ struct ClassRecord {
     std::vector<ClassRowRecord> rows{};
     std::vector<std::string> csv{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ClassRecord>) {
-    of.all(&ClassRecord::head);
-    of("rubric", &ClassRecord::rubric, "its title");
-    of("max", &ClassRecord::max, "points that there are");
-    of("items", &ClassRecord::items, "");
-    of("rows", &ClassRecord::rows, "");
-    of("csv", &ClassRecord::csv, "");
+DESCRIBE(ClassRecord) {
+    of.all(&R::head);
+    of(MEMBER(rubric), "its title");
+    of(MEMBER(max), "points that there are");
+    MEMBERS(items, rows, csv);
 }
 
 /// OUT/index.html, grades.csv, results.json. `folders`: of each grade, in `out`.

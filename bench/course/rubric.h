@@ -26,31 +26,28 @@ struct RubricItemRecord {
     double points = kUnknown, full = kUnknown, none = kUnknown;
     std::vector<std::string> scenes{};
 };
-template <class Fields>
-void describe(Fields& of, Is<RubricItemRecord>) {
+DESCRIBE(RubricItemRecord) {
     of.name("rubric_item", "points for one cause of error");
-    of.must("name", &RubricItemRecord::name, "");
-    of.may("about", &RubricItemRecord::about, "a sentence for the student");
-    of.must("of", &RubricItemRecord::of, "the figure: acne, leak, time, ... (docs/course.md)");
-    of.may("against", &RubricItemRecord::against, "time: the method whose time is 1");
-    of("points", &RubricItemRecord::points, "", at_least(0));
-    of.may("full", &RubricItemRecord::full, "up to this figure all points are given; 0", at_least(0));
-    of.may("none", &RubricItemRecord::none, "from this figure on none; failed and refused: 1");
-    of.may("scenes", &RubricItemRecord::scenes, "those of the rubric that count here; all");
+    of.must(MEMBER(name));
+    of.may(MEMBER(about), "a sentence for the student");
+    of.must(MEMBER(of), "the figure: acne, leak, time, ... (docs/course.md)");
+    of.may(MEMBER(against), "time: the method whose time is 1");
+    of(MEMBER(points), "", at_least(0));
+    of.may(MEMBER(full), "up to this figure all points are given; 0", at_least(0));
+    of.may(MEMBER(none), "from this figure on none; failed and refused: 1");
+    of.may(MEMBER(scenes), "those of the rubric that count here; all");
 }
 
 struct LimitsRecord {
     double answer_s = kUnknown, scene_s = kUnknown, memory_mib = kUnknown;
     bool network = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<LimitsRecord>) {
+DESCRIBE(LimitsRecord) {
     of.name("limits", "of a program that was handed in");
-    of.may("answer_s", &LimitsRecord::answer_s, "seconds an answer; 60", at_least(0));
-    of.may("scene_s", &LimitsRecord::scene_s, "seconds a scene; 300", at_least(0));
-    of.may("memory_mib", &LimitsRecord::memory_mib, "MiB of address space of each of its processes; 4096; 0: any",
-           at_least(0));
-    of.may("network", &LimitsRecord::network, "true: it may use the network");
+    of.may(MEMBER(answer_s), "seconds an answer; 60", at_least(0));
+    of.may(MEMBER(scene_s), "seconds a scene; 300", at_least(0));
+    of.may(MEMBER(memory_mib), "MiB of address space of each of its processes; 4096; 0: any", at_least(0));
+    of.may(MEMBER(network), "true: it may use the network");
 }
 
 struct RubricRecord {
@@ -60,18 +57,17 @@ struct RubricRecord {
     double step = kUnknown;
     std::vector<RubricItemRecord> items{};
 };
-template <class Fields>
-void describe(Fields& of, Is<RubricRecord>) {
+DESCRIBE(RubricRecord) {
     of.name("rubric", "what a course asks of a shadow method");
-    of.must("title", &RubricRecord::title, "");
-    of.may("text", &RubricRecord::text, "a sentence for students");
-    of("scenes", &RubricRecord::scenes, "names of scenes, or files beside the rubric");
-    of.may("size", &RubricRecord::size, "WIDTHxHEIGHT of all scenes; their own");
-    of.may("methods", &RubricRecord::methods, "methods of ours that stand beside");
-    of.may("run", &RubricRecord::run, "the command of a program, started in the folder that is handed in; ./run");
-    of("limits", &RubricRecord::limits, "");
-    of.may("step", &RubricRecord::step, "points are rounded to multiples of this; 0.1");
-    of("items", &RubricRecord::items, "");
+    of.must(MEMBER(title));
+    of.may(MEMBER(text), "a sentence for students");
+    of(MEMBER(scenes), "names of scenes, or files beside the rubric");
+    of.may(MEMBER(size), "WIDTHxHEIGHT of all scenes; their own");
+    of.may(MEMBER(methods), "methods of ours that stand beside");
+    of.may(MEMBER(run), "the command of a program, started in the folder that is handed in; ./run");
+    MEMBERS(limits);
+    of.may(MEMBER(step), "points are rounded to multiples of this; 0.1");
+    MEMBERS(items);
 }
 
 struct Rubric {

@@ -19,13 +19,12 @@ struct EdgeBandRule {
     std::string channel{};  ///< shell pattern; empty: "S.*", and of a plane without such channels all
     double width = kUnknown, step = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<EdgeBandRule>) {
+DESCRIBE(EdgeBandRule) {
     of.name("edge_band", "pixels near a shadow boundary of an S_j plane");
-    of.may("plane", &EdgeBandRule::plane, "");
-    of.may("channel", &EdgeBandRule::channel, "");
-    of.may("width", &EdgeBandRule::width, "px from the boundary; 1.5", Allowed{.least = 0, .most = 64});
-    of.may("step", &EdgeBandRule::step, "a boundary passes where S changes by more from pixel to pixel; 0.1",
+    of.may(MEMBER(plane));
+    of.may(MEMBER(channel));
+    of.may(MEMBER(width), "px from the boundary; 1.5", Allowed{.least = 0, .most = 64});
+    of.may(MEMBER(step), "a boundary passes where S changes by more from pixel to pixel; 0.1",
            Allowed{.least = 0, .most = 1});
 }
 
@@ -35,15 +34,14 @@ struct PixelRule {
     std::optional<EdgeBandRule> edge_band{};
     FileName mask{};
 };
-template <class Fields>
-void describe(Fields& of, Is<PixelRule>) {
+DESCRIBE(PixelRule) {
     of.name("pixels", "each pixel by itself");
-    of.must("limit", &PixelRule::limit, "largest difference of a value", at_least(0));
-    of.may("percent", &PixelRule::percent, "of all pixels that may be beyond; 0", Allowed{.least = 0, .most = 100});
-    of.may("shift", &PixelRule::shift, "px within which the other picture has a pixel within the limit",
+    of.must(MEMBER(limit), "largest difference of a value", at_least(0));
+    of.may(MEMBER(percent), "of all pixels that may be beyond; 0", Allowed{.least = 0, .most = 100});
+    of.may(MEMBER(shift), "px within which the other picture has a pixel within the limit",
            Allowed{.least = 0, .most = 16});
-    of.may("edge_band", &PixelRule::edge_band, "not compared");
-    of.may("mask", &PixelRule::mask, "a picture: what is not black is not compared");
+    of.may(MEMBER(edge_band), "not compared");
+    of.may(MEMBER(mask), "a picture: what is not black is not compared");
 }
 
 /// Exactly one member holds something.
@@ -53,28 +51,26 @@ struct ToleranceRule {
     std::optional<double> flip{}, rmse{}, psnr{}, ssim{};
     std::vector<std::vector<double>> histogram{};  ///< {limit, percent}
 };
-template <class Fields>
-void describe(Fields& of, Is<ToleranceRule>) {
-    of.name("rule", "");
-    of.may("all", &ToleranceRule::all, "every one of these holds");
-    of.may("any", &ToleranceRule::any, "at least one of these holds");
-    of.may("pixels", &ToleranceRule::pixels, "");
-    of.may("flip", &ToleranceRule::flip, "largest mean FLIP of any layer", kFraction);
-    of.may("rmse", &ToleranceRule::rmse, "largest root mean square difference", at_least(0));
-    of.may("psnr", &ToleranceRule::psnr, "smallest PSNR, dB");
-    of.may("ssim", &ToleranceRule::ssim, "smallest SSIM of any layer", Allowed{.least = -1, .most = 1});
-    of.may("histogram", &ToleranceRule::histogram, "[limit, percent]: at most so many pixels differ by more");
+DESCRIBE(ToleranceRule) {
+    of.name("rule");
+    of.may(MEMBER(all), "every one of these holds");
+    of.may(MEMBER(any), "at least one of these holds");
+    of.may(MEMBER(pixels));
+    of.may(MEMBER(flip), "largest mean FLIP of any layer", kFraction);
+    of.may(MEMBER(rmse), "largest root mean square difference", at_least(0));
+    of.may(MEMBER(psnr), "smallest PSNR, dB");
+    of.may(MEMBER(ssim), "smallest SSIM of any layer", Allowed{.least = -1, .most = 1});
+    of.may(MEMBER(histogram), "[limit, percent]: at most so many pixels differ by more");
 }
 
 struct NamedRule {
     std::string name{};
     ToleranceRule passes{};
 };
-template <class Fields>
-void describe(Fields& of, Is<NamedRule>) {
-    of.name("image", "");
-    of.must("name", &NamedRule::name, "shell pattern of names; * is any text, / included");
-    of("passes", &NamedRule::passes, "");
+DESCRIBE(NamedRule) {
+    of.name("image");
+    of.must(MEMBER(name), "shell pattern of names; * is any text, / included");
+    MEMBERS(passes);
 }
 
 struct Tolerance {
@@ -86,10 +82,9 @@ struct Tolerance {
     /// The limit of the first rule about pixels of images[index], for figures; nothing where it has none.
     [[nodiscard]] std::optional<double> first_limit(std::size_t index) const;
 };
-template <class Fields>
-void describe(Fields& of, Is<Tolerance>) {
-    of.name("tolerance", "");
-    of("images", &Tolerance::images, "the first whose name matches counts");
+DESCRIBE(Tolerance) {
+    of.name("tolerance");
+    of(MEMBER(images), "the first whose name matches counts");
 }
 
 /// Throws InputError with file, position, what was found and what was expected.
@@ -102,13 +97,12 @@ struct Conceded {
 
     [[nodiscard]] std::size_t sum() const { return shift + edge_band + mask + several; }
 };
-template <class Fields>
-void describe(Fields& of, Is<Conceded>) {
+DESCRIBE(Conceded) {
     of.name("conceded", "pixels beyond the limit that passed all the same");
-    of("shift", &Conceded::shift, "only because a pixel of the other picture is near");
-    of("edge_band", &Conceded::edge_band, "only because a shadow boundary is near");
-    of("mask", &Conceded::mask, "only because of the mask");
-    of("several", &Conceded::several, "because of more than one of these");
+    of(MEMBER(shift), "only because a pixel of the other picture is near");
+    of(MEMBER(edge_band), "only because a shadow boundary is near");
+    of(MEMBER(mask), "only because of the mask");
+    of(MEMBER(several), "because of more than one of these");
 }
 
 /// One rule of the tree and whether it holds.
@@ -121,16 +115,13 @@ struct RuleOutcome {
     std::string says{};
     std::size_t depth = 0;  ///< in the tree: 0 is the root
 };
-template <class Fields>
-void describe(Fields& of, Is<RuleOutcome>) {
-    of.name("rule_outcome", "");
-    of("at", &RuleOutcome::at, "");
-    of("rule", &RuleOutcome::rule, "");
-    of("holds", &RuleOutcome::holds, "");
-    of.may("figure", &RuleOutcome::figure, "");
-    of.may("limit", &RuleOutcome::limit, "");
-    of.may("conceded", &RuleOutcome::conceded, "");
-    of("says", &RuleOutcome::says, "");
+DESCRIBE(RuleOutcome) {
+    of.name("rule_outcome");
+    MEMBERS(at, rule, holds);
+    of.may(MEMBER(figure));
+    of.may(MEMBER(limit));
+    of.may(MEMBER(conceded));
+    MEMBERS(says);
 }
 
 /// Two pictures of one size, and their figures.

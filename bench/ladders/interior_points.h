@@ -32,10 +32,9 @@ struct InteriorPoints {
     /// "12 interior shadow points of 9000 compared, at least 100 are needed": what is missing; empty where enough.
     [[nodiscard]] std::string lacking() const;
 };
-template <class Fields>
-void describe(Fields& of, Is<InteriorPoints>) {
-    of("interior_lit", &InteriorPoints::lit, "interior points, over lights, at which S_j = 0 would be wrong");
-    of("interior_shadow", &InteriorPoints::shadow, "interior points, over lights, at which S_j = 1 would be wrong");
+DESCRIBE(InteriorPoints) {
+    of("interior_lit", &R::lit, "interior points, over lights, at which S_j = 0 would be wrong");
+    of("interior_shadow", &R::shadow, "interior points, over lights, at which S_j = 1 would be wrong");
 }
 
 /// Of the points that both planes define; `answers` may be `truth` itself.

@@ -18,22 +18,15 @@ struct BreakRecord {
     std::string reference{};
     std::vector<ExplainedPointRecord> explained{};
 };
-template <class Fields>
-void describe(Fields& of, Is<BreakRecord>) {
-    of.name("break", "");
-    of.must("scene", &BreakRecord::scene, "a reduced scene that reproduces the break, which the pictures show");
-    of.must("visibility", &BreakRecord::visibility, "");
-    of.must("truth", &BreakRecord::truth, "");
-    of.must("classes", &BreakRecord::classes, "");
-    of("light", &BreakRecord::light, "");
-    of("width", &BreakRecord::width, "");
-    of("height", &BreakRecord::height, "");
-    of("triangles", &BreakRecord::triangles, "");
-    of("triangles_before", &BreakRecord::triangles_before, "");
-    of("points", &BreakRecord::points, "");
-    of("interior", &BreakRecord::interior, "");
-    of.may("reference", &BreakRecord::reference, "as typed");
-    of.may("explained", &BreakRecord::explained, "of each class of interior errors the most telling point");
+DESCRIBE(BreakRecord) {
+    of.name("break");
+    of.must(MEMBER(scene), "a reduced scene that reproduces the break, which the pictures show");
+    of.must(MEMBER(visibility));
+    of.must(MEMBER(truth));
+    of.must(MEMBER(classes));
+    MEMBERS(light, width, height, triangles, triangles_before, points, interior);
+    of.may(MEMBER(reference), "as typed");
+    of.may(MEMBER(explained), "of each class of interior errors the most telling point");
 }
 
 /// Reduces the scene of the rung where the method broke, and writes NAME.json (a native scene), and the S of the

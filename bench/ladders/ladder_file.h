@@ -17,15 +17,14 @@ struct LadderFileRecord {
     std::vector<std::string> set{};
     std::vector<double> rungs{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LadderFileRecord>) {
+DESCRIBE(LadderFileRecord) {
     of.name("ladder_file", "a ladder of your own, called as its file is");
-    of("title", &LadderFileRecord::title, "default: its name in words");
-    of("about", &LadderFileRecord::about, "one or two sentences: what grows, and what it hurts");
-    of("unit", &LadderFileRecord::unit, "of a rung's value, as read after the number");
-    of("scene", &LadderFileRecord::scene, "a native scene beside the file, or of ours by name");
-    of("set", &LadderFileRecord::set, "JSON Pointers to numbers in the scene; each gets the rung's value");
-    of("rungs", &LadderFileRecord::rungs, "growing or shrinking, harmless first");
+    of(MEMBER(title), "default: its name in words");
+    of(MEMBER(about), "one or two sentences: what grows, and what it hurts");
+    of(MEMBER(unit), "of a rung's value, as read after the number");
+    of(MEMBER(scene), "a native scene beside the file, or of ours by name");
+    of(MEMBER(set), "JSON Pointers to numbers in the scene; each gets the rung's value");
+    of(MEMBER(rungs), "growing or shrinking, harmless first");
 }
 
 /// Whether a word of a command line is the file of a ladder, not a ladder's name.

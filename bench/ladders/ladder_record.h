@@ -24,21 +24,20 @@ struct RungOutcomeRecord {
     std::optional<bool> broken{};
     std::optional<std::optional<std::string>> kind{};  ///< with figures; null: no point is wrong
 };
-template <class Fields>
-void describe(Fields& of, Is<RungOutcomeRecord>) {
+DESCRIBE(RungOutcomeRecord) {
     of.name("outcome", "what a method made of a rung; without figures where it did not run to its end");
-    of("serves", &RungOutcomeRecord::serves, "");
-    of.may("stopped", &RungOutcomeRecord::stopped, "what it threw");
-    of.may("points", &RungOutcomeRecord::points, "");
-    of.may("undefined", &RungOutcomeRecord::undefined, "");
-    of.may("false_shadow", &RungOutcomeRecord::false_shadow, "");
-    of.may("false_light", &RungOutcomeRecord::false_light, "");
-    of.may("interior_lit", &RungOutcomeRecord::interior_lit, "as of the rung, of the points that the method answers");
-    of.may("interior_shadow", &RungOutcomeRecord::interior_shadow, "likewise");
-    of.may("interior_share", &RungOutcomeRecord::interior_share, "", {{}, 0, 1});
-    of.may("mae", &RungOutcomeRecord::mae, "", {{}, 0, 1});
-    of.may("broken", &RungOutcomeRecord::broken, "");
-    of.may("kind", &RungOutcomeRecord::kind, "");
+    MEMBERS(serves);
+    of.may(MEMBER(stopped), "what it threw");
+    of.may(MEMBER(points));
+    of.may(MEMBER(undefined));
+    of.may(MEMBER(false_shadow));
+    of.may(MEMBER(false_light));
+    of.may(MEMBER(interior_lit), "as of the rung, of the points that the method answers");
+    of.may(MEMBER(interior_shadow), "likewise");
+    of.may(MEMBER(interior_share), "", {{}, 0, 1});
+    of.may(MEMBER(mae), "", {{}, 0, 1});
+    of.may(MEMBER(broken));
+    of.may(MEMBER(kind));
 }
 
 /// How a method fared on a ladder. Rungs are named by their values.
@@ -55,51 +54,46 @@ struct ClimbRecord {
     std::optional<std::vector<double>> first_rung_ms{};
     std::optional<BreakRecord> shown{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ClimbRecord>) {
+DESCRIBE(ClimbRecord) {
     of.name("climb", "how a method fared on a ladder; rungs are named by their values, null: none");
-    of("name", &ClimbRecord::name, "");
-    of("title", &ClimbRecord::title, "");
-    of.must("text", &ClimbRecord::text, "method and settings, as typed");
-    of("preset", &ClimbRecord::preset, "whose settings these are; null where they are of none");
-    of("breaks_at", &ClimbRecord::breaks_at, "");
-    of("kind", &ClimbRecord::kind, "",
+    MEMBERS(name, title);
+    of.must(MEMBER(text), "method and settings, as typed");
+    of(MEMBER(preset), "whose settings these are; null where they are of none");
+    MEMBERS(breaks_at);
+    of(MEMBER(kind), "",
        one_of({"acne", "false shadow", "leak", "detachment", "false light", "penumbra", "stopped", "wrong sum"}));
-    of("silent_from", &ClimbRecord::silent_from, "from here on to the last rung, most points are undefined");
-    of("not_served_from", &ClimbRecord::not_served_from, "from here on to the last rung");
-    of("not_judged_from", &ClimbRecord::not_judged_from,
+    of(MEMBER(silent_from), "from here on to the last rung, most points are undefined");
+    of(MEMBER(not_served_from), "from here on to the last rung");
+    of(MEMBER(not_judged_from),
        "from here on to the last rung, too few interior points of a kind, no points or no reference");
-    of("why", &ClimbRecord::why, "");
-    of.may("judged_rungs", &ClimbRecord::judged_rungs, "on which it ran and has enough interior points of each kind");
-    of.may("least_coverage", &ClimbRecord::least_coverage,
-           "of the judged rungs: the least share of the points that it answers", {{}, 0, 1});
-    of("rungs", &ClimbRecord::rungs, "of the judged rungs");
-    of.may("first_rung_ms", &ClimbRecord::first_rung_ms,
+    MEMBERS(why);
+    of.may(MEMBER(judged_rungs), "on which it ran and has enough interior points of each kind");
+    of.may(MEMBER(least_coverage), "of the judged rungs: the least share of the points that it answers", {{}, 0, 1});
+    of(MEMBER(rungs), "of the judged rungs");
+    of.may(MEMBER(first_rung_ms),
            "build, aim and visibility on the first rung, a value a round, all methods in turns; empty where the method "
            "does not serve it");
-    of.may("break", &ClimbRecord::shown, "");
+    of.may("break", &R::shown);
 }
 
 struct LadderWordsRecord {
     std::string name{}, title{}, about{}, unit{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LadderWordsRecord>) {
-    of.must("name", &LadderWordsRecord::name, "");
-    of.must("title", &LadderWordsRecord::title, "");
-    of("about", &LadderWordsRecord::about, "");
-    of("unit", &LadderWordsRecord::unit, "of the value of a rung");
+DESCRIBE(LadderWordsRecord) {
+    of.must(MEMBER(name));
+    of.must(MEMBER(title));
+    MEMBERS(about);
+    of(MEMBER(unit), "of the value of a rung");
 }
 
 /// A ladder as `umbra list --json` names it.
 struct LadderInfoRecord : LadderWordsRecord {
     std::vector<double> rungs{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LadderInfoRecord>) {
-    of.name("ladder", "");
+DESCRIBE(LadderInfoRecord) {
+    of.name("ladder");
     describe(of, Is<LadderWordsRecord>{});
-    of("rungs", &LadderInfoRecord::rungs, "");
+    MEMBERS(rungs);
 }
 
 /// A ladder that was climbed.
@@ -108,13 +102,12 @@ struct LadderRecord : LadderWordsRecord {
     std::uint64_t not_climbed = 0;
     std::vector<ClimbRecord> methods{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LadderRecord>) {
-    of.name("ladder", "");
+DESCRIBE(LadderRecord) {
+    of.name("ladder");
     describe(of, Is<LadderWordsRecord>{});
-    of("rungs", &LadderRecord::rungs, "");
-    of("not_climbed", &LadderRecord::not_climbed, "rungs beyond the last of `rungs`");
-    of("methods", &LadderRecord::methods, "");
+    MEMBERS(rungs);
+    of(MEMBER(not_climbed), "rungs beyond the last of `rungs`");
+    MEMBERS(methods);
 }
 
 struct LaddersRecord {
@@ -125,17 +118,16 @@ struct LaddersRecord {
     std::vector<ListedFailureRecord> failed{};
     std::optional<BudgetRecord> budget{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LaddersRecord>) {
-    of.all(&LaddersRecord::head);
-    of("machine", &LaddersRecord::machine, "");
-    of("breaking_share", &LaddersRecord::breaking_share,
+DESCRIBE(LaddersRecord) {
+    of.all(&R::head);
+    MEMBERS(machine);
+    of(MEMBER(breaking_share),
        "a method that serves a scene approximately breaks where a larger fraction of the compared points is wrong in "
        "the interior",
        {{}, 0, 1});
-    of("ladders", &LaddersRecord::ladders, "");
-    of("failed", &LaddersRecord::failed, "methods, references and whole ladders");
-    of.may("budget", &LaddersRecord::budget, "");
+    MEMBERS(ladders);
+    of(MEMBER(failed), "methods, references and whole ladders");
+    of.may(MEMBER(budget));
 }
 
 /// Throws InputError: "FILE:/POINTER: found WHAT, expected WHAT".

@@ -55,18 +55,13 @@ struct Rung {
     std::vector<RungOutcome> outcomes;  ///< none where it is not judged
 };
 /// Outcomes stand with their methods.
-template <class Fields>
-void describe(Fields& of, Is<Rung>) {
-    of.name("rung", "");
-    of.must("value", &Rung::value, "");
-    of("truth", &Rung::truth, "the reference, as typed");
-    of("surface_points", &Rung::surface_points, "");
-    of("lit", &Rung::lit, "");
-    of("umbra", &Rung::umbra, "");
-    of("penumbra", &Rung::penumbra, "");
-    of("on_boundary", &Rung::on_boundary, "");
-    of.all(&Rung::can_show);
-    of.may("unjudged", &Rung::unjudged, "why no method is compared on this rung");
+DESCRIBE(Rung) {
+    of.name("rung");
+    of.must(MEMBER(value));
+    of(MEMBER(truth), "the reference, as typed");
+    MEMBERS(surface_points, lit, umbra, penumbra, on_boundary);
+    of.all(&R::can_show);
+    of.may(MEMBER(unjudged), "why no method is compared on this rung");
 }
 
 struct LadderRun {

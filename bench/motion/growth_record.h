@@ -19,23 +19,19 @@ struct GrowthPointRecord {
     std::uint64_t memory_bytes = 0;
     double noise_bar           = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<GrowthPointRecord>) {
-    of("x", &GrowthPointRecord::x, "the size", at_least(1));
-    of("text", &GrowthPointRecord::text, "the method as typed");
-    of("times", &GrowthPointRecord::times, "");
-    of("memory_bytes", &GrowthPointRecord::memory_bytes, "");
-    of("noise_bar", &GrowthPointRecord::noise_bar, "");
+DESCRIBE(GrowthPointRecord) {
+    of(MEMBER(x), "the size", at_least(1));
+    of(MEMBER(text), "the method as typed");
+    MEMBERS(times, memory_bytes, noise_bar);
 }
 
 struct TheoryRecord {
     std::vector<double> interval{};
     std::string why{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TheoryRecord>) {
-    of("interval", &TheoryRecord::interval, "of the exponent", kTwoNumbers);
-    of("why", &TheoryRecord::why, "");
+DESCRIBE(TheoryRecord) {
+    of(MEMBER(interval), "of the exponent", kTwoNumbers);
+    MEMBERS(why);
 }
 
 /// A power law through the times.
@@ -46,14 +42,13 @@ struct FitRecord {
     std::uint64_t points = 0;
     std::vector<double> range{};
 };
-template <class Fields>
-void describe(Fields& of, Is<FitRecord>) {
-    of.may("exponent", &FitRecord::exponent, "");
-    of.may("interval", &FitRecord::interval, "95 %", kTwoNumbers);
-    of.may("factor", &FitRecord::factor, "milliseconds or bytes at x = 1");
-    of.may("r_squared", &FitRecord::r_squared, "");
-    of.may("points", &FitRecord::points, "", at_least(3));
-    of.may("range", &FitRecord::range, "the sizes that were fitted", kTwoNumbers);
+DESCRIBE(FitRecord) {
+    of.may(MEMBER(exponent));
+    of.may(MEMBER(interval), "95 %", kTwoNumbers);
+    of.may(MEMBER(factor), "milliseconds or bytes at x = 1");
+    of.may(MEMBER(r_squared));
+    of.may(MEMBER(points), "", at_least(3));
+    of.may(MEMBER(range), "the sizes that were fitted", kTwoNumbers);
 }
 
 struct QuantityRecord {
@@ -62,15 +57,13 @@ struct QuantityRecord {
     std::optional<TheoryRecord> theory{};
     std::string verdict{};
 };
-template <class Fields>
-void describe(Fields& of, Is<QuantityRecord>) {
-    of("quantity", &QuantityRecord::quantity,
+DESCRIBE(QuantityRecord) {
+    of(MEMBER(quantity),
        "camera_frame: look and visibility; light_frame: aim and visibility; object_frame: all phases; memory in bytes",
        quantities());
-    of.all(&QuantityRecord::fit);
-    of.may("theory", &QuantityRecord::theory, "");
-    of.may("verdict", &QuantityRecord::verdict,
-           "where the fitted interval lies beside theory's; undecided: it is too wide to say",
+    of.all(&R::fit);
+    of.may(MEMBER(theory));
+    of.may(MEMBER(verdict), "where the fitted interval lies beside theory's; undecided: it is too wide to say",
            one_of({"agrees", "below", "above", "undecided"}));
 }
 
@@ -79,14 +72,11 @@ struct GrowthSeriesRecord {
     std::vector<GrowthPointRecord> points{};
     std::vector<QuantityRecord> fits{};
 };
-template <class Fields>
-void describe(Fields& of, Is<GrowthSeriesRecord>) {
-    of("name", &GrowthSeriesRecord::name, "");
-    of("title", &GrowthSeriesRecord::title, "");
-    of("text", &GrowthSeriesRecord::text, "as typed, without the parameter that grows");
-    of("points", &GrowthSeriesRecord::points, "");
-    of("fits", &GrowthSeriesRecord::fits, "");
-    of.may("left_out", &GrowthSeriesRecord::left_out, "why it has no points beyond its last");
+DESCRIBE(GrowthSeriesRecord) {
+    MEMBERS(name, title);
+    of(MEMBER(text), "as typed, without the parameter that grows");
+    MEMBERS(points, fits);
+    of.may(MEMBER(left_out), "why it has no points beyond its last");
 }
 
 struct FittedCrossingRecord {
@@ -94,11 +84,10 @@ struct FittedCrossingRecord {
     std::vector<double> interval{};
     bool inside = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<FittedCrossingRecord>) {
-    of("x", &FittedCrossingRecord::x, "");
-    of("interval", &FittedCrossingRecord::interval, "95 %", kTwoNumbers);
-    of("inside", &FittedCrossingRecord::inside, "within the sizes that were measured");
+DESCRIBE(FittedCrossingRecord) {
+    MEMBERS(x);
+    of(MEMBER(interval), "95 %", kTwoNumbers);
+    of(MEMBER(inside), "within the sizes that were measured");
 }
 
 struct CrossingRecord {
@@ -107,15 +96,12 @@ struct CrossingRecord {
     std::vector<double> between{};
     std::optional<FittedCrossingRecord> fitted{};
 };
-template <class Fields>
-void describe(Fields& of, Is<CrossingRecord>) {
-    of("quantity", &CrossingRecord::quantity, "", quantities());
-    of("below", &CrossingRecord::below, "the method that is faster at smaller sizes");
-    of("above", &CrossingRecord::above, "");
-    of("x", &CrossingRecord::x, "");
-    of("between", &CrossingRecord::between,
-       "neighbouring sizes at which one and then the other is faster, beyond the noise", kTwoNumbers);
-    of("fitted", &CrossingRecord::fitted, "");
+DESCRIBE(CrossingRecord) {
+    of(MEMBER(quantity), "", quantities());
+    of(MEMBER(below), "the method that is faster at smaller sizes");
+    MEMBERS(above, x);
+    of(MEMBER(between), "neighbouring sizes at which one and then the other is faster, beyond the noise", kTwoNumbers);
+    MEMBERS(fitted);
 }
 
 struct SizeRatioRecord {
@@ -123,13 +109,12 @@ struct SizeRatioRecord {
     std::vector<double> interval{};
     double coverage = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<SizeRatioRecord>) {
-    of("pixels", &SizeRatioRecord::pixels, "");
-    of("ratio", &SizeRatioRecord::ratio, "of silhouettes to single triangles");
-    of.may("interval", &SizeRatioRecord::interval, "of our rounds; null: of fewer than six there is none", kTwoNumbers);
-    of.may("coverage", &SizeRatioRecord::coverage,
-           "the probability with which the interval holds the median of the ratios; 0: there is none", kFraction);
+DESCRIBE(SizeRatioRecord) {
+    MEMBERS(pixels);
+    of(MEMBER(ratio), "of silhouettes to single triangles");
+    of.may(MEMBER(interval), "of our rounds; null: of fewer than six there is none", kTwoNumbers);
+    of.may(MEMBER(coverage), "the probability with which the interval holds the median of the ratios; 0: there is none",
+           kFraction);
 }
 
 /// Others' times beside ours.
@@ -140,14 +125,12 @@ struct ExternalRecord {
     std::vector<SizeRatioRecord> ours{};
     std::vector<std::vector<double>> our_crossings{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExternalRecord>) {
-    of("source", &ExternalRecord::source, "");
-    of("quantity", &ExternalRecord::quantity, "", quantities());
-    of("theirs", &ExternalRecord::theirs, "");
-    of("their_crossing", &ExternalRecord::their_crossing, "", kTwoNumbers);
-    of("ours", &ExternalRecord::ours, "");
-    of("our_crossings", &ExternalRecord::our_crossings, "");
+DESCRIBE(ExternalRecord) {
+    MEMBERS(source);
+    of(MEMBER(quantity), "", quantities());
+    MEMBERS(theirs);
+    of(MEMBER(their_crossing), "", kTwoNumbers);
+    MEMBERS(ours, our_crossings);
 }
 
 struct FamilyRecord {
@@ -157,16 +140,12 @@ struct FamilyRecord {
     std::vector<CrossingRecord> crossings{};
     std::optional<ExternalRecord> external{};
 };
-template <class Fields>
-void describe(Fields& of, Is<FamilyRecord>) {
-    of("name", &FamilyRecord::name, "", one_of({"triangles", "bodies", "pixels", "lights", "samples", "resolution"}));
-    of("title", &FamilyRecord::title, "");
-    of("about", &FamilyRecord::about, "");
-    of("unit", &FamilyRecord::unit, "of the sizes");
-    of("sizes", &FamilyRecord::sizes, "");
-    of("methods", &FamilyRecord::methods, "");
-    of("crossings", &FamilyRecord::crossings, "");
-    of("external", &FamilyRecord::external, "null where not both ways of shadow volumes ran");
+DESCRIBE(FamilyRecord) {
+    of(MEMBER(name), "", one_of({"triangles", "bodies", "pixels", "lights", "samples", "resolution"}));
+    MEMBERS(title, about);
+    of(MEMBER(unit), "of the sizes");
+    MEMBERS(sizes, methods, crossings);
+    of(MEMBER(external), "null where not both ways of shadow volumes ran");
 }
 
 struct GrowthRecord {
@@ -177,15 +156,13 @@ struct GrowthRecord {
     std::vector<FamilyRecord> growth{};
     std::vector<ListedFailureRecord> failed{};
 };
-template <class Fields>
-void describe(Fields& of, Is<GrowthRecord>) {
-    of.all(&GrowthRecord::head);
-    of.may("budget", &GrowthRecord::budget, "");
-    of("machine", &GrowthRecord::machine, "");
-    of("load_average", &GrowthRecord::load_average,
-       "of the last minute, before the first time and after the last; null: unknown");
-    of("growth", &GrowthRecord::growth, "one entry a family");
-    of("failed", &GrowthRecord::failed, "");
+DESCRIBE(GrowthRecord) {
+    of.all(&R::head);
+    of.may(MEMBER(budget));
+    MEMBERS(machine);
+    of(MEMBER(load_average), "of the last minute, before the first time and after the last; null: unknown");
+    of(MEMBER(growth), "one entry a family");
+    MEMBERS(failed);
 }
 
 [[nodiscard]] FamilyRecord family_record(const GrowthRun& run);

@@ -5,17 +5,17 @@
 //         std::uint64_t runs = 0;
 //         std::vector<double> samples;
 //     };
-//     template <class Fields>
-//     void describe(Fields& of, Is<Timing>) {
+//     DESCRIBE(Timing) {
 //         of.name("timing", "milliseconds");
-//         of("median", &Timing::median, "of all runs but the cold one");
-//         of("runs", &Timing::runs, "");
-//         of.may("samples", &Timing::samples, "in the order of the rounds");
+//         of(MEMBER(median), "of all runs but the cold one");
+//         MEMBERS(runs);
+//         of.may(MEMBER(samples), "in the order of the rounds");
 //     }
 //
-// of(...) is always written; of.must(...) must also be there when it is read, and not be empty; of.may(...) is written
-// where it holds something, of.where(&T::flag, ...) where the flag is set; of.all(...) writes the members of a part as if
-// they were the record's own.
+// MEMBER is a member and its name as the key; a key that is no name in C++ stands as of("class", &R::member), where R is
+// the record. MEMBERS are members without words. of(...) is always written; of.must(...) must also be there when it is
+// read, and not be empty; of.may(...) is written where it holds something, of.where(&R::flag, ...) where the flag is
+// set; of.all(&R::part) writes the members of a part as if they were the record's own.
 //
 // Types of members, and what JSON has for them:
 //
@@ -34,6 +34,8 @@
 
 #include <fmt/format.h>
 
+#include <boost/preprocessor/seq/for_each.hpp>
+#include <boost/preprocessor/variadic/to_seq.hpp>
 #include <cmath>
 #include <concepts>
 #include <cstdint>
@@ -91,6 +93,14 @@ struct Members : std::vector<std::pair<std::string, T>> {
 template <class T>
 struct Is {};
 
+#define DESCRIBE(T)                      \
+    template <class Fields, class R = T> \
+    void describe(Fields& of, Is<T>)
+#define MEMBER(member) #member, &R::member
+#define MEMBERS(...) \
+    BOOST_PP_SEQ_FOR_EACH(UMBRA_PLAIN_MEMBER, , BOOST_PP_VARIADIC_TO_SEQ(__VA_ARGS__)) static_assert(true)
+#define UMBRA_PLAIN_MEMBER(repetition, data, member) of(MEMBER(member));
+
 /// What a member may hold, beyond its type; anything by default. Of Members it says what each may hold.
 struct Allowed {
     std::vector<std::string_view> words{};  ///< one of these
@@ -105,19 +115,49 @@ inline const Allowed kTwoNumbers{.items = 2}, kThreeNumbers{.items = 3}, kFracti
 
 namespace record_parts {
 
-/// Does nothing: for asking whether a type has a description.
-struct Nothing {
-    void name(std::string_view, std::string_view) {}
+enum class Kind { plain, may, where, must };  ///< of a member: as called
+
+/// What a description calls: each leads to `Self::take`, and to `Self::part` for members that are part of the record.
+template <class Self>
+class Fields {
+public:
+    void name(std::string_view, std::string_view = {}) {}
     template <class M>
-    void operator()(std::string_view, M, std::string_view, const Allowed& = {}) {}
+    void operator()(std::string_view key, M member, std::string_view about = {}, const Allowed& allowed = {}) {
+        self().take(Kind::plain, key, member, about, allowed);
+    }
     template <class M>
-    void may(std::string_view, M, std::string_view, const Allowed& = {}) {}
+    void may(std::string_view key, M member, std::string_view about = {}, const Allowed& allowed = {}) {
+        self().take(Kind::may, key, member, about, allowed);
+    }
     template <class M>
-    void must(std::string_view, M, std::string_view, const Allowed& = {}) {}
+    void must(std::string_view key, M member, std::string_view about = {}, const Allowed& allowed = {}) {
+        self().take(Kind::must, key, member, about, allowed);
+    }
     template <class F, class M>
-    void where(F, std::string_view, M, std::string_view, const Allowed& = {}) {}
+    void where(F flag, std::string_view key, M member, std::string_view about = {}, const Allowed& allowed = {}) {
+        if (self().is_set(flag, key)) self().take(Kind::where, key, member, about, allowed);
+    }
     template <class M>
-    void all(M) {}
+    void all(M part) {
+        self().part(part);
+    }
+    /// Whether a member that depends on a flag is taken.
+    template <class F>
+    bool is_set(F, std::string_view) {
+        return true;
+    }
+
+private:
+    Self& self() { return static_cast<Self&>(*this); }
+};
+
+/// Does nothing: for asking whether a type has a description.
+struct Nothing : Fields<Nothing> {
+    template <class M>
+    void take(Kind, std::string_view, M, std::string_view, const Allowed&) {}
+    template <class M>
+    void part(M) {}
 };
 
 template <class T>
@@ -168,29 +208,20 @@ Json write(const T& value);
 
 /// Writes the members of a record.
 template <class T>
-class Writer {
+class Writer : public Fields<Writer<T>> {
 public:
     Writer(const T& record, Json& json) : record_(record), json_(json) {}
-    void name(std::string_view, std::string_view) {}
     template <class V, class C>
-    void operator()(std::string_view key, V C::*member, std::string_view, const Allowed& = {}) {
-        json_[std::string(key)] = write(record_.*member);
+    void take(Kind kind, std::string_view key, V C::*member, std::string_view, const Allowed&) {
+        if (kind != Kind::may || !is_nothing(record_.*member)) json_[std::string(key)] = write(record_.*member);
+    }
+    template <class C>
+    bool is_set(bool C::*flag, std::string_view) {
+        return record_.*flag;
     }
     template <class V, class C>
-    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
-        (*this)(key, member, about);
-    }
-    template <class V, class C>
-    void may(std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
-        if (!is_nothing(record_.*member)) (*this)(key, member, about);
-    }
-    template <class V, class C>
-    void where(bool C::*flag, std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
-        if (record_.*flag) (*this)(key, member, about);
-    }
-    template <class V, class C>
-    void all(V C::*part) {
-        Writer<V> writer(record_.*part, json_);
+    void part(V C::*member) {
+        Writer<V> writer(record_.*member, json_);
         describe(writer, Is<V>{});
     }
 
@@ -234,47 +265,34 @@ void refuse_unless(const Allowed& allowed, const Field& field);
 
 /// Reads the members of a record.
 template <class T>
-class Reader {
+class Reader : public Fields<Reader<T>> {
 public:
     Reader(const Field& field, T& record) : field_(field), record_(record) {}
-    void name(std::string_view, std::string_view) {}
     template <class V, class C>
-    void operator()(std::string_view key, V C::*member, std::string_view, const Allowed& allowed = {}) {
+    void take(Kind kind, std::string_view key, V C::*member, std::string_view, const Allowed& allowed) {
         const Field field = field_[key];
         if constexpr (Part<V>::members)
             for (const auto& [name, item] : field.members()) refuse_unless(allowed, item);
         else
             refuse_unless(allowed, field);
         read(field, record_.*member);
+        if (kind != Kind::must) return;
+        constexpr bool is_text = std::is_same_v<V, std::string>;
+        if (!field.present() || (is_text && is_nothing(record_.*member)))
+            field.refuse(is_text ? "a non-empty string" : "a value");
     }
-    template <class V, class C>
-    void may(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
-        (*this)(key, member, about, allowed);
-    }
-    template <class V, class C>
-    void where(bool C::*flag, std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
-        (*this)(key, member, about, allowed);
+    template <class C>
+    bool is_set(bool C::*flag, std::string_view key) {
         if (field_.has(key)) record_.*flag = true;
+        return true;
     }
     template <class V, class C>
-    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
-        (*this)(key, member, about, allowed);
-        if (!field_[key].present() || is_empty_text(record_.*member))
-            field_[key].refuse(std::is_same_v<V, std::string> ? "a non-empty string" : "a value");
-    }
-    template <class V, class C>
-    void all(V C::*part) {
-        Reader<V> reader(field_, record_.*part);
+    void part(V C::*member) {
+        Reader<V> reader(field_, record_.*member);
         describe(reader, Is<V>{});
     }
 
 private:
-    template <class V>
-    static bool is_empty_text(const V& value) {
-        if constexpr (std::is_same_v<V, std::string>) return value.empty();
-        return false;
-    }
-
     const Field& field_;
     T& record_;
 };
@@ -338,25 +356,16 @@ Json schema(Definitions& definitions);
 
 /// Gathers the schema of a record.
 template <class T>
-class Describer {
+class Describer : public Fields<Describer<T>> {
 public:
     Describer(Json& json, Definitions& definitions) : json_(json), definitions_(definitions) {}
-    void name(std::string_view name, std::string_view about) {
+    void name(std::string_view name, std::string_view about = {}) {
         name_ = name;
         if (!about.empty()) json_["description"] = about;
     }
     template <class V, class C>
-    void operator()(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
-        json_["required"].push_back(key);
-        may(key, member, about, allowed);
-    }
-    template <class V, class C>
-    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
-        (*this)(key, member, about, allowed);
-        if constexpr (std::is_same_v<V, std::string>) json_["properties"][std::string(key)]["minLength"] = 1;
-    }
-    template <class V, class C>
-    void may(std::string_view key, V C::*, std::string_view about, const Allowed& allowed = {}) {
+    void take(Kind kind, std::string_view key, V C::*, std::string_view about, const Allowed& allowed) {
+        if (kind == Kind::plain || kind == Kind::must) json_["required"].push_back(key);
         Json& whole = json_["properties"][std::string(key)] = schema<V>(definitions_);
         if (!about.empty()) whole["description"] = about;
         Json& property = Part<V>::members ? whole["additionalProperties"] : whole;
@@ -366,13 +375,10 @@ public:
         if (allowed.most) property["maximum"] = *allowed.most;
         if (allowed.only) property["enum"] = Json::array({*allowed.only});
         if (allowed.items) property["minItems"] = property["maxItems"] = *allowed.items;
+        if (kind == Kind::must && std::is_same_v<V, std::string>) whole["minLength"] = 1;
     }
     template <class V, class C>
-    void where(bool C::*, std::string_view key, V C::*member, std::string_view about, const Allowed& allowed = {}) {
-        may(key, member, about, allowed);
-    }
-    template <class V, class C>
-    void all(V C::*) {
+    void part(V C::*) {
         Describer<V> part(json_, definitions_);
         describe(part, Is<V>{});
     }

@@ -17,29 +17,16 @@ void refuse_unknown(const Field& field);
 
 /// Gathers the names of the members of a record, and looks into those that are there.
 template <class T>
-class Knower {
+class Knower : public Fields<Knower<T>> {
 public:
     explicit Knower(const Field& field) : field_(field) {}
-    void name(std::string_view, std::string_view) {}
     template <class V, class C>
-    void operator()(std::string_view key, V C::*, std::string_view, const Allowed& = {}) {
+    void take(Kind, std::string_view key, V C::*, std::string_view, const Allowed&) {
         known.emplace_back(key);
         refuse_unknown<V>(field_[key]);
     }
     template <class V, class C>
-    void may(std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
-        (*this)(key, member, about);
-    }
-    template <class V, class C>
-    void must(std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
-        (*this)(key, member, about);
-    }
-    template <class V, class C>
-    void where(bool C::*, std::string_view key, V C::*member, std::string_view about, const Allowed& = {}) {
-        (*this)(key, member, about);
-    }
-    template <class V, class C>
-    void all(V C::*) {
+    void part(V C::*) {
         Knower<V> part(field_);
         describe(part, Is<V>{});
         known.insert(known.end(), part.known.begin(), part.known.end());

@@ -24,12 +24,11 @@ struct ExperimentPicture {
     std::string name{};
     FileName file{}, scene{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExperimentPicture>) {
+DESCRIBE(ExperimentPicture) {
     of.name("experiment_picture", "one variant of an experiment's scene");
-    of("name", &ExperimentPicture::name, "in English");
-    of("file", &ExperimentPicture::file, "the picture");
-    of("scene", &ExperimentPicture::scene, "the scene file");
+    of(MEMBER(name), "in English");
+    of(MEMBER(file), "the picture");
+    of(MEMBER(scene), "the scene file");
 }
 
 struct ExperimentCurve {
@@ -37,15 +36,14 @@ struct ExperimentCurve {
     std::vector<double> x{}, measured{}, formula{};
     std::optional<double> deviation{}, limit{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExperimentCurve>) {
+DESCRIBE(ExperimentCurve) {
     of.name("experiment_curve", "values along a line of a picture");
-    of("name", &ExperimentCurve::name, "in English");
-    of("x", &ExperimentCurve::x, "");
-    of("measured", &ExperimentCurve::measured, "empty: a formula alone");
-    of("formula", &ExperimentCurve::formula, "null where it leaves the value open");
-    of("deviation", &ExperimentCurve::deviation, "the largest of |measured - formula|");
-    of("limit", &ExperimentCurve::limit, "that the deviation must stay below");
+    of(MEMBER(name), "in English");
+    MEMBERS(x);
+    of(MEMBER(measured), "empty: a formula alone");
+    of(MEMBER(formula), "null where it leaves the value open");
+    of(MEMBER(deviation), "the largest of |measured - formula|");
+    of(MEMBER(limit), "that the deviation must stay below");
 }
 
 /// How far two pictures are from one another that differ by one thing.
@@ -53,12 +51,11 @@ struct ExperimentPair {
     std::string one{}, other{};
     double rmse = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ExperimentPair>) {
+DESCRIBE(ExperimentPair) {
     of.name("experiment_pair", "two pictures of an experiment");
-    of("one", &ExperimentPair::one, "its name");
-    of("other", &ExperimentPair::other, "its name");
-    of("rmse", &ExperimentPair::rmse, "of the sum, scene-linear");
+    of(MEMBER(one), "its name");
+    of(MEMBER(other), "its name");
+    of(MEMBER(rmse), "of the sum, scene-linear");
 }
 
 struct ExperimentRecord {
@@ -67,16 +64,13 @@ struct ExperimentRecord {
     std::vector<ExperimentCurve> curves{};
     std::vector<ExperimentPair> pairs{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExperimentRecord>) {
+DESCRIBE(ExperimentRecord) {
     of.name("experiment", "of one topic");
-    of("name", &ExperimentRecord::name, "the topic's id");
-    of("law", &ExperimentRecord::law, "the formula, as people write it");
-    of("x", &ExperimentRecord::x, "what is measured over");
-    of("y", &ExperimentRecord::y, "what is measured");
-    of("pictures", &ExperimentRecord::pictures, "");
-    of("curves", &ExperimentRecord::curves, "");
-    of("pairs", &ExperimentRecord::pairs, "");
+    of(MEMBER(name), "the topic's id");
+    of(MEMBER(law), "the formula, as people write it");
+    of(MEMBER(x), "what is measured over");
+    of(MEMBER(y), "what is measured");
+    MEMBERS(pictures, curves, pairs);
 }
 
 struct ExperimentsRecord {
@@ -84,11 +78,10 @@ struct ExperimentsRecord {
     std::vector<ExperimentRecord> experiments{};
     std::vector<ListedFailureRecord> failed{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExperimentsRecord>) {
-    of.all(&ExperimentsRecord::head);
-    of("experiments", &ExperimentsRecord::experiments, "");
-    of("failed", &ExperimentsRecord::failed, "experiments that are not among these; `scene` is the topic's id");
+DESCRIBE(ExperimentsRecord) {
+    of.all(&R::head);
+    MEMBERS(experiments);
+    of(MEMBER(failed), "experiments that are not among these; `scene` is the topic's id");
 }
 
 /// {base, experiments: {A1: ...}}.

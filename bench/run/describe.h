@@ -25,15 +25,11 @@ struct MachineRecord {
     std::uint64_t cores = 0, threads = 0, memory_bytes = 0;
     std::string system{}, compiler{};
 };
-template <class Fields>
-void describe(Fields& of, Is<MachineRecord>) {
-    of.name("machine", "");
-    of("cpu", &MachineRecord::cpu, "");
-    of("cores", &MachineRecord::cores, "");
-    of("threads", &MachineRecord::threads, "that the run used");
-    of("memory_bytes", &MachineRecord::memory_bytes, "");
-    of("system", &MachineRecord::system, "");
-    of("compiler", &MachineRecord::compiler, "");
+DESCRIBE(MachineRecord) {
+    of.name("machine");
+    MEMBERS(cpu, cores);
+    of(MEMBER(threads), "that the run used");
+    MEMBERS(memory_bytes, system, compiler);
 }
 
 /// How each record begins.
@@ -41,12 +37,10 @@ struct HeadRecord {
     int schema = kResultsSchema;
     std::string version{}, command{};
 };
-template <class Fields>
-void describe(Fields& of, Is<HeadRecord>) {
-    of("schema", &HeadRecord::schema, "of the record; other numbers are refused",
-       {.least = kResultsSchema, .most = kResultsSchema});
-    of("version", &HeadRecord::version, "of the program");
-    of("command", &HeadRecord::command, "as it was typed");
+DESCRIBE(HeadRecord) {
+    of(MEMBER(schema), "of the record; other numbers are refused", {.least = kResultsSchema, .most = kResultsSchema});
+    of(MEMBER(version), "of the program");
+    of(MEMBER(command), "as it was typed");
 }
 
 struct SceneRecord {
@@ -54,15 +48,13 @@ struct SceneRecord {
     std::vector<std::string> warnings{};
     std::vector<double> origin{};
 };
-template <class Fields>
-void describe(Fields& of, Is<SceneRecord>) {
-    of.name("scene", "");
-    of("name", &SceneRecord::name, "");
-    of("title", &SceneRecord::title, "");
-    of("shows", &SceneRecord::shows, "what it is for");
-    of("source", &SceneRecord::source, "the scene file");
-    of("warnings", &SceneRecord::warnings, "what is left out or assumed");
-    of.may("origin", &SceneRecord::origin,
+DESCRIBE(SceneRecord) {
+    of.name("scene");
+    MEMBERS(name, title);
+    of(MEMBER(shows), "what it is for");
+    of(MEMBER(source), "the scene file");
+    of(MEMBER(warnings), "what is left out or assumed");
+    of.may(MEMBER(origin),
            "where (0, 0, 0) of all positions is in the numbers of the scene file; absent: at its origin",
            kThreeNumbers);
 }
@@ -75,29 +67,12 @@ struct ObjectRecord {
     double area = kUnknown, volume = kUnknown;
     std::optional<bool> casts_shadows{}, receives_shadows{}, seen_by_camera{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ObjectRecord>) {
-    of("name", &ObjectRecord::name, "");
-    of("triangles", &ObjectRecord::triangles, "");
-    of("vertices", &ObjectRecord::vertices, "");
-    of("boundary_edges", &ObjectRecord::boundary_edges, "");
-    of("nonmanifold_edges", &ObjectRecord::nonmanifold_edges, "");
-    of("misoriented_edges", &ObjectRecord::misoriented_edges, "");
-    of("nonmanifold_vertices", &ObjectRecord::nonmanifold_vertices, "");
-    of("degenerate_triangles", &ObjectRecord::degenerate_triangles, "");
-    of("duplicate_triangles", &ObjectRecord::duplicate_triangles, "");
-    of("components", &ObjectRecord::components, "");
-    of("closed", &ObjectRecord::closed, "");
-    of("outward", &ObjectRecord::outward, "");
-    of("planar", &ObjectRecord::planar, "");
-    of("area", &ObjectRecord::area, "");
-    of("volume", &ObjectRecord::volume, "");
-    of.may("casts_shadows", &ObjectRecord::casts_shadows,
-           "false, and only there: the object blocks and filters no light", only(false));
-    of.may("receives_shadows", &ObjectRecord::receives_shadows,
-           "false, and only there: S_j is 1 at its points that face the light", only(false));
-    of.may("seen_by_camera", &ObjectRecord::seen_by_camera, "false, and only there: eye rays pass through the object",
-           only(false));
+DESCRIBE(ObjectRecord) {
+    MEMBERS(name, triangles, vertices, boundary_edges, nonmanifold_edges, misoriented_edges, nonmanifold_vertices,
+            degenerate_triangles, duplicate_triangles, components, closed, outward, planar, area, volume);
+    of.may(MEMBER(casts_shadows), "false, and only there: the object blocks and filters no light", only(false));
+    of.may(MEMBER(receives_shadows), "false, and only there: S_j is 1 at its points that face the light", only(false));
+    of.may(MEMBER(seen_by_camera), "false, and only there: eye rays pass through the object", only(false));
 }
 
 struct PlaneRecord {
@@ -105,31 +80,26 @@ struct PlaneRecord {
     double offset = kUnknown, area = kUnknown;
     std::uint64_t triangles = 0;
 };
-template <class Fields>
-void describe(Fields& of, Is<PlaneRecord>) {
-    of("normal", &PlaneRecord::normal, "", kThreeNumbers);
-    of("offset", &PlaneRecord::offset, "");
-    of("area", &PlaneRecord::area, "");
-    of("triangles", &PlaneRecord::triangles, "");
+DESCRIBE(PlaneRecord) {
+    of(MEMBER(normal), "", kThreeNumbers);
+    MEMBERS(offset, area, triangles);
 }
 
 struct ExtentRecord {
     std::vector<double> min{}, max{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExtentRecord>) {
-    of("min", &ExtentRecord::min, "", kThreeNumbers);
-    of("max", &ExtentRecord::max, "", kThreeNumbers);
+DESCRIBE(ExtentRecord) {
+    of(MEMBER(min), "", kThreeNumbers);
+    of(MEMBER(max), "", kThreeNumbers);
 }
 
 struct UncomputedRecord {
     std::string term{};
     std::vector<std::string> materials{};
 };
-template <class Fields>
-void describe(Fields& of, Is<UncomputedRecord>) {
-    of("term", &UncomputedRecord::term, "", one_of({"opacity", "transmit", "reflect", "index_of_refraction"}));
-    of("materials", &UncomputedRecord::materials, "");
+DESCRIBE(UncomputedRecord) {
+    of(MEMBER(term), "", one_of({"opacity", "transmit", "reflect", "index_of_refraction"}));
+    MEMBERS(materials);
 }
 
 struct FactsRecord {
@@ -142,47 +112,41 @@ struct FactsRecord {
     std::vector<UncomputedRecord> not_computed{};
     std::vector<std::string> required{}, not_required{};
 };
-template <class Fields>
-void describe(Fields& of, Is<FactsRecord>) {
+DESCRIBE(FactsRecord) {
     of.name("facts", "what the scene requires of a method");
-    of("triangles", &FactsRecord::triangles, "");
-    of("extent", &FactsRecord::extent, "");
-    of("objects", &FactsRecord::objects, "");
-    of("planes", &FactsRecord::planes, "planar receivers");
-    of("planar_area_share", &FactsRecord::planar_area_share, "the part of the area that these planes have");
-    of("eye_inside_closed_object", &FactsRecord::eye_inside_closed_object, "");
-    of("not_computed", &FactsRecord::not_computed, "what materials ask for and pictures of the sum do not have");
-    of("requires", &FactsRecord::required, "");
-    of("not_required", &FactsRecord::not_required, "");
+    MEMBERS(triangles, extent, objects);
+    of(MEMBER(planes), "planar receivers");
+    of(MEMBER(planar_area_share), "the part of the area that these planes have");
+    MEMBERS(eye_inside_closed_object);
+    of(MEMBER(not_computed), "what materials ask for and pictures of the sum do not have");
+    of("requires", &R::required);
+    MEMBERS(not_required);
 }
 
 struct LightRecord {
     std::string name{}, kind{}, place{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LightRecord>) {
-    of.must("name", &LightRecord::name, "");
-    of("kind", &LightRecord::kind, "directional, point, spot, rectangle, disk or sphere");
-    of("place", &LightRecord::place, "at_infinity, outside_view, inside_view or at_eye");
+DESCRIBE(LightRecord) {
+    of.must(MEMBER(name));
+    of(MEMBER(kind), "directional, point, spot, rectangle, disk or sphere");
+    of(MEMBER(place), "at_infinity, outside_view, inside_view or at_eye");
 }
 
 struct SizeRecord {
     std::optional<std::uint64_t> width{}, height{};
 };
-template <class Fields>
-void describe(Fields& of, Is<SizeRecord>) {
-    of("width", &SizeRecord::width, "pixels", {.least = 1, .most = 1e6});
-    of("height", &SizeRecord::height, "pixels", {.least = 1, .most = 1e6});
+DESCRIBE(SizeRecord) {
+    of(MEMBER(width), "pixels", {.least = 1, .most = 1e6});
+    of(MEMBER(height), "pixels", {.least = 1, .most = 1e6});
 }
 
 struct ServiceRecord {
     std::string how{}, why{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ServiceRecord>) {
+DESCRIBE(ServiceRecord) {
     of.name("service", "how well a method can serve a scene, and why");
-    of.must("how", &ServiceRecord::how, "", one_of({"exactly", "to_rounding", "approximately", "not"}));
-    of("why", &ServiceRecord::why, "");
+    of.must(MEMBER(how), "", one_of({"exactly", "to_rounding", "approximately", "not"}));
+    MEMBERS(why);
 }
 
 /// Milliseconds.
@@ -191,15 +155,11 @@ struct TimingRecord {
     std::uint64_t runs = 0;
     std::vector<double> samples{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TimingRecord>) {
+DESCRIBE(TimingRecord) {
     of.name("timing", "milliseconds");
-    of("median", &TimingRecord::median, "");
-    of("min", &TimingRecord::min, "");
-    of("max", &TimingRecord::max, "");
-    of("runs", &TimingRecord::runs, "");
+    MEMBERS(median, min, max, runs);
     of.may(
-        "samples", &TimingRecord::samples,
+        MEMBER(samples),
         "all runs in the order of the rounds; samples of two methods with one index are of one round, unless `order` is "
         "empty");
 }
@@ -208,24 +168,16 @@ void describe(Fields& of, Is<TimingRecord>) {
 struct TimesRecord {
     std::optional<TimingRecord> build_ms{}, aim_ms{}, look_ms{}, visibility_ms{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TimesRecord>) {
-    of("build_ms", &TimesRecord::build_ms, "");
-    of("aim_ms", &TimesRecord::aim_ms, "");
-    of("look_ms", &TimesRecord::look_ms, "of the surface points, once for all lights");
-    of("visibility_ms", &TimesRecord::visibility_ms, "");
+DESCRIBE(TimesRecord) {
+    MEMBERS(build_ms, aim_ms);
+    of(MEMBER(look_ms), "of the surface points, once for all lights");
+    MEMBERS(visibility_ms);
 }
 
 struct ColdRecord {
     double build_ms = kUnknown, aim_ms = kUnknown, look_ms = kUnknown, visibility_ms = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ColdRecord>) {
-    of("build_ms", &ColdRecord::build_ms, "");
-    of("aim_ms", &ColdRecord::aim_ms, "");
-    of("look_ms", &ColdRecord::look_ms, "");
-    of("visibility_ms", &ColdRecord::visibility_ms, "");
-}
+DESCRIBE(ColdRecord) { MEMBERS(build_ms, aim_ms, look_ms, visibility_ms); }
 
 /// Times that were measured in turns with those of other methods.
 struct TurnTimesRecord {
@@ -233,41 +185,29 @@ struct TurnTimesRecord {
     ColdRecord cold{};
     std::vector<std::uint64_t> order{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TurnTimesRecord>) {
-    of.name("turn_times", "");
-    of.all(&TurnTimesRecord::phases);
-    of("cold", &TurnTimesRecord::cold, "the first run, which is part of no median unless it is the only one");
-    of("order", &TurnTimesRecord::order,
-       "the position within each round, from 0; empty where the cold run is the only sample");
+DESCRIBE(TurnTimesRecord) {
+    of.name("turn_times");
+    of.all(&R::phases);
+    of(MEMBER(cold), "the first run, which is part of no median unless it is the only one");
+    of(MEMBER(order), "the position within each round, from 0; empty where the cold run is the only sample");
 }
 
-template <class Fields>
-void describe(Fields& of, Is<VisibilityError::Kind>) {
-    of("interior", &VisibilityError::Kind::interior, "");
-    of("edge", &VisibilityError::Kind::edge, "");
-}
+DESCRIBE(VisibilityError::Kind) { MEMBERS(interior, edge); }
 
 struct LoadRecord {
     double before = kUnknown, after = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<LoadRecord>) {
-    of("before", &LoadRecord::before, "");
-    of("after", &LoadRecord::after, "");
-}
+DESCRIBE(LoadRecord) { MEMBERS(before, after); }
 
 struct BudgetRecord {
     double seconds = kUnknown, memory_bytes = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<BudgetRecord>) {
+DESCRIBE(BudgetRecord) {
     of.name(
         "budget",
         "what each method might take on the scene, and a reference that nobody named; null: as much as it wants. Not "
         "there where nothing was limited");
-    of("seconds", &BudgetRecord::seconds, "");
-    of("memory_bytes", &BudgetRecord::memory_bytes, "");
+    MEMBERS(seconds, memory_bytes);
 }
 
 /// What a method, or the reference, threw or why it was cut short.
@@ -276,11 +216,10 @@ struct FailureRecord {
     std::string message{};
     bool cut = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<FailureRecord>) {
-    of("light", &FailureRecord::light, "null: before any, or between them");
-    of("message", &FailureRecord::message, "");
-    of.may("cut", &FailureRecord::cut, "true: it did not throw, it took more time or memory than `budget`", only(true));
+DESCRIBE(FailureRecord) {
+    of(MEMBER(light), "null: before any, or between them");
+    MEMBERS(message);
+    of.may(MEMBER(cut), "true: it did not throw, it took more time or memory than `budget`", only(true));
 }
 
 /// An entry of `failed` of a record of several scenes, ladders or families; it names one of them.
@@ -290,15 +229,14 @@ struct ListedFailureRecord {
     std::string method{};
     FailureRecord failure{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ListedFailureRecord>) {
+DESCRIBE(ListedFailureRecord) {
     of.name("failed", "what threw or was cut short, where");
-    of.may("ladder", &ListedFailureRecord::ladder, "");
-    of.may("scene", &ListedFailureRecord::scene, "");
-    of.may("family", &ListedFailureRecord::family, "");
-    of.may("rung", &ListedFailureRecord::rung, "");
-    of("method", &ListedFailureRecord::method, "as typed, or the reference");
-    of.all(&ListedFailureRecord::failure);
+    of.may(MEMBER(ladder));
+    of.may(MEMBER(scene));
+    of.may(MEMBER(family));
+    of.may(MEMBER(rung));
+    of(MEMBER(method), "as typed, or the reference");
+    of.all(&R::failure);
 }
 
 /// A parameter of a method.
@@ -309,29 +247,23 @@ struct ParameterRecord {
     std::optional<double> min{}, max{};
     std::string choices{}, sweep{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ParameterRecord>) {
-    of("name", &ParameterRecord::name, "");
-    of("type", &ParameterRecord::type, "", one_of({"integer", "real", "choice", "boolean", "text"}));
-    of("default", &ParameterRecord::fallback, "");
-    of("unit", &ParameterRecord::unit, "");
-    of("phase", &ParameterRecord::phase, "the first phase to repeat when it changes");
-    of("doc", &ParameterRecord::doc, "");
-    of.may("min", &ParameterRecord::min, "");
-    of.may("max", &ParameterRecord::max, "");
-    of.may("choices", &ParameterRecord::choices, "");
-    of.may("sweep", &ParameterRecord::sweep, "values that are worth comparing");
+DESCRIBE(ParameterRecord) {
+    MEMBERS(name);
+    of(MEMBER(type), "", one_of({"integer", "real", "choice", "boolean", "text"}));
+    of("default", &R::fallback);
+    MEMBERS(unit);
+    of(MEMBER(phase), "the first phase to repeat when it changes");
+    MEMBERS(doc);
+    of.may(MEMBER(min));
+    of.may(MEMBER(max));
+    of.may(MEMBER(choices));
+    of.may(MEMBER(sweep), "values that are worth comparing");
 }
 
 struct PresetRecord {
     std::string name{}, settings{}, doc{};
 };
-template <class Fields>
-void describe(Fields& of, Is<PresetRecord>) {
-    of("name", &PresetRecord::name, "");
-    of("settings", &PresetRecord::settings, "");
-    of("doc", &PresetRecord::doc, "");
-}
+DESCRIBE(PresetRecord) { MEMBERS(name, settings, doc); }
 
 /// A method as the list knows it.
 struct MethodInfoRecord {
@@ -340,19 +272,14 @@ struct MethodInfoRecord {
     std::vector<ParameterRecord> parameters{};
     std::vector<PresetRecord> presets{};
 };
-template <class Fields>
-void describe(Fields& of, Is<MethodInfoRecord>) {
-    of("name", &MethodInfoRecord::name, "");
-    of("title", &MethodInfoRecord::title, "");
-    of("paper", &MethodInfoRecord::paper, "");
-    of("summary", &MethodInfoRecord::summary, "");
-    of("measures", &MethodInfoRecord::measures, "which visible fraction of an area light");
-    of("reference", &MethodInfoRecord::reference, "others may be compared with it");
-    of("by_default", &MethodInfoRecord::by_default, "it runs where no method is named");
-    of("needs_raster", &MethodInfoRecord::needs_raster, "it answers for whole pictures only");
-    of("noise", &MethodInfoRecord::noise, "it has a seed");
-    of("parameters", &MethodInfoRecord::parameters, "");
-    of("presets", &MethodInfoRecord::presets, "");
+DESCRIBE(MethodInfoRecord) {
+    MEMBERS(name, title, paper, summary);
+    of(MEMBER(measures), "which visible fraction of an area light");
+    of(MEMBER(reference), "others may be compared with it");
+    of(MEMBER(by_default), "it runs where no method is named");
+    of(MEMBER(needs_raster), "it answers for whole pictures only");
+    of(MEMBER(noise), "it has a seed");
+    MEMBERS(parameters, presets);
 }
 
 [[nodiscard]] MethodInfoRecord method_info_record(const MethodInfo& info);

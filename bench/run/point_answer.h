@@ -15,22 +15,16 @@ struct TriangleRecord {
     TriangleId triangle = kNoTriangle;
     std::string object{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TriangleRecord>) {
-    of("triangle", &TriangleRecord::triangle, "");
-    of("object", &TriangleRecord::object, "");
-}
+DESCRIBE(TriangleRecord) { MEMBERS(triangle, object); }
 
 struct EvidenceRecord {
     std::string name{};
     Scalar value{};
     std::string unit{};
 };
-template <class Fields>
-void describe(Fields& of, Is<EvidenceRecord>) {
-    of("name", &EvidenceRecord::name, "");
-    of("value", &EvidenceRecord::value, "");
-    of.may("unit", &EvidenceRecord::unit, "");
+DESCRIBE(EvidenceRecord) {
+    MEMBERS(name, value);
+    of.may(MEMBER(unit));
 }
 
 /// A method's answer and its reason.
@@ -51,25 +45,22 @@ struct AnswerRecord {
     /// The number of that name; nothing where there is none.
     [[nodiscard]] std::optional<double> number(std::string_view name) const;
 };
-template <class Fields>
-void describe(Fields& of, Is<AnswerRecord>) {
-    of("method", &AnswerRecord::method, "");
-    of.may("not_served", &AnswerRecord::not_served, "why it does not serve the scene");
-    of.may("visibility", &AnswerRecord::visibility, "S");
-    of.where(&AnswerRecord::answered, "verdict", &AnswerRecord::verdict, "");
-    of.where(&AnswerRecord::answered, "blocker", &AnswerRecord::blocker, "the triangle that blocks");
-    of.where(&AnswerRecord::answered, "at", &AnswerRecord::at, "where it does, from 0 at the point to 1 at the light");
-    of.where(&AnswerRecord::answered, "towards", &AnswerRecord::towards, "the place that the segment goes to");
-    of.where(&AnswerRecord::answered, "margin", &AnswerRecord::margin, "how far the answer is from being another");
-    of.where(&AnswerRecord::answered, "unit", &AnswerRecord::unit, "of the margin");
-    of.where(&AnswerRecord::answered, "evidence", &AnswerRecord::evidence, "");
-    of.may("texel", &AnswerRecord::texel, "corners of the map's texel on the plane of the point, world space");
-    of.may("samples", &AnswerRecord::samples,
-           "of an area light: x, y, z in world space, and 1 where the point sees it");
-    of.may("silhouette", &AnswerRecord::silhouette,
-           "edges that extrude the sides of the blocker's volumes: two positions, world space");
-    of.may("difference", &AnswerRecord::difference, "from the truth, in words");
-    of.may("failed", &AnswerRecord::failed, "the message of what it threw");
+DESCRIBE(AnswerRecord) {
+    MEMBERS(method);
+    of.may(MEMBER(not_served), "why it does not serve the scene");
+    of.may(MEMBER(visibility), "S");
+    of.where(&R::answered, MEMBER(verdict));
+    of.where(&R::answered, MEMBER(blocker), "the triangle that blocks");
+    of.where(&R::answered, MEMBER(at), "where it does, from 0 at the point to 1 at the light");
+    of.where(&R::answered, MEMBER(towards), "the place that the segment goes to");
+    of.where(&R::answered, MEMBER(margin), "how far the answer is from being another");
+    of.where(&R::answered, MEMBER(unit), "of the margin");
+    of.where(&R::answered, MEMBER(evidence));
+    of.may(MEMBER(texel), "corners of the map's texel on the plane of the point, world space");
+    of.may(MEMBER(samples), "of an area light: x, y, z in world space, and 1 where the point sees it");
+    of.may(MEMBER(silhouette), "edges that extrude the sides of the blocker's volumes: two positions, world space");
+    of.may(MEMBER(difference), "from the truth, in words");
+    of.may(MEMBER(failed), "the message of what it threw");
 }
 
 [[nodiscard]] TriangleRecord triangle_record(const Scene& scene, TriangleId t);

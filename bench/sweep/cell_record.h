@@ -15,13 +15,10 @@ struct Cell {
     std::string key{};   ///< of what the cell depends on
     bool brief = false;  ///< as of CellOptions: what its record says of classes, edges and memory is not their value
 };
-template <class Fields>
-void describe(Fields& of, Is<Cell>) {
-    of.all(&Cell::method);
-    of.may("undefined", &Cell::undefined, "");
-    of("view", &Cell::view, "");
-    of("key", &Cell::key, "");
-    of("brief", &Cell::brief, "");
+DESCRIBE(Cell) {
+    of.all(&R::method);
+    of.may(MEMBER(undefined));
+    MEMBERS(view, key, brief);
 }
 
 }  // namespace umbra

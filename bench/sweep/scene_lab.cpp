@@ -21,14 +21,7 @@ struct PriceRecord {
     std::vector<double> visibility_ms{};
     int runs = 0;
 };
-template <class Fields>
-void describe(Fields& of, Is<PriceRecord>) {
-    of("build_ms", &PriceRecord::build_ms, "");
-    of("aim_ms", &PriceRecord::aim_ms, "");
-    of("look_ms", &PriceRecord::look_ms, "");
-    of("visibility_ms", &PriceRecord::visibility_ms, "");
-    of("runs", &PriceRecord::runs, "");
-}
+DESCRIBE(PriceRecord) { MEMBERS(build_ms, aim_ms, look_ms, visibility_ms, runs); }
 
 // What is kept beside cells.
 
@@ -36,43 +29,26 @@ struct KeptPrice {
     std::string key{};
     PriceRecord price{};
 };
-template <class Fields>
-void describe(Fields& of, Is<KeptPrice>) {
-    of("key", &KeptPrice::key, "");
-    of("price", &KeptPrice::price, "");
-}
+DESCRIBE(KeptPrice) { MEMBERS(key, price); }
 
 struct KeptTimes {
     std::string key{};
     std::optional<TurnTimesRecord> times{};
     std::optional<SweptTurnsRecord> turns{};
 };
-template <class Fields>
-void describe(Fields& of, Is<KeptTimes>) {
-    of("key", &KeptTimes::key, "");
-    of("times", &KeptTimes::times, "");
-    of("turns", &KeptTimes::turns, "");
-}
+DESCRIBE(KeptTimes) { MEMBERS(key, times, turns); }
 
 struct KeptSpent {
     std::string key{};
     double seconds = 0;
 };
-template <class Fields>
-void describe(Fields& of, Is<KeptSpent>) {
-    of("key", &KeptSpent::key, "");
-    of("seconds", &KeptSpent::seconds, "");
-}
+DESCRIBE(KeptSpent) { MEMBERS(key, seconds); }
 
 struct KeptReference {
     std::string key{};
     ReferenceRecord reference{};
 };
-template <class Fields>
-void describe(Fields& of, Is<KeptReference>) {
-    of("key", &KeptReference::key, "");
-    of("reference", &KeptReference::reference, "");
-}
+DESCRIBE(KeptReference) { MEMBERS(key, reference); }
 
 }  // namespace
 

@@ -43,15 +43,12 @@ struct PlanRecord {
     std::optional<std::uint64_t> points{};
     friend bool operator==(const PlanRecord&, const PlanRecord&) = default;
 };
-template <class Fields>
-void describe(Fields& of, Is<PlanRecord>) {
-    of("scenes", &PlanRecord::scenes, "");
-    of("settings", &PlanRecord::settings, "");
-    of("views", &PlanRecord::views, "", {.least = 1, .most = 1000});
-    of("width", &PlanRecord::width, "", {.least = 0, .most = 1e6});
-    of("height", &PlanRecord::height, "", {.least = 0, .most = 1e6});
-    of("reference", &PlanRecord::reference, "");
-    of("points", &PlanRecord::points, "");
+DESCRIBE(PlanRecord) {
+    MEMBERS(scenes, settings);
+    of(MEMBER(views), "", {.least = 1, .most = 1000});
+    of(MEMBER(width), "", {.least = 0, .most = 1e6});
+    of(MEMBER(height), "", {.least = 0, .most = 1e6});
+    MEMBERS(reference, points);
 }
 
 /// plan.json
@@ -60,11 +57,9 @@ struct PlanFile {
     std::string version{};
     PlanRecord plan{};
 };
-template <class Fields>
-void describe(Fields& of, Is<PlanFile>) {
-    of("schema", &PlanFile::schema, "");
-    of("version", &PlanFile::version, "");
-    of.must("plan", &PlanFile::plan, "");
+DESCRIBE(PlanFile) {
+    MEMBERS(schema, version);
+    of.must(MEMBER(plan));
 }
 
 PlanRecord plan_record(const SweepPlan& plan) {

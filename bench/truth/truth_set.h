@@ -20,25 +20,20 @@ struct TruthFileRecord {
     std::string name{}, sha256{};
     std::uint64_t bytes = 0;
 };
-template <class Fields>
-void describe(Fields& of, Is<TruthFileRecord>) {
+DESCRIBE(TruthFileRecord) {
     of.name("truth_file", "a file of the scene's folder");
-    of("name", &TruthFileRecord::name, "");
-    of("sha256", &TruthFileRecord::sha256, "");
-    of("bytes", &TruthFileRecord::bytes, "");
+    MEMBERS(name, sha256, bytes);
 }
 
 struct TruthLightRecord {
     std::string name{}, kind{};
     double tolerance = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<TruthLightRecord>) {
-    of.name("truth_light", "");
-    of.must("name", &TruthLightRecord::name, "");
-    of("kind", &TruthLightRecord::kind, "");
-    of("tolerance", &TruthLightRecord::tolerance,
-       "a point is wrong where it differs by more than this and the half width");
+DESCRIBE(TruthLightRecord) {
+    of.name("truth_light");
+    of.must(MEMBER(name));
+    MEMBERS(kind);
+    of(MEMBER(tolerance), "a point is wrong where it differs by more than this and the half width");
 }
 
 struct TruthSceneRecord {
@@ -49,20 +44,17 @@ struct TruthSceneRecord {
     std::vector<std::string> measures{};
     std::vector<TruthFileRecord> files{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TruthSceneRecord>) {
-    of.name("truth_scene", "");
-    of.must("folder", &TruthSceneRecord::folder, "");
-    of("title", &TruthSceneRecord::title, "");
-    of("shows", &TruthSceneRecord::shows, "");
-    of("reference", &TruthSceneRecord::reference, "the method that the answers are of");
-    of("exact", &TruthSceneRecord::exact, "false: sampled, and the half widths are not bounds");
-    of("width", &TruthSceneRecord::width, "");
-    of("height", &TruthSceneRecord::height, "");
-    of("asked", &TruthSceneRecord::asked, "pairs of point and light");
-    of("lights", &TruthSceneRecord::lights, "in the order of the arrays");
-    of("measures", &TruthSceneRecord::measures, "area; irradiance too where a light has an area");
-    of("files", &TruthSceneRecord::files, "");
+DESCRIBE(TruthSceneRecord) {
+    of.name("truth_scene");
+    of.must(MEMBER(folder));
+    MEMBERS(title, shows);
+    of(MEMBER(reference), "the method that the answers are of");
+    of(MEMBER(exact), "false: sampled, and the half widths are not bounds");
+    MEMBERS(width, height);
+    of(MEMBER(asked), "pairs of point and light");
+    of(MEMBER(lights), "in the order of the arrays");
+    of(MEMBER(measures), "area; irradiance too where a light has an area");
+    MEMBERS(files);
 }
 
 struct TruthSetRecord {
@@ -72,13 +64,12 @@ struct TruthSetRecord {
     std::vector<TruthSceneRecord> scenes{};
     std::vector<std::string> files{};
 };
-template <class Fields>
-void describe(Fields& of, Is<TruthSetRecord>) {
-    of.all(&TruthSetRecord::head);
-    of("license", &TruthSetRecord::license, "of the set, as its maker says");
-    of("withheld", &TruthSetRecord::withheld, "true: the answers are in another folder");
-    of("scenes", &TruthSetRecord::scenes, "");
-    of("files", &TruthSetRecord::files, "beside this record");
+DESCRIBE(TruthSetRecord) {
+    of.all(&R::head);
+    of(MEMBER(license), "of the set, as its maker says");
+    of(MEMBER(withheld), "true: the answers are in another folder");
+    MEMBERS(scenes);
+    of(MEMBER(files), "beside this record");
 }
 
 struct TruthOrder {
@@ -101,23 +92,18 @@ struct ScoreRecord {
     std::uint64_t false_shadow = 0, false_light = 0, edge = 0;
     double mae = kUnknown, rmse = kUnknown, bias = kUnknown, max = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ScoreRecord>) {
+DESCRIBE(ScoreRecord) {
     of.name("score", "answers beside the truth, at one light");
-    of("contender", &ScoreRecord::contender, "");
-    of("scene", &ScoreRecord::scene, "");
-    of("light", &ScoreRecord::light, "");
-    of("measure", &ScoreRecord::measure, "");
-    of("points", &ScoreRecord::points, "that are judged");
-    of("undefined", &ScoreRecord::undefined, "NaN in the answers");
-    of("boundary", &ScoreRecord::boundary, "points on the boundary of a shadow, where nobody is judged");
-    of("false_shadow", &ScoreRecord::false_shadow, "wrong and too dark, outside of the edge band");
-    of("false_light", &ScoreRecord::false_light, "wrong and too bright, outside of the edge band");
-    of("edge", &ScoreRecord::edge, "wrong, in the edge band");
-    of("mae", &ScoreRecord::mae, "");
-    of("rmse", &ScoreRecord::rmse, "");
-    of("bias", &ScoreRecord::bias, "mean of the answer less the truth");
-    of("max", &ScoreRecord::max, "");
+    MEMBERS(contender, scene, light, measure);
+    of(MEMBER(points), "that are judged");
+    of(MEMBER(undefined), "NaN in the answers");
+    of(MEMBER(boundary), "points on the boundary of a shadow, where nobody is judged");
+    of(MEMBER(false_shadow), "wrong and too dark, outside of the edge band");
+    of(MEMBER(false_light), "wrong and too bright, outside of the edge band");
+    of(MEMBER(edge), "wrong, in the edge band");
+    MEMBERS(mae, rmse);
+    of(MEMBER(bias), "mean of the answer less the truth");
+    MEMBERS(max);
 }
 
 /// One entry a contender, scene and light. Each names a folder with SCENE.npy for each scene, or one file where the set has

@@ -16,14 +16,12 @@ struct ViewedLightRecord {
     double extent = 0;
     bool fixed    = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<ViewedLightRecord>) {
-    of("name", &ViewedLightRecord::name, "");
-    of("kind", &ViewedLightRecord::kind, "");
-    of("position", &ViewedLightRecord::position, "", kThreeNumbers);
-    of("direction", &ViewedLightRecord::direction, "", kThreeNumbers);
-    of("extent", &ViewedLightRecord::extent, "radius, or half of the longer edge; 0 for lights without an area");
-    of("fixed", &ViewedLightRecord::fixed, "to the camera");
+DESCRIBE(ViewedLightRecord) {
+    MEMBERS(name, kind);
+    of(MEMBER(position), "", kThreeNumbers);
+    of(MEMBER(direction), "", kThreeNumbers);
+    of(MEMBER(extent), "radius, or half of the longer edge; 0 for lights without an area");
+    of(MEMBER(fixed), "to the camera");
 }
 
 struct ViewedObjectRecord {
@@ -31,11 +29,9 @@ struct ViewedObjectRecord {
     bool movable = false;
     std::vector<double> middle{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ViewedObjectRecord>) {
-    of("name", &ViewedObjectRecord::name, "");
-    of("movable", &ViewedObjectRecord::movable, "");
-    of("middle", &ViewedObjectRecord::middle, "of its box", kThreeNumbers);
+DESCRIBE(ViewedObjectRecord) {
+    MEMBERS(name, movable);
+    of(MEMBER(middle), "of its box", kThreeNumbers);
 }
 
 /// The scene as its file has it, and the methods that there are.
@@ -51,30 +47,23 @@ struct ViewedSceneRecord {
     std::vector<std::string> chosen{}, warnings{};
     std::string command{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ViewedSceneRecord>) {
-    of("name", &ViewedSceneRecord::name, "");
-    of("title", &ViewedSceneRecord::title, "");
-    of("shows", &ViewedSceneRecord::shows, "");
-    of("width", &ViewedSceneRecord::width, "pixels");
-    of("height", &ViewedSceneRecord::height, "pixels");
-    of("frames", &ViewedSceneRecord::frames, "of its animation; 0: it has none");
-    of("triangles", &ViewedSceneRecord::triangles, "");
-    of("eye", &ViewedSceneRecord::eye, "", kThreeNumbers);
-    of("target", &ViewedSceneRecord::target, "", kThreeNumbers);
-    of("up", &ViewedSceneRecord::up, "", kThreeNumbers);
-    of("low", &ViewedSceneRecord::low, "corner of the box of all triangles", kThreeNumbers);
-    of("high", &ViewedSceneRecord::high, "", kThreeNumbers);
-    of("orthographic", &ViewedSceneRecord::orthographic, "");
-    of("half_width", &ViewedSceneRecord::half_width,
-       "of the view at distance 1, or of its window, in the file's shape");
-    of("half_height", &ViewedSceneRecord::half_height, "");
-    of("lights", &ViewedSceneRecord::lights, "");
-    of("objects", &ViewedSceneRecord::objects, "");
-    of("methods", &ViewedSceneRecord::methods, "");
-    of("chosen", &ViewedSceneRecord::chosen, "the methods that are shown first, as typed");
-    of("warnings", &ViewedSceneRecord::warnings, "");
-    of("command", &ViewedSceneRecord::command, "compares the scene as its file has it");
+DESCRIBE(ViewedSceneRecord) {
+    MEMBERS(name, title, shows);
+    of(MEMBER(width), "pixels");
+    of(MEMBER(height), "pixels");
+    of(MEMBER(frames), "of its animation; 0: it has none");
+    MEMBERS(triangles);
+    of(MEMBER(eye), "", kThreeNumbers);
+    of(MEMBER(target), "", kThreeNumbers);
+    of(MEMBER(up), "", kThreeNumbers);
+    of(MEMBER(low), "corner of the box of all triangles", kThreeNumbers);
+    of(MEMBER(high), "", kThreeNumbers);
+    MEMBERS(orthographic);
+    of(MEMBER(half_width), "of the view at distance 1, or of its window, in the file's shape");
+    MEMBERS(half_height, lights, objects, methods);
+    of(MEMBER(chosen), "the methods that are shown first, as typed");
+    MEMBERS(warnings);
+    of(MEMBER(command), "compares the scene as its file has it");
 }
 
 /// Milliseconds of a phase, and whether the last movement repeated it.
@@ -83,11 +72,10 @@ struct PhaseRecord {
     double ms     = 0;
     bool repeated = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<PhaseRecord>) {
-    of("phase", &PhaseRecord::phase, "", one_of({"build", "aim", "look", "visibility"}));
-    of("ms", &PhaseRecord::ms, "all lights together");
-    of("repeated", &PhaseRecord::repeated, "");
+DESCRIBE(PhaseRecord) {
+    of(MEMBER(phase), "", one_of({"build", "aim", "look", "visibility"}));
+    of(MEMBER(ms), "all lights together");
+    MEMBERS(repeated);
 }
 
 struct ClassCountRecord {
@@ -95,13 +83,11 @@ struct ClassCountRecord {
     std::uint64_t points = 0;
     bool interior        = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<ClassCountRecord>) {
-    of("class", &ClassCountRecord::key, "");
-    of("name", &ClassCountRecord::name, "");
-    of("colour", &ClassCountRecord::colour, "#rrggbb");
-    of("points", &ClassCountRecord::points, "");
-    of("interior", &ClassCountRecord::interior, "");
+DESCRIBE(ClassCountRecord) {
+    of("class", &R::key);
+    MEMBERS(name);
+    of(MEMBER(colour), "#rrggbb");
+    MEMBERS(points, interior);
 }
 
 /// Errors of one light against the truth.
@@ -110,15 +96,11 @@ struct SideErrorRecord {
     double rmse = kUnknown, flip = kUnknown;
     std::vector<ClassCountRecord> classes{};
 };
-template <class Fields>
-void describe(Fields& of, Is<SideErrorRecord>) {
-    of("points", &SideErrorRecord::points, "compared");
-    of("undefined", &SideErrorRecord::undefined, "");
-    of("on_boundary", &SideErrorRecord::on_boundary, "");
-    of("wrong_interior", &SideErrorRecord::wrong_interior, "");
-    of("rmse", &SideErrorRecord::rmse, "");
-    of("flip", &SideErrorRecord::flip, "mean FLIP of the final pictures; null where its layer is not shown");
-    of("classes", &SideErrorRecord::classes, "of wrong points, those that there are");
+DESCRIBE(SideErrorRecord) {
+    of(MEMBER(points), "compared");
+    MEMBERS(undefined, on_boundary, wrong_interior, rmse);
+    of(MEMBER(flip), "mean FLIP of the final pictures; null where its layer is not shown");
+    of(MEMBER(classes), "of wrong points, those that there are");
 }
 
 struct SideRecord {
@@ -130,16 +112,13 @@ struct SideRecord {
     std::string layer{};
     std::optional<SideErrorRecord> errors{};
 };
-template <class Fields>
-void describe(Fields& of, Is<SideRecord>) {
-    of("method", &SideRecord::method, "as typed");
-    of("title", &SideRecord::title, "");
-    of("serves", &SideRecord::serves, "");
-    of.may("failed", &SideRecord::failed, "the message of what it threw");
-    of("phases", &SideRecord::phases, "");
-    of("memory_bytes", &SideRecord::memory_bytes, "");
-    of("layer", &SideRecord::layer, "that the picture shows");
-    of("errors", &SideRecord::errors, "null where there is no truth");
+DESCRIBE(SideRecord) {
+    of(MEMBER(method), "as typed");
+    MEMBERS(title, serves);
+    of.may(MEMBER(failed), "the message of what it threw");
+    MEMBERS(phases, memory_bytes);
+    of(MEMBER(layer), "that the picture shows");
+    of(MEMBER(errors), "null where there is no truth");
 }
 
 struct ViewTruthRecord {
@@ -148,15 +127,12 @@ struct ViewTruthRecord {
     std::uint64_t judged = 0, of = 0;
     double ms = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ViewTruthRecord>) {
-    of("method", &ViewTruthRecord::method, "");
-    of("exact", &ViewTruthRecord::exact, "");
-    of("note", &ViewTruthRecord::note, "");
-    of.may("failed", &ViewTruthRecord::failed, "");
-    of("judged", &ViewTruthRecord::judged, "points");
-    of("of", &ViewTruthRecord::of, "points with a surface");
-    of("ms", &ViewTruthRecord::ms, "");
+DESCRIBE(ViewTruthRecord) {
+    MEMBERS(method, exact, note);
+    of.may(MEMBER(failed));
+    of(MEMBER(judged), "points");
+    of(MEMBER(of), "points with a surface");
+    MEMBERS(ms);
 }
 
 struct ViewRecord {
@@ -167,18 +143,14 @@ struct ViewRecord {
     std::vector<SideRecord> sides{};
     std::optional<ViewTruthRecord> truth{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ViewRecord>) {
-    of("width", &ViewRecord::width, "pixels");
-    of("height", &ViewRecord::height, "pixels");
-    of("facts_ms", &ViewRecord::facts_ms, "of the scene, in no method's time");
-    of("points_ms", &ViewRecord::points_ms, "of the surface points, in no method's time");
-    of("pictures_ms", &ViewRecord::pictures_ms, "");
-    of("camera_moved", &ViewRecord::camera_moved, "");
-    of("object_moved", &ViewRecord::object_moved, "");
-    of("lights_moved", &ViewRecord::lights_moved, "");
-    of("sides", &ViewRecord::sides, "one or two: one a picture; the truth alone may be the second");
-    of("truth", &ViewRecord::truth, "");
+DESCRIBE(ViewRecord) {
+    of(MEMBER(width), "pixels");
+    of(MEMBER(height), "pixels");
+    of(MEMBER(facts_ms), "of the scene, in no method's time");
+    of(MEMBER(points_ms), "of the surface points, in no method's time");
+    MEMBERS(pictures_ms, camera_moved, object_moved, lights_moved);
+    of(MEMBER(sides), "one or two: one a picture; the truth alone may be the second");
+    MEMBERS(truth);
 }
 
 /// An answer, and the blocker's corners for drawing it.
@@ -187,11 +159,10 @@ struct AnswerHereRecord {
     std::string sentence{};
     std::vector<std::vector<double>> blocker_corners{};
 };
-template <class Fields>
-void describe(Fields& of, Is<AnswerHereRecord>) {
-    of.all(&AnswerHereRecord::answer);
-    of("sentence", &AnswerHereRecord::sentence, "");
-    of("blocker_corners", &AnswerHereRecord::blocker_corners, "world space");
+DESCRIBE(AnswerHereRecord) {
+    of.all(&R::answer);
+    MEMBERS(sentence);
+    of(MEMBER(blocker_corners), "world space");
 }
 
 /// The light as the point sees it, at a grid of places: in the light's plane, or the circle of a sphere that is seen.
@@ -202,15 +173,13 @@ struct SeenLightRecord {
     std::vector<int> cells{};
     std::vector<std::vector<double>> frame{};
 };
-template <class Fields>
-void describe(Fields& of, Is<SeenLightRecord>) {
-    of("side", &SeenLightRecord::side, "places along each side");
-    of("aspect", &SeenLightRecord::aspect, "width over height");
-    of("fraction", &SeenLightRecord::fraction, "lit, of those on the light");
-    of("cells", &SeenLightRecord::cells,
+DESCRIBE(SeenLightRecord) {
+    of(MEMBER(side), "places along each side");
+    of(MEMBER(aspect), "width over height");
+    of(MEMBER(fraction), "lit, of those on the light");
+    of(MEMBER(cells),
        "row by row: -1 lit, -2 not on the light, -3 behind the point's plane, else the object that blocks");
-    of("frame", &SeenLightRecord::frame,
-       "the picture's middle, and from there its right and its upper edge, world space");
+    of(MEMBER(frame), "the picture's middle, and from there its right and its upper edge, world space");
 }
 
 struct WhyHereRecord {
@@ -220,14 +189,13 @@ struct WhyHereRecord {
     std::vector<AnswerHereRecord> answers{};
     std::optional<SeenLightRecord> seen{};
 };
-template <class Fields>
-void describe(Fields& of, Is<WhyHereRecord>) {
-    of.all(&WhyHereRecord::on);
-    of("position", &WhyHereRecord::position, "world space", kThreeNumbers);
-    of("light", &WhyHereRecord::light, "");
-    of.may("decided", &WhyHereRecord::decided, "why no method is asked");
-    of("answers", &WhyHereRecord::answers, "");
-    of("seen", &WhyHereRecord::seen, "null for lights without an area");
+DESCRIBE(WhyHereRecord) {
+    of.all(&R::on);
+    of(MEMBER(position), "world space", kThreeNumbers);
+    MEMBERS(light);
+    of.may(MEMBER(decided), "why no method is asked");
+    MEMBERS(answers);
+    of(MEMBER(seen), "null for lights without an area");
 }
 
 }  // namespace umbra

@@ -13,11 +13,9 @@ namespace {
 struct Span {
     double from = kUnknown, to = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<Span>) {
+DESCRIBE(Span) {
     of.name("span", "both ends belong to it");
-    of("from", &Span::from, "");
-    of("to", &Span::to, "");
+    MEMBERS(from, to);
 }
 
 struct Row {
@@ -30,27 +28,23 @@ struct Row {
     bool cut = false;
     Json rest;
 };
-template <class Fields>
-void describe(Fields& of, Is<Row>) {
-    of.must("name", &Row::name, "as typed");
-    of("kind", &Row::kind, "", one_of({"hard", "soft"}));
-    of("note", &Row::note, "");
-    of("points", &Row::points, "compared", at_least(2));
-    of("spans", &Row::spans, "");
-    of("parameters", &Row::parameters, "");
-    of("whole", &Row::whole, "");
-    of.may("cut", &Row::cut, "there where it is true");
-    of.may("rest", &Row::rest, "");
+DESCRIBE(Row) {
+    of.must(MEMBER(name), "as typed");
+    of(MEMBER(kind), "", one_of({"hard", "soft"}));
+    MEMBERS(note);
+    of(MEMBER(points), "compared", at_least(2));
+    MEMBERS(spans, parameters, whole);
+    of.may(MEMBER(cut), "there where it is true");
+    of.may(MEMBER(rest));
 }
 
 struct Table {
     int schema = kResultsSchema;
     Row row;
 };
-template <class Fields>
-void describe(Fields& of, Is<Table>) {
-    of("schema", &Table::schema, "");
-    of.all(&Table::row);
+DESCRIBE(Table) {
+    MEMBERS(schema);
+    of.all(&R::row);
 }
 
 struct Reply {
@@ -59,11 +53,10 @@ struct Reply {
     std::vector<double> at{};
     bool cut = false;
 };
-template <class Fields>
-void describe(Fields& of, Is<Reply>) {
-    of.where(&Reply::given, "value", &Reply::value, "");
-    of.may("at", &Reply::at, "", kThreeNumbers);
-    of.may("cut", &Reply::cut, "", only(true));
+DESCRIBE(Reply) {
+    of.where(&R::given, MEMBER(value));
+    of.may(MEMBER(at), "", kThreeNumbers);
+    of.may(MEMBER(cut), "", only(true));
 }
 
 Row a_row() {

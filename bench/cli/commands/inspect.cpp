@@ -26,23 +26,17 @@ struct ServedRecord {
     std::string name{};
     ServiceRecord serves{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ServedRecord>) {
-    of("name", &ServedRecord::name, "");
-    of("serves", &ServedRecord::serves, "");
-}
+DESCRIBE(ServedRecord) { MEMBERS(name, serves); }
 
 struct SilhouetteRecord {
     std::string object{};
     double mean = kUnknown, standard_error = kUnknown;
     std::uint64_t directions = 0;
 };
-template <class Fields>
-void describe(Fields& of, Is<SilhouetteRecord>) {
-    of("object", &SilhouetteRecord::object, "");
-    of("mean", &SilhouetteRecord::mean, "edges");
-    of("standard_error", &SilhouetteRecord::standard_error, "");
-    of("directions", &SilhouetteRecord::directions, "");
+DESCRIBE(SilhouetteRecord) {
+    MEMBERS(object);
+    of(MEMBER(mean), "edges");
+    MEMBERS(standard_error, directions);
 }
 
 struct InspectRecord {
@@ -54,15 +48,9 @@ struct InspectRecord {
     std::vector<ServedRecord> methods{};
     std::vector<SilhouetteRecord> silhouettes{};
 };
-template <class Fields>
-void describe(Fields& of, Is<InspectRecord>) {
-    of("schema", &InspectRecord::schema, "");
-    of("version", &InspectRecord::version, "");
-    of("scene", &InspectRecord::scene, "");
-    of("facts", &InspectRecord::facts, "");
-    of("lights", &InspectRecord::lights, "");
-    of("methods", &InspectRecord::methods, "");
-    of.may("silhouettes", &InspectRecord::silhouettes, "over random light directions, where they were asked for");
+DESCRIBE(InspectRecord) {
+    MEMBERS(schema, version, scene, facts, lights, methods);
+    of.may(MEMBER(silhouettes), "over random light directions, where they were asked for");
 }
 
 std::string joined(const std::vector<std::string>& list) {

@@ -35,15 +35,7 @@ struct ListRecord {
     std::vector<MetricRecord> metrics{};
     std::vector<LadderInfoRecord> ladders{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ListRecord>) {
-    of("schema", &ListRecord::schema, "");
-    of("version", &ListRecord::version, "");
-    of("methods", &ListRecord::methods, "");
-    of("scenes", &ListRecord::scenes, "");
-    of("metrics", &ListRecord::metrics, "");
-    of("ladders", &ListRecord::ladders, "");
-}
+DESCRIBE(ListRecord) { MEMBERS(schema, version, methods, scenes, metrics, ladders); }
 
 void print(const MethodInfoRecord& m) {
     print_out("{} - {} ({})\n  {}\n", m.name, m.title, m.paper, m.summary);

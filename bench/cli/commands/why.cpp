@@ -30,14 +30,12 @@ struct WhyLightRecord {
     std::string decided{}, truth{};
     std::vector<AnswerRecord> methods{};
 };
-template <class Fields>
-void describe(Fields& of, Is<WhyLightRecord>) {
-    of("light", &WhyLightRecord::light, "");
-    of("methods", &WhyLightRecord::methods, "");
-    of.may("away", &WhyLightRecord::away, "the light is behind the surface");
-    of.may("unshadowed", &WhyLightRecord::unshadowed, "the object receives no shadows, or the point lies in the light");
-    of.may("decided", &WhyLightRecord::decided, "why no method is asked, in words");
-    of.may("truth", &WhyLightRecord::truth, "what is in the way, in words");
+DESCRIBE(WhyLightRecord) {
+    MEMBERS(light, methods);
+    of.may(MEMBER(away), "the light is behind the surface");
+    of.may(MEMBER(unshadowed), "the object receives no shadows, or the point lies in the light");
+    of.may(MEMBER(decided), "why no method is asked, in words");
+    of.may(MEMBER(truth), "what is in the way, in words");
 }
 
 struct PointRecord {
@@ -46,13 +44,10 @@ struct PointRecord {
     std::vector<float> position{};
     std::vector<double> origin{};
 };
-template <class Fields>
-void describe(Fields& of, Is<PointRecord>) {
-    of.all(&PointRecord::on);
-    of("u", &PointRecord::u, "");
-    of("v", &PointRecord::v, "");
-    of("position", &PointRecord::position, "");
-    of.may("origin", &PointRecord::origin, "where (0, 0, 0) is in the numbers of the scene file");
+DESCRIBE(PointRecord) {
+    of.all(&R::on);
+    MEMBERS(u, v, position);
+    of.may(MEMBER(origin), "where (0, 0, 0) is in the numbers of the scene file");
 }
 
 struct WhyRecord {
@@ -61,12 +56,10 @@ struct WhyRecord {
     PointRecord point{};
     std::vector<WhyLightRecord> lights{};
 };
-template <class Fields>
-void describe(Fields& of, Is<WhyRecord>) {
-    of("scene", &WhyRecord::scene, "");
-    of("pixel", &WhyRecord::pixel, "column and row, from 0 at the top left");
-    of("point", &WhyRecord::point, "");
-    of("lights", &WhyRecord::lights, "");
+DESCRIBE(WhyRecord) {
+    MEMBERS(scene);
+    of(MEMBER(pixel), "column and row, from 0 at the top left");
+    MEMBERS(point, lights);
 }
 
 std::string text_of(const WhyRecord& record) {

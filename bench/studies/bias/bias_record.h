@@ -9,27 +9,19 @@
 
 namespace umbra {
 
-template <class Fields>
-void describe(Fields& of, Is<BiasErrors>) {
-    of("false_shadow", &BiasErrors::false_shadow, "");
-    of("false_light", &BiasErrors::false_light, "");
-}
-template <class Fields>
-void describe(Fields& of, Is<BiasCell>) {
-    of.all(&BiasCell::errors);
-    of("constant", &BiasCell::constant, "");
-    of("slope", &BiasCell::slope, "");
-    of("normal_offset", &BiasCell::normal_offset, "");
+DESCRIBE(BiasErrors) { MEMBERS(false_shadow, false_light); }
+DESCRIBE(BiasCell) {
+    of.all(&R::errors);
+    MEMBERS(constant, slope, normal_offset);
 }
 
 struct BiasSliceRecord {
     double normal_offset = 0;
     std::vector<std::vector<BiasErrors>> rows{};
 };
-template <class Fields>
-void describe(Fields& of, Is<BiasSliceRecord>) {
-    of("normal_offset", &BiasSliceRecord::normal_offset, "");
-    of("rows", &BiasSliceRecord::rows, "one a slope, with an entry a constant");
+DESCRIBE(BiasSliceRecord) {
+    MEMBERS(normal_offset);
+    of(MEMBER(rows), "one a slope, with an entry a constant");
 }
 
 struct BiasSceneRecord {
@@ -41,18 +33,14 @@ struct BiasSceneRecord {
     std::uint64_t settings = 0, settings_better_than_automatic = 0;
     std::vector<BiasSliceRecord> slices{};
 };
-template <class Fields>
-void describe(Fields& of, Is<BiasSceneRecord>) {
-    of("scene", &BiasSceneRecord::scene, "");
-    of("title", &BiasSceneRecord::title, "");
-    of("lights", &BiasSceneRecord::lights, "");
-    of("points", &BiasSceneRecord::points, "judged, over all lights");
-    of("automatic", &BiasSceneRecord::automatic, "bias=auto");
-    of("receiver_plane", &BiasSceneRecord::receiver_plane, "bias=receiver_plane");
-    of("best_manual", &BiasSceneRecord::best_manual, "bias=manual with the fewest wrong interior points");
-    of("settings", &BiasSceneRecord::settings, "");
-    of("settings_better_than_automatic", &BiasSceneRecord::settings_better_than_automatic, "");
-    of("slices", &BiasSceneRecord::slices, "one a normal offset");
+DESCRIBE(BiasSceneRecord) {
+    MEMBERS(scene, title, lights);
+    of(MEMBER(points), "judged, over all lights");
+    of(MEMBER(automatic), "bias=auto");
+    of(MEMBER(receiver_plane), "bias=receiver_plane");
+    of(MEMBER(best_manual), "bias=manual with the fewest wrong interior points");
+    MEMBERS(settings, settings_better_than_automatic);
+    of(MEMBER(slices), "one a normal offset");
 }
 
 struct BiasRecord {
@@ -65,22 +53,18 @@ struct BiasRecord {
     std::vector<ListedFailureRecord> failed{};
     std::vector<std::string> csv{};
 };
-template <class Fields>
-void describe(Fields& of, Is<BiasGrid>) {
-    of("constants", &BiasGrid::constants, "widths of a sample");
-    of("slopes", &BiasGrid::slopes, "depth gradients a sample");
-    of("normal_offsets", &BiasGrid::normal_offsets, "widths of a sample");
+DESCRIBE(BiasGrid) {
+    of(MEMBER(constants), "widths of a sample");
+    of(MEMBER(slopes), "depth gradients a sample");
+    of(MEMBER(normal_offsets), "widths of a sample");
 }
-template <class Fields>
-void describe(Fields& of, Is<BiasRecord>) {
-    of.all(&BiasRecord::head);
-    of("machine", &BiasRecord::machine, "");
-    of("size", &BiasRecord::size, "");
-    of("map", &BiasRecord::map, "settings of shadow_zbuffer, as typed");
-    of.all(&BiasRecord::grid);
-    of("bias", &BiasRecord::bias, "all scenes added up, where there are several, and each of them");
-    of("failed", &BiasRecord::failed, "");
-    of("csv", &BiasRecord::csv, "");
+DESCRIBE(BiasRecord) {
+    of.all(&R::head);
+    MEMBERS(machine, size);
+    of(MEMBER(map), "settings of shadow_zbuffer, as typed");
+    of.all(&R::grid);
+    of(MEMBER(bias), "all scenes added up, where there are several, and each of them");
+    MEMBERS(failed, csv);
 }
 
 }  // namespace umbra

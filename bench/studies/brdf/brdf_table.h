@@ -10,34 +10,26 @@
 
 namespace umbra {
 
-template <class Fields>
-void describe(Fields& of, Is<BrdfFigures>) {
-    of("largest", &BrdfFigures::largest, "");
-    of("reciprocity", &BrdfFigures::reciprocity, "");
-    of("anisotropy", &BrdfFigures::anisotropy, "");
-    of("energy", &BrdfFigures::energy, "null where a highlight lasts up to the horizon");
-    of("without_cosine", &BrdfFigures::without_cosine, "");
+DESCRIBE(BrdfFigures) {
+    MEMBERS(largest, reciprocity, anisotropy);
+    of(MEMBER(energy), "null where a highlight lasts up to the horizon");
+    MEMBERS(without_cosine);
 }
 
 struct BrdfFormRecord {
     std::string form{};
     BrdfFigures figures{};
 };
-template <class Fields>
-void describe(Fields& of, Is<BrdfFormRecord>) {
-    of("form", &BrdfFormRecord::form, "", one_of({"sum", "with_cosine"}));
-    of.all(&BrdfFormRecord::figures);
+DESCRIBE(BrdfFormRecord) {
+    of(MEMBER(form), "", one_of({"sum", "with_cosine"}));
+    of.all(&R::figures);
 }
 
 struct MaterialFormsRecord {
     std::string name{};
     std::vector<BrdfFormRecord> forms{};
 };
-template <class Fields>
-void describe(Fields& of, Is<MaterialFormsRecord>) {
-    of("name", &MaterialFormsRecord::name, "");
-    of("forms", &MaterialFormsRecord::forms, "");
-}
+DESCRIBE(MaterialFormsRecord) { MEMBERS(name, forms); }
 
 struct BrdfRecord {
     HeadRecord head{};
@@ -45,12 +37,11 @@ struct BrdfRecord {
     int steps = 0;
     std::vector<MaterialFormsRecord> materials{};
 };
-template <class Fields>
-void describe(Fields& of, Is<BrdfRecord>) {
-    of.all(&BrdfRecord::head);
-    of("scene", &BrdfRecord::scene, "");
-    of("steps", &BrdfRecord::steps, "angles from the normal that are sampled");
-    of("materials", &BrdfRecord::materials, "");
+DESCRIBE(BrdfRecord) {
+    of.all(&R::head);
+    MEMBERS(scene);
+    of(MEMBER(steps), "angles from the normal that are sampled");
+    MEMBERS(materials);
 }
 
 /// Measures every material of the scene by sampling (measure_brdf, with `steps`), as the sum has it and as a function

@@ -27,11 +27,7 @@ struct ExchangeOptions {
 struct LightElementsRecord {
     std::string light{}, picture{};
 };
-template <class Fields>
-void describe(Fields& of, Is<LightElementsRecord>) {
-    of("light", &LightElementsRecord::light, "");
-    of("picture", &LightElementsRecord::picture, "");
-}
+DESCRIBE(LightElementsRecord) { MEMBERS(light, picture); }
 
 struct ExchangeRecord {
     HeadRecord head{};
@@ -45,18 +41,15 @@ struct ExchangeRecord {
     std::vector<LightElementsRecord> elements{};
     std::vector<std::string> csv{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ExchangeRecord>) {
-    of.all(&ExchangeRecord::head);
-    of("scene", &ExchangeRecord::scene, "");
-    of("patch_size", &ExchangeRecord::patch_size, "longest edge, scene diagonals");
-    of("patches", &ExchangeRecord::patches, "");
-    of("unshot", &ExchangeRecord::unshot, "share of the power, before the first step and after each");
-    of("steps", &ExchangeRecord::steps, "");
-    of("arrived", &ExchangeRecord::arrived, "share of what was sent");
-    of("pictures", &ExchangeRecord::pictures, "");
-    of("elements", &ExchangeRecord::elements, "");
-    of("csv", &ExchangeRecord::csv, "");
+DESCRIBE(ExchangeRecord) {
+    of.all(&R::head);
+    MEMBERS(scene);
+    of(MEMBER(patch_size), "longest edge, scene diagonals");
+    MEMBERS(patches);
+    of(MEMBER(unshot), "share of the power, before the first step and after each");
+    MEMBERS(steps);
+    of(MEMBER(arrived), "share of what was sent");
+    MEMBERS(pictures, elements, csv);
 }
 
 /// Solves and writes into `folder`: direct.png, the diffuse light from the lights;

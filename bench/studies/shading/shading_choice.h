@@ -22,11 +22,7 @@ struct ShadingLimit {
     std::string metric{};  ///< of kShadingErrors
     double most = 0;
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingLimit>) {
-    of("metric", &ShadingLimit::metric, "");
-    of("most", &ShadingLimit::most, "");
-}
+DESCRIBE(ShadingLimit) { MEMBERS(metric, most); }
 /// "METRIC=E", E at least 0. Throws UsageError.
 [[nodiscard]] ShadingLimit parse_shading_limit(const std::string& text);
 
@@ -36,12 +32,7 @@ struct ShadingErrorsRecord {
     double flip      = kUnknown;
     double perceived = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingErrorsRecord>) {
-    of("rmse", &ShadingErrorsRecord::rmse, "");
-    of("flip", &ShadingErrorsRecord::flip, "");
-    of("perceived", &ShadingErrorsRecord::perceived, "");
-}
+DESCRIBE(ShadingErrorsRecord) { MEMBERS(rmse, flip, perceived); }
 
 struct ShadingModelRecord {
     std::string name{};
@@ -58,24 +49,22 @@ struct ShadingModelRecord {
     std::string picture{};
     std::string difference{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingModelRecord>) {
-    of("name", &ShadingModelRecord::name, "");
-    of("evaluations", &ShadingModelRecord::evaluations, "of the sum");
-    of("asked", &ShadingModelRecord::asked, "S_j");
-    of("ms", &ShadingModelRecord::ms, "the median of the rounds, aim and visibility included");
-    of("times_ms", &ShadingModelRecord::times_ms, "of all rounds");
-    of("rmse", &ShadingModelRecord::rmse, "from `phong`, as the next ones");
-    of("worst", &ShadingModelRecord::worst, "the largest errors over all views");
-    of("flip", &ShadingModelRecord::flip, "");
-    of("perceived", &ShadingModelRecord::perceived,
+DESCRIBE(ShadingModelRecord) {
+    MEMBERS(name);
+    of(MEMBER(evaluations), "of the sum");
+    of(MEMBER(asked), "S_j");
+    of(MEMBER(ms), "the median of the rounds, aim and visibility included");
+    of(MEMBER(times_ms), "of all rounds");
+    of(MEMBER(rmse), "from `phong`, as the next ones");
+    of(MEMBER(worst), "the largest errors over all views");
+    MEMBERS(flip);
+    of(MEMBER(perceived),
        "root mean square, inside of objects, of the luminance plus the size of its change along the row");
-    of("highlight", &ShadingModelRecord::highlight, "the largest value in the picture over that of `phong`");
-    of("kink", &ShadingModelRecord::kink,
+    of(MEMBER(highlight), "the largest value in the picture over that of `phong`");
+    of(MEMBER(kink),
        "Mach bands: the root mean square of second differences along rows, inside of objects, of the diffuse light "
        "without shadows, over that of `phong`");
-    of("picture", &ShadingModelRecord::picture, "");
-    of("difference", &ShadingModelRecord::difference, "");
+    MEMBERS(picture, difference);
 }
 
 /// A paired ratio of times, and its interval.
@@ -87,24 +76,19 @@ struct ShadingRatioRecord {
     int rounds      = 0;
     double coverage = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingRatioRecord>) {
-    of("model", &ShadingRatioRecord::model, "");
-    of("ratio", &ShadingRatioRecord::ratio, "");
-    of("low", &ShadingRatioRecord::low, "null: too few rounds");
-    of("high", &ShadingRatioRecord::high, "");
-    of("rounds", &ShadingRatioRecord::rounds, "");
-    of("coverage", &ShadingRatioRecord::coverage, "");
+DESCRIBE(ShadingRatioRecord) {
+    MEMBERS(model, ratio);
+    of(MEMBER(low), "null: too few rounds");
+    MEMBERS(high, rounds, coverage);
 }
 
 struct NearestShadingRecord {
     std::string model{};
     double factor = kUnknown;
 };
-template <class Fields>
-void describe(Fields& of, Is<NearestShadingRecord>) {
-    of("model", &NearestShadingRecord::model, "");
-    of("factor", &NearestShadingRecord::factor, "its largest error over its limit");
+DESCRIBE(NearestShadingRecord) {
+    MEMBERS(model);
+    of(MEMBER(factor), "its largest error over its limit");
 }
 
 struct ShadingChoiceRecord {
@@ -116,18 +100,15 @@ struct ShadingChoiceRecord {
     std::optional<ShadingRatioRecord> runner_up{};
     std::optional<NearestShadingRecord> nearest{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingChoiceRecord>) {
-    of("limits", &ShadingChoiceRecord::limits, "");
-    of("model", &ShadingChoiceRecord::model,
+DESCRIBE(ShadingChoiceRecord) {
+    MEMBERS(limits);
+    of(MEMBER(model),
        "with the least median time of those whose worst errors are within the limits; none above a noise bar of 30 %");
-    of("ms", &ShadingChoiceRecord::ms, "");
-    of("of_phong", &ShadingChoiceRecord::of_phong, "");
-    of("tied", &ShadingChoiceRecord::tied,
+    MEMBERS(ms, of_phong);
+    of(MEMBER(tied),
        "within the limits, and as cheap as far as noise lets one see; all of them where `model` is absent");
-    of("runner_up", &ShadingChoiceRecord::runner_up, "the cheapest other one within the limits that is not tied");
-    of("nearest", &ShadingChoiceRecord::nearest,
-       "where none is within the limits: its largest error over its limit is least");
+    of(MEMBER(runner_up), "the cheapest other one within the limits that is not tied");
+    of(MEMBER(nearest), "where none is within the limits: its largest error over its limit is least");
 }
 
 struct ShadingStageRecord {
@@ -135,12 +116,7 @@ struct ShadingStageRecord {
     std::string about{};
     std::string picture{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingStageRecord>) {
-    of("name", &ShadingStageRecord::name, "");
-    of("about", &ShadingStageRecord::about, "");
-    of("picture", &ShadingStageRecord::picture, "");
-}
+DESCRIBE(ShadingStageRecord) { MEMBERS(name, about, picture); }
 
 struct ShadingRecord {
     HeadRecord head{};
@@ -154,19 +130,16 @@ struct ShadingRecord {
     std::vector<ShadingStageRecord> stages{};
     std::vector<std::string> csv{};
 };
-template <class Fields>
-void describe(Fields& of, Is<ShadingRecord>) {
-    of.all(&ShadingRecord::head);
-    of("scene", &ShadingRecord::scene, "");
-    of("method", &ShadingRecord::method, "of the shadows");
-    of("views", &ShadingRecord::views, "");
-    of("noise_bar", &ShadingRecord::noise_bar,
-       "how far from 1 the ratio of the time of `phong` to that of the same again may lie");
-    of("models", &ShadingRecord::models, "");
-    of("front", &ShadingRecord::front, "no other model is both faster and closer; empty above a noise bar of 30 %");
-    of.may("choice", &ShadingRecord::choice, "");
-    of("stages", &ShadingRecord::stages, "");
-    of("csv", &ShadingRecord::csv, "");
+DESCRIBE(ShadingRecord) {
+    of.all(&R::head);
+    MEMBERS(scene);
+    of(MEMBER(method), "of the shadows");
+    MEMBERS(views);
+    of(MEMBER(noise_bar), "how far from 1 the ratio of the time of `phong` to that of the same again may lie");
+    MEMBERS(models);
+    of(MEMBER(front), "no other model is both faster and closer; empty above a noise bar of 30 %");
+    of.may(MEMBER(choice));
+    MEMBERS(stages, csv);
 }
 
 /// Names of models by ascending time: no other has at most the median of `times_ms` and at most the `worst.rmse`, and

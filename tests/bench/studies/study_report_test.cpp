@@ -76,10 +76,9 @@ struct KnownRecord {
     HeadRecord head{};
     std::vector<std::string> csv{};
 };
-template <class Fields>
-void describe(Fields& of, Is<KnownRecord>) {
-    of.all(&KnownRecord::head);
-    of("csv", &KnownRecord::csv, "");
+DESCRIBE(KnownRecord) {
+    of.all(&R::head);
+    MEMBERS(csv);
 }
 
 TEST(StudyReport, FolderIsReplacedAsAWholeAndNamesItsFiles) {
