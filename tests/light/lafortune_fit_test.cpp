@@ -1,5 +1,5 @@
 // Lafortune's lobes from samples: what generated them is found again.
-#include "umbra/bench/studies/light/lafortune_fit.h"
+#include "umbra/tests/light/lafortune_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Spectra against published values, and the error of RGB(k) RGB(I), as docs/spectral.md states it.
-#include "umbra/bench/studies/light/spectrum.h"
+#include "umbra/tests/light/spectrum.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

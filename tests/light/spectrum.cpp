@@ -1,4 +1,4 @@
-#include "umbra/bench/studies/light/spectrum.h"
+#include "umbra/tests/light/spectrum.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "umbra/bench/studies/light/lafortune_fit.h"
+#include "umbra/tests/light/lafortune_fit.h"
 
 #include <fmt/format.h>
 
