@@ -110,15 +110,23 @@ std::vector<std::uint32_t> points_of_class(const ClassPlane& classes, ErrorClass
 }
 
 void mark_terminator(ClassPlane& classes, const Scene& scene, const PointBatch& points, LightId light) {
+    if (scene.normals.empty()) return;
     parallel_ranges(classes.size(), 4096, [&](std::size_t begin, std::size_t end) {
+        TriangleId flat = kNoTriangle;  // the latest whose corners have its own normal: neighbours lie on it too
+        dvec3 flat_face(0);
         for (std::size_t i = begin; i < end; ++i) {
             ErrorClass& c = classes[i];
             if (c == ErrorClass::no_surface || c == ErrorClass::unshadowed || c == ErrorClass::not_judged ||
                 c == ErrorClass::undefined || c == ErrorClass::on_boundary)
                 continue;
-            const dvec3 face   = points.normal(i);
+            const dvec3 face = points.normal(i);
+            if (points.triangle[i] == flat && face == flat_face) continue;  // most scenes' points
             const auto corners = corner_normals(scene, points.triangle[i], face);
-            if (corners[0] == face && corners[1] == face && corners[2] == face) continue;  // of most scenes' points
+            if (corners[0] == face && corners[1] == face && corners[2] == face) {
+                flat      = points.triangle[i];
+                flat_face = face;
+                continue;
+            }
             const bool facet   = c != ErrorClass::away;
             const dvec3 normal = shading_normal(scene, points, i);
             if (glm::length(normal - face) <= kSameNormal) continue;
