@@ -284,28 +284,37 @@ UMBRA_FOR_EACH_PROCESSOR void fill(const Snapped& t, int row_begin, int row_end,
             const int count        = static_cast<int>(last[k]) - begin + 1;
             const double r_begin   = r_first[k];
             const std::size_t from = static_cast<std::size_t>(row + k) * drawing.width + begin;
-            const auto word        = [&](int i, Words& words) {
+            const auto word        = [&](const Doubles& steps, Words& words) {
                 Doubles at;
-                max_lanes(r_begin + r_x * (kSteps + i), r_low, at);
+                max_lanes(r_begin + r_x * steps, r_low, at);
                 min_lanes(at, r_high, at);
                 encode<format>(at, far_word, words);
             };
             int i = 0;
             if constexpr (std::is_same_v<Keep, Nearest>) {
+                const auto take = [&](int at, const Words& words) {
+                    Words kept;
+                    std::memcpy(&kept, keep.words + from + at, sizeof kept);
+                    kept = kept < words ? kept : words;
+                    std::memcpy(keep.words + from + at, &kept, sizeof kept);
+                };
+                Words words, next;
+                for (Doubles steps = kSteps; i + 2 * kFour <= count; i += 2 * kFour, steps += 2.0 * kFour) {
+                    word(steps, words);
+                    word(steps + kFour, next);
+                    take(i, words);
+                    take(i + kFour, next);
+                }
                 // Samples behind the span's last one get their own word again, which is safe within the band.
                 if (from + count + kFour <= band_end)
                     for (; i < count; i += kFour) {
-                        Words words, kept;
-                        word(i, words);
-                        words |= reinterpret_cast<Words>(kWholeSteps >= count - i);
-                        std::memcpy(&kept, keep.words + from + i, sizeof kept);
-                        kept = kept < words ? kept : words;
-                        std::memcpy(keep.words + from + i, &kept, sizeof kept);
+                        word(kSteps + i, words);
+                        take(i, words | reinterpret_cast<Words>(kWholeSteps >= count - i));
                     }
             }
             for (; i < count; i += kFour) {
                 Words words;
-                word(i, words);
+                word(kSteps + i, words);
                 for (int l = 0; l < std::min(kFour, count - i); ++l) keep(from + i + l, words[l], t.from);
             }
         }
