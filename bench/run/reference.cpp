@@ -133,12 +133,13 @@ namespace {
 
 ReferenceRun answers_of(const Reference& reference, const Scene& scene, const SceneFacts& facts,
                         const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
-                        const Budget& budget) {
+                        const Budget& budget, std::shared_ptr<MethodAtWork> work) {
+    const bool is_shared    = work != nullptr;
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
     ReferenceRun done{MethodRun{reference.choice}, all, all, {}};
     MethodRun& run = done.run;
-    run            = begin_run(reference.choice, scene, facts, budget);
+    run            = begin_run(reference.choice, scene, facts, budget, std::move(work));
     if (!run.service)
         throw UsageError(
             fmt::format("{} cannot be the reference of this scene: {}", reference.choice.info->name, run.service.why));
@@ -146,22 +147,23 @@ ReferenceRun answers_of(const Reference& reference, const Scene& scene, const Sc
     if (!wanted)
         wanted =
             any_area && reference.choice.info->reference ? affordable(*run.work, scene, facts, points, all, at) : all;
+    if (!is_shared) run.work->forget_build();  // of the count of steps: here it is timed
     if (!any_area || *wanted >= all) {
-        run = run_method(reference.choice, scene, facts, points, kOnce, at, budget);
+        run_phases(run, points, scene.lights.size(), kOnce, at);
         return done;
     }
 
     const MethodRun stand_in =
         run_method(of_measure(stand_in_for_reference(), run.work->method().measures()), scene, facts, points, kOnce);
     if (!stand_in.service) {  // then every point is the reference's, however long that takes
-        run = run_method(reference.choice, scene, facts, points, kOnce, at, budget);
+        run_phases(run, points, scene.lights.size(), kOnce, at);
         return done;
     }
-    run.is_coloured                         = stand_in.is_coloured;
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
-    run.build                               = time_runs(
-                                      kOnce, [&] { run.work->build(); }, [&] { run.work->forget_build(), run.work->warm_up(); });
+    if (!run.work->is_built())
+        run.build = time_runs(
+            kOnce, [&] { run.work->build(); }, [&] { run.work->warm_up(); });
     run.judged.resize(scene.lights.size());
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const bool area = is_area(scene.lights[light].kind);
@@ -180,8 +182,8 @@ ReferenceRun answers_of(const Reference& reference, const Scene& scene, const Sc
 
 ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
                            const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
-                           const Budget& budget) {
-    ReferenceRun done = answers_of(reference, scene, facts, points, wanted, at, budget);
+                           const Budget& budget, std::shared_ptr<MethodAtWork> work) {
+    ReferenceRun done = answers_of(reference, scene, facts, points, wanted, at, budget, std::move(work));
     done.run.work->lift_limit();  // it is asked further, for others
     return done;
 }
@@ -226,7 +228,8 @@ Truth Truths::found(Reference reference, bool replaceable) const {
     }
     std::optional<LightId> at;
     try {
-        ran = run_reference(reference, scene_, facts_, points_, options_.points, &at, options_.budget);
+        ran = run_reference(reference, scene_, facts_, points_, options_.points, &at, options_.budget,
+                            options_.at_work ? options_.at_work(reference.choice) : nullptr);
         if (options_.keep) options_.keep(reference, ran);
         return {std::move(reference), std::move(ran)};
     } catch (const InputError&) {  // a file that cannot be written is no fault of the method

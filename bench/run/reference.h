@@ -45,11 +45,12 @@ struct ReferenceRun {
 
 /// `wanted`: how many points to judge an area light on; none: `affordable_points`, which depends on the scene and the
 /// picture alone, so that figures come out the same on every machine. The sample is
-/// one pixel, at random but always the same, out of each square tile. Throws UsageError where the reference does not
-/// serve the scene, and CutShort where it takes more than the budget.
+/// one pixel, at random but always the same, out of each square tile. `work`: as begin_run takes it. Throws UsageError
+/// where the reference does not serve the scene, and CutShort where it takes more than the budget.
 [[nodiscard]] ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
                                          const PointBatch& points, std::optional<std::uint64_t> wanted,
-                                         std::optional<LightId>* at = nullptr, const Budget& budget = {});
+                                         std::optional<LightId>* at = nullptr, const Budget& budget = {},
+                                         std::shared_ptr<MethodAtWork> work = nullptr);
 
 /// A method that threw or was cut short, for the record.
 struct Failure {
@@ -76,6 +77,8 @@ struct TruthOptions {
     /// Where answers are kept from one run to the next; may be empty. `find` fills in planes and what is judged.
     std::function<bool(const Reference& of, ReferenceRun& ran)> find{};
     std::function<void(const Reference& of, const ReferenceRun& ran)> keep{};
+    /// As begin_run takes it; may be empty.
+    std::function<std::shared_ptr<MethodAtWork>(const MethodChoice& reference)> at_work{};
 };
 
 /// The truths of one scene, found when they are first asked for. A reference that throws, or takes more than the budget,

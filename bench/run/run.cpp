@@ -74,9 +74,10 @@ std::optional<double> MethodRun::coverage(const PointBatch& points) const {
     return static_cast<double>(given) / static_cast<double>(asked);
 }
 
-MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const Budget& budget) {
+MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const Budget& budget,
+                    std::shared_ptr<MethodAtWork> work) {
     MethodRun run{choice};
-    run.work = std::make_shared<MethodAtWork>(choice, scene, facts);
+    run.work = work ? std::move(work) : std::make_shared<MethodAtWork>(choice, scene, facts);
     run.work->limit(budget);
     run.service     = run.work->service();
     run.is_coloured = facts.has_coloured_filters;
@@ -124,15 +125,20 @@ void run_lights(MethodRun& run, const PointBatch& points, std::size_t lights, co
     note_memory(run);
 }
 
+void run_phases(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
+                std::optional<LightId>* at) {
+    MethodAtWork& work = *run.work;
+    if (!work.is_built())
+        run.build = time_runs(
+            repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
+    look_at(run, points, repeats);
+    run_lights(run, points, lights, repeats, at);
+}
+
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
                      const Repeats& repeats, std::optional<LightId>* at, const Budget& budget) {
     MethodRun run = begin_run(choice, scene, facts, budget);
-    if (!run.service) return run;
-    MethodAtWork& work = *run.work;
-    run.build          = time_runs(
-                 repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
-    look_at(run, points, repeats);
-    run_lights(run, points, scene.lights.size(), repeats, at);
+    if (run.service) run_phases(run, points, scene.lights.size(), repeats, at);
     return run;
 }
 

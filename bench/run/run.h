@@ -90,9 +90,14 @@ void run_lights(MethodRun& run, const PointBatch& points, std::size_t lights, co
 /// What the values of a run hold, into the run.
 void note_memory(MethodRun& run);
 
-/// A run of a setting whose phases are still to come: `work` and `service` are there.
+/// A run of a setting whose phases are still to come: `work` and `service` are there. `work`: one of this setting that
+/// may have built already; none: a new one.
 [[nodiscard]] MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
-                                  const Budget& budget = {});
+                                  const Budget& budget = {}, std::shared_ptr<MethodAtWork> work = nullptr);
+
+/// All phases of a run that has begun; build only where `work` has not.
+void run_phases(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
+                std::optional<LightId>* at = nullptr);
 
 /// Sum of the medians (and of minima and maxima) of several timings: what all lights together cost.
 [[nodiscard]] Timing total(const std::vector<Timing>& timings);

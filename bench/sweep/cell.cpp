@@ -51,6 +51,34 @@ const RayScene& OwnScene::rays() {
     return *rays_;
 }
 
+void OwnScene::turn_to(std::uint64_t number, const PreparedScene& view) {
+    if (number == turned_to_) return;
+    if (!turned_) turned_ = view.scene;
+    turned_->camera = view.scene.camera;
+    turned_->lights = view.scene.lights;
+    turned_->width  = view.scene.width;
+    turned_->height = view.scene.height;
+    turned_facts_   = view.facts;
+    turned_to_      = number;
+}
+
+BuiltWork OwnScene::begin(const MethodChoice& choice) const {
+    for (const auto& kept : {&reference_, &other_}) {
+        if (!*kept || (*kept)->work.choice().info != choice.info) continue;
+        BuiltWork begun = **kept;
+        begun.work.set(choice);
+        if (begun.work.is_built()) return begun;
+    }
+    return {MethodAtWork(choice, *turned_, turned_facts_)};
+}
+
+void OwnScene::keep(const MethodAtWork& work, std::optional<double> build_ms) {
+    BuiltWork& kept = (work.choice().info->reference ? reference_ : other_).emplace(BuiltWork{work, build_ms});
+    kept.work.lift_limit();
+    kept.work.forget_aims();
+    kept.work.forget_look();
+}
+
 CellView::CellView(std::shared_ptr<OwnScene> own, std::filesystem::path file, int view, CellOptions options,
                    std::filesystem::path folder)
     : own_(std::move(own)),
@@ -82,6 +110,7 @@ const PreparedScene& CellView::prepared() {
         const KnownGeometry known{own_->facts(), own_->rays()};
         prepared_.emplace(prepare_scene(view_of(own_->scene(), view_, &known.rays), file_, options_.size, 1,
                                         Work::comparison, &known));
+        number_ = own_->new_number();
     }
     return *prepared_;
 }
@@ -100,8 +129,12 @@ Truths& CellView::truths() {
     options.find = [file_of, &p](const Reference& of, ReferenceRun& ran) {
         return read_truth(file_of(of), p.scene.lights.size(), p.points.size(), ran);
     };
-    options.keep = [file_of, &p](const Reference& of, const ReferenceRun& ran) {
+    options.keep = [this, file_of, &p](const Reference& of, const ReferenceRun& ran) {
+        if (shares(of.choice)) own_->keep(*ran.run.work);
         write_truth(file_of(of), ran, p.points.raster->width, p.points.raster->height);
+    };
+    options.at_work = [this](const MethodChoice& of) {
+        return shares(of) ? std::make_shared<MethodAtWork>(begin(of).work) : nullptr;
     };
     return truths_.emplace(p.scene, p.facts, p.points, std::move(options));
 }
@@ -119,12 +152,23 @@ ReferenceRecord CellView::reference() {
     return record;
 }
 
+BuiltWork CellView::begin(const MethodChoice& choice) {
+    const PreparedScene& p = prepared();
+    if (!shares(choice)) return {MethodAtWork(choice, p.scene, p.facts)};
+    own_->turn_to(number_, p);
+    return own_->begin(choice);
+}
+
 void CellView::build(const MethodChoice& choice) {
     if (work_ && work_->choice().info == choice.info) {
+        if (shares(choice)) own_->turn_to(number_, prepared());
         work_->set(choice);
     } else {
         work_.reset();
-        work_ = std::make_shared<MethodAtWork>(choice, prepared().scene, prepared().facts);
+        BuiltWork begun = begin(choice);
+        build_ms_       = begun.build_ms;
+        work_           = std::make_shared<MethodAtWork>(std::move(begun.work));
+        aim_ms_.clear();
     }
     work_->limit(options_.budget);
     if (!work_->service() || work_->is_built()) return;
@@ -133,6 +177,7 @@ void CellView::build(const MethodChoice& choice) {
     if (options_.brief) {
         work_->warm_up();
         build_ms_ = timed_ms([&] { work_->build(); });
+        if (shares(choice)) own_->keep(*work_, build_ms_);
         return;
     }
     // How much memory Embree's tree takes depends on the threads that build it: one takes the same each time.
@@ -227,6 +272,7 @@ Cell CellView::compute(const MethodChoice& choice) {
     };
     trial.then = [&](const Outcome& found) {
         cell.method = served_record(id, p, found, against->reference.choice.text());
+        if (brief) cell.method.memory_bytes.reset();  // which depends on the threads that built
         cell.method.image =
             image_figures(found.run.planes, render_planes(scene, p.points, found.run.planes), rendered(*against))
                 .figures;

@@ -31,6 +31,12 @@ struct CellOptions {
     std::function<void(const std::string&)> progress{};  ///< receives what takes long; may be empty
 };
 
+/// A method at work, and how long its build took, on all threads, where that is known.
+struct BuiltWork {
+    MethodAtWork work;
+    std::optional<double> build_ms{};
+};
+
 /// A scene as loaded, and what its triangles decide, which all its views share. One caller at a time.
 class OwnScene {
 public:
@@ -41,10 +47,23 @@ public:
     [[nodiscard]] const SceneFacts& facts();
     [[nodiscard]] const RayScene& rays();
 
+    /// What methods built for one view serves the others: they work on one scene, whose camera and lights are those of
+    /// the view that turned to it last. Aims and looks of a view are valid again when it turns to it again.
+    [[nodiscard]] std::uint64_t new_number() { return ++numbers_; }  ///< for a view that turns
+    void turn_to(std::uint64_t number, const PreparedScene& view);
+    /// After `turn_to`: a method at work there, with what was kept of the same build.
+    [[nodiscard]] BuiltWork begin(const MethodChoice& choice) const;
+    /// Of the references, and of the other methods, the last one is kept, without aims and looks.
+    void keep(const MethodAtWork& work, std::optional<double> build_ms = {});
+
 private:
     Scene scene_;
     std::optional<SceneFacts> facts_;
     std::optional<RayScene> rays_;
+    std::uint64_t numbers_ = 0, turned_to_ = 0;
+    std::optional<Scene> turned_;
+    SceneFacts turned_facts_;
+    std::optional<BuiltWork> reference_, other_;
 };
 
 /// One view of one scene, made ready when the first cell has to be computed.
@@ -75,6 +94,12 @@ public:
     [[nodiscard]] bool is_whole() const { return is_whole_; }
 
 private:
+    /// Whether this method works where those of all views do.
+    [[nodiscard]] bool shares(const MethodChoice& choice) const {
+        return options_.brief && choice.info->outside.empty();
+    }
+    /// A method at work in this view, now.
+    [[nodiscard]] BuiltWork begin(const MethodChoice& choice);
     [[nodiscard]] Truths& truths();
     [[nodiscard]] const Rendered& rendered(const Truth& truth);
     [[nodiscard]] std::string what_truth_depends_on() const;
@@ -89,6 +114,7 @@ private:
     std::filesystem::path folder_;
     std::string scene_key_;
     std::optional<PreparedScene> prepared_;
+    std::uint64_t number_ = 0;  ///< of what is prepared
     std::optional<Truths> truths_;
     std::map<const Truth*, Rendered> rendered_;
     bool is_whole_ = true;

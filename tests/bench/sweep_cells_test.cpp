@@ -384,6 +384,31 @@ TEST(CellView, HasRandomNumbersOfItsOwn) {
     EXPECT_EQ(found, rmse("ray_traced:samples=1,seed=15838"));
 }
 
+/// What methods and references build for one view of brief cells serves the others, in any order.
+TEST(CellView, ServesOtherViewsWithWhatItBuilt) {
+    for (const char* scene : {"umbra_penumbra", "stairs"}) {
+        const TemporaryFolder together, apart;
+        const fs::path file = scene_file(scene);
+        const auto own      = std::make_shared<OwnScene>(load_scene(file));
+        const CellOptions options{.size = {24, 14}, .brief = true};
+        std::vector<CellView> views, alone;
+        for (int v = 0; v < 3; ++v) {
+            views.emplace_back(own, file, v, options, together.path());
+            alone.emplace_back(std::make_shared<OwnScene>(own->scene()), file, v, options, apart.path());
+        }
+        std::set<double> errors;
+        for (const MethodInfo* info : methods()) {
+            if (!info->is_shown()) continue;
+            for (const std::size_t v : {0, 1, 0, 2, 1}) {
+                const Cell cell = views[v].compute(MethodChoice(*info));
+                EXPECT_EQ(to_record(cell), to_record(alone[v].compute(MethodChoice(*info)))) << scene << ", view " << v;
+                for (const ErrorRecord& error : cell.method.errors) errors.insert(error.rmse.value_or(0));
+            }
+        }
+        EXPECT_GE(errors.size(), 6u) << scene;
+    }
+}
+
 TEST(CellView, ComparesWithTheTruthOfTheMethodsOwnMeasure) {
     const TemporaryFolder folder;
     const auto own = std::make_shared<OwnScene>(load_scene(scene_file("umbra_penumbra")));
