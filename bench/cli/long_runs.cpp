@@ -60,11 +60,13 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
         using Clock            = std::chrono::steady_clock;
         const fs::path first   = options.out / "index.html";
         Clock::time_point next = Clock::now() + std::chrono::seconds(5);  // a short run writes its pages at its end
+        std::size_t count      = 0;
         options.scene_done     = [&, next]() mutable {
             const Clock::time_point begun = Clock::now();
+            const std::string so_far      = fmt::format("{} of {} scenes", ++count, files.size());
             if (begun < next && links_hold(first)) return;
             try {
-                write_report({options.out}, options.out, {.language = output.language});
+                write_report({options.out}, options.out, {.so_far = so_far, .language = output.language});
             } catch (const InputError&) {  // an older result beside is not readable
             }
             next = Clock::now() + 20 * (Clock::now() - begun);
@@ -73,15 +75,15 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
     }
     std::vector<fs::path> folders;
     for (const std::string& name : done.names) folders.push_back(options.out / name);
-    const auto write_pages = [&] {
+    const auto write_pages = [&](const char* so_far) {
         if (!done.names.empty())
-            write_report(folders, options.out, {.failed = done.failed, .language = output.language});
+            write_report(folders, options.out, {.failed = done.failed, .so_far = so_far, .language = output.language});
     };
-    write_pages();
     if (output.then) {
+        write_pages("all scenes; ladders, sweeps and studies follow");
         for (fs::path& folder : output.then()) folders.push_back(std::move(folder));
-        write_pages();
     }
+    write_pages("");
     if (output.as_json)
         for (const std::string& name : done.names) print_out("{}", bytes_of(options.out / name / "results.json"));
     else if (!common.quiet && !done.names.empty())

@@ -13,6 +13,7 @@ namespace umbra {
 struct ReportOptions {
     std::string title = "Shadow methods compared";  ///< heading of the first page
     std::vector<std::string> failed{};              ///< messages for the first page, of scenes that have no results
+    std::string so_far{};                           ///< of a run that goes on, for the first page; empty: it has ended
     Language language = Language::english;          ///< of the page of the lectures; all else is in English
     bool with_exr     = true;                       ///< copy the EXRs of scenes whose folder is not in the report's
 };

@@ -109,6 +109,14 @@ TEST_F(Report, SaysInWordsWhoDidNotServeAndWhy) {
                          "<dt>Planar projection</dt><dd>&quot;blue sky&quot; is an area light</dd>"));
 }
 
+TEST_F(Report, SaysHowFarARunThatGoesOnHasCome) {
+    put(out / "court", sample("court"));
+    write_report({out}, out, {.so_far = "1 of 2 scenes"});
+    EXPECT_TRUE(contains(read(out / "index.html"), ">Written while the run went on, with 1 of 2 scenes. Load"));
+    write_report({out}, out);
+    EXPECT_FALSE(contains(read(out / "index.html"), "while the run went on"));
+}
+
 TEST_F(Report, SaysThatTheReferenceIsSampled) {
     json results = sample("court");
     put(out / "court", results);
