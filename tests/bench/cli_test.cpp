@@ -454,6 +454,16 @@ TEST_F(Cli, ListPrintsTheSchemasOfRecords) {
     for (const char* other : {"ladders", "motion", "growth", "sweep", "recommend"})
         EXPECT_FALSE(umbra::fits(umbra(fmt::format("list --schema {}", other)).output, compared)) << other;
     EXPECT_EQ(umbra("list --schema colours").exit_code, 64);
+    const std::string out = " --size 16x9 -o " + file("studies");
+    for (const auto& [study, more] : std::map<std::string, std::string>{
+             {"bias", out}, {"brdf", ""}, {"radiosity", out}, {"shading", out}, {"whitted", out}}) {
+        const Answer printed = umbra(study + " " + kScene + more + " --json");
+        EXPECT_TRUE(umbra::fits(umbra("list --schema " + study).output, printed.output)) << study;
+        EXPECT_FALSE(umbra::fits(umbra("list --schema truth").output, printed.output)) << study;
+    }
+    ASSERT_EQ(umbra("truth " + kScene + " --size 16x9 -o " + file("truth")).exit_code, 0);
+    std::ifstream truth(file("truth/results.json"));
+    EXPECT_TRUE(umbra::fits(umbra("list --schema truth").output, {std::istreambuf_iterator<char>(truth), {}}));
 }
 
 TEST_F(Cli, ListShowsOneEntryInFull) {

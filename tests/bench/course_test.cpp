@@ -15,6 +15,7 @@
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
+#include "umbra/tests/support/json_schema.h"
 #include "umbra/tests/support/temporary_folder.h"
 
 namespace umbra {
@@ -193,6 +194,7 @@ TEST(Course, WhatIsKeptIsNotGradedAgain) {
     const std::string key   = rubric_key(course.rubric());
     const GradeRecord first = course.graded(one, false, key);
     const auto written      = fs::last_write_time(course.path("grades") / "one/results.json");
+    EXPECT_TRUE(fits(schema_of<GradeRecord>("").dump(), bytes_of(course.path("grades") / "one/results.json")));
     EXPECT_EQ(course.graded(one, false, key).points, first.points);
     EXPECT_EQ(fs::last_write_time(course.path("grades") / "one/results.json"), written);
     EXPECT_EQ(course.graded(course.planted("one", "none"), false, key).points, 10) << "another program is graded";

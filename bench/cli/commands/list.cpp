@@ -8,13 +8,20 @@
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
+#include "umbra/bench/course/grade.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/motion/growth_record.h"
 #include "umbra/bench/motion/motion_record.h"
 #include "umbra/bench/recommend/recommendation_record.h"
 #include "umbra/bench/run/results.h"
+#include "umbra/bench/studies/bias/bias_record.h"
+#include "umbra/bench/studies/brdf/brdf_table.h"
+#include "umbra/bench/studies/radiosity/light_exchange.h"
+#include "umbra/bench/studies/shading/shading_choice.h"
+#include "umbra/bench/studies/whitted/whitted_record.h"
 #include "umbra/bench/sweep/metrics.h"
 #include "umbra/bench/sweep/sweep_record.h"
+#include "umbra/bench/truth/truth_set.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/io/scene_io.h"
@@ -106,9 +113,20 @@ int list_one(const std::string& name, bool as_json) {
         fmt::format("\"{}\" is not a method, ladder or canonical scene{}", name, did_you_mean(name, known)));
 }
 
-const std::map<std::string, Json (*)()> kSchemas = {{"results", results_schema}, {"ladders", ladders_schema},
-                                                    {"motion", motion_schema},   {"growth", growth_schema},
-                                                    {"sweep", sweep_schema},     {"recommend", recommendation_schema}};
+const std::map<std::string, Json (*)()> kSchemas = {
+    {"results", results_schema},
+    {"ladders", ladders_schema},
+    {"motion", motion_schema},
+    {"growth", growth_schema},
+    {"sweep", sweep_schema},
+    {"recommend", recommendation_schema},
+    {"bias", [] { return schema_of<BiasRecord>("bias --json: the least bias of shadow maps"); }},
+    {"brdf", [] { return schema_of<BrdfRecord>("results.json of umbra brdf"); }},
+    {"grade", [] { return schema_of<GradeRecord>("results.json of umbra grade and handin, one a submission"); }},
+    {"radiosity", [] { return schema_of<ExchangeRecord>("results.json of umbra radiosity"); }},
+    {"shading", [] { return schema_of<ShadingRecord>("results.json of umbra shading"); }},
+    {"truth", [] { return schema_of<TruthSetRecord>("results.json of umbra truth"); }},
+    {"whitted", [] { return schema_of<WhittedRecord>("results.json of umbra whitted"); }}};
 
 int list(const ListLine& line) {
     if (!line.schema.empty()) {
@@ -127,9 +145,10 @@ Action list_command(CLI::App& app, const Common& /*common*/) {
     app.add_flag("--json", line->as_json, "Print JSON");
     app.add_option(
            "--schema", line->schema,
-           "Print the JSON Schema of results.json as compare, ladder, motion, growth or sweep writes it, or of recommend --json")
+           "Print the JSON Schema of results.json as compare (results), ladder (ladders) or the command of that "
+           "name writes it, or of its --json")
         ->check(CLI::IsMember(kSchemas))
-        ->type_name("results|ladders|motion|growth|sweep|recommend");
+        ->type_name("");
     return [line] { return list(*line); };
 }
 
