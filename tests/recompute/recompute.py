@@ -371,7 +371,8 @@ def entries_of_cell(cell):
     image = cell['image']
     return {'view': cell['view'], 'errors': cell['errors'], 'metrics': {
         'image_rmse': image['rmse'], 'flip': image['flip'], 'flip_hdr': image['flip_hdr'],
-        'undefined': cell['undefined'], 'memory_mb': cell['memory_bytes'] / 1e6}}
+        'undefined': cell['undefined'],
+        'memory_mb': cell['memory_bytes'] / 1e6 if 'memory_bytes' in cell else None}}  # which a brief cell has not
 
 
 def metric_of(view, name):
