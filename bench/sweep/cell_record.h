@@ -13,7 +13,7 @@ struct Cell {
     std::optional<double> undefined{};  ///< the fraction of the points that it does not answer
     std::uint64_t view = 0;
     std::string key{};   ///< of what the cell depends on
-    bool brief = false;  ///< as of CellOptions: what its record says of classes, edges and memory is not their value
+    bool brief = false;  ///< as of CellOptions: no memory, and what it says of classes and edges is not their value
 };
 DESCRIBE(Cell) {
     of.all(&R::method);

@@ -75,7 +75,7 @@ constexpr std::array kMetrics{
            [](const Cell& c) { return c.undefined; }},
     Metric{"memory_mb", "MB", "Memory held after build and aim.", Kind::entry, nullptr, nullptr,
            [](const Cell& c) {
-               const Count bytes = c.brief ? std::nullopt : c.method.memory_bytes;
+               const Count bytes = c.method.memory_bytes;
                return bytes ? std::optional(double(*bytes) / 1e6) : std::nullopt;
            }},
 };

@@ -367,12 +367,11 @@ MOST_NOISE = 0.3  # above this noise bar nothing is ranked by times
 
 
 def entries_of_cell(cell):
-    """A kept cell as a view of a sweep's record."""
-    image = cell['image']
+    """A kept cell as a view of a sweep's record. A brief one has no memory."""
+    image, memory = cell['image'], cell.get('memory_bytes')
     return {'view': cell['view'], 'errors': cell['errors'], 'metrics': {
         'image_rmse': image['rmse'], 'flip': image['flip'], 'flip_hdr': image['flip_hdr'],
-        'undefined': cell['undefined'],
-        'memory_mb': cell['memory_bytes'] / 1e6 if 'memory_bytes' in cell else None}}  # which a brief cell has not
+        'undefined': cell['undefined'], 'memory_mb': memory / 1e6 if memory is not None else None}}
 
 
 def metric_of(view, name):
