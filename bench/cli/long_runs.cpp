@@ -60,8 +60,7 @@ ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOption
         using Clock            = std::chrono::steady_clock;
         const fs::path first   = options.out / "index.html";
         Clock::time_point next = Clock::now() + std::chrono::seconds(5);  // a short run writes its pages at its end
-        std::size_t count      = 0;
-        options.scene_done     = [&, next]() mutable {
+        options.scene_done     = [&, next, count = 0]() mutable {
             const Clock::time_point begun = Clock::now();
             const std::string so_far      = fmt::format("{} of {} scenes", ++count, files.size());
             if (begun < next && links_hold(first)) return;

@@ -161,9 +161,7 @@ ReferenceRun answers_of(const Reference& reference, const Scene& scene, const Sc
     }
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
-    if (!run.work->is_built())
-        run.build = time_runs(
-            kOnce, [&] { run.work->build(); }, [&] { run.work->warm_up(); });
+    run_build(run, kOnce);
     run.judged.resize(scene.lights.size());
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const bool area = is_area(scene.lights[light].kind);

@@ -125,12 +125,16 @@ void run_lights(MethodRun& run, const PointBatch& points, std::size_t lights, co
     note_memory(run);
 }
 
+void run_build(MethodRun& run, const Repeats& repeats) {
+    MethodAtWork& work = *run.work;
+    if (work.is_built()) return;
+    run.build = time_runs(
+        repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
+}
+
 void run_phases(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
                 std::optional<LightId>* at) {
-    MethodAtWork& work = *run.work;
-    if (!work.is_built())
-        run.build = time_runs(
-            repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
+    run_build(run, repeats);
     look_at(run, points, repeats);
     run_lights(run, points, lights, repeats, at);
 }

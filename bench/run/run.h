@@ -95,7 +95,9 @@ void note_memory(MethodRun& run);
 [[nodiscard]] MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts,
                                   const Budget& budget = {}, std::shared_ptr<MethodAtWork> work = nullptr);
 
-/// All phases of a run that has begun; build only where `work` has not.
+/// Builds, where `work` has not.
+void run_build(MethodRun& run, const Repeats& repeats);
+/// All phases of a run that has begun.
 void run_phases(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
                 std::optional<LightId>* at = nullptr);
 
