@@ -120,8 +120,8 @@ const std::map<std::string, Json (*)()> kSchemas = {
     {"growth", growth_schema},
     {"sweep", sweep_schema},
     {"recommend", recommendation_schema},
-    {"bias", [] { return schema_of<BiasRecord>("bias --json: the least bias of shadow maps"); }},
-    {"brdf", [] { return schema_of<BrdfRecord>("results.json of umbra brdf"); }},
+    {"bias", [] { return schema_of<BiasRecord>("results.json of umbra bias"); }},
+    {"brdf", [] { return schema_of<BrdfRecord>("brdf --json: reflectances of a scene's materials"); }},
     {"grade", [] { return schema_of<GradeRecord>("results.json of umbra grade and handin, one a submission"); }},
     {"radiosity", [] { return schema_of<ExchangeRecord>("results.json of umbra radiosity"); }},
     {"shading", [] { return schema_of<ShadingRecord>("results.json of umbra shading"); }},
@@ -148,7 +148,7 @@ Action list_command(CLI::App& app, const Common& /*common*/) {
            "Print the JSON Schema of results.json as compare (results), ladder (ladders) or the command of that "
            "name writes it, or of its --json")
         ->check(CLI::IsMember(kSchemas))
-        ->type_name("");
+        ->type_name("RECORD");
     return [line] { return list(*line); };
 }
 
