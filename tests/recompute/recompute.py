@@ -295,7 +295,7 @@ def metric_bound(setting, name, unit):
     return min(bound, max(1.0, largest)) if name in SHARES or name in OF_S else bound
 
 
-def cost(times, load):
+def cost(load):
     rate = {k: v for k, v in load.items()}
     most = max(rate.values())
     share = lambda *who: max(rate[w] for w in who) / most
@@ -303,7 +303,7 @@ def cost(times, load):
 
 
 def costs(setting, load):
-    t, of = setting['times'], cost(setting['times'], load)
+    t, of = setting['times'], cost(load)
     return of(*(t[p]['median'] for p in PHASES)), [of(*row) for row in zip(*(t[p]['samples'] for p in PHASES))]
 
 
@@ -364,6 +364,7 @@ def swept(folder, record, tally):
 
 
 MOST_NOISE = 0.3  # above this noise bar nothing is ranked by times
+SMALL_PICTURE = 60000  # points; of more recommend looks at fewer than the picture has
 
 
 def entries_of_cell(cell):
@@ -387,7 +388,7 @@ def recommended(folder, r, tally):
     kind = 'recommendations'
     cells = os.path.join(folder, 'cells')
     cells = cells if os.path.isdir(cells) else r['kept_in'] or cells
-    views, how, kept = {}, {}, []
+    views, how, kept, runs = {}, {}, [], []
     points_in = {}  # of pictures of several sizes those of the size that is named, or the next smaller one
     most = r['size']['width'] * r['size']['height']
     for name in sorted(os.listdir(cells)) if os.path.isdir(cells) else ():
@@ -401,6 +402,8 @@ def recommended(folder, r, tally):
             how[cell['text']] = cell['serves']
         elif cell.get('times'):
             kept.append(cell)
+        elif cell.get('price'):
+            runs.append(cell['price'])
     load_of = {k: float(v) for k, v in (x.split('=') for x in r['workload'].split(','))}
     timed = [(costs({'times': c['times']}, load_of), c['turns']['noise_bar']) for c in kept]
     bar = math.inf if r['noise_bar'] is None else r['noise_bar']
@@ -496,18 +499,26 @@ def recommended(folder, r, tally):
         if not bar > MOST_NOISE or [u['method'] for u in r['undecided']][:1] != within[:1]:
             tally.fault(folder, f'{[u["method"] for u in r["undecided"]]} are not decided at a noise bar of {bar}')
     base = r['recommendation'] and r['recommendation']['method']
+    price_of = cost(load_of)
     for which, rivals in (('tied', r['tied']), ('runner_up', [r['runner_up']]), ('cheapest', [r['cheapest']]),
                           ('exact', [r['exact']])):
         for rival in filter(None, rivals):
             where, q = f'{folder}: {which}, {rival["method"]}', rival['cost_ratio']
             if rival['method'] in rounds_of and base in rounds_of:
                 value, (low, high, coverage) = ratio(rounds_of[rival['method']], rounds_of[base])
+                tally.same(kind, where, {k: q[k] for k in ('median', 'low', 'high', 'coverage')}, {
+                    'median': value, 'low': low, 'high': high, 'coverage': coverage})
                 if low is not None:
                     differs = (low > 1 or high < 1) and max(value, 1 / value) - 1 > bar
-                    tally.same(kind, where, {k: q[k] for k in ('median', 'low', 'high', 'coverage', 'differs')}, {
-                        'median': value, 'low': low, 'high': high, 'coverage': coverage, 'differs': differs})
+                    tally.same(kind, where, q['differs'], differs)
                     if which == 'tied' and differs or which == 'runner_up' and not differs:
                         tally.fault(where, f'the ratio is {value} ({low} to {high}), the noise bar {bar}')
+            elif runs and most <= SMALL_PICTURE:  # it took no turns: a run of each, of as many points as the picture has
+                tally.figures[kind] += 1
+                of = [rival['cost'] / price_of(p['build_ms'], sum(p['aim_ms']), p['look_ms'], sum(p['visibility_ms']))
+                      for p in runs]
+                if q['low'] is not None or not any(math.isclose(q['median'], x, rel_tol=1e-9) for x in of):
+                    tally.fault(where, f'a ratio of {q}, by single runs it is one of {of}')
     if r['cheapest']:
         tally.text(kind, f'{folder}: cheapest', r['cheapest']['method'], min(cost_of, key=cost_of.get))
     for m in r['methods']:
