@@ -9,6 +9,7 @@
 
 #include "umbra/bench/contenders/program_session.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/bench/run/run.h"
@@ -263,7 +264,7 @@ std::vector<GateRow> gate(const MethodInfo& info, const std::function<void(const
     }
     std::vector<GateRow> rows;
     if (kinds.empty()) return {{"its lights", "it serves no kind of light", false}};
-    const RunFolder folder;
+    const ScratchFolder folder;
     for (const Question& question : questions(kinds)) {
         if (progress) progress(question.name);
         const auto file = folder.path() / "gate.json";

@@ -1,14 +1,8 @@
 #include "umbra/bench/contenders/program_session.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cmath>
-#include <csignal>
-#include <cstdlib>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "umbra/bench/contenders/answers_file.h"
@@ -18,26 +12,6 @@
 
 namespace umbra {
 namespace fs = std::filesystem;
-
-RunFolder::RunFolder() {
-    const std::string start = "umbra-contender-";
-    std::error_code ignored;
-    for (const auto& entry : fs::directory_iterator(fs::temp_directory_path(), ignored)) {  // of runs that were killed
-        const std::string old = entry.path().filename().string();
-        if (!old.starts_with(start)) continue;
-        const int owner = std::atoi(old.c_str() + start.size());
-        if (owner > 0 && kill(owner, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
-    }
-    std::string name = (fs::temp_directory_path() / fmt::format("{}{}-XXXXXX", start, getpid())).string();
-    if (::mkdtemp(name.data()) == nullptr)
-        throw MethodError(fmt::format("{}: cannot be made: {}", name, std::strerror(errno)));
-    path_ = name;
-}
-
-RunFolder::~RunFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-}
 
 Json hello_message(const fs::path& folder) {
     return {{"message", "hello"}, {"protocol", 1}, {"folder", folder.string()}};
@@ -78,6 +52,15 @@ Json visibility_message(const fs::path& folder, const PointBatch& points, LightI
 
 namespace {
 
+/// A program that cannot be served fails alone.
+ScratchFolder folder_of_a_run() {
+    try {
+        return {};
+    } catch (const InputError& e) {
+        throw MethodError(e.what());
+    }
+}
+
 fs::path made(const fs::path& folder) {
     fs::create_directory(folder);
     return folder;
@@ -95,7 +78,8 @@ std::vector<std::string> placed(std::vector<std::string> command, const fs::path
 }  // namespace
 
 ProgramSession::ProgramSession(const std::vector<std::string>& command, const fs::path& where, double timeout_s)
-    : timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s),
+    : folder_(folder_of_a_run()),
+      timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s),
       process_(placed(command, folder()), where, made(folder() / "temporary")) {
     hello_ = ask(hello_message(folder()));
 }

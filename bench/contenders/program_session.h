@@ -6,25 +6,13 @@
 #include <vector>
 
 #include "umbra/bench/contenders/line_process.h"
+#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/bench/record/field.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/scene.h"
 
 namespace umbra {
-
-/// A folder that goes with the object.
-class RunFolder {
-public:
-    RunFolder();
-    ~RunFolder();
-    RunFolder(const RunFolder&)            = delete;
-    RunFolder& operator=(const RunFolder&) = delete;
-    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
 
 /// The messages, each with the files that it names, which the functions write below `folder`.
 [[nodiscard]] Json hello_message(const std::filesystem::path& folder);
@@ -65,7 +53,7 @@ private:
     [[nodiscard]] Field ask(const Json& message);
     [[noreturn]] void fail(const std::string& what);
 
-    RunFolder folder_;  // outlives the program
+    ScratchFolder folder_;  // outlives the program
     double timeout_s_;
     LineProcess process_;
     Field hello_;

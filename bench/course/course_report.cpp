@@ -11,10 +11,10 @@
 #include "report_assets.h"
 #include "umbra/bench/compare/record.h"
 #include "umbra/bench/contenders/line_process.h"
-#include "umbra/bench/contenders/program_session.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
+#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/pages/embed.h"
 #include "umbra/bench/pages/page_template.h"
@@ -208,7 +208,7 @@ std::vector<std::string> write_course(const Course& course, CompareOptions optio
 
 std::string print_course(const fs::path& out) {
     const fs::path root = fs::weakly_canonical(fs::absolute(out)), made = root / ".course.pdf.umbra-new";
-    const RunFolder folder;
+    const ScratchFolder folder;
     const fs::path page = folder.path() / "course.html";  // whose links do not lead into folders of this machine
     write_text(page, embedded_page(root / "index.html"));
     for (const char* browser : {"chromium", "chromium-browser", "google-chrome", "google-chrome-stable"}) {

@@ -1,7 +1,6 @@
 #include "umbra/bench/golden/golden_change.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -11,6 +10,7 @@
 
 #include "umbra/bench/compare/compare.h"
 #include "umbra/bench/out/files.h"
+#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/core/image/image_io.h"
 
 namespace umbra {
@@ -30,18 +30,6 @@ const std::array kCompared = {
     Compared{"self_shadow", {"shadow_zbuffer:resolution=64,bias=manual,constant=1", "planar_projection"}, {}},
     Compared{"umbra_penumbra", {"ray_traced:samples=4", "shadow_volumes"}, {}},
     Compared{"eclipse", {"ray_traced:samples=4", "planar_projection:light_samples=8"}, 500},
-};
-
-/// Removed at the end.
-struct Scratch {
-    Scratch() : path(fs::temp_directory_path() / fmt::format("umbra-golden-{}", getpid())) { fs::remove_all(path); }
-    ~Scratch() {
-        std::error_code ignored;
-        fs::remove_all(path, ignored);
-    }
-    Scratch(const Scratch&)            = delete;
-    Scratch& operator=(const Scratch&) = delete;
-    fs::path path;
 };
 
 /// What is the same whenever and wherever it is measured.
@@ -143,9 +131,9 @@ std::vector<GoldenChange> comparison_changes(const fs::path& scene, const Golden
     const std::string name = scene.stem().string();
     const auto* compared   = std::ranges::find(kCompared, name, &Compared::scene);
     if (compared == kCompared.end() || !is_wanted(options, name, "compared")) return {};
-    const Scratch scratch;
-    run_comparison(scene, *compared, scratch.path);
-    const fs::path now = scratch.path / name, accepted = options.folder / name / "compared";
+    const ScratchFolder scratch;
+    run_comparison(scene, *compared, scratch.path());
+    const fs::path now = scratch.path() / name, accepted = options.folder / name / "compared";
     const std::set<std::string> old_files = kept_files(accepted), new_files = kept_files(now);
 
     GoldenChange change;

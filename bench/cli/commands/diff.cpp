@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <CLI/CLI.hpp>
 #include <limits>
@@ -11,6 +10,7 @@
 #include "umbra/bench/diff/diff_markdown.h"
 #include "umbra/bench/diff/diff_page.h"
 #include "umbra/bench/diff/diff_set.h"
+#include "umbra/bench/out/scratch_folder.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/pages/embed.h"
 #include "umbra/core/base/error.h"
@@ -26,26 +26,6 @@ struct DiffLine {
     bool embed = false, as_json = false;
 };
 
-/// Where a page and its pictures are until they are one file.
-class PageWorkshop {
-public:
-    PageWorkshop() {
-        std::string name = (std::filesystem::temp_directory_path() / "umbra-diff-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw InputError(name + ": cannot be made, expected a temporary folder");
-        folder_ = name;
-    }
-    ~PageWorkshop() {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
-    PageWorkshop(const PageWorkshop&)            = delete;
-    PageWorkshop& operator=(const PageWorkshop&) = delete;
-    [[nodiscard]] std::filesystem::path page() const { return folder_ / "page.html"; }
-
-private:
-    std::filesystem::path folder_;
-};
-
 int diff(DiffLine line, const Common& common) {
     DiffOptions& options     = line.options;
     const std::string ending = options.map.extension().string();
@@ -54,9 +34,9 @@ int diff(DiffLine line, const Common& common) {
             fmt::format("-o {}: not a picture format, expected FILE.png or FILE.exr", options.map.string()));
     if (line.embed && line.html.empty()) throw UsageError("--embed needs --html FILE");
     if (!line.tolerance.empty()) options.tolerance = std::make_shared<Tolerance>(read_tolerance(line.tolerance));
-    std::optional<PageWorkshop> workshop;
+    std::optional<ScratchFolder> workshop;  // where a page and its pictures are until they are one file
     if (line.embed) workshop.emplace();
-    const std::filesystem::path page = workshop ? workshop->page() : line.html;
+    const std::filesystem::path page = workshop ? workshop->path() / "page.html" : line.html;
     if (!line.html.empty()) options.pictures = diff_pictures_folder(page);
     DiffSet set;
     {
