@@ -8,41 +8,20 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <stdlib.h>
-
 #include <deque>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <string_view>
 
 #include "umbra/bench/compare/method_files.h"
+#include "umbra/bench/out/scratch_folder.h"
+#include "umbra/bench/speed/timed_loop.h"
 #include "umbra/core/base/memory.h"
 
 namespace umbra {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder of its own, removed at the end.
-class Folder {
-public:
-    Folder() {
-        std::string name = (fs::temp_directory_path() / "umbra-comparison-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder can be made");
-        path_ = name;
-    }
-    ~Folder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    Folder(const Folder&)            = delete;
-    Folder& operator=(const Folder&) = delete;
-    [[nodiscard]] const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
 
 /// Two methods' answers on one scene, made at the first use.
 struct Stage {
@@ -96,7 +75,7 @@ void time_figures(benchmark::State& state, Stage& s) {
 void time_all(benchmark::State& state, Stage& s) {
     s.prepare();
     if (!figures_mean_something(state, s)) return;
-    const Folder folder;
+    const ScratchFolder folder;
     for (auto _ : state)
         write_compared_files({folder.path(), "one", ""}, *s.prepared, s.answers(), s.reference(), s.explained);
 }
@@ -107,16 +86,10 @@ void time_all(benchmark::State& state, Stage& s) {
 int main(int argc, char** argv) {
     using namespace umbra;
     keep_freed_memory();  // as `umbra` does
-    Size size{1920, 1080};
-    std::vector<char*> rest;
-    for (int i = 0; i < argc; ++i)
-        if (const std::string_view argument = argv[i]; argument.starts_with("--size="))
-            size = parse_size(std::string(argument.substr(7)));
-        else
-            rest.push_back(argv[i]);
+    const SpeedLine line(argc, argv);
     std::deque<Stage> stages;
     for (const char* name : {"stairs", "umbra_penumbra", "light_sizes"}) {
-        Stage& s       = stages.emplace_back(Stage{name, size});
+        Stage& s       = stages.emplace_back(Stage{name, line.size});
         const auto add = [&](const char* pass, void (*function)(benchmark::State&, Stage&)) {
             benchmark::RegisterBenchmark(fmt::format("{}/{}", pass, name).c_str(),
                                          [&s, function](benchmark::State& state) { function(state, s); })
@@ -127,9 +100,5 @@ int main(int argc, char** argv) {
         add("figures", time_figures);
         add("all", time_all);
     }
-    int count = static_cast<int>(rest.size());
-    benchmark::Initialize(&count, rest.data());
-    if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
+    return run_benchmarks(line.rest);
 }

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/statistics/statistics.h"
+
 namespace umbra {
 
 /// Milliseconds on the clock, and of all processors together: the second is what a busy machine leaves comparable.
@@ -24,11 +26,6 @@ inline Cost cost_of(const std::function<void()>& f) {
     f();
     return {std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(),
             1e3 * static_cast<double>(std::clock() - work) / CLOCKS_PER_SEC};
-}
-
-inline double median(std::vector<double> v) {
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
 }
 
 struct Contender {

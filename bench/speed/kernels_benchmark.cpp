@@ -226,8 +226,5 @@ int main(int argc, char** argv) {
     }
     add("signs/clear", [](benchmark::State& state) { time_signs(state, 1, 1); });
     add("signs/in_plane", [](benchmark::State& state) { time_signs(state, 0, 0); });
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
+    return run_benchmarks({argv, argv + argc});
 }

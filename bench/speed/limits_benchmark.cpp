@@ -15,12 +15,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
-#include <string_view>
 
 #include "umbra/bench/speed/in_turns.h"
 #include "umbra/bench/speed/speed_scenes.h"
+#include "umbra/bench/speed/timed_loop.h"
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
@@ -416,7 +415,7 @@ int main(int argc, char** argv) {
     using namespace umbra;
     keep_freed_memory();  // as `umbra` does
     std::vector<std::unique_ptr<Bench>> benches;
-    int width = 1920, height = 1080;
+    const SpeedLine line(argc, argv);
     const auto scene = [&](std::string name, std::function<Scene()> make) {
         benches.push_back(std::make_unique<Bench>());
         benches.back()->name = std::move(name);
@@ -424,20 +423,11 @@ int main(int argc, char** argv) {
     };
     scene("simple", simple_scene);
     scene("tori", [] { return tori_scene(125, 64); });
-    std::vector<char*> rest;
-    for (int i = 0; i < argc; ++i) {
-        const std::string_view argument = argv[i];
-        if (argument.starts_with("--scene="))
-            scene("file", [file = std::string(argument.substr(8))] { return file_scene(file); });
-        else if (argument.starts_with("--size="))
-            std::sscanf(argv[i] + 7, "%dx%d", &width, &height);
-        else
-            rest.push_back(argv[i]);
-    }
+    for (const std::string& file : line.scenes) scene("file", [file] { return file_scene(file); });
     for (const auto& bench : benches) {
-        Bench& b       = *bench;
-        b.width        = std::max(1, width / kTileWidth) * kTileWidth;  // the bare loops know whole tiles only
-        b.height       = std::max(1, height / kTileHeight) * kTileHeight;
+        Bench& b = *bench;
+        b.width  = std::max(1, line.size.width / kTileWidth) * kTileWidth;  // the bare loops know whole tiles only
+        b.height = std::max(1, line.size.height / kTileHeight) * kTileHeight;
         const auto add = [&](const char* pass, auto&& function, int rounds) {
             benchmark::RegisterBenchmark((b.name + "/" + pass).c_str(), function)
                 ->UseManualTime()
@@ -464,10 +454,7 @@ int main(int argc, char** argv) {
                 fmt::format("touched/{}", text).c_str(),
                 [&b, text](benchmark::State& s) { time_visibility_touched(s, b, text); }, 9);
     }
-    int count = static_cast<int>(rest.size());
-    benchmark::Initialize(&count, rest.data());
-    if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
-    benchmark::RunSpecifiedBenchmarks();
+    const int code = run_benchmarks(line.rest);
     print_ratios();
-    return 0;
+    return code;
 }

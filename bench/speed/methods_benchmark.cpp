@@ -237,8 +237,5 @@ int main(int argc, char** argv) {
                     break;
                 }
     }
-    benchmark::Initialize(&argc, argv);
-    if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-    benchmark::RunSpecifiedBenchmarks();
-    return 0;
+    return run_benchmarks({argv, argv + argc});
 }

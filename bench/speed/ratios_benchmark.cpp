@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include "umbra/bench/speed/in_turns.h"
 #include "umbra/bench/speed/speed_scenes.h"
+#include "umbra/bench/speed/timed_loop.h"
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
@@ -216,28 +216,16 @@ void add_stage(Stage& s) {
 int main(int argc, char** argv) {
     using namespace umbra;
     keep_freed_memory();  // as `umbra` does
-    int width = 1920, height = 1080;
+    const SpeedLine line(argc, argv);
     std::deque<Stage> stages;
     stages.push_back({"simple", simple_scene});
     stages.push_back({"tori", [] { return tori_scene(125, 64); }});
-    std::vector<char*> rest;
-    for (int i = 0; i < argc; ++i) {
-        const std::string_view argument = argv[i];
-        if (argument.starts_with("--scene="))
-            stages.push_back({"file", [file = std::string(argument.substr(8))] { return load_scene(file); }});
-        else if (argument.starts_with("--size="))
-            std::sscanf(argv[i] + 7, "%dx%d", &width, &height);
-        else
-            rest.push_back(argv[i]);
-    }
+    for (const std::string& file : line.scenes) stages.push_back({"file", [file] { return load_scene(file); }});
     for (Stage& s : stages) {
-        s.width = width, s.height = height;
+        s.width = line.size.width, s.height = line.size.height;
         add_stage(s);
     }
-    int count = static_cast<int>(rest.size());
-    benchmark::Initialize(&count, rest.data());
-    if (benchmark::ReportUnrecognizedArguments(count, rest.data())) return 2;
-    benchmark::RunSpecifiedBenchmarks();
+    const int code = run_benchmarks(line.rest);
     print_ratios();
-    return 0;
+    return code;
 }

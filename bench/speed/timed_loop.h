@@ -1,11 +1,15 @@
-// What the benchmark programs share: a loop in which only the work is inside the clock, and the calibration.
+// What the benchmark programs share: their options, a loop in which only the work is inside the clock, the calibration.
 #pragma once
 
 #include <benchmark/benchmark.h>
 
 #include <chrono>
 #include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "umbra/bench/run/prepare.h"
 #include "umbra/bench/time/calibration.h"
 
 namespace umbra {
@@ -28,6 +32,33 @@ inline void add_calibration() {
         benchmark::RegisterBenchmark(name, [](benchmark::State& state) { timed_loop(state, calibration_work); })
             ->UseManualTime()
             ->Unit(benchmark::kMillisecond);
+}
+
+/// The options that are not Google Benchmark's: --size=WxH, and --scene=FILE, any number of times.
+struct SpeedLine {
+    SpeedLine(int argc, char** argv) {
+        for (int i = 0; i < argc; ++i) {
+            const std::string_view argument = argv[i];
+            if (argument.starts_with("--scene="))
+                scenes.emplace_back(argument.substr(8));
+            else if (argument.starts_with("--size="))
+                size = parse_size(std::string(argument.substr(7)));
+            else
+                rest.push_back(argv[i]);
+        }
+    }
+    Size size{1920, 1080};
+    std::vector<std::string> scenes;
+    std::vector<char*> rest;
+};
+
+/// What was registered; the exit code.
+inline int run_benchmarks(std::vector<char*> arguments) {
+    int count = static_cast<int>(arguments.size());
+    benchmark::Initialize(&count, arguments.data());
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
 }
 
 }  // namespace umbra
