@@ -5,18 +5,18 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/base/suggest.h"
 
 namespace umbra {
 namespace {
 
-bool read_number(std::string_view text, double& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+std::optional<double> finite(std::string_view text) {
+    const auto value = number_from<double>(text);
+    return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
 std::vector<std::string_view> split(std::string_view list) {
@@ -48,7 +48,7 @@ std::string Parameter::text(double value) const {
 }
 
 double Parameter::parse(std::string_view given) const {
-    double number = 0;
+    std::optional<double> number;
     switch (type) {
         case Type::boolean:
             if (given == "true") return 1;
@@ -61,17 +61,19 @@ double Parameter::parse(std::string_view given) const {
             throw UsageError(fmt::format("{}={}: expected one of {}", name, given, choices));
         }
         case Type::integer:
-            if (!read_number(given, number) || number != std::floor(number))
+            number = finite(given);
+            if (!number || *number != std::floor(*number))
                 throw UsageError(fmt::format("{}={}: expected an integer", name, given));
             break;
         case Type::real:
-            if (!read_number(given, number))
-                throw UsageError(fmt::format("{}={}: expected a finite number", name, given));
+            number = finite(given);
+            if (!number) throw UsageError(fmt::format("{}={}: expected a finite number", name, given));
             break;
         case Type::text: return 0;
     }
-    if (number < min || number > max) throw UsageError(fmt::format("{}={}: expected {} to {}", name, given, min, max));
-    return number;
+    if (*number < min || *number > max)
+        throw UsageError(fmt::format("{}={}: expected {} to {}", name, given, min, max));
+    return *number;
 }
 
 Settings::Settings(std::span<const Parameter> parameters) : parameters_(parameters) {

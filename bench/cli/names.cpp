@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <functional>
@@ -12,6 +11,7 @@
 #include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/method.h"
@@ -92,15 +92,12 @@ std::vector<std::string> frames_of(const std::string& scene) {
     if (is_file(scene) || at == std::string::npos || dots == std::string::npos ||
         scene.find_first_not_of("0123456789.", at + 1) != std::string::npos)
         return {scene};
-    int first = 0, last = 0;
-    const auto read = [&](std::size_t begin, std::size_t end, int& value) {
-        const auto [stop, error] = std::from_chars(scene.data() + begin, scene.data() + end, value);
-        return error == std::errc() && stop == scene.data() + end && value >= 0;
-    };
-    if (!read(at + 1, dots, first) || !read(dots + 2, scene.size(), last) || last < first || last - first >= 10000)
+    const auto first = number_from<int>(std::string_view(scene).substr(at + 1, dots - at - 1)),
+               last  = number_from<int>(std::string_view(scene).substr(dots + 2));
+    if (!first || !last || *first < 0 || *last < *first || *last - *first >= 10000)
         throw UsageError(fmt::format("{}: not frames of a scene, expected SCENE@FIRST..LAST", scene));
     std::vector<std::string> names;
-    for (int frame = first; frame <= last; ++frame) names.push_back(fmt::format("{}@{}", scene.substr(0, at), frame));
+    for (int frame = *first; frame <= *last; ++frame) names.push_back(fmt::format("{}@{}", scene.substr(0, at), frame));
     return names;
 }
 
@@ -153,11 +150,8 @@ void return_ladders(std::vector<std::string>& methods, std::vector<std::string>&
 
 CLI::Validator number_in(double low, double high, const std::string& expected) {
     const auto check = [low, high, expected](const std::string& text) -> std::string {
-        double value            = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error == std::errc() && end == text.data() + text.size() && std::isfinite(value) && value >= low &&
-            value <= high)
-            return "";
+        const auto value = number_from<double>(text);
+        if (value && std::isfinite(*value) && *value >= low && *value <= high) return "";
         return fmt::format("\"{}\" is not {}", text, expected);
     };
     return {check, "", "number"};
@@ -165,11 +159,8 @@ CLI::Validator number_in(double low, double high, const std::string& expected) {
 
 CLI::Validator pixel_samples() {
     const auto check = [](const std::string& text) -> std::string {
-        int samples             = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), samples);
-        if (error != std::errc() || end != text.data() + text.size()) samples = 0;
         try {
-            static_cast<void>(samples_along_side(samples));
+            static_cast<void>(samples_along_side(number_from<int>(text).value_or(0)));
         } catch (const UsageError&) {
             return fmt::format("\"{}\" is not 1, 4, 9, 16, 25, 36, 49 or 64", text);
         }

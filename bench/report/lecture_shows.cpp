@@ -1,11 +1,11 @@
 #include "umbra/bench/report/lecture_shows.h"
 
 #include <algorithm>
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "report_assets.h"
 #include "umbra/bench/pages/report_text.h"
+#include "umbra/core/base/number_from.h"
 
 namespace umbra {
 namespace {
@@ -32,10 +32,7 @@ std::optional<LectureShow> show_from(const json& topic) {
 
 Field entry(const Field& array, std::string_view name) {
     const std::vector<Field> items = array.items();
-    std::size_t number             = 0;
-    const auto end                 = name.data() + name.size();
-    if (const auto read = std::from_chars(name.data(), end, number); read.ec == std::errc{} && read.ptr == end)
-        return number < items.size() ? items[number] : Field{};
+    if (const auto number = number_from<std::size_t>(name)) return *number < items.size() ? items[*number] : Field{};
     const auto found = std::ranges::find_if(items, [&](const Field& item) { return item["name"].text() == name; });
     return found == items.end() ? Field{} : *found;
 }

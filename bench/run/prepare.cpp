@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 
 #include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/memory.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/core/render/gbuffer.h"
@@ -101,14 +101,13 @@ void pass_warnings(const Scene& scene, const std::function<void(const std::strin
 }
 
 Size parse_size(const std::string& text) {
-    Size size;
-    const std::size_t cross = text.find('x');
-    const auto read         = [&](std::size_t begin, std::size_t end, int& value) {
-        const auto [at, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        return error == std::errc() && at == text.data() + end && value >= 1 && value <= kMaxPictureSide;
+    const std::size_t cross = std::min(text.find('x'), text.size());
+    const auto side         = [](std::string_view word) {
+        const int value = number_from<int>(word).value_or(0);
+        return value <= kMaxPictureSide ? value : 0;
     };
-    if (cross == std::string::npos || !read(0, cross, size.width) || !read(cross + 1, text.size(), size.height) ||
-        static_cast<long>(size.width) * size.height > kMaxArea)
+    const Size size{side(text.substr(0, cross)), side(text.substr(std::min(cross + 1, text.size())))};
+    if (size.width < 1 || size.height < 1 || static_cast<long>(size.width) * size.height > kMaxArea)
         throw UsageError(fmt::format(
             "--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels, whose comparison takes "
             "{:.0f} GB",

@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/base/suggest.h"
 
 namespace umbra {
@@ -181,13 +181,11 @@ std::vector<MetricRecord> metric_records() {
 LimitText parse_limit_text(const std::string& text, std::string_view expected) {
     const std::size_t eq = text.find('=');
     if (eq == std::string::npos) throw UsageError(fmt::format("--max {}: expected {}", text, expected));
-    LimitText limit{text.substr(0, eq), 0};
-    const char* end        = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data() + eq + 1, end, limit.most);
-    if (error != std::errc() || at != end || !std::isfinite(limit.most) || limit.most < 0)
+    const auto most = number_from<double>(text.substr(eq + 1));
+    if (!most || !std::isfinite(*most) || *most < 0)
         throw UsageError(fmt::format("--max {}: found the limit \"{}\", expected a finite number of at least 0", text,
                                      text.substr(eq + 1)));
-    return limit;
+    return {text.substr(0, eq), *most};
 }
 
 }  // namespace umbra

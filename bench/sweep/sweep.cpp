@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "umbra/bench/compare/record.h"
@@ -17,6 +16,7 @@
 #include "umbra/bench/sweep/scene_lab.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
@@ -117,16 +117,12 @@ SweepResults swept_record(SceneLab& lab, const SweepOptions& options, const std:
 }  // namespace
 
 Pack parse_pack(const std::string& text) {
-    Pack pack;
-    const std::size_t slash = text.find('/');
-    const auto read         = [&](std::size_t begin, std::size_t end, std::size_t& value) {
-        const auto [at, error] = std::from_chars(text.data() + begin, text.data() + end, value);
-        return error == std::errc() && at == text.data() + end;
-    };
-    if (slash == std::string::npos || !read(0, slash, pack.index) || !read(slash + 1, text.size(), pack.count) ||
-        pack.index < 1 || pack.index > pack.count)
+    const std::size_t slash = std::min(text.find('/'), text.size() - 1);
+    const auto index        = number_from<std::size_t>(text.substr(0, slash)),
+               count        = number_from<std::size_t>(text.substr(slash + 1));
+    if (!index || !count || *index < 1 || *index > *count)
         throw UsageError(fmt::format("--pack {}: expected K/N with K from 1 to N", text));
-    return pack;
+    return {*index, *count};
 }
 
 std::vector<MethodChoice> planned_settings(const SweepPlan& plan, const SceneFacts& facts) {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <string_view>
 #include <vector>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/base/suggest.h"
 
 namespace umbra {
@@ -18,11 +18,10 @@ namespace {
 constexpr std::string_view kExpected = "expected events a second, as in camera=60,light=1,object=0";
 
 double rate(std::string_view pair, std::string_view text) {
-    double value             = 0;
-    const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (failed != std::errc() || end != text.data() + text.size() || !std::isfinite(value) || value < 0)
+    const auto value = number_from<double>(text);
+    if (!value || !std::isfinite(*value) || *value < 0)
         throw UsageError(fmt::format("workload: {}: \"{}\" is not a rate, expected a number of 0 or more", pair, text));
-    return value;
+    return *value;
 }
 
 double& member(Workload& workload, std::string_view name) {

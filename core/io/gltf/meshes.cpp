@@ -1,11 +1,11 @@
 #include "umbra/core/io/gltf/meshes.h"
 
-#include <charconv>
 #include <cmath>
 #include <map>
 
 #include <fmt/format.h>
 
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/io/gltf/members.h"
 #include "umbra/core/io/limits.h"
 
@@ -26,11 +26,7 @@ std::vector<uvec3> as_triangles(const std::vector<std::uint32_t>& v, int mode) {
 /// The n of TEXCOORD_n.
 std::optional<std::uint64_t> texture_coordinate_set(std::string_view key) {
     constexpr std::string_view kBegins = "TEXCOORD_";
-    std::uint64_t n                    = 0;
-    if (!key.starts_with(kBegins)) return std::nullopt;
-    const std::string_view digits = key.substr(kBegins.size());
-    const auto [end, error]       = std::from_chars(digits.data(), digits.data() + digits.size(), n);
-    return error == std::errc() && end == digits.data() + digits.size() ? std::optional(n) : std::nullopt;
+    return key.starts_with(kBegins) ? number_from<std::uint64_t>(key.substr(kBegins.size())) : std::nullopt;
 }
 
 /// Accessors of the attributes JOINTS_n and WEIGHTS_n.
