@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "umbra/bench/pages/pixel_groups.h"
+
 namespace umbra {
 namespace {
 
@@ -46,54 +48,14 @@ vec3 colour_of(float difference, double range) {
     return difference < 0 ? glm::mix(kBlue, kDarkBlue, t) : glm::mix(kRed, kDarkRed, t);
 }
 
-/// Bounds of one group of differing pixels, inclusive.
-struct Group {
-    int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = -1, y1 = -1;
-    void add(int x, int y) { x0 = std::min(x0, x), y0 = std::min(y0, y), x1 = std::max(x1, x), y1 = std::max(y1, y); }
-    void add(const Group& g) {
-        if (g.x1 >= 0) add(g.x0, g.y0), add(g.x1, g.y1);
-    }
-    [[nodiscard]] bool small() const { return x1 - x0 < kRinged && y1 - y0 < kRinged; }
-};
-
-/// Differing pixels by cells of a coarse grid; cells that touch are one group.
-std::vector<Group> find_groups(const std::vector<float>& difference, int width, int height) {
-    const int columns = (width + kCell - 1) / kCell, rows = (height + kCell - 1) / kCell;
-    std::vector<Group> cells(std::size_t(columns) * std::size_t(rows));
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x)
-            if (difference[std::size_t(y) * std::size_t(width) + std::size_t(x)] != 0)
-                cells[std::size_t(y / kCell) * std::size_t(columns) + std::size_t(x / kCell)].add(x, y);
-
-    std::vector<Group> groups;
-    std::vector<bool> seen(cells.size());
-    std::vector<int> open;
-    for (int start = 0; start < columns * rows; ++start) {
-        if (seen[std::size_t(start)] || cells[std::size_t(start)].x1 < 0) continue;
-        Group group;
-        for (open = {start}, seen[std::size_t(start)] = true; !open.empty();) {
-            const int cell = open.back();
-            open.pop_back();
-            group.add(cells[std::size_t(cell)]);
-            for (int y = std::max(cell / columns - 1, 0); y <= std::min(cell / columns + 1, rows - 1); ++y)
-                for (int x = std::max(cell % columns - 1, 0); x <= std::min(cell % columns + 1, columns - 1); ++x)
-                    if (const int next = y * columns + x;
-                        !seen[std::size_t(next)] && cells[std::size_t(next)].x1 >= 0) {
-                        seen[std::size_t(next)] = true;
-                        open.push_back(next);
-                    }
-        }
-        groups.push_back(group);
-    }
-    return groups;
-}
+bool is_small(const PixelGroup& group) { return group.x1 - group.x0 < kRinged && group.y1 - group.y0 < kRinged; }
 
 void set(Image& picture, std::size_t i, vec3 colour) {
     for (std::size_t c = 0; c < 3; ++c) picture.at(i, c) = colour[int(c)];
 }
 
 /// A black ring with white borders; differing pixels stay visible.
-void draw_ring(Image& picture, const Group& group, const std::vector<float>& difference) {
+void draw_ring(Image& picture, const PixelGroup& group, const std::vector<float>& difference) {
     const double cx = 0.5 * (group.x0 + group.x1), cy = 0.5 * (group.y0 + group.y1);
     const double radius = 0.5 * std::hypot(group.x1 - group.x0, group.y1 - group.y0) + 8;
     const auto reach    = int(radius) + 3;
@@ -120,8 +82,9 @@ DifferenceMap difference_map(const Image& a, const Image& b, bool linear, std::s
         const float grey = kGroundMin + (1 - kGroundMin) * glm::dot(shown, vec3(0.2126f, 0.7152f, 0.0722f));
         set(map.picture, i, difference[i] == 0 ? vec3(grey) : colour_of(difference[i], map.range));
     }
-    for (const Group& group : find_groups(difference, a.width, a.height))
-        if (group.small()) draw_ring(map.picture, group, difference);
+    for (const PixelGroup& group :
+         pixel_groups(a.width, a.height, kCell, [&](std::size_t i) { return difference[i] != 0; }))
+        if (is_small(group)) draw_ring(map.picture, group, difference);
     return map;
 }
 
