@@ -7,7 +7,7 @@
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/record/field.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/studies/bias/bias_report.h"
+#include "umbra/bench/studies/bias/bias_record.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {

@@ -1,4 +1,4 @@
-#include "umbra/bench/diff/diff_page.h"
+#include "umbra/bench/diff/diff_views.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

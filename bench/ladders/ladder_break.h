@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include <functional>
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/record/record.h"
 #include "umbra/bench/run/results.h"
@@ -34,5 +35,10 @@ DESCRIBE(BreakRecord) {
 /// best.
 BreakRecord write_break(const std::filesystem::path& folder, const std::string& name, const Ladder& ladder,
                         double value, const MethodChoice& method);
+
+/// A part of the scene for which `still` holds as it does for the whole: lights, objects and triangles without which it
+/// holds, too, are dropped, until none can go or `trials` scenes have been asked.
+/// [Andreas Zeller, Ralf Hildebrandt, Simplifying and Isolating Failure-Inducing Input, 2002]
+[[nodiscard]] Scene minimal_scene(Scene scene, const std::function<bool(const Scene&)>& still, int trials);
 
 }  // namespace umbra

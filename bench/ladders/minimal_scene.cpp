@@ -1,4 +1,4 @@
-#include "umbra/bench/ladders/minimal_scene.h"
+#include "umbra/bench/ladders/ladder_break.h"
 
 #include <algorithm>
 #include <numeric>

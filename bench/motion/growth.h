@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "umbra/bench/motion/growth_record.h"
+#include "umbra/bench/out/staged_files.h"
 
 namespace umbra {
 
@@ -28,5 +29,8 @@ GrowthRecord measure_growth(const GrowthCommand& command);
 
 /// The record's families as tables for a terminal.
 [[nodiscard]] std::string growth_table(const GrowthRecord& record);
+
+/// OUT/index.html and its style, from the record of `umbra growth` alone.
+void write_growth_page(const GrowthRecord& record, const std::filesystem::path& out, StagedFiles& staged);
 
 }  // namespace umbra

@@ -1,4 +1,4 @@
-#include "umbra/bench/motion/growth_page.h"
+#include "umbra/bench/motion/growth.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "umbra/bench/motion/motion_page.h"
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "umbra/bench/motion/motion_record.h"
+#include "umbra/bench/out/staged_files.h"
 
 namespace umbra {
 
@@ -28,5 +29,8 @@ MotionRecord measure_motion(const std::vector<std::filesystem::path>& files, con
 
 /// The record's scenes as tables for a terminal.
 [[nodiscard]] std::string motion_table(const MotionRecord& record);
+
+/// OUT/index.html and its style, from the record of `umbra motion` alone.
+void write_motion_page(const MotionRecord& record, const std::filesystem::path& out, StagedFiles& staged);
 
 }  // namespace umbra

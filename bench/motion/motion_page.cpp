@@ -1,4 +1,4 @@
-#include "umbra/bench/motion/motion_page.h"
+#include "umbra/bench/motion/motion.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "umbra/bench/report/report_index.h"
+#include "umbra/bench/report/report_views.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "umbra/bench/report/report_scene.h"
+#include "umbra/bench/report/report_views.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,6 @@
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/report/finding.h"
-#include "umbra/bench/report/scene_tables.h"
-#include "umbra/bench/report/why_view.h"
 
 namespace umbra {
 namespace {

@@ -1,4 +1,4 @@
-#include "umbra/bench/report/scene_tables.h"
+#include "umbra/bench/report/report_views.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,6 @@
 #include "umbra/bench/pages/mesh_faults.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/report/time_ratios.h"
 #include "umbra/bench/run/edge_figure.h"
 
 namespace umbra {

@@ -1,13 +1,13 @@
-#include "umbra/bench/report/time_ratios.h"
+#include "umbra/bench/report/report_views.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <optional>
 
-#include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
 #include "umbra/bench/statistics/statistics.h"
 

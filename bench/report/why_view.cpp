@@ -1,4 +1,4 @@
-#include "umbra/bench/report/why_view.h"
+#include "umbra/bench/report/report_views.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,4 +1,4 @@
-#include "umbra/bench/trade/fixed_errors_view.h"
+#include "umbra/bench/trade/trade_views.h"
 
 #include <fmt/format.h>
 

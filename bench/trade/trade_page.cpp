@@ -11,8 +11,7 @@
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/trade/fixed_errors_view.h"
-#include "umbra/bench/trade/swept_scene_view.h"
+#include "umbra/bench/trade/trade_views.h"
 
 namespace umbra {
 

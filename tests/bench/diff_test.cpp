@@ -8,9 +8,9 @@
 #include <iterator>
 #include <regex>
 
-#include "umbra/bench/diff/diff_page.h"
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/diff/diff_set.h"
+#include "umbra/bench/diff/diff_views.h"
 #include "umbra/bench/diff/difference_map.h"
 #include "umbra/core/base/error.h"
 #include "umbra/tests/support/written_parts.h"

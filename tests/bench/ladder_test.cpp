@@ -10,9 +10,9 @@
 #include <map>
 
 #include "umbra/bench/cli/ladder_command.h"
+#include "umbra/bench/ladders/ladder_break.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/ladders/minimal_scene.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/tests/support/json_schema.h"

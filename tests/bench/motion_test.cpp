@@ -12,7 +12,6 @@
 #include "umbra/bench/motion/frame_errors.h"
 #include "umbra/bench/motion/mix_triangle.h"
 #include "umbra/bench/motion/motion.h"
-#include "umbra/bench/motion/motion_page.h"
 #include "umbra/bench/motion/motion_summary.h"
 #include "umbra/bench/run/run.h"
 #include "umbra/core/base/error.h"

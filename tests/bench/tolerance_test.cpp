@@ -7,10 +7,9 @@
 #include <cstdlib>
 
 #include "umbra/bench/diff/diff.h"
-#include "umbra/bench/diff/diff_markdown.h"
-#include "umbra/bench/diff/diff_page.h"
 #include "umbra/bench/diff/diff_record.h"
 #include "umbra/bench/diff/diff_set.h"
+#include "umbra/bench/diff/diff_views.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/shell.h"
 #include "umbra/core/base/error.h"

@@ -10,10 +10,9 @@
 #include <regex>
 
 #include "trade_fixture.h"
-#include "umbra/bench/trade/fixed_errors_view.h"
-#include "umbra/bench/trade/swept_scene_view.h"
 #include "umbra/bench/trade/trade_chart.h"
 #include "umbra/bench/trade/trade_findings.h"
+#include "umbra/bench/trade/trade_views.h"
 #include "umbra/tests/support/html_table.h"
 
 namespace umbra {

@@ -4,7 +4,7 @@
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/chosen.h"
-#include "umbra/bench/studies/bias/bias_report.h"
+#include "umbra/bench/studies/bias/bias_record.h"
 #include "umbra/core/base/parallel.h"
 
 namespace umbra {

@@ -6,6 +6,7 @@
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/studies/bias/bias_study.h"
+#include "umbra/bench/studies/study_report.h"
 
 namespace umbra {
 
@@ -66,5 +67,8 @@ DESCRIBE(BiasRecord) {
     of(MEMBER(bias), "all scenes added up, where there are several, and each of them");
     MEMBERS(failed, csv);
 }
+
+/// Of the record of `umbra bias` alone.
+[[nodiscard]] StudyReport bias_report(const BiasRecord& record);
 
 }  // namespace umbra

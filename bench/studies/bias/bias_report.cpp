@@ -1,4 +1,4 @@
-#include "umbra/bench/studies/bias/bias_report.h"
+#include "umbra/bench/studies/bias/bias_record.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

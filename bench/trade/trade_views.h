@@ -1,4 +1,4 @@
-// What the page of sweeps shows of one scene.
+// What the page of sweeps shows: each scene, and methods compared at fixed errors.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -15,5 +15,10 @@ namespace umbra {
 
 /// "The camera moves 60 times a second, a light once a second, objects never."
 [[nodiscard]] std::string workload_in_words(const Workload& workload);
+
+/// The table of ratios to the cheapest method at errors from 0.1 to 0 of the first metric, its geometric means and
+/// performance profile; false where no scene has a setting that takes part.
+[[nodiscard]] nlohmann::json fixed_errors_view(const std::vector<SweptScene>& scenes,
+                                               const std::vector<SweptMethod>& methods);
 
 }  // namespace umbra
