@@ -7,7 +7,7 @@
 
 namespace umbra {
 
-/// The number that the whole of `text` is, in the words of std::from_chars; nothing where it is none, or too large for T.
+/// The number that the whole of `text` is, as std::from_chars reads it; nothing where it is none, or too large for T.
 /// Of floating point "inf" and "nan" are numbers.
 template <class T>
 [[nodiscard]] std::optional<T> number_from(std::string_view text) {
