@@ -40,8 +40,11 @@ std::optional<double> error_in_view(const Metric& metric, const Cell& cell) {
 }
 
 // Views of a setting that is beyond a limit are looked at for the sake of the staircase where it would be a step that
-// lowers the error by a fifth, until they have taken so long together.
-constexpr double kStep = 0.8, kStepsSeconds = 3;
+// lowers the error by a fifth, until they have taken a fifth of the search, at least and at most so many seconds.
+constexpr double kStep = 0.8, kStepsPart = 0.2, kFewestStepsSeconds = 1, kMostStepsSeconds = 3;
+
+// Of the time for rounds, where one setting alone may be the answer, so that nothing is ranked by them.
+constexpr double kOfOne = 0.5;
 
 /// So many times as long is looked for a setting that is within the limits at all and is not the reference.
 constexpr double kPatience = 4;
@@ -105,12 +108,13 @@ public:
             if (!goes_on) lines.erase(line);
         }
         result_.looked_at = result_.candidates.size();
+        search_took_ += since(start);
     }
 
-    /// Each candidate gets its price as its cost, and those that may be the answer, and the steps by price, the median of
-    /// rounds in turns: the fewer take turns, the more rounds fit into the budget.
+    /// Each candidate gets its price as its cost. Those that may be the answer get the median of rounds in turns, and so
+    /// do the steps by price, where they have such times together with the former, or where all take turns now.
     void time_candidates() {
-        std::vector<std::size_t> fit, who;
+        std::vector<std::size_t> fit;
         for (std::size_t k = 0; k < result_.candidates.size(); ++k) {
             Candidate& c = result_.candidates[k];
             if (!c.unfit.empty()) continue;
@@ -118,16 +122,25 @@ public:
             c.cost = c.price = price(c.choice);
             if (c.cost) fit.push_back(k);
         }
-        std::vector<std::size_t> may = fit;
-        std::erase_if(may, [&](std::size_t k) { return !is_answer(k); });
-        for (const Step& step : staircase()) may.push_back(step.candidate);
-        for (const std::size_t k : may) {
-            const bool is_outdone = std::ranges::any_of(fit, [&](std::size_t o) {
+        const auto is_outdone = [&](std::size_t k) {
+            return std::ranges::any_of(fit, [&](std::size_t o) {
                 return is_answer(o) && costs_far_more(result_.candidates[k].choice, result_.candidates[o].choice);
             });
-            if (!is_outdone && std::ranges::find(who, k) == who.end()) who.push_back(k);
+        };
+        std::vector<std::size_t> who;
+        for (const std::size_t k : fit)
+            if (is_answer(k) && !is_outdone(k)) who.push_back(k);
+        const std::size_t rivals = who.size();
+        const bool are_known     = rivals > 0 && whole_.stored_times(choices_of(who), options_.most_noise);
+        for (const Step& step : staircase()) {
+            const MethodChoice& choice = result_.candidates[step.candidate].choice;
+            if (std::ranges::find(who, step.candidate) != who.end() || is_outdone(step.candidate) ||
+                small_.price(choice)->all() > kLongRunMs)  // also of a build that the workload has never
+                continue;
+            who.push_back(step.candidate);
+            if (are_known && !whole_.stored_times(choices_of(who), options_.most_noise)) who.pop_back();
         }
-        if (!who.empty()) time_in_turns_with_one_another(who);
+        if (!who.empty()) time_in_turns_with_one_another(who, rivals);
     }
 
     /// Up to the first view that is beyond a limit. Its cells are kept where all are within.
@@ -156,6 +169,7 @@ public:
     /// By descending error: each step is cheaper than every setting of a smaller bound, by more than the noise bar.
     [[nodiscard]] std::vector<Step> staircase() {
         const Recommendation& r = result_;
+        const double may_take   = std::clamp(kStepsPart * search_took_, kFewestStepsSeconds, kMostStepsSeconds);
         std::vector<std::size_t> by_cost;
         for (std::size_t k = 0; k < r.candidates.size(); ++k)
             if (r.candidates[k].cost) by_cost.push_back(k);
@@ -167,13 +181,14 @@ public:
             return error && (steps.empty() || *error < steps.back().error);
         };
         for (const std::size_t k : by_cost) {
-            Candidate& c = result_.candidates[k];
-            while (!c.is_whole && steps_took_.count() < kStepsSeconds) {
+            Candidate& c        = result_.candidates[k];
+            const bool is_quick = small_.price(c.choice)->all() <= kLongRunMs;
+            while (!c.is_whole && is_quick && steps_took_ < may_take) {
                 const auto least = c.least_bound(options_.limits, 0);
                 if (!least || (!steps.empty() && *least > kStep * steps.back().error)) break;
                 const auto start = std::chrono::steady_clock::now();
                 look_on(c, static_cast<int>(c.views.size()) + 1, false);
-                steps_took_ += std::chrono::steady_clock::now() - start;
+                steps_took_ += since(start);
                 if (!c.unfit.empty()) break;
             }
             const auto error = c.bounds[0];
@@ -278,13 +293,18 @@ private:
         return std::nullopt;
     }
 
-    void time_in_turns_with_one_another(const std::vector<std::size_t>& who) {
+    [[nodiscard]] std::vector<MethodChoice> choices_of(const std::vector<std::size_t>& who) const {
         std::vector<MethodChoice> choices;
-        TurnOptions turns = options_.turns;
-        for (const std::size_t k : who) {
-            choices.push_back(result_.candidates[k].choice);
-            turns.first.push_back(whole_.price(result_.candidates[k].choice));
-        }
+        for (const std::size_t k : who) choices.push_back(result_.candidates[k].choice);
+        return choices;
+    }
+
+    void time_in_turns_with_one_another(const std::vector<std::size_t>& who, std::size_t rivals) {
+        const std::vector<MethodChoice> choices = choices_of(who);
+        TurnOptions turns                       = options_.turns;
+        if (rivals > 0) turns.ranked = rivals;
+        if (rivals < 2) turns.budget_ms *= kOfOne;
+        for (const MethodChoice& choice : choices) turns.first.push_back(whole_.price(choice));
         const TimedTogether together = whole_.times(choices, turns, options_.most_noise);
         result_.noise_bar            = together.noise_bar();
         for (std::size_t t = 0; t < who.size(); ++t) {
@@ -334,7 +354,7 @@ private:
     SceneLab &small_, &whole_;
     const RecommendOptions& options_;
     Recommendation& result_;
-    std::chrono::duration<double> steps_took_{0};  ///< views for their sake
+    double search_took_ = 0, steps_took_ = 0;  ///< seconds; of further views for their sake
     std::vector<Family> families_;
 };
 

@@ -29,7 +29,7 @@ struct RecommendOptions {
     int held_out   = 10;                ///< further views that a setting is tried on before it is the answer
     double seconds = 15;                ///< of the search, after which no setting is begun; four times as many where
                                         ///< nothing but the reference is within the limits
-    TurnOptions turns{.rounds = 9, .budget_ms = 6000};
+    TurnOptions turns{.rounds = 15, .budget_ms = 3000};
     double most_noise = kMostNoise;  ///< above this noise bar times are taken again, and then no choice is made by them
     std::optional<MethodChoice> first{};  ///< looked at before all others: where it is within the limits, none that
                                           ///< costs far more is looked at, and none after `seconds`

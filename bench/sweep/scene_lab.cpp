@@ -145,7 +145,16 @@ void SceneLab::spend_on(const MethodChoice& choice, double seconds) {
     measured_here_.insert(key);
 }
 
-std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice> choices) {
+namespace {
+
+/// Without a control there is no bar, and another run of the same budget has none either.
+bool is_noisy(const TimedTogether& times, double most_noise) {
+    return std::isfinite(times.noise_bar()) && times.noise_bar() > most_noise;
+}
+
+}  // namespace
+
+std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice> choices, double most_noise) {
     TimedTogether all;
     for (const MethodChoice& choice : choices) {
         const std::string key = machine_key("time", choice);
@@ -157,16 +166,12 @@ std::optional<TimedTogether> SceneLab::stored_times(std::span<const MethodChoice
             return std::nullopt;
         all.settings.push_back(std::move(found->times));
     }
-    return all;
+    return is_noisy(all, most_noise) ? std::nullopt : std::optional(std::move(all));
 }
 
 TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions options, double most_noise) {
     if (choices.empty()) return {};
-    // Without a control there is no bar, and another run of the same budget has none either.
-    const auto noisy = [&](const TimedTogether& t) {
-        return std::isfinite(t.noise_bar()) && t.noise_bar() > most_noise;
-    };
-    if (auto stored = stored_times(choices); stored && !noisy(*stored)) return std::move(*stored);
+    if (auto stored = stored_times(choices, most_noise)) return std::move(*stored);
     options.progress    = options_.progress;
     options.most        = options_.budget;
     bool was_cut        = false;
@@ -182,7 +187,7 @@ TimedTogether SceneLab::times(std::span<const MethodChoice> choices, TurnOptions
         return all;
     };
     TimedTogether all = together();
-    if (noisy(all)) {
+    if (is_noisy(all, most_noise)) {
         if (options_.progress)
             options_.progress(fmt::format("noise bar {:.0f} %: timing again", 100 * all.noise_bar()));
         if (TimedTogether again = together(); again.noise_bar() < all.noise_bar()) all = std::move(again);

@@ -63,6 +63,8 @@ public:
     /// `most_noise`, what is found is timed now, and what is timed is timed once more; the quieter one is kept.
     [[nodiscard]] TimedTogether times(std::span<const MethodChoice> choices, TurnOptions options,
                                       double most_noise = std::numeric_limits<double>::infinity());
+    /// What times() finds.
+    [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices, double most_noise);
 
     /// Prices and times that the store has already are measured anew.
     void measure_anew() { anew_ = true; }
@@ -74,7 +76,6 @@ private:
     [[nodiscard]] std::vector<std::string> keys_of(const MethodChoice& choice, int view_number);
     /// Whether what this machine measured need not be measured anew.
     [[nodiscard]] bool is_fresh(const std::string& key) const { return !anew_ || measured_here_.contains(key); }
-    [[nodiscard]] std::optional<TimedTogether> stored_times(std::span<const MethodChoice> choices);
 
     std::shared_ptr<OwnScene> own_;
     std::filesystem::path file_;

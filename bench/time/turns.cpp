@@ -75,7 +75,11 @@ public:
                 entries_.back().unknown = true;
         }
         for (const Group& group : groups([](const Entry& e) { return e.unknown; })) run_group(group, true);
-        share_ = entries_.empty() ? 0 : options_.budget_ms / static_cast<double>(entries_.size());
+        const auto ranked =
+            static_cast<std::size_t>(std::ranges::count_if(entries_, [&](const Entry& e) { return is_ranked(e); }));
+        share_           = options_.budget_ms / static_cast<double>(std::max<std::size_t>(ranked, 1));
+        share_of_others_ = kPartOfOthers * options_.budget_ms /
+                           static_cast<double>(std::max<std::size_t>(entries_.size() - ranked, 1));
         std::erase_if(entries_, [](const Entry& e) { return !e.playing; });
     }
 
@@ -148,17 +152,22 @@ private:
         if (options_.progress) options_.progress(what);
     }
 
+    /// Or the control, which all are ranked by.
+    [[nodiscard]] bool is_ranked(const Entry& e) const {
+        return e.setting < options_.ranked || e.setting == turns_.control;
+    }
     [[nodiscard]] const MethodChoice& choice_of(const Entry& e) const { return turns_.settings[e.setting].choice; }
 
     /// Leaves out of this and all later rounds what the budget no longer affords.
     void choose(std::size_t round) {
         double spent = 0, needed = 0;
-        for (const Entry& e : entries_) {
-            spent += e.spent;
-            needed += e.playing ? e.latest : 0;
-        }
+        for (const Entry& e : entries_)
+            if (is_ranked(e)) spent += e.spent, needed += e.playing ? e.latest : 0;
         const bool whole = round < kFewestRounds && spent + needed <= options_.budget_ms;
-        for (Entry& e : entries_) e.playing = e.playing && (whole || e.spent + e.latest <= share_);
+        for (Entry& e : entries_) {
+            const double share = is_ranked(e) ? share_ : share_of_others_;
+            e.playing          = e.playing && ((whole && is_ranked(e)) || e.spent + e.latest <= share);
+        }
     }
 
     template <class Wanted>
@@ -258,7 +267,7 @@ private:
     VisibilityPlane plane_;
     std::vector<Entry> entries_;
     std::vector<RunTimes> cold_;
-    double share_ = 0;  ///< of the budget, of one setting
+    double share_ = 0, share_of_others_ = 0;  ///< of the budget, of one setting
 };
 
 TimingRecord samples_record(const std::vector<double>& samples) {

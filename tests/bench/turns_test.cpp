@@ -296,6 +296,21 @@ TEST_F(TurnsTest, BudgetIsRespectedAndSaid) {
     EXPECT_EQ(turn_times_record(turns.settings[1]).phases.build_ms->runs, 1u);
 }
 
+/// A quarter of 3000 ms is for the three that are not ranked, 250 each: one of 433 ms has its first run alone, one of 233
+/// a round. They take nothing from the ranked one, and the control, which is none of the ranked, has all its rounds.
+TEST_F(TurnsTest, WhatIsNotRankedTakesALittle) {
+    options_.budget_ms = 3000;
+    options_.ranked    = 1;
+    const Turns turns  = time_in_turns(
+         prepared_, std::vector{choice(a_, 4, 1, 1), choice(b_, 4, 1, 1), choice(b_, 1, 1, 1), choice(a_, 2, 1, 1)},
+         options_);
+    EXPECT_EQ(turns.settings[0].build.size(), 6u) << "of 433 ms";
+    EXPECT_TRUE(turns.settings[1].only_cold);
+    EXPECT_EQ(turns.settings[2].build.size(), 7u);
+    EXPECT_EQ(turns.twin->build.size(), 7u);
+    EXPECT_EQ(turns.settings[3].build.size(), 1u);
+}
+
 /// 133 ms twice (with the twin) and 833 ms make rounds of 1099 ms: two of them fit into 3000.
 TEST_F(TurnsTest, FewerThanThreeRoundsWhereTheBudgetEnds) {
     options_.budget_ms = 3000;
