@@ -20,9 +20,9 @@
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/geometry/coarse.h"
 #include "umbra/shadows/light_rays/light_rays.h"
+#include "umbra/shadows/light_rays/light_shafts.h"
 #include "umbra/shadows/light_rays/sample_options.h"
 #include "umbra/shadows/method.h"
-#include "umbra/shadows/rays/light_shafts.h"
 
 namespace umbra {
 namespace {
@@ -202,31 +202,15 @@ private:
     void trace_area_light(const TracedLight& traced, const StartPlaces& places, const PointBatch& points,
                           const PointTile& tile, std::span<float> s) const {
         const FlushDenormals flush;
-        const Facing* facing = points.facing[traced.light].data();
-        TileStarts starts;
-        std::size_t run = 0;
-        bool asks       = false;
-        tile.for_each_run([&](std::size_t first, std::size_t count) {
-            if (any_asks(facing + first, count)) places.load(points, first, count, starts[run]), asks = true;
-            ++run;
-        });
-        if (!asks) return;
         // Shafts are for rays that start at their points.
-        TileKnown known{};
-        if (traced.shafts && options.offset == OffsetPolicy::skip_triangle)
-            known = traced.shafts->known(points, traced.light, tile, starts);
-        run = 0;
-        tile.for_each_run([&](std::size_t first, std::size_t count) {
-            const Known here = known[run];
-            for (std::size_t k = 0; k < count; ++k) {
-                if (!points.asks(traced.light, first + k)) continue;
-                s[first + k] = here != Known::nothing
-                                   ? (here == Known::lit ? 1.0f : 0.0f)
-                                   : visible_fraction(traced, starts[run], static_cast<int>(k),
-                                                      traced.rays.samples().key(points.number(first + k)));
-            }
-            ++run;
-        });
+        const bool has_shafts = traced.shafts && options.offset == OffsetPolicy::skip_triangle;
+        see_known(has_shafts ? &*traced.shafts : nullptr, places, points, traced.light, tile, s,
+                  [&](std::size_t first, std::size_t count, const Starts& starts) {
+                      for (std::size_t k = 0; k < count; ++k)
+                          if (points.asks(traced.light, first + k))
+                              s[first + k] = visible_fraction(traced, starts, static_cast<int>(k),
+                                                              traced.rays.samples().key(points.number(first + k)));
+                  });
     }
 
     [[nodiscard]] float visible_fraction(const TracedLight& traced, const Starts& starts, int lane,

@@ -6,10 +6,11 @@
 // (sample_layers.h). A sample so close to an edge that rounding, here or in Embree, could put it on the other side is
 // traced, with the ray that ray_traced would trace; so answers are the same, bit for bit.
 //
-//     build        the tree of triangles that rays are traced in, and all edges
+//     build        the trees of triangles that rays are traced in and shafts look in, and all edges
 //     aim          the light's samples, and the tree of the edges that can be silhouette edges before it
 //     look         nothing
-//     visibility   tile by tile: edges for eight points together, layers point by point, then the rays of the tile
+//     visibility   tile by tile: what shafts prove lit or in the umbra, then edges for eight points together, layers
+//                  point by point, and the rays of the tile
 //
 // This work is based on:
 // Samuli Laine, Timo Aila, Ulf Assarsson, Jaakko Lehtinen, Tomas Akenine-Moeller. Soft Shadow Volumes for Ray Tracing.
@@ -22,6 +23,7 @@
 #include "umbra/core/base/lanes.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/light_rays/light_rays.h"
+#include "umbra/shadows/light_rays/light_shafts.h"
 #include "umbra/shadows/light_rays/sample_options.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/soft/sample_layers.h"
@@ -52,16 +54,21 @@ const std::vector<Parameter> kParameters{
 
 /// The triangles that block light, and their edges.
 struct Occluders final : Built {
-    Occluders(const Scene& of, const SceneFacts& its_facts)
+    Occluders(const Scene& of, const SceneFacts& its_facts, const Options& options)
         : Built(of, its_facts),
           rays(of, Met::blocking),
           places(of, rays.space(), OffsetPolicy::skip_triangle, 0),
-          mesh(of, rays.space()) {}
-    [[nodiscard]] std::size_t memory_bytes() const override { return rays.memory_bytes() + mesh.memory_bytes(); }
+          mesh(of, rays.space()) {
+        if (is_tree_worth_it(of, options.samples)) shaft_tree.emplace(of, rays.space());
+    }
+    [[nodiscard]] std::size_t memory_bytes() const override {
+        return rays.memory_bytes() + mesh.memory_bytes() + (shaft_tree ? shaft_tree->memory_bytes() : 0);
+    }
 
     const RayScene rays;
     const StartPlaces places;
     const RayMesh mesh;
+    std::optional<ShaftTree> shaft_tree;
 };
 
 /// One light, and the edges before it.
@@ -69,7 +76,9 @@ class SoftLight final : public Aimed {
 public:
     SoftLight(const Occluders& from, LightId at, const Options& options)
         : Aimed(from, at), occluders_(from), rays_(from.scene, from.rays, at, options) {
-        if (is_area(rays_.target().kind)) edges_.emplace(from.mesh, rays_.target());
+        if (!is_area(rays_.target().kind)) return;
+        edges_.emplace(from.mesh, rays_.target());
+        if (from.shaft_tree) shafts_.emplace(from.scene, from.rays.space(), *from.shaft_tree, rays_.target());
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
         return rays_.memory_bytes() + (edges_ ? edges_->memory_bytes() : 0);
@@ -93,6 +102,7 @@ private:
     const Occluders& occluders_;
     const LightRays rays_;
     std::optional<LightEdges> edges_;  ///< none before a light without an area
+    std::optional<LightShafts> shafts_;
 };
 
 /// The memory that the points of a tile reuse, and the rays that they wait for.
@@ -111,20 +121,19 @@ struct SoftLight::Scratch {
 };
 
 void SoftLight::see_tile(const PointBatch& points, const PointTile& tile, bool doubts, std::span<float> s) const {
-    const int samples    = rays_.samples().count();
-    const Facing* facing = points.facing[light].data();
-    Scratch scratch{SampleLayers(samples, doubts)};
-    Starts starts;
-    tile.for_each_run([&](std::size_t first, std::size_t count) {
-        if (!any_asks(facing + first, count)) return;
-        occluders_.places.load(points, first, count, starts);
-        see_run(points, first, count, starts, scratch, s);
-    });
+    const int samples = rays_.samples().count();
+    std::optional<Scratch> scratch;  // where some run needs it
+    see_known(shafts_ ? &*shafts_ : nullptr, occluders_.places, points, light, tile, s,
+              [&](std::size_t first, std::size_t count, const Starts& starts) {
+                  if (!scratch) scratch.emplace(Scratch{SampleLayers(samples, doubts)});
+                  see_run(points, first, count, starts, *scratch, s);
+              });
+    if (!scratch) return;
     const FlushDenormals flush;
-    occluders_.rays.occluded(scratch.rays);
-    for (std::size_t w = 0; w < scratch.waiting.size(); ++w) {
-        const Scratch::Waiting& waiting = scratch.waiting[w];
-        const int seen                  = waiting.doubtful + (scratch.rays[w].tfar < 0 ? 0 : waiting.fewest);
+    occluders_.rays.occluded(scratch->rays);
+    for (std::size_t w = 0; w < scratch->waiting.size(); ++w) {
+        const Scratch::Waiting& waiting = scratch->waiting[w];
+        const int seen                  = waiting.doubtful + (scratch->rays[w].tfar < 0 ? 0 : waiting.fewest);
         s[waiting.point]                = static_cast<float>(seen) / static_cast<float>(samples);
     }
 }

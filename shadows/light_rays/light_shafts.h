@@ -10,15 +10,19 @@
 // Eric Haines, John Wallace. Shaft Culling for Efficient Ray-Cast Radiosity. 1994
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 
 #include "umbra/core/render/ray.h"
 #include "umbra/core/render/tiles.h"
+#include "umbra/shadows/light_rays/light_rays.h"
+#include "umbra/shadows/light_rays/shaft_tree.h"
 #include "umbra/shadows/light_rays/starts.h"
 #include "umbra/shadows/light_rays/target.h"
-#include "umbra/shadows/rays/shaft_tree.h"
 
 namespace umbra::rays {
 
@@ -70,5 +74,36 @@ private:
     dmat3 axes_{1};           ///< of boxes, columns in ray space: those of the light, so that it fills its own
     dvec3 low_{0}, high_{0};  ///< box around the light, along these axes
 };
+
+/// Writes S_j of the points of a tile whose run `shafts`, if there are any, know, and calls
+/// rest(first, count, starts) for all other runs in which a point asks.
+template <class Rest>
+void see_known(const LightShafts* shafts, const StartPlaces& places, const PointBatch& points, LightId light,
+               const PointTile& tile, std::span<float> s, const Rest& rest) {
+    TileStarts starts;
+    std::array<bool, kRunsPerTile> asks{};
+    std::size_t run = 0;
+    tile.for_each_run([&](std::size_t first, std::size_t count) {
+        asks[run] = any_asks(points.facing[light].data() + first, count);
+        if (asks[run]) places.load(points, first, count, starts[run]);
+        ++run;
+    });
+    if (std::ranges::none_of(asks, std::identity{})) return;
+    TileKnown known{};
+    if (shafts != nullptr) {
+        const FlushDenormals flush;
+        known = shafts->known(points, light, tile, starts);
+    }
+    run = 0;
+    tile.for_each_run([&](std::size_t first, std::size_t count) {
+        const std::size_t k = run++;
+        if (known[k] == Known::nothing) {
+            if (asks[k]) rest(first, count, starts[k]);
+            return;
+        }
+        for (std::size_t i = first; i < first + count; ++i)
+            if (points.asks(light, i)) s[i] = known[k] == Known::lit ? 1.0f : 0.0f;
+    });
+}
 
 }  // namespace umbra::rays

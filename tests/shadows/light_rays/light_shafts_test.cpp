@@ -9,7 +9,7 @@
 
 #include "umbra/core/base/geometry.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/shadows/rays/light_shafts.h"
+#include "umbra/shadows/light_rays/light_shafts.h"
 #include "umbra/tests/support/method_case.h"
 
 namespace umbra {

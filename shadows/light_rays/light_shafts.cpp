@@ -1,4 +1,4 @@
-#include "umbra/shadows/rays/light_shafts.h"
+#include "umbra/shadows/light_rays/light_shafts.h"
 
 #include <algorithm>
 #include <bit>

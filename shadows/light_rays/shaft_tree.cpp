@@ -1,4 +1,4 @@
-#include "umbra/shadows/rays/shaft_tree.h"
+#include "umbra/shadows/light_rays/shaft_tree.h"
 
 #include <algorithm>
 #include <cstring>
