@@ -332,7 +332,7 @@ void write_report(const std::vector<fs::path>& dirs, const fs::path& out, const 
     index["renderers"] = renderers_section(scenes, files, root, staged);
     index["lectures"]  = lectures_section(files, found, root, options, staged);
     add_failures(index, options.failed, found);
-    if (!options.so_far.empty()) index["so_far"] = options.so_far;
+    index["so_far"] = options.so_far;
     staged.write(root / "index.html",
                  render_page(assets::index_html, {options.title, "", kIndexScripts}, std::move(index)));
     write_page_assets(root, kIndexScripts, staged);
