@@ -92,12 +92,12 @@ std::vector<std::string> frames_of(const std::string& scene) {
     if (is_file(scene) || at == std::string::npos || dots == std::string::npos ||
         scene.find_first_not_of("0123456789.", at + 1) != std::string::npos)
         return {scene};
-    const auto first = number_from<int>(std::string_view(scene).substr(at + 1, dots - at - 1)),
-               last  = number_from<int>(std::string_view(scene).substr(dots + 2));
-    if (!first || !last || *first < 0 || *last < *first || *last - *first >= 10000)
+    const auto [first, last] =
+        two_numbers_from<int>(std::string_view(scene).substr(at + 1), "..").value_or(std::pair(-1, -1));
+    if (first < 0 || last < first || last - first >= 10000)
         throw UsageError(fmt::format("{}: not frames of a scene, expected SCENE@FIRST..LAST", scene));
     std::vector<std::string> names;
-    for (int frame = *first; frame <= *last; ++frame) names.push_back(fmt::format("{}@{}", scene.substr(0, at), frame));
+    for (int frame = first; frame <= last; ++frame) names.push_back(fmt::format("{}@{}", scene.substr(0, at), frame));
     return names;
 }
 

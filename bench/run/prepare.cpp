@@ -101,18 +101,14 @@ void pass_warnings(const Scene& scene, const std::function<void(const std::strin
 }
 
 Size parse_size(const std::string& text) {
-    const std::size_t cross = std::min(text.find('x'), text.size());
-    const auto side         = [](std::string_view word) {
-        const int value = number_from<int>(word).value_or(0);
-        return value <= kMaxPictureSide ? value : 0;
-    };
-    const Size size{side(text.substr(0, cross)), side(text.substr(std::min(cross + 1, text.size())))};
-    if (size.width < 1 || size.height < 1 || static_cast<long>(size.width) * size.height > kMaxArea)
+    const auto [width, height] = two_numbers_from<int>(text, "x").value_or(std::pair(0, 0));
+    if (std::min(width, height) < 1 || std::max(width, height) > kMaxPictureSide ||
+        static_cast<long>(width) * height > kMaxArea)
         throw UsageError(fmt::format(
             "--size {}: not a size, expected WIDTHxHEIGHT, each 1 to {}, at most {} pixels, whose comparison takes "
             "{:.0f} GB",
             text, kMaxPictureSide, kMaxArea, memory_needed({}, double(kMaxArea), 1, Work::comparison) / 1e9));
-    return size;
+    return {width, height};
 }
 
 PreparedScene prepare_scene(const std::filesystem::path& file, Size size, int pixel_samples, Work work) {

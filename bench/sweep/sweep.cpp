@@ -117,12 +117,10 @@ SweepResults swept_record(SceneLab& lab, const SweepOptions& options, const std:
 }  // namespace
 
 Pack parse_pack(const std::string& text) {
-    const std::size_t slash = std::min(text.find('/'), text.size() - 1);
-    const auto index        = number_from<std::size_t>(text.substr(0, slash)),
-               count        = number_from<std::size_t>(text.substr(slash + 1));
-    if (!index || !count || *index < 1 || *index > *count)
+    const auto pack = two_numbers_from<std::size_t>(text, "/");
+    if (!pack || pack->first < 1 || pack->first > pack->second)
         throw UsageError(fmt::format("--pack {}: expected K/N with K from 1 to N", text));
-    return {*index, *count};
+    return {pack->first, pack->second};
 }
 
 std::vector<MethodChoice> planned_settings(const SweepPlan& plan, const SceneFacts& facts) {
