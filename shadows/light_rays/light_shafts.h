@@ -75,8 +75,8 @@ private:
     dvec3 low_{0}, high_{0};  ///< box around the light, along these axes
 };
 
-/// Writes S_j of the points of a tile whose run `shafts`, if there are any, know, and calls
-/// rest(first, count, starts) for all other runs in which a point asks.
+/// Writes S_j of the points of a tile whose runs `shafts` know (nullptr: none), and calls rest(first, count, starts) for
+/// all other runs in which a point asks.
 template <class Rest>
 void see_known(const LightShafts* shafts, const StartPlaces& places, const PointBatch& points, LightId light,
                const PointTile& tile, std::span<float> s, const Rest& rest) {

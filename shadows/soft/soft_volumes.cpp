@@ -54,21 +54,20 @@ const std::vector<Parameter> kParameters{
 
 /// The triangles that block light, and their edges.
 struct Occluders final : Built {
-    Occluders(const Scene& of, const SceneFacts& its_facts, const Options& options)
+    Occluders(const Scene& of, const SceneFacts& its_facts)
         : Built(of, its_facts),
           rays(of, Met::blocking),
           places(of, rays.space(), OffsetPolicy::skip_triangle, 0),
-          mesh(of, rays.space()) {
-        if (is_tree_worth_it(of, options.samples)) shaft_tree.emplace(of, rays.space());
-    }
+          mesh(of, rays.space()),
+          shaft_tree(of, rays.space()) {}
     [[nodiscard]] std::size_t memory_bytes() const override {
-        return rays.memory_bytes() + mesh.memory_bytes() + (shaft_tree ? shaft_tree->memory_bytes() : 0);
+        return rays.memory_bytes() + mesh.memory_bytes() + shaft_tree.memory_bytes();
     }
 
     const RayScene rays;
     const StartPlaces places;
     const RayMesh mesh;
-    std::optional<ShaftTree> shaft_tree;
+    const ShaftTree shaft_tree;
 };
 
 /// One light, and the edges before it.
@@ -78,7 +77,7 @@ public:
         : Aimed(from, at), occluders_(from), rays_(from.scene, from.rays, at, options) {
         if (!is_area(rays_.target().kind)) return;
         edges_.emplace(from.mesh, rays_.target());
-        if (from.shaft_tree) shafts_.emplace(from.scene, from.rays.space(), *from.shaft_tree, rays_.target());
+        shafts_.emplace(from.scene, from.rays.space(), from.shaft_tree, rays_.target());
     }
     [[nodiscard]] std::size_t memory_bytes() const override {
         return rays_.memory_bytes() + (edges_ ? edges_->memory_bytes() : 0);
@@ -101,8 +100,8 @@ private:
 
     const Occluders& occluders_;
     const LightRays rays_;
-    std::optional<LightEdges> edges_;  ///< none before a light without an area
-    std::optional<LightShafts> shafts_;
+    std::optional<LightEdges> edges_;    ///< none before a light without an area
+    std::optional<LightShafts> shafts_;  ///< nor these
 };
 
 /// The memory that the points of a tile reuse, and the rays that they wait for.
@@ -123,7 +122,7 @@ struct SoftLight::Scratch {
 void SoftLight::see_tile(const PointBatch& points, const PointTile& tile, bool doubts, std::span<float> s) const {
     const int samples = rays_.samples().count();
     std::optional<Scratch> scratch;  // where some run needs it
-    see_known(shafts_ ? &*shafts_ : nullptr, occluders_.places, points, light, tile, s,
+    see_known(&*shafts_, occluders_.places, points, light, tile, s,
               [&](std::size_t first, std::size_t count, const Starts& starts) {
                   if (!scratch) scratch.emplace(Scratch{SampleLayers(samples, doubts)});
                   see_run(points, first, count, starts, *scratch, s);
