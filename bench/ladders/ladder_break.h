@@ -2,10 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include <functional>
 #include "umbra/bench/ladders/ladder_run.h"
 #include "umbra/bench/record/record.h"
 #include "umbra/bench/run/results.h"

@@ -134,8 +134,7 @@ public:
         const bool are_known     = rivals > 0 && whole_.stored_times(choices_of(who), options_.most_noise);
         for (const Step& step : staircase()) {
             const MethodChoice& choice = result_.candidates[step.candidate].choice;
-            if (std::ranges::find(who, step.candidate) != who.end() || is_outdone(step.candidate) ||
-                small_.price(choice)->all() > kLongRunMs)  // also of a build that the workload has never
+            if (std::ranges::find(who, step.candidate) != who.end() || is_outdone(step.candidate) || is_long(choice))
                 continue;
             who.push_back(step.candidate);
             if (are_known && !whole_.stored_times(choices_of(who), options_.most_noise)) who.pop_back();
@@ -181,9 +180,8 @@ public:
             return error && (steps.empty() || *error < steps.back().error);
         };
         for (const std::size_t k : by_cost) {
-            Candidate& c        = result_.candidates[k];
-            const bool is_quick = small_.price(c.choice)->all() <= kLongRunMs;
-            while (!c.is_whole && is_quick && steps_took_ < may_take) {
+            Candidate& c = result_.candidates[k];
+            while (!c.is_whole && !is_long(c.choice) && steps_took_ < may_take) {
                 const auto least = c.least_bound(options_.limits, 0);
                 if (!least || (!steps.empty() && *least > kStep * steps.back().error)) break;
                 const auto start = std::chrono::steady_clock::now();
@@ -318,12 +316,13 @@ private:
     }
 
     [[nodiscard]] bool costs_far_more(const MethodChoice& a, const MethodChoice& b) {
-        const auto surely = [&](const MethodChoice& choice) {
-            return price(choice, small_.price(choice)->all() > kLongRunMs ? 1 : 2);
-        };
+        const auto surely = [&](const MethodChoice& choice) { return price(choice, is_long(choice) ? 1 : 2); };
         const std::optional<double> over = price(a), under = price(b);
         return over && under && *over > kFar * *under && surely(a).value_or(0) > kFar * surely(b).value_or(kInfinite);
     }
+
+    /// Whether a run that serves takes long, a build that the workload never has included.
+    [[nodiscard]] bool is_long(const MethodChoice& choice) { return small_.price(choice)->all() > kLongRunMs; }
 
     /// How long a run took behind its build, which settings share; where it does not serve, no time.
     [[nodiscard]] double ran_ms(const MethodChoice& choice) {

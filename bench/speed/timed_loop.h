@@ -4,6 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/time/calibration.h"
+#include "umbra/core/base/error.h"
 
 namespace umbra {
 
@@ -42,7 +45,7 @@ struct SpeedLine {
             if (argument.starts_with("--scene="))
                 scenes.emplace_back(argument.substr(8));
             else if (argument.starts_with("--size="))
-                size = parse_size(std::string(argument.substr(7)));
+                size = size_from(std::string(argument.substr(7)));
             else
                 rest.push_back(argv[i]);
         }
@@ -50,6 +53,17 @@ struct SpeedLine {
     Size size{1920, 1080};
     std::vector<std::string> scenes;
     std::vector<char*> rest;
+
+private:
+    /// Ends the program with a message where it is none.
+    static Size size_from(const std::string& text) {
+        try {
+            return parse_size(text);
+        } catch (const UsageError& e) {
+            std::fprintf(stderr, "%s\n", e.what());
+            std::exit(2);
+        }
+    }
 };
 
 /// What was registered; the exit code.

@@ -34,7 +34,7 @@ inline constexpr double kPartOfOthers = 0.25;  ///< of TurnOptions::budget_ms
 struct TurnOptions {
     int rounds       = 7;     ///< at most, at least 1
     double budget_ms = 3000;  ///< for all settings together, without their first runs
-    /// So many of the first settings are to be ranked. The others take turns with them, but may take kPartOfOthers of
+    /// So many of the first settings are to be ranked, and the control. The others take turns with them, but may take kPartOfOthers of
     /// the budget on top, each an equal part: one that takes longer has fewer rounds, or its first run alone.
     std::size_t ranked = ~std::size_t{0};
     std::uint32_t seed = 1;     ///< of the order

@@ -339,9 +339,9 @@ TEST_F(Wall, RecordHoldsTheCountsAndErrors) {
 /// Scores of the picture, over all 800 pixels, where undefined ones show the reference's.
 TEST_F(Wall, RecordHoldsTheScoresOfThePicture) {
     const json scores = compare_wall()["methods"][0]["image"];
-    double linear = 0, displayed                        = 0;
-    Image of_planted(40, 20, {"R", "G", "B"}), of_truth = of_planted, shown_planted = of_planted,
-                                               shown_truth = of_planted;
+    double linear = 0, displayed = 0;
+    const Image black(40, 20, {"R", "G", "B"});
+    Image of_planted = black, of_truth = black, shown_planted = black, shown_truth = black;
     for_each_pixel([&](std::size_t x, std::size_t y, std::size_t i) {
         for (std::size_t c = 0; c < 3; ++c) {
             const double b = true_colour(x, y)[c], a = x < 38 ? planted_colour(x, y)[c] : b;
