@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <future>
 #include <string>
 
 #include "umbra/core/image/image.h"
@@ -19,6 +20,10 @@ struct LoadedImage {
     /// "pixel aspect ratios"). Defaults are left out: sRGB's colours, the upright picture of its pixels.
     std::map<std::string, std::string> shown_as{};
 };
+
+/// Begins to load OpenImageIO on a thread of its own, so that the 0.4 s pass beside other work. Ready at once where it is
+/// loaded; the destructor waits. What fails here is thrown by the first function that needs it.
+[[nodiscard]] std::future<void> load_image_library();
 
 /// Why pixels of the two do not belong together: sizes, windows, and the files' statements about showing them.
 [[nodiscard]] std::vector<std::string> layout_differences(const LoadedImage& a, const LoadedImage& b);
