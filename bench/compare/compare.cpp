@@ -46,14 +46,6 @@ struct Answered {
     std::optional<RunTimes> first{};
 };
 
-/// Of a run in which each phase ran once.
-RunTimes times_of(const MethodRun& run) {
-    RunTimes times{.build = run.build.median, .look = run.look.median};
-    for (const Timing& t : run.aim) times.aim.push_back(t.median);
-    for (const Timing& t : run.visibility) times.visibility.push_back(t.median);
-    return times;
-}
-
 /// Runs those that have answers in turns, at most `repeats.max_runs` rounds and `repeats.budget_ms` for each phase of
 /// each, no run longer than the budget, and writes the times into their entries. One that throws gets the entry of a
 /// method that failed, and its files in `folder` go. Returns `turns` of the record: what concerns all of them.
@@ -186,7 +178,7 @@ Results compare_scene(const fs::path& file, const CompareOptions& options) {
             answered.push_back({failed_record(id, choice, scene, *found.failed)});
         } else if (found.run.service) {
             answered.push_back({std::move(entry)});
-            if (choice.info->is_timed) answered.back().first = times_of(found.run);
+            if (choice.info->is_timed) answered.back().first = found.run.times;
         } else {
             answered.push_back({unserved_record(id, choice, found.run.service)});
         }
@@ -253,7 +245,7 @@ Service render_scene(const fs::path& file, const RenderOptions& options) {
     std::optional<LightId> at;
     MethodRun run{choice};
     try {
-        run = run_method(choice, prepared.scene, prepared.facts, prepared.points, kOnce, &at);
+        run = run_method(choice, prepared.scene, prepared.facts, prepared.points, &at);
     } catch (const UsageError&) {  // settings that this scene does not allow
         throw;
     } catch (...) {

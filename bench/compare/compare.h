@@ -14,6 +14,13 @@
 
 namespace umbra {
 
+/// How many rounds of times there are: until `max_runs`, or `budget_ms` for each phase of each method, at least one.
+struct Repeats {
+    int max_runs     = 6;  // the fewest that a ratio has an interval of
+    double budget_ms = 100;
+};
+inline constexpr Repeats kOnce{1, 0};
+
 struct CompareOptions {
     std::vector<std::string> methods;      ///< as typed
     std::vector<MethodChoice> choices;     ///< after those; where both are empty: all methods with their defaults
@@ -27,7 +34,7 @@ struct CompareOptions {
     std::string command;  ///< for the records
     int threads = 0;
     Budget budget{};  ///< of each method on each scene, and of a reference that nobody names
-    Repeats repeats;  ///< of the times: at most max_runs rounds, and budget_ms for each phase of each method
+    Repeats repeats;  ///< of the times
     std::function<void(const std::string&)> progress;  ///< receives status messages; may be empty
     std::function<void(const std::string&)> warn;      ///< receives "SCENE: warning" of loading; may be empty
     /// Adds a page to a folder that is complete except for it, before the folder is moved into place; may be empty.

@@ -83,15 +83,17 @@ std::string failed_in_words(const FailureRecord& failed) {
 
 ReferenceRecord reference_record(const Truth& truth, const Scene& scene) {
     const auto& [reference, ran, failed] = truth;
-    const MethodRun& run                 = ran.run;
+    const RunTimes& times                = ran.run.times;
+    const std::uint64_t of_lights        = scene.lights.empty() ? 0 : 1;
+    const auto timing                    = [](double ms, std::uint64_t runs) { return TimingRecord{ms, ms, ms, runs}; };
     ReferenceRecord record{.name       = std::string(reference.choice.info->name),
                            .title      = std::string(reference.choice.info->title),
                            .text       = reference.choice.text(),
                            .parameters = parameter_records(reference.choice.settings),
                            .exact      = reference.exact,
                            .note       = reference.note,
-                           .times      = TimesRecord{timing_record(run.build), timing_record(total(run.aim)),
-                                                timing_record(run.look), timing_record(total(run.visibility))}};
+                           .times      = TimesRecord{timing(times.build, 1), timing(times.aims(), of_lights),
+                                                timing(times.look, 1), timing(times.visibilities(), of_lights)}};
     if (!ran.stand_in.empty()) record.judged = {ran.judged, ran.of, ran.stand_in};
     if (failed) record.failed = {failure_record(*failed, scene), failed->method};
     return record;
@@ -135,8 +137,8 @@ OwnTimesRecord own_times_record(const OwnTimes& times, const OwnTimes& before) {
 void set_times(MethodRecord& record, const Scene& scene, const TurnTimes& times) {
     record.times = turn_times_record(times);
     for (LightId j = 0; j < scene.lights.size(); ++j)
-        record.light_times.push_back({scene.lights[j].name, timing_record(timing_of(times.light_aim[j])),
-                                      timing_record(timing_of(times.light_visibility[j]))});
+        record.light_times.push_back(
+            {scene.lights[j].name, timing_record(times.light_aim[j]), timing_record(times.light_visibility[j])});
 }
 
 TurnsRecord turns_record(const Turns& turns, const TurnOptions& options, std::pair<double, double> load) {

@@ -271,7 +271,7 @@ std::vector<GateRow> gate(const MethodInfo& info, const std::function<void(const
         write_text(file, scene_text(question));
         const PreparedScene prepared = prepare_scene(file, kRaster);
         try {
-            const MethodRun run = run_method(choice, prepared.scene, prepared.facts, prepared.points, kOnce);
+            const MethodRun run = run_method(choice, prepared.scene, prepared.facts, prepared.points);
             Asked asked{prepared, run, {}, *method};
             for (LightId j = 0; j < prepared.scene.lights.size(); ++j)
                 asked.truth.push_back(truth_of(prepared, j, method->measures()));

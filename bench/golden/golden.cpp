@@ -31,7 +31,7 @@ struct GoldenScene {
     explicit GoldenScene(const fs::path& file)
         : planes(prepare_scene(file, kPlaneSize)), figures(prepare_scene(file, kFigureSize)) {
         const Reference reference = default_reference(figures.facts);
-        if (reference.exact) exact = run_method(reference.choice, figures.scene, figures.facts, figures.points, {1, 0});
+        if (reference.exact) exact = run_method(reference.choice, figures.scene, figures.facts, figures.points);
     }
 };
 
@@ -45,7 +45,7 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
     GoldenChange change;
     change.name = fmt::format("{}/{}", name, method);
 
-    const MethodRun run = run_method(choice, scene.planes.scene, scene.planes.facts, scene.planes.points, {1, 0});
+    const MethodRun run = run_method(choice, scene.planes.scene, scene.planes.facts, scene.planes.points);
     if (!run.service) {
         if (!kept) return std::nullopt;
         change.kind  = GoldenChange::Kind::removed;
@@ -65,7 +65,7 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
     Json figures = Json::object();
     if (scene.exact)
         figures = figures_of(scene.figures,
-                             run_method(choice, scene.figures.scene, scene.figures.facts, scene.figures.points, {1, 0}),
+                             run_method(choice, scene.figures.scene, scene.figures.facts, scene.figures.points),
                              *scene.exact);
     add_figure_changes(accepted.methods.value(method, Json::object()), figures, changes);
     if (changes.lines.empty()) return std::nullopt;

@@ -103,7 +103,7 @@ Json with_ranges(Json figures, const PreparedScene& prepared, const MethodChoice
         MethodChoice seeded = choice;
         seeded.settings.set(choice.info->seed, 1000 + k);
         samples.push_back(
-            figures_of(prepared, run_method(seeded, prepared.scene, prepared.facts, prepared.points, {1, 0}), exact));
+            figures_of(prepared, run_method(seeded, prepared.scene, prepared.facts, prepared.points), exact));
     }
     for (const Light& light : lights) {
         if (!is_sampled(choice, light)) continue;

@@ -59,9 +59,8 @@ std::optional<GoldenChange> setting_change(const PreparedScene& prepared, std::s
     const std::string& name   = prepared.scene.name;
     const fs::path file       = options.folder / name / "settings" / file_name(method);
     const MethodChoice choice = parse_method(method);
-    const Image now =
-        coded_planes(prepared, run_method(choice, prepared.scene, prepared.facts, prepared.points, {1, 0}), true);
-    const bool kept    = fs::exists(file);
+    const Image now = coded_planes(prepared, run_method(choice, prepared.scene, prepared.facts, prepared.points), true);
+    const bool kept = fs::exists(file);
     const Image before = kept ? read_image(file).image : Image(now.width, now.height, {});
     Changes changes    = plane_changes(before, now, prepared);
     if (changes.lines.empty()) return std::nullopt;

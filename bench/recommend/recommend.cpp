@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <tuple>
 
 #include "umbra/bench/statistics/statistics.h"
@@ -441,11 +440,7 @@ bool is_the_reference(const MethodChoice& choice, std::span<const Cell> views) {
 }
 
 double price_ms(const Workload& workload, const RunTimes& run, double more_points) {
-    const auto sum = [](const std::vector<double>& lights) {
-        return std::accumulate(lights.begin(), lights.end(), 0.0);
-    };
-    return frame_cost_ms(workload,
-                         {run.build, sum(run.aim), more_points * run.look, more_points * sum(run.visibility)});
+    return frame_cost_ms(workload, {run.build, run.aims(), more_points * run.look, more_points * run.visibilities()});
 }
 
 double more_points(const SceneLab& small, const SceneLab& whole) {

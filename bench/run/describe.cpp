@@ -4,10 +4,13 @@
 #include <sched.h>
 #include <sys/sysinfo.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
 #include <thread>
+
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 namespace {
@@ -169,6 +172,10 @@ Members<Scalar> parameter_records(const Settings& settings) {
 
 ServiceRecord service_record(const Service& service) { return {std::string(to_string(service.how)), service.why}; }
 
-TimingRecord timing_record(const Timing& t) { return {t.median, t.min, t.max, static_cast<std::uint64_t>(t.runs), {}}; }
+TimingRecord timing_record(std::span<const double> samples) {
+    const double middle         = median(samples);
+    const auto [least, largest] = std::ranges::minmax(samples);
+    return {middle, least, largest, samples.size(), {}};
+}
 
 }  // namespace umbra

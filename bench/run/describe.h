@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -289,7 +290,8 @@ DESCRIBE(MethodInfoRecord) {
 [[nodiscard]] FactsRecord facts_record(const SceneFacts& facts);
 [[nodiscard]] std::vector<LightRecord> light_records(const SceneFacts& facts);
 [[nodiscard]] ServiceRecord service_record(const Service& service);
-[[nodiscard]] TimingRecord timing_record(const Timing& timing);
+/// Of samples in any order, milliseconds, which it does not list. Throws std::logic_error where there is none.
+[[nodiscard]] TimingRecord timing_record(std::span<const double> samples);
 /// Absent where nothing is limited.
 [[nodiscard]] std::optional<BudgetRecord> budget_record(const Budget& budget);
 [[nodiscard]] Scalar setting_scalar(const Parameter& p, double value);  ///< typed: a number, a boolean or a word

@@ -98,7 +98,7 @@ Outcome outcome(const MethodChoice& choice, const Scene& scene, const SceneFacts
     Outcome found{MethodRun{choice}};
     std::optional<LightId> at;
     try {
-        found.run = trial.run ? trial.run(at) : run_method(choice, scene, facts, points, kOnce, &at, trial.budget);
+        found.run = trial.run ? trial.run(at) : run_method(choice, scene, facts, points, &at, trial.budget);
         if (!found.run.service) return found;
         const MethodRun& truth = trial.truth(found.run);
         found.run.work->limit(trial.budget);  // a truth that is found meanwhile is not the method's work

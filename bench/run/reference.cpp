@@ -149,24 +149,24 @@ ReferenceRun answers_of(const Reference& reference, const Scene& scene, const Sc
             any_area && reference.choice.info->reference ? affordable(*run.work, scene, facts, points, all, at) : all;
     if (!is_shared) run.work->forget_build();  // of the count of steps: here it is timed
     if (!any_area || *wanted >= all) {
-        run_phases(run, points, scene.lights.size(), kOnce, at);
+        run_phases(run, points, scene.lights.size(), at);
         return done;
     }
 
     const MethodRun stand_in =
-        run_method(of_measure(stand_in_for_reference(), run.work->method().measures()), scene, facts, points, kOnce);
+        run_method(of_measure(stand_in_for_reference(), run.work->method().measures()), scene, facts, points);
     if (!stand_in.service) {  // then every point is the reference's, however long that takes
-        run_phases(run, points, scene.lights.size(), kOnce, at);
+        run_phases(run, points, scene.lights.size(), at);
         return done;
     }
     const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
     const PointBatch sampled                = pick(points, sample);
-    run_build(run, kOnce);
+    run_build(run);
     run.judged.resize(scene.lights.size());
     for (LightId light = 0; light < scene.lights.size(); ++light) {
         const bool area = is_area(scene.lights[light].kind);
         if (at != nullptr) *at = light;
-        run_light(run, area ? sampled : points, light, kOnce);
+        run_light(run, area ? sampled : points, light);
         if (area) scatter(run, light, sample, stand_in.planes[light], points);
     }
     note_memory(run);

@@ -2,20 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
+#include <numeric>
 #include <stdexcept>
 
-#include "umbra/bench/statistics/statistics.h"
+#include "umbra/bench/run/prepare.h"
 
 namespace umbra {
-namespace {
-
-double now_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 void check_contract(std::string_view name, const VisibilityPlane& plane, const PointBatch& points, LightId light) {
     for (std::size_t i = 0; i < plane.s.size(); ++i) {
@@ -32,35 +24,9 @@ void check_contract(std::string_view name, const VisibilityPlane& plane, const P
     }
 }
 
-Timing timing_of(std::span<const double> samples) {
-    const double middle         = median(samples);
-    const auto [least, largest] = std::minmax_element(samples.begin(), samples.end());
-    return {middle, *least, *largest, static_cast<int>(samples.size())};
-}
-
-Timing time_runs(const Repeats& repeats, const std::function<void()>& work, const std::function<void()>& before) {
-    std::vector<double> times;
-    double spent = 0;
-    do {
-        if (before) before();
-        const double start = now_ms();
-        work();
-        times.push_back(now_ms() - start);
-        spent += times.back();
-    } while (static_cast<int>(times.size()) < repeats.max_runs && spent < repeats.budget_ms);
-    return timing_of(times);
-}
-
-Timing total(const std::vector<Timing>& timings) {
-    Timing sum;
-    for (const Timing& t : timings) {
-        sum.median += t.median;
-        sum.min += t.min;
-        sum.max += t.max;
-        sum.runs = sum.runs == 0 ? t.runs : std::min(sum.runs, t.runs);
-    }
-    return sum;
-}
+double RunTimes::aims() const { return std::accumulate(aim.begin(), aim.end(), 0.0); }
+double RunTimes::visibilities() const { return std::accumulate(visibility.begin(), visibility.end(), 0.0); }
+double RunTimes::all() const { return build + aims() + look + visibilities(); }
 
 std::optional<double> MethodRun::coverage(const PointBatch& points) const {
     std::size_t asked = 0, given = 0;
@@ -84,27 +50,23 @@ MethodRun begin_run(const MethodChoice& choice, const Scene& scene, const SceneF
     return run;
 }
 
-void look_at(MethodRun& run, const PointBatch& points, const Repeats& repeats) {
+void look_at(MethodRun& run, const PointBatch& points) {
     MethodAtWork& work = *run.work;
     if (work.looks_at(points)) return;
-    const Timing look = time_runs(
-        repeats, [&] { work.look(points); }, [&] { work.forget_look(); });
-    run.look = run.look.runs == 0 ? look : total({run.look, look});
+    work.forget_look();
+    run.times.look += timed_ms([&] { work.look(points); });
 }
 
-void run_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
-    MethodAtWork& work = *run.work;
-    run.aim.push_back(time_runs(
-        repeats, [&] { work.aim(light); }, [&] { work.forget_aim(light); }));
-    answer_light(run, points, light, repeats);
+void run_light(MethodRun& run, const PointBatch& points, LightId light) {
+    run.work->forget_aim(light);
+    run.times.aim.push_back(timed_ms([&] { run.work->aim(light); }));
+    answer_light(run, points, light);
 }
 
-void answer_light(MethodRun& run, const PointBatch& points, LightId light, const Repeats& repeats) {
-    MethodAtWork& work = *run.work;
-    look_at(run, points, repeats);
+void answer_light(MethodRun& run, const PointBatch& points, LightId light) {
+    look_at(run, points);
     VisibilityPlane plane(points.size(), run.is_coloured);
-    run.visibility.push_back(time_runs(
-        repeats, [&] { work.visibility(light, plane.out()); }, [&] { plane.clear(); }));
+    run.times.visibility.push_back(timed_ms([&] { run.work->visibility(light, plane.out()); }));
     check_contract(run.choice.info->name, plane, points, light);
     run.planes.push_back(std::move(plane));
 }
@@ -115,34 +77,29 @@ void note_memory(MethodRun& run) {
     run.device_bytes = run.work->device_bytes();
 }
 
-void run_lights(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
-                std::optional<LightId>* at) {
+void run_build(MethodRun& run) {
+    MethodAtWork& work = *run.work;
+    if (work.is_built()) return;
+    work.forget_build();
+    work.warm_up();
+    run.times.build = timed_ms([&] { work.build(); });
+}
+
+void run_phases(MethodRun& run, const PointBatch& points, std::size_t lights, std::optional<LightId>* at) {
+    run_build(run);
+    look_at(run, points);
     for (LightId light = 0; light < lights; ++light) {
         if (at != nullptr) *at = light;
-        run_light(run, points, light, repeats);
+        run_light(run, points, light);
     }
     if (at != nullptr) at->reset();
     note_memory(run);
 }
 
-void run_build(MethodRun& run, const Repeats& repeats) {
-    MethodAtWork& work = *run.work;
-    if (work.is_built()) return;
-    run.build = time_runs(
-        repeats, [&] { work.build(); }, [&] { work.forget_build(), work.warm_up(); });
-}
-
-void run_phases(MethodRun& run, const PointBatch& points, std::size_t lights, const Repeats& repeats,
-                std::optional<LightId>* at) {
-    run_build(run, repeats);
-    look_at(run, points, repeats);
-    run_lights(run, points, lights, repeats, at);
-}
-
 MethodRun run_method(const MethodChoice& choice, const Scene& scene, const SceneFacts& facts, const PointBatch& points,
-                     const Repeats& repeats, std::optional<LightId>* at, const Budget& budget) {
+                     std::optional<LightId>* at, const Budget& budget) {
     MethodRun run = begin_run(choice, scene, facts, budget);
-    if (run.service) run_phases(run, points, scene.lights.size(), repeats, at);
+    if (run.service) run_phases(run, points, scene.lights.size(), at);
     return run;
 }
 

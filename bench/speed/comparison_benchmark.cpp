@@ -39,7 +39,7 @@ struct Stage {
             std::make_unique<PreparedScene>(prepare_scene(fs::path(UMBRA_SCENES_FOLDER) / (name + ".json"), size));
         const auto& p    = *prepared;
         const auto asked = [&](std::string_view settings) {
-            return run_method(parse_method(settings), p.scene, p.facts, p.points, {1, 0});
+            return run_method(parse_method(settings), p.scene, p.facts, p.points);
         };
         one      = asked("shadow_zbuffer");
         other    = asked("ray_traced");

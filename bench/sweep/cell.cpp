@@ -209,27 +209,24 @@ MethodRun CellView::run(const MethodChoice& choice, std::optional<LightId>& at) 
     run.service     = run.work->service();
     if (!run.service) return run;
     if (work_->looks_at(p.points)) {
-        run.look = look_ms_;
+        run.times.look = look_ms_;
     } else {
-        look_at(run, p.points, kOnce);
-        look_ms_ = run.look;
+        look_at(run, p.points);
+        look_ms_ = run.times.look;
     }
     for (LightId light = 0; light < p.scene.lights.size(); ++light) {
         at = light;
         if (work_->is_aimed_at(light)) {
-            run.aim.push_back(aim_ms_.at(light));
-            answer_light(run, p.points, light, kOnce);
+            run.times.aim.push_back(aim_ms_.at(light));
+            answer_light(run, p.points, light);
         } else {
-            run_light(run, p.points, light, kOnce);
-            aim_ms_[light] = run.aim.back();
+            run_light(run, p.points, light);
+            aim_ms_[light] = run.times.aim.back();
         }
     }
     at.reset();
     note_memory(run);
-    RunTimes times{.look = run.look.median};
-    for (const Timing& aim : run.aim) times.aim.push_back(aim.median);
-    for (const Timing& visibility : run.visibility) times.visibility.push_back(visibility.median);
-    times_.insert_or_assign(all_settings(choice), std::move(times));
+    times_.insert_or_assign(all_settings(choice), run.times);
     return run;
 }
 

@@ -120,8 +120,8 @@ private:
     bool is_whole_ = true;
     std::shared_ptr<MethodAtWork> work_;     ///< of the method that was asked last
     std::optional<double> build_ms_;         ///< of what it has built, on all threads
-    std::map<LightId, Timing> aim_ms_;       ///< of its aims
-    Timing look_ms_{};                       ///< of its look at the points
+    std::map<LightId, double> aim_ms_;       ///< of its aims
+    double look_ms_ = 0;                     ///< of its look at the points
     std::optional<MethodRun> ran_;           ///< and nothing has compared it yet
     std::map<std::string, RunTimes> times_;  ///< of runs, by all settings, without `build`
 };

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
-#include <numeric>
 #include <stdexcept>
 
 #include "umbra/bench/run/reference.h"
@@ -19,8 +18,6 @@ namespace umbra {
 namespace {
 
 constexpr std::size_t kFewestRounds = 3;  ///< those that the whole budget pays for
-
-double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
 
 /// The order of each round: a permutation by Fisher and Yates, from a counter.
 class Dice {
@@ -138,9 +135,9 @@ private:
         t.light_visibility.resize(lights);
         for (const RunTimes& run : runs) {
             t.build.push_back(run.build);
-            t.aim.push_back(sum(run.aim));
+            t.aim.push_back(run.aims());
             t.look.push_back(run.look);
-            t.visibility.push_back(sum(run.visibility));
+            t.visibility.push_back(run.visibilities());
             for (std::size_t j = 0; j < lights; ++j) {
                 t.light_aim[j].push_back(run.aim[j]);
                 t.light_visibility[j].push_back(run.visibility[j]);
@@ -271,7 +268,7 @@ private:
 };
 
 TimingRecord samples_record(const std::vector<double>& samples) {
-    TimingRecord record = timing_record(timing_of(samples));
+    TimingRecord record = timing_record(samples);
     record.samples      = samples;
     return record;
 }
@@ -281,8 +278,6 @@ TimingRecord samples_record(const std::vector<double>& samples) {
 double wall_clock_ms() {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
-
-double RunTimes::all() const { return build + sum(aim) + look + sum(visibility); }
 
 std::vector<double> totals(const TurnTimes& times) {
     std::vector<double> all(times.build.size());
@@ -309,7 +304,7 @@ Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice>
 TurnTimesRecord turn_times_record(const TurnTimes& times) {
     return {{samples_record(times.build), samples_record(times.aim), samples_record(times.look),
              samples_record(times.visibility)},
-            {times.cold.build, sum(times.cold.aim), times.cold.look, sum(times.cold.visibility)},
+            {times.cold.build, times.cold.aims(), times.cold.look, times.cold.visibilities()},
             {times.order.begin(), times.order.end()}};
 }
 

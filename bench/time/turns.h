@@ -16,16 +16,6 @@
 
 namespace umbra {
 
-/// One run of all phases, milliseconds; aim and visibility by light.
-struct RunTimes {
-    double build = 0;
-    std::vector<double> aim{};         ///< [light]
-    double look = 0;                   ///< of the points, once for all lights
-    std::vector<double> visibility{};  ///< [light]
-
-    [[nodiscard]] double all() const;  ///< of all phases and lights
-};
-
 /// Milliseconds of wall clock.
 [[nodiscard]] double wall_clock_ms();
 

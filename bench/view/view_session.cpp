@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/pages/error_palette.h"
@@ -101,11 +100,10 @@ SideRecord ViewSession::side_record(const Side& side) const {
                       .layer  = "nothing"};
     if (!side.method->service() || !side.failed.empty()) return record;
     const bool aimed    = std::ranges::find(side.done.aim, true) != side.done.aim.end();
-    const auto sum      = [](const std::vector<double>& ms) { return std::accumulate(ms.begin(), ms.end(), 0.0); };
     record.phases       = {{"build", side.times.build, side.done.build},
-                           {"aim", sum(side.times.aim), aimed},
+                           {"aim", side.times.aims(), aimed},
                            {"look", side.times.look, side.done.look},
-                           {"visibility", sum(side.times.visibility), true}};
+                           {"visibility", side.times.visibilities(), true}};
     record.memory_bytes = side.method->memory_bytes();
     return record;
 }

@@ -118,7 +118,7 @@ TEST(Antialias, WhatReceivesNoShadowsIsLit) {
                     {"type": "box", "size": [2, 0.1, 1], "transform": [{"translate": [0, 1, 0]}]}]})"),
                                                  {40, 30}, 4);
     const MethodRun run =
-        run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points, {1, 0});
+        run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points);
     std::vector<std::uint32_t> ask;
     const VisibilityPlane got =
         between_centres(prepared.scene, prepared.points, run.planes[0], prepared.subpixels, 2, 0, ask);
@@ -149,7 +149,7 @@ TEST(Antialias, SmoothPenumbraeAreInterpolatedAndEdgesAsked) {
                     {"name": "board", "type": "box", "size": [2, 0.1, 1], "transform": [{"translate": [0, 1, 0]}]}]})"),
                                                  {160, 120}, 9);
     const MethodRun run =
-        run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points, {1, 0});
+        run_method(MethodChoice(find_method("exact")), prepared.scene, prepared.facts, prepared.points);
     const VisibilityPlane right = run.work->ask(prepared.subpixels, 0);
     std::vector<std::uint32_t> ask;
     const VisibilityPlane got =

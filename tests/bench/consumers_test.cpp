@@ -80,8 +80,8 @@ TEST(Consumers, AProgramOutsideAnswersAsBruteForce) {
               fmt::format("outside:command={},folder={}", UMBRA_OUTSIDE_PROGRAM, folder.path().string()));
     const PreparedScene prepared       = prepare_scene(std::string(UMBRA_SCENES) + "/light_inside_view.json", {64, 36});
     const auto& [scene, facts, points] = std::tie(prepared.scene, prepared.facts, prepared.points);
-    const MethodRun run                = run_method(choice, scene, facts, points, {1, 0});
-    const MethodRun force              = run_method(parse_method("brute_force"), scene, facts, points, {1, 0});
+    const MethodRun run                = run_method(choice, scene, facts, points);
+    const MethodRun force              = run_method(parse_method("brute_force"), scene, facts, points);
     std::size_t asked = 0, differ = 0;
     for (LightId j = 0; j < scene.lights.size(); ++j)
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -92,7 +92,7 @@ TEST(Consumers, AProgramOutsideAnswersAsBruteForce) {
     EXPECT_EQ(differ, 0u);
 
     choice.settings.set("command", std::string_view("false"));
-    EXPECT_THROW((void)run_method(choice, scene, facts, points, {1, 0}), MethodError);
+    EXPECT_THROW((void)run_method(choice, scene, facts, points), MethodError);
 }
 
 // ---- a device: the points go there once for all lights
@@ -127,9 +127,9 @@ TEST(Consumers, SixLightsShareOneUploadOfThePoints) {
     const PreparedScene prepared = prepare_scene(std::string(UMBRA_SCENES) + "/six_lights.json", {64, 36});
     ASSERT_EQ(prepared.scene.lights.size(), 6u);
     uploads             = 0;
-    const MethodRun run = run_method(MethodChoice(info), prepared.scene, prepared.facts, prepared.points, {1, 0});
+    const MethodRun run = run_method(MethodChoice(info), prepared.scene, prepared.facts, prepared.points);
     EXPECT_EQ(uploads, 1);
-    EXPECT_EQ(run.visibility.size(), 6u);
+    EXPECT_EQ(run.times.visibility.size(), 6u);
     EXPECT_EQ(run.memory_bytes, 0u);
     EXPECT_EQ(run.device_bytes, 16u * 64 * 36);
 }

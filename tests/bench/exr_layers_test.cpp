@@ -192,9 +192,8 @@ TEST_F(ExrLayersOf, AnswersClassesAndJudgedPointsAreThoseOfTheRun) {
     }
     std::set<std::uint32_t> answers, classes;
     for (const char* name : {"shadow_zbuffer:resolution=64", "planar_projection"}) {
-        const MethodRun run =
-            run_method(parse_method(name), prepared.scene, prepared.facts, prepared.points, options_.repeats);
-        const Image image = read_image(options_.out / ("scene/" + std::string(run.choice.info->name) + ".exr")).image;
+        const MethodRun run = run_method(parse_method(name), prepared.scene, prepared.facts, prepared.points);
+        const Image image   = read_image(options_.out / ("scene/" + std::string(run.choice.info->name) + ".exr")).image;
         for (LightId j = 0; j < 2; ++j) {
             const std::string& light = prepared.scene.lights[j].name;
             const ClassPlane truth   = explain(prepared.scene, prepared.points, j, run, reference.run).classes;

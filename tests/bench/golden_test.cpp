@@ -323,11 +323,10 @@ TEST_F(AcceptedFigures, OnAnotherMachineEdgesMayDifferAndNothingElse) {
         std::ofstream(golden("figures.json")) << record.dump();
     };
     const PreparedScene prepared = prepare_scene(scene_, {96, 54});
-    const MethodRun run =
-        run_method(parse_method("shadow_volumes"), prepared.scene, prepared.facts, prepared.points, {1, 0});
-    const auto band   = edge_band(prepared.points, 0, run.planes[0], kHardTolerance);
-    const auto edge   = static_cast<int>(std::find(band.begin(), band.end(), 1) - band.begin());
-    const auto invert = [](float s) { return 1 - s; };
+    const MethodRun run = run_method(parse_method("shadow_volumes"), prepared.scene, prepared.facts, prepared.points);
+    const auto band     = edge_band(prepared.points, 0, run.planes[0], kHardTolerance);
+    const auto edge     = static_cast<int>(std::find(band.begin(), band.end(), 1) - band.begin());
+    const auto invert   = [](float s) { return 1 - s; };
     plant("shadow_volumes", "S.lamp", edge % 96, edge / 96, invert);
     EXPECT_FALSE(changes().at(0).rounding);
     from_elsewhere();

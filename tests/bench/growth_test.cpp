@@ -48,7 +48,7 @@ TEST(GrowthFamilies, ShadeTheSamePartOfThePictureAtEverySize) {
              {family.least * family.factor * family.factor, family.least * std::pow(family.factor, 4)}) {
             const PreparedScene prepared = prepare_growth(family, x);
             const MethodRun run =
-                run_method(parse_method("ray_traced"), prepared.scene, prepared.facts, prepared.points, {1, 0});
+                run_method(parse_method("ray_traced"), prepared.scene, prepared.facts, prepared.points);
             double dark = 0, all = 0;
             for (std::size_t i = 0; i < prepared.points.size(); ++i)
                 if (prepared.points.asks(0, i)) dark += run.planes[0].s[i] < 0.5f, ++all;

@@ -90,7 +90,7 @@ protected:
     ~Limited() override { planted_behaviour = {}; }
     [[nodiscard]] MethodRun run(const MethodChoice& choice, const Budget& budget,
                                 std::optional<LightId>* at = nullptr) {
-        return run_method(choice, prepared_.scene, prepared_.facts, prepared_.points, kOnce, at, budget);
+        return run_method(choice, prepared_.scene, prepared_.facts, prepared_.points, at, budget);
     }
 
     TemporaryFolder folder_;

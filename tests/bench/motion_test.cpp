@@ -313,7 +313,7 @@ TEST(FrameTruth, CountsWhatCompareCounts) {
     const PreparedScene self_shadow = prepare_scene(std::filesystem::path(UMBRA_SCENES) / "self_shadow.json", {96, 54});
     const auto& [scene, facts, points] = std::tie(self_shadow.scene, self_shadow.facts, self_shadow.points);
     const Reference reference          = default_reference(facts);
-    const MethodRun truth              = run_method(reference.choice, scene, facts, points, {1, 0});
+    const MethodRun truth              = run_method(reference.choice, scene, facts, points);
     VisibilityPlane turned(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         turned.s[i]      = 1 - truth.planes[0].s[i];

@@ -376,7 +376,7 @@ TEST(CellView, HasRandomNumbersOfItsOwn) {
     const PreparedScene& p   = view.prepared();
     const ReferenceRun truth = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt);
     const auto rmse          = [&](const char* text) {
-        const MethodRun run = run_method(parse_method(text), p.scene, p.facts, p.points, {1, 0});
+        const MethodRun run = run_method(parse_method(text), p.scene, p.facts, p.points);
         return explain(p.scene, p.points, 0, run, truth.run).error.rmse;
     };
     const double found = view.compute(parse_method("ray_traced:samples=1")).method.errors[0].rmse.value();
@@ -434,7 +434,7 @@ TEST(CellView, HasColouredShadows) {
     const MethodChoice choice = parse_method("brute_force");
     const Cell cell           = view.compute(choice);
     const PreparedScene& p    = view.prepared();
-    const MethodRun run       = run_method(choice, p.scene, p.facts, p.points, kOnce);
+    const MethodRun run       = run_method(choice, p.scene, p.facts, p.points);
     const MethodRun truth     = run_reference(default_reference(p.facts), p.scene, p.facts, p.points, std::nullopt).run;
     ASSERT_TRUE(run.planes.size() == 1 && !run.planes[0].colour.empty()) << run.service.why;
     EXPECT_EQ(to_record(cell.method.image),

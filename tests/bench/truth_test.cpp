@@ -35,7 +35,7 @@ protected:
         fs::create_directories(answers_);
         for (const fs::path& file : order().scenes) {
             const PreparedScene p = prepare_scene(file, order().size);
-            const MethodRun run   = run_method(parse_method(method), p.scene, p.facts, p.points, kOnce);
+            const MethodRun run   = run_method(parse_method(method), p.scene, p.facts, p.points);
             std::vector<float> all;
             for (LightId j = 0; j < p.scene.lights.size(); ++j)
                 for (std::size_t i = 0; i < p.points.size(); ++i)

@@ -129,8 +129,7 @@ TEST_F(View, ErrorsAreThoseOfTheTruth) {
     const PreparedScene prepared = prepare_scene(scene_file_of("six_lights"), {96, 54});
     const auto wrong_points      = [&](LightId light, ErrorClass which) {
         const auto plane = [&](const std::string& method) {
-            return run_method(parse_method(method), prepared.scene, prepared.facts, prepared.points, kOnce)
-                .planes[light];
+            return run_method(parse_method(method), prepared.scene, prepared.facts, prepared.points).planes[light];
         };
         ClassPlane classes = error_classes(prepared.points, light, plane(request_.methods[0]), plane("exact"),
                                                 visibility_tolerance(scene_.lights[light].kind));

@@ -79,7 +79,6 @@ void run_pipeline(const std::filesystem::path& scene_file) {
     }
     const PreparedScene prepared = prepare_scene(scene_file, {12, 8});
     const Scene& scene           = prepared.scene;
-    const Repeats once{1, 0};
     // By measure. That of irradiance takes up to a tenth of a second a point and is asked at a few points alone.
     std::array<std::optional<MethodRun>, 2> reference;
     for (const Measure measure : {Measure::area, Measure::irradiance}) {
@@ -89,7 +88,7 @@ void run_pipeline(const std::filesystem::path& scene_file) {
     }
     static const std::vector<MethodChoice> all = choices();
     for (const MethodChoice& choice : all) {
-        const MethodRun run = run_method(choice, scene, prepared.facts, prepared.points, once);
+        const MethodRun run = run_method(choice, scene, prepared.facts, prepared.points);
         if (!run.service) continue;
         const Image linear = shade(scene, prepared.points, run.planes);
         expect_numbers(linear, choice.text());

@@ -65,8 +65,7 @@ TEST_P(EveryAreaLight, IsSampledWithoutBias) {
     const PreparedScene prepared = prepare_scene(GetParam(), {96, 54});
     const Reference reference    = default_reference(prepared.facts);
     if (!reference.exact) GTEST_SKIP() << reference.note;
-    const MethodRun exact =
-        run_method(reference.choice, prepared.scene, prepared.facts, prepared.points, {.max_runs = 1, .budget_ms = 0});
+    const MethodRun exact = run_method(reference.choice, prepared.scene, prepared.facts, prepared.points);
     for (const MethodInfo* info : methods())
         for (LightId j = 0; j < prepared.scene.lights.size(); ++j) {
             const MethodChoice choice(*info);

@@ -90,13 +90,13 @@ TEST_F(BiasCommand, CellsCountWhatCompareCounts) {
     for (const auto& [index, name] : {std::pair{1, "sun_on_plane"}, {2, "self_shadow"}}) {
         PreparedScene prepared   = prepare_scene(scene(name), {96, 54});
         const PointBatch& points = prepared.points;
-        const MethodRun truth    = run_method(parse_method("exact"), prepared.scene, prepared.facts, points, {1, 0});
+        const MethodRun truth    = run_method(parse_method("exact"), prepared.scene, prepared.facts, points);
         const Json& study        = (*record_)["bias"][index];
         ASSERT_EQ(study["scene"], name);
         std::uint64_t at_terminator = 0;
         const auto same             = [&](const std::string& settings, const Json& errors) {
             const MethodRun run = run_method(parse_method("shadow_zbuffer:resolution=512," + settings), prepared.scene,
-                                                         prepared.facts, points, {1, 0});
+                                                         prepared.facts, points);
             ClassPlane classes  = error_classes(points, 0, run.planes[0], truth.planes[0], kHardTolerance);
             mark_terminator(classes, prepared.scene, points, 0);
             const VisibilityError e = count_errors(points, classes, run.planes[0], truth.planes[0]);

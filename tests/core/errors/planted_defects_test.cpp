@@ -55,11 +55,11 @@ struct Stage {
     Scene scene;
     SceneFacts facts  = find_facts(scene);
     PointBatch points = primary(scene);
-    MethodRun truth   = run_method(parse_method("exact"), scene, facts, points, {1, 0});
+    MethodRun truth   = run_method(parse_method("exact"), scene, facts, points);
 
     explicit Stage(Scene s) : scene(std::move(s)) {}
     [[nodiscard]] MethodRun run(std::string_view method, const Scene& on) const {
-        return run_method(parse_method(method), on, find_facts(on), points, {1, 0});
+        return run_method(parse_method(method), on, find_facts(on), points);
     }
     [[nodiscard]] Explained explained(const MethodRun& run) const { return explain(scene, points, 0, run, truth); }
     [[nodiscard]] Explained explained(std::string_view method) const { return explained(run(method, scene)); }
@@ -320,7 +320,7 @@ TEST(PlantedDefects, AMissingPenumbraIsThatAlone) {
 TEST(PlantedDefects, NoiseIsNeitherLeakNorAcne) {
     const Stage& stage   = window_stage();
     const auto method    = parse_method("ray_traced:samples=4,sampler=random");
-    const MethodRun run  = run_method(method, stage.scene, stage.facts, stage.points, {1, 0});
+    const MethodRun run  = run_method(method, stage.scene, stage.facts, stage.points);
     const Explained once = stage.explained(run);
     expect_none(interior(once.error), "penumbra");
     EXPECT_EQ(once.error.noise_error.false_shadow + once.error.noise_error.false_light, 0u) << "nobody asked";
