@@ -20,7 +20,7 @@
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_page.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/record/strict_record.h"
+#include "umbra/bench/record/record.h"
 #include "umbra/bench/report/report.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "umbra/bench/out/files.h"
-#include "umbra/bench/record/strict_record.h"
+#include "umbra/bench/record/record.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"

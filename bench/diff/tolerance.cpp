@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "umbra/bench/out/files.h"
-#include "umbra/bench/record/strict_record.h"
+#include "umbra/bench/record/record.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/paths.h"
 #include "umbra/core/image/image_io.h"

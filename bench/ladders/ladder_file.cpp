@@ -10,7 +10,7 @@
 
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/pages/report_text.h"
-#include "umbra/bench/record/strict_record.h"
+#include "umbra/bench/record/record.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/io/scene_io.h"
 

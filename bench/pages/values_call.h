@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "umbra/bench/record/json.h"
+#include "umbra/bench/record/field.h"
 
 namespace umbra {
 

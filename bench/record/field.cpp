@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "umbra/core/base/error.h"
 
 namespace umbra {
+
+std::string json_text(const Json& record) { return record.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 struct Field::Document {
     std::string file;
@@ -55,7 +59,7 @@ std::string Field::required_text() const {
     return s;
 }
 
-std::variant<bool, std::int64_t, double, std::string> Field::scalar_value() const {
+Scalar Field::scalar_value() const {
     if (!value_) return std::string();
     if (value_->is_string()) return value_->get<std::string>();
     if (value_->is_boolean()) return value_->get<bool>();

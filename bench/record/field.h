@@ -1,5 +1,8 @@
-// A JSON file, read with care: what is there must have the right type, what is not there is absent.
+// JSON as records hold it; and a JSON file, read with care: what is there must have the right type, what is not there is
+// absent.
 #pragma once
+
+#include <nlohmann/json.hpp>
 
 #include <filesystem>
 #include <memory>
@@ -10,9 +13,15 @@
 #include <variant>
 #include <vector>
 
-#include "umbra/bench/record/json.h"
-
 namespace umbra {
+
+using Json = nlohmann::ordered_json;
+
+/// As files hold it: indented, with a newline at the end; bytes that are not UTF-8 are replaced.
+[[nodiscard]] std::string json_text(const Json& record);
+[[nodiscard]] Json number(double value);  ///< null where it is not finite: JSON has no infinity
+
+using Scalar = std::variant<bool, std::int64_t, double, std::string>;
 
 /// One value of a results.json, which may be absent (not there, or null). Asking for a type that it has not throws
 /// InputError with the file and the position as a JSON pointer. Copies share the file's contents.
@@ -27,8 +36,8 @@ public:
 
     [[nodiscard]] std::string text() const;           ///< empty where absent
     [[nodiscard]] std::string required_text() const;  ///< neither absent nor empty
-    [[nodiscard]] std::variant<bool, std::int64_t, double, std::string> scalar_value() const;  ///< "" where absent
-    [[nodiscard]] Json json() const;  ///< whatever it is; null where absent
+    [[nodiscard]] Scalar scalar_value() const;        ///< "" where absent
+    [[nodiscard]] Json json() const;                  ///< whatever it is; null where absent
     [[nodiscard]] std::optional<double> number() const;
     [[nodiscard]] bool flag() const;                 ///< false where absent
     [[nodiscard]] std::vector<Field> items() const;  ///< empty where absent; null items are absent, too

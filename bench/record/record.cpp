@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "umbra/core/base/suggest.h"
+
 namespace umbra {
 
 std::string text_of(const Scalar& value) {
@@ -21,6 +23,13 @@ void refuse_unless(const Allowed& allowed, const Field& field) {
     if (allowed.most && *field.number() > *allowed.most) field.refuse(fmt::format("at most {}", *allowed.most));
     if (allowed.only && field.flag() != *allowed.only) field.refuse(*allowed.only ? "true" : "false");
     if (allowed.items && field.items().size() != *allowed.items) field.refuse(fmt::format("{} items", *allowed.items));
+}
+
+void require_members_among(const Field& field, const std::vector<std::string>& known) {
+    for (const auto& [key, member] : field.members())
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            member.refuse(
+                fmt::format("no member of this name but {}{}", fmt::join(known, ", "), did_you_mean(key, known)));
 }
 
 Json or_null(Json schema) {

@@ -51,7 +51,6 @@
 #include <vector>
 
 #include "umbra/bench/record/field.h"
-#include "umbra/bench/record/json.h"
 
 namespace umbra {
 
@@ -61,7 +60,6 @@ inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-using Scalar = std::variant<bool, std::int64_t, double, std::string>;
 [[nodiscard]] std::string text_of(const Scalar& value);  ///< a text as it is, the others as JSON writes them
 
 /// A file that a record names, relative to the record's folder, and its place in the file that it was read from, for
@@ -117,7 +115,7 @@ namespace record_parts {
 
 enum class Kind { plain, may, where, must };  ///< of a member: as called
 
-/// What a description calls: each leads to `Self::take`, and to `Self::part` for members that are part of the record.
+/// What a description calls, but for `all`, which Self has: each leads to `Self::take`.
 template <class Self>
 class Fields {
 public:
@@ -138,10 +136,6 @@ public:
     void where(F flag, std::string_view key, M member, std::string_view about = {}, const Allowed& allowed = {}) {
         if (self().is_set(flag, key)) self().take(Kind::where, key, member, about, allowed);
     }
-    template <class M>
-    void all(M part) {
-        self().part(part);
-    }
     /// Whether a member that depends on a flag is taken.
     template <class F>
     bool is_set(F, std::string_view) {
@@ -152,44 +146,25 @@ private:
     Self& self() { return static_cast<Self&>(*this); }
 };
 
-/// Does nothing: for asking whether a type has a description.
-struct Nothing : Fields<Nothing> {
-    template <class M>
-    void take(Kind, std::string_view, M, std::string_view, const Allowed&) {}
-    template <class M>
-    void part(M) {}
-};
+struct Nothing {};
 
+/// Whether a type has a description.
 template <class T>
 concept Record = requires(Nothing& of) {
     describe(of, Is<T>{});
 };
 
-template <class T>
-struct Part {
-    static constexpr bool optional = false, array = false, members = false;
-};
-template <class T>
-struct Part<std::optional<T>> {
-    using Of                       = T;
-    static constexpr bool optional = true, array = false, members = false;
-};
-template <class T>
-struct Part<std::vector<T>> {
-    using Of                       = T;
-    static constexpr bool optional = false, array = true, members = false;
-};
-template <class T>
-struct Part<Members<T>> {
-    using Of                       = T;
-    static constexpr bool optional = false, array = false, members = true;
-};
+/// Whether a type is one of a template.
+template <class T, template <class...> class Template>
+inline constexpr bool is_a = false;
+template <template <class...> class Template, class... Of>
+inline constexpr bool is_a<Template<Of...>, Template> = true;
 
 template <class T>
 bool is_nothing(const T& value) {
-    if constexpr (Part<T>::optional)
+    if constexpr (is_a<T, std::optional>)
         return !value.has_value();
-    else if constexpr (Part<T>::array || Part<T>::members || std::is_same_v<T, std::string>)
+    else if constexpr (is_a<T, std::vector> || is_a<T, Members> || std::is_same_v<T, std::string>)
         return value.empty();
     else if constexpr (std::is_same_v<T, FileName>)
         return value.name.empty();
@@ -220,7 +195,7 @@ public:
         return record_.*flag;
     }
     template <class V, class C>
-    void part(V C::*member) {
+    void all(V C::*member) {
         Writer<V> writer(record_.*member, json_);
         describe(writer, Is<V>{});
     }
@@ -238,13 +213,13 @@ Json write(const T& value) {
         return value.name;
     } else if constexpr (std::is_same_v<T, Scalar>) {
         return std::visit([](const auto& v) { return write(v); }, value);
-    } else if constexpr (Part<T>::optional) {
+    } else if constexpr (is_a<T, std::optional>) {
         return value ? write(*value) : Json();
-    } else if constexpr (Part<T>::array) {
+    } else if constexpr (is_a<T, std::vector>) {
         Json all = Json::array();
-        for (const auto& each : value) all.push_back(write<typename Part<T>::Of>(each));
+        for (const auto& each : value) all.push_back(write<typename T::value_type>(each));
         return all;
-    } else if constexpr (Part<T>::members) {
+    } else if constexpr (is_a<T, Members>) {
         Json all = Json::object();
         for (const auto& [key, each] : value) all[key] = write(each);
         return all;
@@ -271,7 +246,7 @@ public:
     template <class V, class C>
     void take(Kind kind, std::string_view key, V C::*member, std::string_view, const Allowed& allowed) {
         const Field field = field_[key];
-        if constexpr (Part<V>::members)
+        if constexpr (is_a<V, Members>)
             for (const auto& [name, item] : field.members()) refuse_unless(allowed, item);
         else
             refuse_unless(allowed, field);
@@ -287,7 +262,7 @@ public:
         return true;
     }
     template <class V, class C>
-    void part(V C::*member) {
+    void all(V C::*member) {
         Reader<V> reader(field_, record_.*member);
         describe(reader, Is<V>{});
     }
@@ -324,24 +299,71 @@ void read(const Field& field, T& value) {
             number > double(std::numeric_limits<T>::max()))
             field.refuse(std::is_unsigned_v<T> ? "a whole number, 0 or more" : "a whole number");
         value = T(number);
-    } else if constexpr (Part<T>::optional) {
+    } else if constexpr (is_a<T, std::optional>) {
         read(field, value.emplace());
-    } else if constexpr (Part<T>::array) {
+    } else if constexpr (is_a<T, std::vector>) {
         value.clear();
         for (const Field& item : field.items()) {
-            typename Part<T>::Of each{};
+            typename T::value_type each{};
             read(item, each);
             value.push_back(std::move(each));
         }
-    } else if constexpr (Part<T>::members) {
+    } else if constexpr (is_a<T, Members>) {
         value.clear();
         for (const auto& [key, item] : field.members())
-            read(item, value.emplace_back(key, typename Part<T>::Of{}).second);
+            read(item, value.emplace_back(key, typename T::value_type::second_type{}).second);
     } else {
         static_assert(Record<T>, "a member of a record has a type of the list above");
         if (!field.is_object()) field.refuse("an object");
         Reader<T> reader(field, value);
         describe(reader, Is<T>{});
+    }
+}
+
+/// Refuses the first member of an object that is none of `known`.
+void require_members_among(const Field& field, const std::vector<std::string>& known);
+
+template <class T>
+void refuse_unknown(const Field& field);
+
+/// Gathers the names of the members of a record, and looks into those that are there.
+template <class T>
+class Knower : public Fields<Knower<T>> {
+public:
+    explicit Knower(const Field& field) : field_(field) {}
+    template <class V, class C>
+    void take(Kind, std::string_view key, V C::*, std::string_view, const Allowed&) {
+        known.emplace_back(key);
+        refuse_unknown<V>(field_[key]);
+    }
+    template <class V, class C>
+    void all(V C::*) {
+        Knower<V> part(field_);
+        describe(part, Is<V>{});
+        known.insert(known.end(), part.known.begin(), part.known.end());
+    }
+    std::vector<std::string> known;
+
+private:
+    const Field& field_;
+};
+
+/// What has the wrong type is left to `read`.
+template <class T>
+void refuse_unknown(const Field& field) {
+    if constexpr (is_a<T, std::optional>) {
+        refuse_unknown<typename T::value_type>(field);
+    } else if constexpr (is_a<T, std::vector>) {
+        if (field.is_array())
+            for (const Field& item : field.items()) refuse_unknown<typename T::value_type>(item);
+    } else if constexpr (is_a<T, Members>) {
+        if (field.is_object())
+            for (const auto& [key, item] : field.members()) refuse_unknown<typename T::value_type::second_type>(item);
+    } else if constexpr (Record<T>) {
+        if (!field.is_object()) return;
+        Knower<T> knower(field);
+        describe(knower, Is<T>{});
+        require_members_among(field, knower.known);
     }
 }
 
@@ -368,9 +390,9 @@ public:
         if (kind == Kind::plain || kind == Kind::must) json_["required"].push_back(key);
         Json& whole = json_["properties"][std::string(key)] = schema<V>(definitions_);
         if (!about.empty()) whole["description"] = about;
-        Json& property = Part<V>::members ? whole["additionalProperties"] : whole;
+        Json& property = is_a<V, Members> ? whole["additionalProperties"] : whole;
         for (const std::string_view word : allowed.words) property["enum"].push_back(word);
-        if (!allowed.words.empty() && Part<V>::optional) property["enum"].push_back(nullptr);
+        if (!allowed.words.empty() && is_a<V, std::optional>) property["enum"].push_back(nullptr);
         if (allowed.least) property["minimum"] = *allowed.least;
         if (allowed.most) property["maximum"] = *allowed.most;
         if (allowed.only) property["enum"] = Json::array({*allowed.only});
@@ -378,7 +400,7 @@ public:
         if (kind == Kind::must && std::is_same_v<V, std::string>) whole["minLength"] = 1;
     }
     template <class V, class C>
-    void part(V C::*) {
+    void all(V C::*) {
         Describer<V> part(json_, definitions_);
         describe(part, Is<V>{});
     }
@@ -408,12 +430,12 @@ Json schema(Definitions& definitions) {
         Json json = {{"type", "integer"}};
         if (std::is_unsigned_v<T>) json["minimum"] = 0;
         return json;
-    } else if constexpr (Part<T>::optional) {
-        return or_null(schema<typename Part<T>::Of>(definitions));
-    } else if constexpr (Part<T>::array) {
-        return {{"type", "array"}, {"items", schema<typename Part<T>::Of>(definitions)}};
-    } else if constexpr (Part<T>::members) {
-        return {{"type", "object"}, {"additionalProperties", schema<typename Part<T>::Of>(definitions)}};
+    } else if constexpr (is_a<T, std::optional>) {
+        return or_null(schema<typename T::value_type>(definitions));
+    } else if constexpr (is_a<T, std::vector>) {
+        return {{"type", "array"}, {"items", schema<typename T::value_type>(definitions)}};
+    } else if constexpr (is_a<T, Members>) {
+        return {{"type", "object"}, {"additionalProperties", schema<typename T::value_type::second_type>(definitions)}};
     } else {
         static_assert(Record<T>, "a member of a record has a type of the list above");
         Json json = {{"type", "object"}, {"required", Json::array()}, {"properties", Json::object()}};
@@ -444,6 +466,13 @@ template <class T>
     T value{};
     record_parts::read(field, value);
     return value;
+}
+
+/// As from_record, for files that people write: a member that the description lacks is refused, as mistyped.
+template <class T>
+[[nodiscard]] T from_strict_record(const Field& field) {
+    record_parts::refuse_unknown<T>(field);
+    return from_record<T>(field);
 }
 
 /// JSON Schema, draft 4, of records of this type.
