@@ -72,8 +72,6 @@ void scatter(MethodRun& run, LightId light, const std::vector<std::uint32_t>& sa
     run.judged[light] = std::move(judged);
 }
 
-MethodChoice stand_in_for_reference() { return parse_method(kStandIn); }
-
 /// The same method, answering this measure. Throws UsageError where it cannot.
 MethodChoice of_measure(MethodChoice choice, Measure measure) {
     if (choice.make()->measures() == measure) return choice;
@@ -85,7 +83,7 @@ MethodChoice of_measure(MethodChoice choice, Measure measure) {
 
 /// `why` there is no exact one: sentences, each after a space.
 Reference substitute(Measure measure, const std::string& why) {
-    const MethodChoice choice = of_measure(stand_in_for_reference(), measure);
+    const MethodChoice choice = of_measure(parse_method(kStandIn), measure);
     return {choice, false, fmt::format("{}: better sampled, not exact.{}", choice.info->title, why)};
 }
 
@@ -129,11 +127,9 @@ Reference default_reference(const SceneFacts& facts, Measure measure) {
     return substitute(measure, why);
 }
 
-namespace {
-
-ReferenceRun answers_of(const Reference& reference, const Scene& scene, const SceneFacts& facts,
-                        const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
-                        const Budget& budget, std::shared_ptr<MethodAtWork> work) {
+ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
+                           const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
+                           const Budget& budget, std::shared_ptr<MethodAtWork> work) {
     const bool is_shared    = work != nullptr;
     const std::uint64_t all = surface_points(points);
     const bool any_area     = std::ranges::any_of(scene.lights, [](const Light& l) { return is_area(l.kind); });
@@ -148,41 +144,28 @@ ReferenceRun answers_of(const Reference& reference, const Scene& scene, const Sc
         wanted =
             any_area && reference.choice.info->reference ? affordable(*run.work, scene, facts, points, all, at) : all;
     if (!is_shared) run.work->forget_build();  // of the count of steps: here it is timed
-    if (!any_area || *wanted >= all) {
+    std::optional<MethodRun> stand_in;
+    if (any_area && *wanted < all)
+        stand_in = run_method(of_measure(parse_method(kStandIn), run.work->method().measures()), scene, facts, points);
+    if (!stand_in || !stand_in->service) {  // where nothing stands in, every point is the reference's, however long
         run_phases(run, points, scene.lights.size(), at);
-        return done;
+    } else {
+        const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
+        const PointBatch sampled                = pick(points, sample);
+        run_build(run);
+        run.judged.resize(scene.lights.size());
+        for (LightId light = 0; light < scene.lights.size(); ++light) {
+            const bool area = is_area(scene.lights[light].kind);
+            if (at != nullptr) *at = light;
+            run_light(run, area ? sampled : points, light);
+            if (area) scatter(run, light, sample, stand_in->planes[light], points);
+        }
+        note_memory(run);
+        run.work->forget_look();  // at points that end here
+        done.judged   = sample.size();
+        done.stand_in = stand_in->choice.text();
     }
-
-    const MethodRun stand_in =
-        run_method(of_measure(stand_in_for_reference(), run.work->method().measures()), scene, facts, points);
-    if (!stand_in.service) {  // then every point is the reference's, however long that takes
-        run_phases(run, points, scene.lights.size(), at);
-        return done;
-    }
-    const std::vector<std::uint32_t> sample = stratified_sample(points, std::max<std::uint64_t>(*wanted, 1));
-    const PointBatch sampled                = pick(points, sample);
-    run_build(run);
-    run.judged.resize(scene.lights.size());
-    for (LightId light = 0; light < scene.lights.size(); ++light) {
-        const bool area = is_area(scene.lights[light].kind);
-        if (at != nullptr) *at = light;
-        run_light(run, area ? sampled : points, light);
-        if (area) scatter(run, light, sample, stand_in.planes[light], points);
-    }
-    note_memory(run);
-    run.work->forget_look();  // at points that end here
-    done.judged   = sample.size();
-    done.stand_in = stand_in.choice.text();
-    return done;
-}
-
-}  // namespace
-
-ReferenceRun run_reference(const Reference& reference, const Scene& scene, const SceneFacts& facts,
-                           const PointBatch& points, std::optional<std::uint64_t> wanted, std::optional<LightId>* at,
-                           const Budget& budget, std::shared_ptr<MethodAtWork> work) {
-    ReferenceRun done = answers_of(reference, scene, facts, points, wanted, at, budget, std::move(work));
-    done.run.work->lift_limit();  // it is asked further, for others
+    run.work->lift_limit();  // it is asked further, for others
     return done;
 }
 
