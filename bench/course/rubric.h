@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "umbra/bench/record/record.h"
+#include "umbra/bench/run/chosen.h"
 #include "umbra/bench/run/prepare.h"
-#include "umbra/bench/run/scene_beside.h"
 
 namespace umbra {
 

@@ -7,7 +7,7 @@
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/record/record.h"
-#include "umbra/bench/run/scene_beside.h"
+#include "umbra/bench/run/chosen.h"
 
 namespace umbra {
 

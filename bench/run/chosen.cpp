@@ -13,6 +13,23 @@
 #include "umbra/core/io/scene_io.h"
 
 namespace umbra {
+namespace {
+
+/// Whether the method runs on a scene's file where nobody says which methods.
+bool runs_by_itself(const MethodInfo& method, const std::filesystem::path& scene) {
+    if (method.by_default || !method.shown) return method.by_default;
+    std::ifstream in(scene.parent_path() / "canonical.txt");
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line);
+        std::string word;
+        if (!(words >> word) || word != scene.filename().string()) continue;
+        while (words >> word)
+            if (word == method.name) return true;
+    }
+    return false;
+}
+
+}  // namespace
 
 std::vector<std::filesystem::path> canonical_scenes(const std::filesystem::path& folder) {
     const std::filesystem::path list = folder / "canonical.txt";
@@ -25,19 +42,6 @@ std::vector<std::filesystem::path> canonical_scenes(const std::filesystem::path&
     for (std::string line; std::getline(in, line);)
         if (!line.empty() && line[0] != '#') scenes.push_back(folder / line.substr(0, line.find(' ')));
     return scenes;
-}
-
-bool runs_by_itself(const MethodInfo& method, const std::filesystem::path& scene) {
-    if (method.by_default || !method.shown) return method.by_default;
-    std::ifstream in(scene.parent_path() / "canonical.txt");
-    for (std::string line; std::getline(in, line);) {
-        std::istringstream words(line);
-        std::string word;
-        if (!(words >> word) || word != scene.filename().string()) continue;
-        while (words >> word)
-            if (word == method.name) return true;
-    }
-    return false;
 }
 
 std::vector<std::filesystem::path> teaching_scenes(const std::filesystem::path& folder) {
@@ -76,6 +80,15 @@ std::vector<ChosenScene> chosen_scenes(std::span<const std::filesystem::path> fi
         named.push_back({file, name + behind, folder + behind});
     }
     return named;
+}
+
+std::filesystem::path scene_beside(const Field& name, const std::filesystem::path& file, const FindScene& find) {
+    const std::filesystem::path beside = file.parent_path() / name.required_text();
+    try {
+        return std::filesystem::is_regular_file(beside) ? beside : find(name.text());
+    } catch (const UsageError& e) {
+        name.refuse(fmt::format("a scene, or a file beside this one ({})", e.what()));
+    }
 }
 
 }  // namespace umbra

@@ -1,11 +1,13 @@
-// What a command works on where its line leaves that open: scenes and their names, methods.
+// What a command or a file works on: scenes and their names, methods.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "umbra/bench/record/field.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -18,12 +20,9 @@ namespace umbra {
 /// obtained at set-up.
 [[nodiscard]] std::vector<std::filesystem::path> teaching_scenes(const std::filesystem::path& folder);
 
-/// Whether the method runs on a scene's file where nobody says which methods: on every scene, or because the list of
-/// canonical scenes beside the file names it there.
-[[nodiscard]] bool runs_by_itself(const MethodInfo& method, const std::filesystem::path& scene);
-
-/// `typed` and then `further`. Where both are empty, those that run by themselves on each of the scenes that are looked
-/// at together; without a scene all that reports show. Throws UsageError, also where settings contradict one another.
+/// `typed` and then `further`. Where both are empty, those that run on each of the scenes that are looked at together:
+/// by default, or because the list of canonical scenes beside the file names them there; without a scene all that
+/// reports show. Throws UsageError, also where settings contradict one another.
 [[nodiscard]] std::vector<MethodChoice> chosen_methods(std::span<const std::string> typed,
                                                        std::span<const MethodChoice> further,
                                                        std::span<const std::filesystem::path> scenes);
@@ -36,5 +35,12 @@ struct ChosenScene {
 };
 /// In the order of `files`. Throws UsageError where one is given twice.
 [[nodiscard]] std::vector<ChosenScene> chosen_scenes(std::span<const std::filesystem::path> files);
+
+/// The file of a scene by its name; throws UsageError where there is none.
+using FindScene = std::function<std::filesystem::path(const std::string& name)>;
+
+/// The scene that a member of `file` names: a file beside it, or else by `find`. Refuses the member where neither is.
+[[nodiscard]] std::filesystem::path scene_beside(const Field& name, const std::filesystem::path& file,
+                                                 const FindScene& find);
 
 }  // namespace umbra
