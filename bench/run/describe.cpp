@@ -43,6 +43,18 @@ std::string_view place_word(LightPlace place) {
 
 std::vector<double> vector_record(dvec3 v) { return {v.x, v.y, v.z}; }
 
+/// Typed: a number, a boolean or a word.
+Scalar setting_scalar(const Parameter& p, double value) {
+    switch (p.type) {
+        case Parameter::Type::integer: return static_cast<std::int64_t>(value);
+        case Parameter::Type::real: return value;
+        case Parameter::Type::boolean: return value != 0;
+        case Parameter::Type::choice: return std::string(p.text(value));
+        case Parameter::Type::text: return std::string(p.fallback_text);
+    }
+    return {};
+}
+
 }  // namespace
 
 std::string_view version() { return UMBRA_VERSION; }
@@ -122,17 +134,6 @@ std::vector<LightRecord> light_records(const SceneFacts& facts) {
     for (const LightFacts& l : facts.lights)
         lights.push_back({l.name, std::string(to_string(l.kind)), std::string(place_word(l.place))});
     return lights;
-}
-
-Scalar setting_scalar(const Parameter& p, double value) {
-    switch (p.type) {
-        case Parameter::Type::integer: return static_cast<std::int64_t>(value);
-        case Parameter::Type::real: return value;
-        case Parameter::Type::boolean: return value != 0;
-        case Parameter::Type::choice: return std::string(p.text(value));
-        case Parameter::Type::text: return std::string(p.fallback_text);
-    }
-    return {};
 }
 
 MethodInfoRecord method_info_record(const MethodInfo& info) {

@@ -2,7 +2,6 @@
 // `list --json` share.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -294,7 +293,6 @@ DESCRIBE(MethodInfoRecord) {
 [[nodiscard]] TimingRecord timing_record(std::span<const double> samples);
 /// Absent where nothing is limited.
 [[nodiscard]] std::optional<BudgetRecord> budget_record(const Budget& budget);
-[[nodiscard]] Scalar setting_scalar(const Parameter& p, double value);  ///< typed: a number, a boolean or a word
 /// Every parameter of the method, in its order.
 [[nodiscard]] Members<Scalar> parameter_records(const Settings& settings);
 

@@ -72,8 +72,8 @@ std::string in_units(double bytes) {
     return bytes < 0.95e9 ? fmt::format("{:.0f} MB", std::ceil(bytes / 1e6)) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-}  // namespace
-
+/// About the most that rendering or comparing holds at one time, bytes, for a picture of `pixels` with `samples` points
+/// each.
 double memory_needed(const Scene& scene, double pixels, int samples, Work work) {
     const Terms& t      = work == Work::picture ? kPicture : kComparison;
     const double lights = static_cast<double>(scene.lights.size());
@@ -81,6 +81,8 @@ double memory_needed(const Scene& scene, double pixels, int samples, Work work) 
     return kProgram + t.triangle * static_cast<double>(scene.triangles.size()) +
            pixels * (t.pixel + t.pixel_light * lights) + points * (t.sample + t.sample_light * lights);
 }
+
+}  // namespace
 
 void check_memory(const Scene& scene, const std::filesystem::path& file, int width, int height, int samples,
                   Work work) {

@@ -17,11 +17,9 @@ namespace umbra {
 
 enum class Work : std::uint8_t { picture, comparison };
 
-/// About the most that rendering or comparing holds at one time, bytes, for a picture of `pixels` with `samples` points
-/// each. docs/memory.md states the terms and how they were measured.
-[[nodiscard]] double memory_needed(const Scene& scene, double pixels, int samples, Work work);
-
-/// Throws InputError where that is more than this process may hold: what it is for, how much, and what there is.
+/// Throws InputError where rendering or comparing a picture with `samples` points a pixel needs about more memory than
+/// this process may hold: what it is for, how much, and what there is. docs/memory.md states the terms and how they were
+/// measured.
 void check_memory(const Scene& scene, const std::filesystem::path& file, int width, int height, int samples, Work work);
 
 /// How long `work` takes, wall clock, milliseconds.
