@@ -21,7 +21,7 @@ void fill(std::vector<T>& plane, const Value& value) {
     });
 }
 
-/// Channels of one float a point, interleaved behind those that the image has at the end.
+/// Channels of one float a point, to be interleaved behind those of another image.
 class FloatChannels {
 public:
     explicit FloatChannels(std::size_t points) : points_(points) {}
@@ -32,13 +32,11 @@ public:
         auto& plane = planes_.emplace_back(points_);
         fill(plane, value);
     }
-    [[nodiscard]] Image behind(const Image& image) const {
+    /// Gives `all`, which has none, the channels of `image` and these.
+    void write_behind(const Image& image, Image& all) const {
         const std::size_t before = image.channels.size();
-        Image all;
-        all.width = image.width, all.height = image.height;
-        all.channels = image.channels;
+        all.channels             = image.channels;
         all.channels.insert(all.channels.end(), names_.begin(), names_.end());
-        all.metadata = image.metadata, all.integers = image.integers, all.matrices = image.matrices;
         all.data.resize(points_ * all.channels.size());
         parallel_ranges(points_, kGrain, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i) {
@@ -46,7 +44,6 @@ public:
                 for (std::size_t c = 0; c < planes_.size(); ++c) all.at(i, before + c) = planes_[c][i];
             }
         });
-        return all;
     }
 
 private:
@@ -133,9 +130,8 @@ std::array<float, 16> world_to_ndc(const CameraFrame& f) {
 
 Image exr_image(const Image& linear, const Scene& scene, const PointBatch& points, const MethodRun& run,
                 const ExrLayers& layers) {
-    Image extra;  // all but the floats
-    extra.width  = linear.width;
-    extra.height = linear.height;
+    Image image(linear.width, linear.height, {});
+    image.metadata = linear.metadata;
     FloatChannels floats(points.size());
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const std::string& light     = scene.lights[j].name;
@@ -143,22 +139,18 @@ Image exr_image(const Image& linear, const Scene& scene, const PointBatch& point
         floats.add("S." + light, [&](std::size_t i) {
             return plane.defined(i) ? plane.s[i] : std::numeric_limits<float>::quiet_NaN();
         });
-        add_integers(extra, "answer." + light, [&](std::size_t i) { return plane.answer[i]; });
+        add_integers(image, "answer." + light, [&](std::size_t i) { return plane.answer[i]; });
         if (!layers.explained.empty())
-            add_integers(extra, "class." + light, [&](std::size_t i) { return layers.explained[j].classes[i]; });
+            add_integers(image, "class." + light, [&](std::size_t i) { return layers.explained[j].classes[i]; });
         if (!layers.reference) continue;
         floats.add("half_width." + light, [&](std::size_t i) { return plane.half_width[i]; });
         const auto judged = run.judged_points(j);
-        add_integers(extra, "judged." + light, [&](std::size_t i) { return judged.empty() || judged[i] != 0; });
+        add_integers(image, "judged." + light, [&](std::size_t i) { return judged.empty() || judged[i] != 0; });
     }
-    extra.metadata["umbra:answer"] = "0 undefined, 1 given, 2 on_boundary";
-    if (!layers.explained.empty()) extra.metadata["umbra:class"] = class_names();
-    if (layers.geometry) add_geometry(floats, extra, scene, points);
-
-    Image image    = floats.behind(linear);
-    image.integers = std::move(extra.integers);
-    image.matrices = std::move(extra.matrices);
-    image.metadata.merge(extra.metadata);
+    image.metadata["umbra:answer"] = "0 undefined, 1 given, 2 on_boundary";
+    if (!layers.explained.empty()) image.metadata["umbra:class"] = class_names();
+    if (layers.geometry) add_geometry(floats, image, scene, points);
+    floats.write_behind(linear, image);
     return image;
 }
 

@@ -47,22 +47,14 @@ FilesRecord write_files(const FilePlace& place, const PreparedScene& prepared, c
     parallel_ranges(pictures.size() + 2, 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
             if (k == 0)
-                write_image(place.folder / (place.id + ".exr"), full);
+                write_image(place.folder / files.exr.name, full);
             else if (k == 1)
-                write_image(place.folder / (place.id + ".png"), shown);
+                write_image(place.folder / files.png.name, shown);
             else
                 write_image(place.folder / pictures[k - 2].first, pictures[k - 2].second());
         }
     });
     return files;
-}
-
-/// The differences of the pictures; their map goes into a file.
-ImageRecord write_flip(const std::filesystem::path& map, const PointBatch& points, const Answers& method,
-                       const Rendered& reference) {
-    ImageFigures found = image_figures(method.run.planes, method.rendered, reference);
-    write_image(map, flip_picture(points, method.run.planes, found.flip.map));
-    return found.figures;
 }
 
 }  // namespace
@@ -95,7 +87,11 @@ ComparedFiles write_compared_files(const FilePlace& place, const PreparedScene& 
     ComparedFiles written;
     // Each has parts that one thread does alone.
     parallel_pair([&] { written.files = write_files(place, prepared, method, reference.run, explained); },
-                  [&] { written.image = write_flip(place.folder / map, prepared.points, method, reference.rendered); });
+                  [&] {
+                      const ImageFigures found = image_figures(method.run.planes, method.rendered, reference.rendered);
+                      write_image(place.folder / map, flip_picture(prepared.points, method.run.planes, found.flip.map));
+                      written.image = found.figures;
+                  });
     written.files.flip = {map};
     return written;
 }

@@ -56,20 +56,6 @@ ErrorRecord error_record(const std::string& light, const Explained& explained) {
     return record;
 }
 
-/// What is known of a method before it runs.
-MethodRecord head_of(const std::string& id, const MethodChoice& choice, const Service& service) {
-    const MethodInfo& info = *choice.info;
-    return {.id         = id,
-            .name       = std::string(info.name),
-            .title      = std::string(info.title),
-            .paper      = std::string(info.paper),
-            .summary    = std::string(info.summary),
-            .text       = choice.text(),
-            .parameters = parameter_records(choice.settings),
-            .serves     = service_record(service),
-            .outside    = info.outside};
-}
-
 FailureRecord failure_record(const Failure& failure, const Scene& scene) {
     return {failure.light ? std::optional(scene.lights[*failure.light].name) : std::nullopt, failure.message,
             failure.cut};
@@ -99,10 +85,23 @@ ReferenceRecord reference_record(const Truth& truth, const Scene& scene) {
     return record;
 }
 
+MethodRecord unserved_record(const std::string& id, const MethodChoice& choice, const Service& service) {
+    const MethodInfo& info = *choice.info;
+    return {.id         = id,
+            .name       = std::string(info.name),
+            .title      = std::string(info.title),
+            .paper      = std::string(info.paper),
+            .summary    = std::string(info.summary),
+            .text       = choice.text(),
+            .parameters = parameter_records(choice.settings),
+            .serves     = service_record(service),
+            .outside    = info.outside};
+}
+
 MethodRecord served_record(const std::string& id, const PreparedScene& prepared, const Outcome& found,
                            const std::string& reference) {
     const MethodRun& run = found.run;
-    MethodRecord record  = head_of(id, run.choice, run.service);
+    MethodRecord record  = unserved_record(id, run.choice, run.service);
     record.ran           = true;
     if (run.choice.info->outside.empty()) {  // nobody knows what a program from outside holds
         record.memory_bytes = run.memory_bytes;
@@ -155,14 +154,10 @@ TurnsRecord turns_record(const Turns& turns, const TurnOptions& options, std::pa
     return record;
 }
 
-MethodRecord unserved_record(const std::string& id, const MethodChoice& choice, const Service& service) {
-    return head_of(id, choice, service);
-}
-
 MethodRecord failed_record(const std::string& id, const MethodChoice& choice, const Scene& scene,
                            const Failure& failure) {
     const FailureRecord failed = failure_record(failure, scene);
-    MethodRecord record        = head_of(id, choice, {How::not_at_all, failed_in_words(failed)});
+    MethodRecord record        = unserved_record(id, choice, {How::not_at_all, failed_in_words(failed)});
     record.failed              = failed;
     return record;
 }

@@ -18,6 +18,7 @@ namespace umbra {
 /// Without image, files and times (set_times). `reference`, as typed, is what it was compared with.
 [[nodiscard]] MethodRecord served_record(const std::string& id, const PreparedScene& prepared, const Outcome& found,
                                          const std::string& reference);
+/// What is known of a method without running it.
 [[nodiscard]] MethodRecord unserved_record(const std::string& id, const MethodChoice& choice, const Service& service);
 
 /// Of a method that threw, broke its contract or was cut short.
