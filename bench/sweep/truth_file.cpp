@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 #include "umbra/core/image/image_io.h"
 
 namespace umbra {
@@ -92,16 +92,12 @@ bool read_truth(const std::filesystem::path& file, std::size_t lights, std::size
             any_sampled = true;
         }
     }
-    ran.run.judged   = any_sampled ? std::move(sampled) : decltype(sampled){};
-    const auto whole = [&](const char* key, std::uint64_t& value) {
-        const auto found = image.metadata.find(key);
-        if (found == image.metadata.end()) return false;
-        const std::string& text = found->second;
-        return std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc();
-    };
-    if (const auto found = image.metadata.find("umbra:stand_in"); found != image.metadata.end())
-        ran.stand_in = found->second;
-    return whole("umbra:judged", ran.judged) && whole("umbra:of", ran.of);
+    ran.run.judged    = any_sampled ? std::move(sampled) : decltype(sampled){};
+    const auto judged = number_from<std::uint64_t>(image.metadata["umbra:judged"]),
+               of     = number_from<std::uint64_t>(image.metadata["umbra:of"]);
+    ran.stand_in      = image.metadata["umbra:stand_in"];
+    ran.judged = judged.value_or(0), ran.of = of.value_or(0);
+    return judged && of;
 }
 
 }  // namespace umbra
