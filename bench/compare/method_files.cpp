@@ -8,7 +8,6 @@
 
 #include "umbra/bench/compare/exr_layers.h"
 #include "umbra/bench/compare/pictures.h"
-#include "umbra/bench/out/files.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/image/image_io.h"
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "umbra/bench/pages/embed.h"
 #include "umbra/bench/pages/values_call.h"

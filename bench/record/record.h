@@ -37,7 +37,6 @@
 #include <boost/preprocessor/seq/for_each.hpp>
 #include <boost/preprocessor/variadic/to_seq.hpp>
 #include <cmath>
-#include <concepts>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>

@@ -1,6 +1,5 @@
 #include "umbra/bench/run/describe.h"
 
-#include <fmt/format.h>
 #include <sched.h>
 #include <sys/sysinfo.h>
 

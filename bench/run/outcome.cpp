@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <string>
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/errors/error_causes.h"

@@ -1,7 +1,6 @@
 // results.json of one scene, as a value: several shadow methods, compared with a reference.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>

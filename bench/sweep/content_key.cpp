@@ -7,7 +7,6 @@
 
 #include <stdexcept>
 #include <type_traits>
-#include <utility>
 
 #include "umbra/bench/out/files.h"
 #include "umbra/shadows/plugin.h"
