@@ -10,6 +10,7 @@
 
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/suggest.h"
+#include "umbra/core/base/trimmed.h"
 #include "umbra/shadows/method.h"
 #include "umbra/shadows/plugin.h"
 
@@ -71,17 +72,13 @@ KnownMethods& known_methods() {
 /// Sets "k=v,k=v". No name may come twice.
 void apply(std::string_view list, Settings& settings) {
     std::set<std::string_view> seen;
-    while (true) {
-        const std::size_t comma = list.find(',');
-        const auto pair         = list.substr(0, comma);
-        const std::size_t eq    = pair.find('=');
+    for (const std::string_view pair : split(list, ',')) {
+        const std::size_t eq = pair.find('=');
         if (eq == std::string_view::npos)
             throw UsageError(fmt::format("\"{}\": expected name=value, or several with commas between", pair));
         const auto name = pair.substr(0, eq);
         settings.set(name, pair.substr(eq + 1));
         if (!seen.insert(name).second) throw UsageError(fmt::format("{} is set twice", name));
-        if (comma == std::string_view::npos) return;
-        list = list.substr(comma + 1);
     }
 }
 

@@ -10,6 +10,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/number_from.h"
 #include "umbra/core/base/suggest.h"
+#include "umbra/core/base/trimmed.h"
 
 namespace umbra {
 namespace {
@@ -17,16 +18,6 @@ namespace {
 std::optional<double> finite(std::string_view text) {
     const auto value = number_from<double>(text);
     return value && std::isfinite(*value) ? value : std::nullopt;
-}
-
-std::vector<std::string_view> split(std::string_view list) {
-    std::vector<std::string_view> words;
-    while (true) {
-        const std::size_t bar = list.find('|');
-        words.push_back(list.substr(0, bar));
-        if (bar == std::string_view::npos) return words;
-        list.remove_prefix(bar + 1);
-    }
 }
 
 }  // namespace
@@ -43,7 +34,7 @@ std::string_view to_string(Parameter::Type type) {
 
 std::string Parameter::text(double value) const {
     if (type == Type::boolean) return value != 0 ? "true" : "false";
-    if (type == Type::choice) return std::string(split(choices).at(static_cast<std::size_t>(value)));
+    if (type == Type::choice) return std::string(split(choices, '|').at(static_cast<std::size_t>(value)));
     return fmt::format("{}", value);
 }
 
@@ -55,7 +46,7 @@ double Parameter::parse(std::string_view given) const {
             if (given == "false") return 0;
             throw UsageError(fmt::format("{}={}: expected true or false", name, given));
         case Type::choice: {
-            const auto words = split(choices);
+            const auto words = split(choices, '|');
             const auto found = std::ranges::find(words, given);
             if (found != words.end()) return static_cast<double>(found - words.begin());
             throw UsageError(fmt::format("{}={}: expected one of {}", name, given, choices));

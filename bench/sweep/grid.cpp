@@ -17,16 +17,6 @@ struct Axis {
     std::vector<std::string_view> values;
 };
 
-std::vector<std::string_view> split(std::string_view list, char separator) {
-    std::vector<std::string_view> parts;
-    while (true) {
-        const std::size_t at = list.find(separator);
-        parts.push_back(list.substr(0, at));
-        if (at == std::string_view::npos) return parts;
-        list.remove_prefix(at + 1);
-    }
-}
-
 std::vector<MethodChoice> combinations(const MethodChoice& base, const std::vector<Axis>& axes) {
     std::size_t count = 1;
     for (const Axis& axis : axes) {

@@ -11,6 +11,7 @@
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/number_from.h"
 #include "umbra/core/base/suggest.h"
+#include "umbra/core/base/trimmed.h"
 
 namespace umbra {
 namespace {
@@ -38,17 +39,13 @@ double& member(Workload& workload, std::string_view name) {
 Workload parse_workload(const std::string& text) {
     Workload workload{0, 0, 0};
     std::set<std::string_view> seen;
-    for (std::string_view rest = text;;) {
-        const std::size_t comma     = rest.find(',');
-        const std::string_view pair = rest.substr(0, comma);
-        const std::size_t equals    = pair.find('=');
+    for (const std::string_view pair : split(text, ',')) {
+        const std::size_t equals = pair.find('=');
         if (equals == std::string_view::npos)
             throw UsageError(fmt::format("workload: found \"{}\", {}", pair, kExpected));
         const std::string_view name = pair.substr(0, equals);
         member(workload, name)      = rate(pair, pair.substr(equals + 1));
         if (!seen.insert(name).second) throw UsageError(fmt::format("workload: {} is set twice", name));
-        if (comma == std::string_view::npos) break;
-        rest = rest.substr(comma + 1);
     }
     if (workload.camera + workload.light + workload.object == 0)
         throw UsageError(fmt::format("workload: nothing moves in \"{}\", expected a rate above 0", text));

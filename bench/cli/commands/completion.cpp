@@ -9,6 +9,7 @@
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
 #include "umbra/bench/motion/growth_family.h"
+#include "umbra/core/base/trimmed.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -143,22 +144,12 @@ Names option_names(const CLI::App& app) {
     return names;
 }
 
-Names split(std::string_view text, char separator) {
-    Names parts;
-    for (std::size_t at = 0; at != std::string_view::npos;) {
-        const std::size_t end = text.find(separator, at);
-        parts.emplace_back(text.substr(at, end == std::string_view::npos ? end : end - at));
-        at = end == std::string_view::npos ? end : end + 1;
-    }
-    return parts;
-}
-
 /// "'COMMAND --option') echo KIND", with a + where the option takes several values; "*" as command for all.
 std::string kinds(const CLI::App& app, const std::string& command) {
     std::string cases;
     for (const CLI::Option* option : app.get_options()) {
         if (option->get_positional() || option->get_items_expected_max() == 0) continue;
-        const std::string kind = split(option->get_type_name(), ':')[0] +
+        const std::string kind = std::string(split(option->get_type_name(), ':')[0]) +
                                  (option->get_items_expected_max() > 1 && !option->get_delimiter() ? "+" : "");
         for (const std::string& name : option->get_lnames())
             cases += fmt::format("        {}' --{}') echo '{}' ;;\n", command, name, kind);
@@ -175,7 +166,8 @@ std::string method_functions() {
         for (const Parameter& p : info->parameters) {
             names.emplace_back(p.name);
             const std::string key = fmt::format("{}:{}", info->name, p.name);
-            if (p.type == Parameter::Type::choice) choices += print_line(key, split(p.choices, '|'));
+            const auto words      = split(p.choices, '|');
+            if (p.type == Parameter::Type::choice) choices += print_line(key, Names(words.begin(), words.end()));
             if (p.type == Parameter::Type::boolean) choices += print_line(key, {"true", "false"});
         }
         settings += print_line(std::string(info->name), names);
