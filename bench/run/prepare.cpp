@@ -32,8 +32,6 @@ void warn_of_points_off_their_pixels(Scene& scene, const PointBatch& points) {
                     off.points, surface, off.worst));
 }
 
-bool any(vec3 v) { return v != vec3(0); }
-
 /// Some point of the picture is reached by the light, if nothing occludes it.
 bool adds_anything(const Light& light, LightId id, const PointBatch& points) {
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -48,7 +46,7 @@ void warn_of_picture(Scene& scene, const PointBatch& points) {
     if (empty) scene.warnings.emplace_back("the camera sees nothing: no primary ray meets a surface");
     for (LightId j = 0; j < scene.lights.size(); ++j) {
         const Light& light = scene.lights[j];
-        if (!any(light.diffuse) && !any(light.specular))
+        if (light.diffuse == vec3(0) && light.specular == vec3(0))
             scene.warnings.push_back(fmt::format(
                 "Light \"{}\" has intensity 0: it adds nothing, and S_j is computed for it as for the others.",
                 light.name));
