@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 
 #include "umbra/bench/ladders/ladder_file.h"
-#include "umbra/bench/run/antialias.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/number_from.h"
@@ -146,27 +144,6 @@ void return_ladders(std::vector<std::string>& methods, std::vector<std::string>&
     const std::vector<std::string> known = ladder_names();
     return_to(positionals, methods,
               [&](const std::string& word) { return is_ladder_file(word) || contains(known, word); });
-}
-
-CLI::Validator number_in(double low, double high, const std::string& expected) {
-    const auto check = [low, high, expected](const std::string& text) -> std::string {
-        const auto value = number_from<double>(text);
-        if (value && std::isfinite(*value) && *value >= low && *value <= high) return "";
-        return fmt::format("\"{}\" is not {}", text, expected);
-    };
-    return {check, "", "number"};
-}
-
-CLI::Validator pixel_samples() {
-    const auto check = [](const std::string& text) -> std::string {
-        try {
-            static_cast<void>(samples_along_side(number_from<int>(text).value_or(0)));
-        } catch (const UsageError&) {
-            return fmt::format("\"{}\" is not 1, 4, 9, 16, 25, 36, 49 or 64", text);
-        }
-        return "";
-    };
-    return {check, "", "samples"};
 }
 
 }  // namespace umbra

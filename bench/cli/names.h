@@ -1,7 +1,6 @@
-// Names on the command line: scenes, what a list of methods swallowed, numbers with limits.
+// Names on the command line: scenes, what a list of methods swallowed.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -34,10 +33,5 @@ namespace umbra {
 void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& positionals);
 /// The same for ladders.
 void return_ladders(std::vector<std::string>& methods, std::vector<std::string>& positionals);
-
-/// Checks that an option's value is a finite number in [low, high]; `expected` says so in words.
-[[nodiscard]] CLI::Validator number_in(double low, double high, const std::string& expected);
-/// Checks that it is a number of samples a pixel: a square from 1 to 64.
-[[nodiscard]] CLI::Validator pixel_samples();
 
 }  // namespace umbra

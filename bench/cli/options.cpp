@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "umbra/bench/cli/names.h"
 #include "umbra/bench/run/antialias.h"
 #include "umbra/core/base/error.h"
+#include "umbra/core/base/number_from.h"
 
 namespace umbra {
 namespace {
@@ -24,7 +24,29 @@ std::function<void(const std::string&)> checked_value(const Take& take) {
     };
 }
 
+/// Checks that it is a number of samples a pixel: a square from 1 to 64.
+CLI::Validator pixel_samples() {
+    const auto check = [](const std::string& text) -> std::string {
+        try {
+            static_cast<void>(samples_along_side(number_from<int>(text).value_or(0)));
+        } catch (const UsageError&) {
+            return fmt::format("\"{}\" is not 1, 4, 9, 16, 25, 36, 49 or 64", text);
+        }
+        return "";
+    };
+    return {check, "", "samples"};
+}
+
 }  // namespace
+
+CLI::Validator number_in(double low, double high, const std::string& expected) {
+    const auto check = [low, high, expected](const std::string& text) -> std::string {
+        const auto value = number_from<double>(text);
+        if (value && std::isfinite(*value) && *value >= low && *value <= high) return "";
+        return fmt::format("\"{}\" is not {}", text, expected);
+    };
+    return {check, "", "number"};
+}
 
 CLI::Option* add_scene(CLI::App& app, std::string& scene) {
     return app.add_option("SCENE", scene, "Scene: a file or a scene's name")->type_name("");
@@ -94,15 +116,16 @@ void add_reference(CLI::App& app, std::optional<std::string>& reference, std::op
 }
 
 void add_budget(CLI::App& app, Budget& budget) {
+    const CLI::Validator amount = number_in(1e-6, 1e9, "a number from 0.000001 to 1000000000");
     app.add_option("--budget", budget.seconds,
                    "Seconds that a method may take on a scene; then it is cut short where it can be, and has failed" +
                        (std::isfinite(budget.seconds) ? fmt::format(" (default: {:g})", budget.seconds) : ""))
-        ->check(number_in(1e-6, 1e9, "a number from 0.000001 to 1000000000"))
+        ->check(amount)
         ->type_name("S");
     app.add_option_function<double>(
            "--memory-budget", [&budget](double mib) { budget.bytes = mib * (1 << 20); },
            "MiB that a method's values may hold on a scene, likewise")
-        ->check(number_in(1e-6, 1e9, "a number from 0.000001 to 1000000000"))
+        ->check(amount)
         ->type_name("MIB");
 }
 

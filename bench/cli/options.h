@@ -2,11 +2,14 @@
 // their work: progress, the record or the text.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "umbra/bench/cli/command.h"
@@ -18,6 +21,21 @@
 #include "umbra/shadows/method.h"
 
 namespace umbra {
+
+/// Checks that an option's value is a finite number in [low, high]; `expected` says so in words.
+[[nodiscard]] CLI::Validator number_in(double low, double high, const std::string& expected);
+
+/// A number from `low` to `high`, called `unit` in the help, which shows `value` as the default.
+template <class Number>
+void add_number(CLI::App& app, const std::string& name, Number& value, const std::string& about,
+                std::type_identity_t<Number> low, std::type_identity_t<Number> high, const std::string& unit = "N") {
+    const char* kind = std::is_integral_v<Number> ? "an integer" : "a number";
+    app.add_option(name, value, about)
+        ->check(number_in(static_cast<double>(low), static_cast<double>(high),
+                          fmt::format("{} from {} to {}", kind, low, high)))
+        ->capture_default_str()
+        ->type_name(unit);
+}
 
 /// SCENE, one or several.
 CLI::Option* add_scene(CLI::App& app, std::string& scene);

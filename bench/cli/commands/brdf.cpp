@@ -24,10 +24,8 @@ int brdf(const BrdfLine& line, const Common& common) {
 Action brdf_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<BrdfLine>();
     add_scene(app, line->scene)->required();
-    app.add_option("--steps", line->steps, "Angles from the normal that are sampled; four times as many about it")
-        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
-        ->capture_default_str()
-        ->type_name("N");
+    add_number(app, "--steps", line->steps, "Angles from the normal that are sampled; four times as many about it", 1,
+               1000);
     add_json(app, line->as_json);
     return [line, &common] { return brdf(*line, common); };
 }

@@ -1,12 +1,8 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <limits>
 
-#include "umbra/bench/cli/command.h"
-#include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/diff/diff_set.h"
 #include "umbra/bench/diff/diff_views.h"
 #include "umbra/bench/out/scratch_folder.h"

@@ -37,10 +37,8 @@ Action energy_command(CLI::App& app, const Common& common) {
     const auto line = std::make_shared<EnergyLine>();
     add_scenes(app, line->scenes, "A scene, or its frames: SCENE@FIRST..LAST")->required();
     add_shadow_method(app, line->method);
-    app.add_option("--points", line->options.points, "Points on all faces together; each face has one at least")
-        ->check(number_in(1, 1e7, "an integer from 1 to 10000000"))
-        ->capture_default_str()
-        ->type_name("N");
+    add_number(app, "--points", line->options.points, "Points on all faces together; each face has one at least", 1,
+               10'000'000);
     add_json(app, line->as_json);
     add_output(app, line->out);
     return [line, &common] { return energy(*line, common); };

@@ -46,10 +46,7 @@ Action growth_command(CLI::App& app, const Common& common) {
                    "The largest size, with one --over (default: triangles 1e6, pixels 2048 x 2048)")
         ->check(number_in(1, 1e12, "a number from 1 to 1e12"))
         ->type_name("N");
-    app.add_option("--rounds", command.options.turns.rounds, "Rounds of time at each size")
-        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
-        ->capture_default_str()
-        ->type_name("N");
+    add_number(app, "--rounds", command.options.turns.rounds, "Rounds of time at each size", 1, 1000);
     add_budget(app, command.options.turns.most);
     add_output(app, command.out);
     add_json(app, line->as_json);

@@ -27,11 +27,8 @@ Action ladder_command(CLI::App& app, const Common& common) {
         ->type_name("");
     add_methods(app, line->options.methods,
                 "Methods, with settings (default: all that reports show but exact, each also @textbook)");
-    app.add_option("--patience", line->options.patience_s,
-                   "Seconds of a thread: a method that takes longer on a rung is asked on no later one")
-        ->check(number_in(0.001, 1e6, "a number from 0.001 to 1000000"))
-        ->capture_default_str()
-        ->type_name("S");
+    add_number(app, "--patience", line->options.patience_s,
+               "Seconds of a thread: a method that takes longer on a rung is asked on no later one", 0.001, 1e6, "S");
     add_budget(app, line->options.budget);
     add_output(app, line->options.out);
     add_json(app, line->as_json);

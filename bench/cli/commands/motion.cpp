@@ -47,10 +47,7 @@ Action motion_command(CLI::App& app, const Common& common) {
     MotionCommand& command = line->command;
     add_scenes(app, line->scenes);
     add_methods(app, command.methods);
-    app.add_option("--frames", command.options.frames, "Frames of each movement")
-        ->check(number_in(1, 10000, "an integer from 1 to 10000"))
-        ->capture_default_str()
-        ->type_name("N");
+    add_number(app, "--frames", command.options.frames, "Frames of each movement", 1, 10000);
     add_size(app, command.size, "320x180");
     add_budget(app, command.options.still.most);
     app.add_option("--reference-points", command.options.area_points,
@@ -58,10 +55,8 @@ Action motion_command(CLI::App& app, const Common& common) {
         ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1} << 30))
         ->capture_default_str()
         ->type_name("N");
-    app.add_option("--max-rmse", command.max_rmse, "Also name the fastest method whose RMSE stays within this")
-        ->check(number_in(0, 1, "a number from 0 to 1"))
-        ->capture_default_str()
-        ->type_name("E");
+    add_number(app, "--max-rmse", command.max_rmse, "Also name the fastest method whose RMSE stays within this", 0, 1,
+               "E");
     add_output(app, command.out);
     add_json(app, line->as_json);
     return [line, &common] { return motion(*line, common); };

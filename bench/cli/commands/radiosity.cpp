@@ -37,22 +37,11 @@ Action radiosity_command(CLI::App& app, const Common& common) {
     const auto line          = std::make_shared<RadiosityLine>();
     ExchangeOptions& options = line->options;
     add_scene(app, line->scene)->required();
-    app.add_option("--patch", options.size, "Longest edge of a patch, in scene diagonals")
-        ->check(number_in(0.001, 1, "a number from 0.001 to 1"))
-        ->capture_default_str()
-        ->type_name("SIZE");
-    app.add_option("--steps", options.steps, "Steps at most")
-        ->check(number_in(0, 1e6, "an integer from 0 to 1000000"))
-        ->capture_default_str()
-        ->type_name("N");
-    app.add_option("--until", options.until, "End where no more than this fraction of the power is unshot")
-        ->check(number_in(0, 1, "a number from 0 to 1"))
-        ->capture_default_str()
-        ->type_name("SHARE");
-    app.add_option("--samples", options.light_samples, "Rays from a patch to an area light")
-        ->check(number_in(1, 4096, "an integer from 1 to 4096"))
-        ->capture_default_str()
-        ->type_name("N");
+    add_number(app, "--patch", options.size, "Longest edge of a patch, in scene diagonals", 0.001, 1, "SIZE");
+    add_number(app, "--steps", options.steps, "Steps at most", 0, 1'000'000);
+    add_number(app, "--until", options.until, "End where no more than this fraction of the power is unshot", 0, 1,
+               "SHARE");
+    add_number(app, "--samples", options.light_samples, "Rays from a patch to an area light", 1, 4096);
     add_size(app, line->size);
     add_json(app, line->as_json, "a line");
     add_output(app, line->out);

@@ -50,14 +50,10 @@ Action shading_command(CLI::App& app, const Common& common) {
                    "Name the cheapest model within METRIC=E: rmse, flip or perceived, from phong; repeatable")
         ->type_name("METRIC=E")
         ->take_all();
-    app.add_option("--views", line->options.views, "Views that errors are taken from: the scene's own and others")
-        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
-        ->default_val(3)
-        ->type_name("N");
-    app.add_option("--runs", line->options.runs, "Rounds, in each of which every model runs once")
-        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
-        ->capture_default_str()
-        ->type_name("N");
+    line->options.views = 3;
+    add_number(app, "--views", line->options.views, "Views that errors are taken from: the scene's own and others", 1,
+               1000);
+    add_number(app, "--runs", line->options.runs, "Rounds, in each of which every model runs once", 1, 1000);
     add_size(app, line->size);
     add_json(app, line->as_json);
     add_output(app, line->out);

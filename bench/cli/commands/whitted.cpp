@@ -69,15 +69,9 @@ Action whitted_command(CLI::App& app, const Common& common) {
     WhittedOptions& options = line->options;
     add_scene(app, line->scene)->required();
     add_shadow_method(app, line->method);
-    app.add_option("--depth", options.depth, "Rays on a path, the eye ray included; 1: no mirrors, no glass")
-        ->check(number_in(1, 32, "an integer from 1 to 32"))
-        ->capture_default_str()
-        ->type_name("N");
-    app.add_option("--least-weight", options.least_weight,
-                   "Do not trace rays whose product of k_r and k_t is below this; 0: trace all")
-        ->check(number_in(0, 1, "a number from 0 to 1"))
-        ->capture_default_str()
-        ->type_name("W");
+    add_number(app, "--depth", options.depth, "Rays on a path, the eye ray included; 1: no mirrors, no glass", 1, 32);
+    add_number(app, "--least-weight", options.least_weight,
+               "Do not trace rays whose product of k_r and k_t is below this; 0: trace all", 0, 1, "W");
     add_pixel_samples(app, options.pixel_samples, "Eye rays a pixel: 1, 4, 9, 16 ...");
     std::vector<std::string> places;
     for (const EyePlaces p : kEyePlaces) places.emplace_back(to_string(p));
@@ -94,10 +88,7 @@ Action whitted_command(CLI::App& app, const Common& common) {
     app.add_flag(
         "--formula", line->formula,
         "Add a picture in which rays meet spheres, boxes, cylinders, cones and tori by formula instead of by triangles");
-    app.add_option("--runs", options.runs, "Runs of each way to trace; the fastest counts")
-        ->check(number_in(1, 1000, "an integer from 1 to 1000"))
-        ->capture_default_str()
-        ->type_name("N");
+    add_number(app, "--runs", options.runs, "Runs of each way to trace; the fastest counts", 1, 1000);
     add_size(app, line->size);
     add_json(app, line->as_json, "the tables");
     add_output(app, line->out);
