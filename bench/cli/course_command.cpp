@@ -1,7 +1,5 @@
 #include "umbra/bench/cli/course_command.h"
 
-#include "umbra/core/base/parallel.h"
-
 namespace umbra {
 
 void add_course_options(CLI::App& app, CourseLine& line) {
@@ -23,12 +21,7 @@ Submission folder_handed_in(const std::string& folder) {
 
 GradeRecord judge_on_terminal(const Submission& handed_in, const Rubric& rubric, JudgeOptions options,
                               const Common& common) {
-    if (options.command.empty()) options.command = common.command;
-    options.threads = thread_count();
-    return on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
-        options.progress = tell;
-        return judge(handed_in, rubric, options);
-    });
+    return on_terminal(common, options, [&] { return judge(handed_in, rubric, options); });
 }
 
 }  // namespace umbra

@@ -31,7 +31,7 @@ void add_course_options(CLI::App& app, CourseLine& line);
 
 [[nodiscard]] Submission folder_handed_in(const std::string& folder);
 
-/// judge() with its progress; the command is this one where none is given.
+/// judge() with its progress.
 GradeRecord judge_on_terminal(const Submission& handed_in, const Rubric& rubric, JudgeOptions options,
                               const Common& common);
 

@@ -1,9 +1,8 @@
 #include "umbra/bench/cli/long_runs.h"
-#include "umbra/bench/cli/streams.h"
 
 #include <fmt/format.h>
 
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
@@ -12,7 +11,6 @@
 #include "umbra/bench/report/report.h"
 #include "umbra/bench/trade/trade_page.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 
@@ -30,13 +28,12 @@ void write_records(const SweepOptions& options, const SweepDone& done) {
         files.push_back(fs::absolute(options.out) / done.folders[s] / "results.json");
         staged.write(files.back(), json_text(to_record(done.records[s])));
     }
-    if (done.records.size() == 1) {
-        staged.write(options.out / "results.json", json_text(to_record(done.records.front())));
-    } else {
-        const Json all = {
-            {"schema", kResultsSchema}, {"version", version()}, {"command", options.command}, {"sweeps", done.folders}};
-        staged.write(options.out / "results.json", json_text(all));
-    }
+    const Json all = done.records.size() == 1 ? to_record(done.records.front())
+                                              : Json{{"schema", kResultsSchema},
+                                                     {"version", version()},
+                                                     {"command", options.command},
+                                                     {"sweeps", done.folders}};
+    staged.write(options.out / "results.json", json_text(all));
     staged.commit();
     StagedFiles page;
     static_cast<void>(write_trade_page(files, fs::absolute(options.out), "", page));
@@ -47,31 +44,23 @@ void write_records(const SweepOptions& options, const SweepDone& done) {
 
 ScenesDone compare_on_terminal(const std::vector<fs::path>& files, CompareOptions options, const Common& common,
                                const CompareOutput& output) {
-    options.command = common.command;
-    options.threads = thread_count();
-    ScenesDone done;
-    {
-        const Terminal terminal(common.quiet);
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        options.warn     = [&](const std::string& what) { terminal.warn(what); };
-        options.add_page = write_scene_page;
-        // Whatever happens to this run, the first page fits the folders beside it; and it shows the scenes that are done,
-        // in a twentieth of the time at most.
-        using Clock            = std::chrono::steady_clock;
-        const fs::path first   = options.out / "index.html";
-        Clock::time_point next = Clock::now() + std::chrono::seconds(5);  // a short run writes its pages at its end
-        options.scene_done     = [&, next, count = 0]() mutable {
-            const Clock::time_point begun = Clock::now();
-            const std::string so_far      = fmt::format("{} of {} scenes", ++count, files.size());
-            if (begun < next && links_hold(first)) return;
-            try {
-                write_report({options.out}, options.out, {.so_far = so_far, .language = output.language});
-            } catch (const InputError&) {  // an older result beside is not readable
-            }
-            next = Clock::now() + 20 * (Clock::now() - begun);
-        };
-        done = compare_scenes(files, options);
-    }
+    options.add_page = write_scene_page;
+    // Whatever happens to this run, the first page fits the folders beside it; and it shows the scenes that are done, in
+    // a twentieth of the time at most.
+    using Clock            = std::chrono::steady_clock;
+    const fs::path first   = options.out / "index.html";
+    Clock::time_point next = Clock::now() + std::chrono::seconds(5);  // a short run writes its pages at its end
+    options.scene_done     = [&, next, count = 0]() mutable {
+        const Clock::time_point begun = Clock::now();
+        const std::string so_far      = fmt::format("{} of {} scenes", ++count, files.size());
+        if (begun < next && links_hold(first)) return;
+        try {
+            write_report({options.out}, options.out, {.so_far = so_far, .language = output.language});
+        } catch (const InputError&) {  // an older result beside is not readable
+        }
+        next = Clock::now() + 20 * (Clock::now() - begun);
+    };
+    ScenesDone done = on_terminal(common, options, [&] { return compare_scenes(files, options); });
     std::vector<fs::path> folders;
     for (const std::string& name : done.names) folders.push_back(options.out / name);
     const auto write_pages = [&](const char* so_far) {
@@ -99,28 +88,13 @@ int exit_code(const ScenesDone& done) {
 }
 
 LaddersRecord climb_on_terminal(LadderOptions options, const Common& common) {
-    options.command = common.command;
-    options.threads = thread_count();
-    LaddersRecord record;
-    {
-        const Terminal terminal(common.quiet);
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record           = climb_ladders(options);
-    }
+    LaddersRecord record = on_terminal(common, options, [&] { return climb_ladders(options); });
     for (const ListedFailureRecord& failed : record.failed) print_error("{}\n", failed_climb_in_words(failed));
     return record;
 }
 
 SweepDone sweep_on_terminal(SweepOptions options, const Common& common) {
-    options.command = common.command;
-    options.threads = thread_count();
-    SweepDone done;
-    {
-        const Terminal terminal(common.quiet);
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        options.warn     = [&](const std::string& what) { terminal.warn(what); };
-        done             = sweep(options);
-    }
+    SweepDone done = on_terminal(common, options, [&] { return sweep(options); });
     write_records(options, done);
     for (const std::string& message : done.failed) print_error("{}\n", message);
     return done;

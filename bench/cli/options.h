@@ -6,7 +6,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -18,6 +17,7 @@
 #include "umbra/bench/run/budget.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
+#include "umbra/core/base/parallel.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -84,7 +84,20 @@ void add_json(CLI::App& app, bool& as_json, const std::string& instead_of = "the
 template <class Work>
 auto on_terminal(const Common& common, const Work& work) {
     const Terminal terminal(common.quiet);
-    return work(std::function<void(const std::string&)>([&](const std::string& what) { terminal.progress(what); }));
+    return work([&](const std::string& what) { terminal.progress(what); });
+}
+
+/// work() with `options` that know the command line and the number of threads, and put progress and warnings on the
+/// terminal, as far as they have members for that. Returns what `work` returns.
+template <class Options, class Work>
+auto on_terminal(const Common& common, Options& options, const Work& work) {
+    const Terminal terminal(common.quiet);
+    if constexpr (requires { options.command; }) options.command = common.command;
+    if constexpr (requires { options.threads; }) options.threads = thread_count();
+    if constexpr (requires { options.progress; })
+        options.progress = [&](const std::string& what) { terminal.progress(what); };
+    if constexpr (requires { options.warn; }) options.warn = [&](const std::string& what) { terminal.warn(what); };
+    return work();
 }
 
 /// The record where it is asked for, otherwise text(), which is not called where --quiet leaves it out.

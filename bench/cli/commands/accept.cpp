@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
 
-#include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
-#include "umbra/bench/cli/streams.h"
-#include "umbra/bench/cli/terminal.h"
+#include "umbra/bench/cli/options.h"
 #include "umbra/bench/golden/golden.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/chosen.h"
@@ -26,9 +23,7 @@ void print_change(const GoldenChange& change) {
 }
 
 std::string summary(const std::vector<GoldenChange>& changes, const AcceptLine& line) {
-    const auto count = [&](GoldenChange::Kind kind) {
-        return std::count_if(changes.begin(), changes.end(), [&](const GoldenChange& c) { return c.kind == kind; });
-    };
+    const auto count = [&](GoldenChange::Kind kind) { return std::ranges::count(changes, kind, &GoldenChange::kind); };
     if (changes.empty()) return "nothing changed";
     const auto failed = count(GoldenChange::Kind::failed);
     return fmt::format(
@@ -52,20 +47,14 @@ int accept(AcceptLine line, const Common& common) {
             all.push_back(change);
         }
     };
-    for (const std::filesystem::path& scene : scenes) {
-        std::vector<GoldenChange> changes;
-        {
-            const Terminal terminal(common.quiet);
-            terminal.progress(scene.stem().string());
-            changes = golden_changes(scene, line.options);
-        }
-        add(changes);
-    }
+    for (const std::filesystem::path& scene : scenes)
+        add(on_terminal(common, [&](const auto& progress) {
+            progress(scene.stem().string());
+            return golden_changes(scene, line.options);
+        }));
     add(golden_leftovers(scenes, line.options));
     if (!common.quiet) print_out("{}\n", summary(all, line));
-    const bool failed =
-        std::any_of(all.begin(), all.end(), [](const GoldenChange& c) { return c.kind == GoldenChange::Kind::failed; });
-    if (failed) return kInternal;
+    if (std::ranges::count(all, GoldenChange::Kind::failed, &GoldenChange::kind) > 0) return kInternal;
     return line.only_check && !all.empty() ? kNo : kDone;
 }
 

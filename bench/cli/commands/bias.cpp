@@ -5,7 +5,6 @@
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/bench/studies/bias/bias_record.h"
-#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -18,17 +17,12 @@ struct BiasLine {
 
 int bias(BiasLine line, const Common& common) {
     BiasOptions& options = line.options;
-    options.command      = common.command;
-    options.threads      = thread_count();
     const auto files = line.scenes.empty() ? canonical_scenes(scenes_folder()) : scene_files(line.scenes, common.up);
     check_bias_map(options.map, default_bias_grid());
     check_writable_beside(options.out, {"bias.csv"});
     const PlaceLock lock = PlaceLock::inside(options.out);
     std::vector<std::string> failed;
-    const BiasRecord record = on_terminal(common, [&](const auto& progress) {
-        options.progress = progress;
-        return study_biases(files, options, failed);
-    });
+    const BiasRecord record = on_terminal(common, options, [&] { return study_biases(files, options, failed); });
     if (line.as_json)
         print_out("{}", json_text(to_record(record)));
     else if (!common.quiet && !record.bias.empty())

@@ -54,11 +54,10 @@ Checked asked_for(const ContenderLine& line) {
 /// Prints the rows of the gate, and calls save(), which returns a sentence for people, where all are passed.
 int print_gate(const MethodInfo& method, const ContenderLine& line, const Common& common,
                const std::function<std::string()>& save) {
-    const std::vector<GateRow> rows =
-        on_terminal(common, [&](const std::function<void(const std::string&)>& tell) { return gate(method, tell); });
-    const bool passed       = std::ranges::all_of(rows, &GateRow::passed);
-    const std::string saved = passed ? save() : "";
-    Json found              = to_record(head_record(common.command));
+    const std::vector<GateRow> rows = on_terminal(common, [&](const auto& progress) { return gate(method, progress); });
+    const bool passed               = std::ranges::all_of(rows, &GateRow::passed);
+    const std::string saved         = passed ? save() : "";
+    Json found                      = to_record(head_record(common.command));
     found["contender"] = method.title, found["passed"] = passed;
     for (const GateRow& row : rows)
         found["rows"].push_back({{"question", row.question}, {"passed", row.passed}, {"found", row.found}});

@@ -33,11 +33,8 @@ int diff(DiffLine line, const Common& common) {
     if (line.embed) workshop.emplace();
     const std::filesystem::path page = workshop ? workshop->path() / "page.html" : line.html;
     if (!line.html.empty()) options.pictures = diff_pictures_folder(page);
-    DiffSet set;
-    {
-        const Terminal terminal(common.quiet);
-        set = diff_set(line.a, line.b, options, [&](const std::string& name) { terminal.progress(name); });
-    }
+    const DiffSet set =
+        on_terminal(common, [&](const auto& progress) { return diff_set(line.a, line.b, options, progress); });
     StagedFiles staged;
     if (!line.junit.empty()) staged.write(line.junit, diff_set_junit(set));
     if (!line.markdown.empty()) staged.write(line.markdown, diff_set_markdown(set));

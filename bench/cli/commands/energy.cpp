@@ -17,14 +17,10 @@ struct EnergyLine {
 
 int energy(const EnergyLine& line, const Common& common) {
     EnergyOptions options                          = line.options;
-    options.command                                = common.command;
     options.method                                 = line.method.choice();
     const std::vector<std::filesystem::path> files = scene_files(line.scenes, common.up);
     StagedFolder staged(line.out);
-    const Json record = on_terminal(common, [&](const auto& progress) {
-        options.progress = progress;
-        return measure_energy(files, options, staged.folder());
-    });
+    const Json record = on_terminal(common, options, [&] { return measure_energy(files, options, staged.folder()); });
     write_text(staged.folder() / "results.json", json_text(record));
     staged.commit();
     print_record(line.as_json, common, record, [&] { return energy_text(record); });

@@ -4,7 +4,6 @@
 #include "umbra/bench/cli/options.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
-#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -20,10 +19,7 @@ int growth(GrowthLine line, const Common& common) {
     command.threads        = thread_count();
     check_writable_beside(command.out);
     const PlaceLock lock      = PlaceLock::inside(command.out);
-    const GrowthRecord record = on_terminal(common, [&](const auto& progress) {
-        command.options.progress = progress;
-        return measure_growth(command);
-    });
+    const GrowthRecord record = on_terminal(common, command.options, [&] { return measure_growth(command); });
     if (line.as_json)
         print_out("{}", json_text(to_record(record)));
     else if (!common.quiet && !record.growth.empty())

@@ -5,7 +5,6 @@
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/place_lock.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -26,10 +25,8 @@ int motion(MotionLine line, const Common& common) {
     check_writable_beside(command.out);
     const PlaceLock lock = PlaceLock::inside(command.out);
     std::vector<std::string> unreadable;
-    const MotionRecord record = on_terminal(common, [&](const auto& progress) {
-        command.options.progress = progress;
-        return measure_motion(files, command, unreadable);
-    });
+    const MotionRecord record =
+        on_terminal(common, command.options, [&] { return measure_motion(files, command, unreadable); });
     if (line.as_json)
         print_out("{}", json_text(to_record(record)));
     else if (!common.quiet && !record.motion.empty())

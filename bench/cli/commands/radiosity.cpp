@@ -17,10 +17,8 @@ struct RadiosityLine {
 
 int radiosity(const RadiosityLine& line, const Common& common) {
     ExchangeOptions options      = line.options;
-    options.command              = common.command;
     const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size);
-    const ExchangeRecord record  = on_terminal(common, [&](const auto& progress) {
-        options.progress = progress;
+    const ExchangeRecord record  = on_terminal(common, options, [&] {
         return write_study(
              line.out, [&](const std::filesystem::path& folder) { return exchange_light(prepared, options, folder); },
              exchange_report);

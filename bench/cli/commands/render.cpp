@@ -15,14 +15,12 @@ struct RenderLine {
 
 int render(const RenderLine& line, const Common& common) {
     RenderOptions options    = line.options;
-    options.command          = common.command;
     const std::string ending = options.out.extension().string();
     if (ending != ".exr" && ending != ".png")
         throw UsageError(
             fmt::format("-o {}: not a picture format, expected FILE.exr or FILE.png", options.out.string()));
-    const Terminal terminal(common.quiet);
-    options.warn          = [&](const std::string& what) { terminal.warn(what); };
-    const Service service = render_scene(scene_file(line.scene, common.up), options);
+    const Service service =
+        on_terminal(common, options, [&] { return render_scene(scene_file(line.scene, common.up), options); });
     if (service) return kDone;
     print_error("{} does not serve this scene: {}\n", options.method, service.why);
     return kNo;

@@ -183,8 +183,8 @@ int report_course(const ReportLine& line, const Common& common) {
     options.out = line.out, options.command = common.command, options.threads = thread_count();
     options.pixel_samples             = kPictureSamples;
     options.budget                    = line.budget;
-    std::vector<std::string> problems = on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
-        options.progress = tell;
+    std::vector<std::string> problems = on_terminal(common, [&](const auto& progress) {
+        options.progress = progress;
         return write_course(course, options);
     });
     for (const std::string& problem : problems) print_error("{}\n", problem);

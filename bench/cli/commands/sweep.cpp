@@ -11,7 +11,6 @@
 #include "umbra/bench/sweep/grid.h"
 #include "umbra/bench/sweep/sweep_record.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
 
 namespace umbra {
 namespace {
@@ -41,8 +40,6 @@ void print_list(const SweepOptions& options, std::size_t parts) {
 int sweep(SweepLine line, const Common& common) {
     SweepOptions& options = line.options;
     return_scenes(options.plan.settings, line.scenes);
-    options.command = common.command;
-    options.threads = thread_count();
     if (!line.merge.empty() && (!line.scenes.empty() || !options.plan.settings.empty()))
         throw UsageError("sweep: --merge takes scenes and settings from the folders, expected none beside it");
     if (line.merge.empty() && line.scenes.empty()) throw UsageError("sweep: SCENE is required");
@@ -62,10 +59,7 @@ int sweep(SweepLine line, const Common& common) {
     if (!line.pack.empty()) {
         const Pack pack = parse_pack(line.pack);
         std::vector<std::string> failed;
-        on_terminal(common, [&](const auto& progress) {
-            options.progress = progress;
-            return sweep_pack(options, pack, failed);
-        });
+        on_terminal(common, options, [&] { return sweep_pack(options, pack, failed); });
         for (const std::string& message : failed) print_error("{}\n", message);
         return failed.empty() ? kDone : kInternal;
     }

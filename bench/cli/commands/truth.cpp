@@ -27,11 +27,7 @@ Action truth_command(CLI::App& app, const Common& common) {
             std::filesystem::weakly_canonical(order.withhold) == std::filesystem::weakly_canonical(order.out))
             throw UsageError("--withhold: is the folder of -o, expected another one for the answers");
         order.scenes             = scene_files(line->scenes, common.up);
-        order.command            = common.command;
-        const TruthSetRecord set = on_terminal(common, [&](const std::function<void(const std::string&)>& tell) {
-            order.progress = tell;
-            return write_truth(order);
-        });
+        const TruthSetRecord set = on_terminal(common, order, [&] { return write_truth(order); });
         std::uint64_t asked      = 0;
         for (const TruthSceneRecord& scene : set.scenes) asked += scene.asked;
         if (!common.quiet)

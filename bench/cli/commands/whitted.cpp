@@ -30,7 +30,6 @@ EyePlaces places_named(const std::string& name) {
 
 int whitted(const WhittedLine& line, const Common& common) {
     WhittedOptions options = line.options;
-    options.command        = common.command;
     options.places         = places_named(line.places);
     options.method         = line.method.choice();
     PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size, 1, Work::picture);
@@ -47,15 +46,12 @@ int whitted(const WhittedLine& line, const Common& common) {
             return kNo;
         }
     }
-    WhittedRecord record;
-    {
-        const Terminal terminal(common.quiet);
-        pass_warnings(prepared.scene, [&](const std::string& warning) { terminal.warn(warning); });
-        options.progress = [&](const std::string& what) { terminal.progress(what); };
-        record           = write_study(
-                      line.out, [&](const std::filesystem::path& folder) { return trace_whitted(prepared, options, folder); },
-                      whitted_report);
-    }
+    pass_warnings(prepared.scene, [&](const std::string& warning) { Terminal(common.quiet).warn(warning); });
+    const WhittedRecord record = on_terminal(common, options, [&] {
+        return write_study(
+            line.out, [&](const std::filesystem::path& folder) { return trace_whitted(prepared, options, folder); },
+            whitted_report);
+    });
     print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(whitted_report(record)), (line.out / "index.html").string());
     });
