@@ -1,5 +1,4 @@
 #include "umbra/bench/cli/command.h"
-#include "umbra/bench/cli/streams.h"
 
 #include <fmt/format.h>
 
@@ -7,6 +6,8 @@
 #include <array>
 #include <filesystem>
 
+#include "umbra/bench/cli/names.h"
+#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/contenders/contender.h"
 #include "umbra/bench/run/describe.h"
 #include "umbra/core/base/error.h"
@@ -25,8 +26,7 @@ constexpr std::array kCommands = {
 
 /// The first word that is no option, empty where that is for CLI11 to say. Throws UsageError where it names no command.
 std::string check_command(int argc, const char* const* argv) {
-    std::vector<std::string> known;
-    for (const Command& command : kCommands) known.emplace_back(command.name);
+    const std::vector<std::string> known = names_of_entries(kCommands);
     for (int i = 1; i < argc; ++i) {
         std::string word = argv[i];
         if (word == "--help" || word == "-h" || word == "--version") return "";

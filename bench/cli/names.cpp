@@ -10,6 +10,7 @@
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/base/number_from.h"
+#include "umbra/core/base/paths.h"
 #include "umbra/core/base/suggest.h"
 #include "umbra/core/io/scene_io.h"
 #include "umbra/shadows/method.h"
@@ -24,16 +25,11 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-bool is_file(const std::string& name) {
-    std::error_code ignored;
-    return fs::is_regular_file(name, ignored);
-}
-
 void return_to(std::vector<std::string>& positionals, std::vector<std::string>& list,
                const std::function<bool(const std::string&)>& is_positional) {
-    const std::vector<std::string> methods = method_names();
+    const std::vector<std::string> known = names_of_entries(methods());
     const auto taken = std::stable_partition(list.begin(), list.end(), [&](const std::string& word) {
-        return contains(methods, word.substr(0, word.find(':'))) || !is_positional(word);
+        return contains(known, word.substr(0, word.find(':'))) || !is_positional(word);
     });
     positionals.insert(positionals.end(), taken, list.end());
     list.erase(taken, list.end());
@@ -69,18 +65,6 @@ std::vector<std::string> scene_names() {
             others.push_back(name);
     std::ranges::sort(others);
     names.insert(names.end(), others.begin(), others.end());
-    return names;
-}
-
-std::vector<std::string> method_names() {
-    std::vector<std::string> names;
-    for (const MethodInfo* info : methods()) names.emplace_back(info->name);
-    return names;
-}
-
-std::vector<std::string> ladder_names() {
-    std::vector<std::string> names;
-    for (const Ladder* ladder : ladders()) names.emplace_back(ladder->name);
     return names;
 }
 
@@ -123,10 +107,8 @@ fs::path scene_file(const std::string& scene, const std::string& up) {
 
 std::vector<fs::path> scene_files(const std::vector<std::string>& scenes, const std::string& up) {
     std::vector<fs::path> files;
-    for (const std::string& scene : scenes) {
-        const std::vector<std::string> frames = frames_of(scene);
-        for (const std::string& frame : frames) files.push_back(scene_file(frame));
-    }
+    for (const std::string& scene : scenes)
+        for (const std::string& frame : frames_of(scene)) files.push_back(scene_file(frame));
     const auto is_mesh = [](const fs::path& file) { return is_mesh_file(split_frame(file.string()).file); };
     // Where none is, the first says so.
     const bool all = std::ranges::none_of(files, is_mesh);
@@ -141,7 +123,7 @@ void return_scenes(std::vector<std::string>& methods, std::vector<std::string>& 
 }
 
 void return_ladders(std::vector<std::string>& methods, std::vector<std::string>& positionals) {
-    const std::vector<std::string> known = ladder_names();
+    const std::vector<std::string> known = names_of_entries(ladders());
     return_to(positionals, methods,
               [&](const std::string& word) { return is_ladder_file(word) || contains(known, word); });
 }

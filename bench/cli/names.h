@@ -15,8 +15,17 @@ namespace umbra {
 [[nodiscard]] std::vector<std::string> canonical_names();  ///< empty where the list of them cannot be read
 /// All .json files of scenes_folder(): the canonical scenes in their order, then the others in the alphabet's.
 [[nodiscard]] std::vector<std::string> scene_names();
-[[nodiscard]] std::vector<std::string> method_names();
-[[nodiscard]] std::vector<std::string> ladder_names();
+/// The names of entries, such as those of methods(), or of what they point to.
+template <class Entries>
+[[nodiscard]] std::vector<std::string> names_of_entries(const Entries& entries) {
+    std::vector<std::string> names;
+    for (const auto& entry : entries)
+        if constexpr (requires { entry->name; })
+            names.emplace_back(entry->name);
+        else
+            names.emplace_back(entry.name);
+    return names;
+}
 
 /// The file that SCENE names: itself where there is such a file; else the scene of that name in scenes_folder(); else,
 /// where it looks like a file name (a separator or an extension), itself. Throws UsageError with near matches.

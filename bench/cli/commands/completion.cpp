@@ -4,12 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "umbra/bench/cli/command.h"
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/streams.h"
+#include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/motion/growth_family.h"
-#include "umbra/core/base/trimmed.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
@@ -149,7 +150,8 @@ std::string kinds(const CLI::App& app, const std::string& command) {
     std::string cases;
     for (const CLI::Option* option : app.get_options()) {
         if (option->get_positional() || option->get_items_expected_max() == 0) continue;
-        const std::string kind = std::string(split(option->get_type_name(), ':')[0]) +
+        const std::string type = option->get_type_name();  // with limits behind a colon
+        const std::string kind = type.substr(0, type.find(':')) +
                                  (option->get_items_expected_max() > 1 && !option->get_delimiter() ? "+" : "");
         for (const std::string& name : option->get_lnames())
             cases += fmt::format("        {}' --{}') echo '{}' ;;\n", command, name, kind);
@@ -162,24 +164,15 @@ std::string kinds(const CLI::App& app, const std::string& command) {
 std::string method_functions() {
     std::string settings, choices;
     for (const MethodInfo* info : methods()) {
-        Names names;
+        settings += print_line(std::string(info->name), names_of_entries(info->parameters));
         for (const Parameter& p : info->parameters) {
-            names.emplace_back(p.name);
             const std::string key = fmt::format("{}:{}", info->name, p.name);
-            const auto words      = split(p.choices, '|');
-            if (p.type == Parameter::Type::choice) choices += print_line(key, Names(words.begin(), words.end()));
-            if (p.type == Parameter::Type::boolean) choices += print_line(key, {"true", "false"});
+            std::string words     = p.type == Parameter::Type::boolean ? "true|false" : std::string(p.choices);
+            std::ranges::replace(words, '|', ' ');
+            if (!words.empty()) choices += print_line(key, {words});
         }
-        settings += print_line(std::string(info->name), names);
     }
     return function("_umbra_settings", settings) + function("_umbra_choices", choices);
-}
-
-/// What can grow.
-Names size_names() {
-    Names names;
-    for (const GrowthFamily& family : growth_families()) names.emplace_back(family.name);
-    return names;
 }
 
 std::string app_functions(const CLI::App& app) {
@@ -202,23 +195,22 @@ std::string app_functions(const CLI::App& app) {
     }
     options += print_line("''", option_names(app));
     kind_cases += kinds(app, "*");
-    return function("_umbra_list", print_line("COMMANDS", names) + print_line("METHODS", method_names()) +
-                                       print_line("LADDERS", ladder_names()) + print_line("SIZES", size_names()) +
+    return function("_umbra_list", print_line("COMMANDS", names) + print_line("METHODS", names_of_entries(methods())) +
+                                       print_line("LADDERS", names_of_entries(ladders())) +
+                                       print_line("SIZES", names_of_entries(growth_families())) +
                                        print_line("SCENES", scene_names())) +
            function("_umbra_options", options) + function("_umbra_kind", kind_cases) +
            function("_umbra_positional", positionals);
 }
 
-enum class Shell : std::uint8_t { bash, zsh };
-
 /// A script to be sourced (bash), or sourced or put on $fpath as _umbra (zsh). It completes commands, options, methods
 /// with their settings and choices, ladders, scenes and files, for `umbra` in any folder, and calls no program. `app` is
 /// the whole command line (define_commands).
-std::string completion_script(const CLI::App& app, Shell shell) {
-    const bool bash = shell == Shell::bash;
+std::string completion_script(const CLI::App& app, const std::string& shell) {
+    const bool bash = shell == "bash";
     return fmt::format("{}\n# Completion of umbra, printed by: umbra completion {}\n{}{}{}{}",
-                       bash ? "# bash" : "#compdef umbra", bash ? "bash" : "zsh", app_functions(app),
-                       method_functions(), kFunctions, bash ? kBash : kZsh);
+                       bash ? "# bash" : "#compdef umbra", shell, app_functions(app), method_functions(), kFunctions,
+                       bash ? kBash : kZsh);
 }
 
 }  // namespace
@@ -230,7 +222,7 @@ Action completion_command(CLI::App& app, const Common& /*common*/) {
         "bash: source <(umbra completion bash), in ~/.bashrc to keep it.\n"
         "zsh: source <(umbra completion zsh) after compinit, in ~/.zshrc to keep it.");
     return [shell, &app] {
-        print_out("{}", completion_script(*app.get_parent(), *shell == "bash" ? Shell::bash : Shell::zsh));
+        print_out("{}", completion_script(*app.get_parent(), *shell));
         return int{kDone};
     };
 }

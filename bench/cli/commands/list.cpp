@@ -68,13 +68,6 @@ void print(const std::vector<MetricRecord>& all) {
         print_out("{:<28}{}{}\n", m.name, m.doc, m.unit.empty() ? "" : fmt::format(" ({})", m.unit));
 }
 
-template <class Names>
-std::vector<std::string> names_of(const Names& entries) {
-    std::vector<std::string> names;
-    for (const auto& entry : entries) names.emplace_back(entry.name);
-    return names;
-}
-
 int list_all(bool as_json) {
     ListRecord record{.version = std::string(version()), .scenes = canonical_names(), .metrics = metric_records()};
     for (const MethodInfo* info : methods()) record.methods.push_back(method_info_record(*info));
@@ -85,14 +78,13 @@ int list_all(bool as_json) {
     }
     for (const MethodInfoRecord& m : record.methods) print(m);
     print_out("\nScenes: {}\nMetrics: {}\nLadders: {}\n", fmt::join(record.scenes, " "),
-              fmt::join(names_of(record.metrics), " "), fmt::join(ladder_names(), " "));
+              fmt::join(names_of_entries(record.metrics), " "), fmt::join(names_of_entries(ladders()), " "));
     return kDone;
 }
 
 /// One entry in full. Throws UsageError where nothing has that name.
 int list_one(const std::string& name, bool as_json) {
-    const auto is_it = [&](const auto* entry) { return entry->name == name; };
-    const auto show  = [&](const char* kind, const auto& entry) {
+    const auto show = [&](const char* kind, const auto& entry) {
         if (as_json)
             print_out("{}", json_text({{kind, to_record(entry)}}));
         else
@@ -100,15 +92,16 @@ int list_one(const std::string& name, bool as_json) {
         return kDone;
     };
     if (name == "metrics") return show("metrics", metric_records());
-    if (const auto m = std::find_if(methods().begin(), methods().end(), is_it); m != methods().end())
+    if (const auto m = std::ranges::find(methods(), name, &MethodInfo::name); m != methods().end())
         return show("method", method_info_record(**m));
-    if (const auto l = std::find_if(ladders().begin(), ladders().end(), is_it); l != ladders().end())
+    if (const auto l = std::ranges::find(ladders(), name, &Ladder::name); l != ladders().end())
         return show("ladder", ladder_info(**l));
     std::vector<std::string> known = canonical_names();
     if (std::find(known.begin(), known.end(), name) != known.end())
         return show("scene", scene_record(load_scene(scene_file(name))));
 
-    for (const auto& names : {method_names(), ladder_names()}) known.insert(known.end(), names.begin(), names.end());
+    for (const auto& names : {names_of_entries(methods()), names_of_entries(ladders())})
+        known.insert(known.end(), names.begin(), names.end());
     throw UsageError(
         fmt::format("\"{}\" is not a method, ladder or canonical scene{}", name, did_you_mean(name, known)));
 }
