@@ -157,16 +157,25 @@ LaddersRecord climb_ladders(const LadderOptions& options) {
     std::filesystem::create_directory(breaks);
     std::vector<Climbed> climbed = climb_all(chosen, methods_chosen, options);
     Steps steps(chosen.size(), options.progress);
-    const auto progress = [&](const std::string& what) { steps.show(what); };
+    const auto show_break = [&](const Ladder& ladder, double rung, const MethodChoice& method, const std::string& name,
+                                ClimbRecord& of) {
+        steps.show(fmt::format("{}: what breaks {}", ladder.name, method.text()));
+        try {
+            of.shown = write_break(breaks, name, ladder, rung, method);
+        } catch (const InputError&) {  // a file that cannot be written
+            throw;
+        } catch (...) {
+            add_failed(ladder, method.text());
+        }
+    };
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         const Ladder* ladder = chosen[i];
         steps.next();
-        const auto fail = [&](const std::string& method) { add_failed(*ladder, method); };
         try {
             if (climbed[i].stopped) std::rethrow_exception(climbed[i].stopped);
             LadderRun& run = *climbed[i].run;
             if (run.methods.size() > 1) {
-                progress(fmt::format("{}: times", ladder->name));
+                steps.show(fmt::format("{}: times", ladder->name));
                 run.first_rung_ms = time_first_rung(*ladder, run.methods, {.most = options.budget});
             }
             LadderRecord entry = ladder_record(run);
@@ -177,37 +186,23 @@ LaddersRecord climb_ladders(const LadderOptions& options) {
                     continue;
                 }
                 const std::optional<std::size_t> breaks_at = climb(run, m).breaks_at;
-                if (!breaks_at || !run.rungs[*breaks_at].outcomes[m].ran()) continue;
-                progress(fmt::format("{}: what breaks {}", ladder->name, run.methods[m].text()));
-                try {
-                    entry.methods[m].shown =
-                        write_break(breaks, break_name(run, m), *ladder, run.rungs[*breaks_at].value, run.methods[m]);
-                } catch (const InputError&) {  // a file that cannot be written
-                    throw;
-                } catch (...) {
-                    fail(run.methods[m].text());
-                }
+                if (breaks_at && run.rungs[*breaks_at].outcomes[m].ran())
+                    show_break(*ladder, run.rungs[*breaks_at].value, run.methods[m], break_name(run, m),
+                               entry.methods[m]);
             }
             record.ladders.push_back(std::move(entry));
         } catch (const InputError&) {
             throw;
         } catch (...) {
-            fail("the ladder");
+            add_failed(*ladder, "the ladder");
         }
     }
     for (const TextbookBreak& best : textbook) {
         if (best.gain == 0) continue;
         const MethodChoice& method = methods_chosen[best.method];
-        progress(fmt::format("{}: what breaks {}", best.ladder->name, method.text()));
-        try {
-            record.ladders[best.entry].methods[best.method].shown =
-                write_break(breaks, fmt::format("{}.{}-{}", best.ladder->name, method.info->name, kTextbook),
-                            *best.ladder, best.rung, method);
-        } catch (const InputError&) {
-            throw;
-        } catch (...) {
-            add_failed(*best.ladder, method.text());
-        }
+        show_break(*best.ladder, best.rung, method,
+                   fmt::format("{}.{}-{}", best.ladder->name, method.info->name, kTextbook),
+                   record.ladders[best.entry].methods[best.method]);
     }
     write_text(staged.folder() / "results.json", json_text(to_record(record)));
     write_ladder_page(staged.folder());
