@@ -100,12 +100,12 @@ void write_study_files(const StudyReport& report, Record& record, const std::fil
     write_study_page(report, record.head, folder, staged);
 }
 
-/// Writes the folder `out` whole or not at all: `make` writes pictures into the folder that it is given and returns the
-/// record, `report` says what is shown of it. Returns the record. Throws InputError, and what the two throw.
-template <class Make, class Report>
-auto write_study(const std::filesystem::path& out, const Make& make, const Report& report) {
+/// Writes the folder `out` whole or not at all: `make`, called with `given` and a folder, writes pictures into that and
+/// returns the record, `report` says what is shown of it. Returns the record. Throws InputError, and what the two throw.
+template <class Make, class Report, class... Given>
+auto write_study(const std::filesystem::path& out, const Make& make, const Report& report, const Given&... given) {
     StagedFolder folder(out);
-    auto record = make(folder.folder());
+    auto record = make(given..., folder.folder());
     StagedFiles files;
     write_study_files(report(record), record, folder.folder(), files);
     files.commit();

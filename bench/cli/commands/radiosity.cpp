@@ -18,11 +18,8 @@ struct RadiosityLine {
 int radiosity(const RadiosityLine& line, const Common& common) {
     ExchangeOptions options      = line.options;
     const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size);
-    const ExchangeRecord record  = on_terminal(common, options, [&] {
-        return write_study(
-             line.out, [&](const std::filesystem::path& folder) { return exchange_light(prepared, options, folder); },
-             exchange_report);
-    });
+    const ExchangeRecord record  = on_terminal(
+         common, options, [&] { return write_study(line.out, exchange_light, exchange_report, prepared, options); });
     print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(exchange_report(record)), (line.out / "index.html").string());
     });

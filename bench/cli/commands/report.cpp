@@ -98,8 +98,7 @@ void study_topic(const LectureShow& show, const fs::path& file, const fs::path& 
             options.bodies.reset();
         else
             options.command += " --formula";
-        write_study(
-            folder, [&](const fs::path& to) { return trace_whitted(prepared, options, to); }, whitted_report);
+        write_study(folder, trace_whitted, whitted_report, prepared, options);
     } else {
         const ExchangeOptions options{.size = 0.09, .steps = 2500, .command = start + " --patch 0.09 --steps 2500"};
         write_study(

@@ -31,9 +31,7 @@ int shading(const ShadingLine& line, const Common& common) {
             print_error("{} does not serve this scene: {}\n", options.method->text(), service.why);
             return kNo;
         }
-    const ShadingRecord record = write_study(
-        line.out, [&](const std::filesystem::path& folder) { return compare_shading(prepared, options, folder); },
-        shading_report);
+    const ShadingRecord record = write_study(line.out, compare_shading, shading_report, prepared, options);
     print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(shading_report(record)), (line.out / "index.html").string());
     });

@@ -47,11 +47,8 @@ int whitted(const WhittedLine& line, const Common& common) {
         }
     }
     pass_warnings(prepared.scene, [&](const std::string& warning) { Terminal(common.quiet).warn(warning); });
-    const WhittedRecord record = on_terminal(common, options, [&] {
-        return write_study(
-            line.out, [&](const std::filesystem::path& folder) { return trace_whitted(prepared, options, folder); },
-            whitted_report);
-    });
+    const WhittedRecord record = on_terminal(
+        common, options, [&] { return write_study(line.out, trace_whitted, whitted_report, prepared, options); });
     print_record(line.as_json, common, to_record(record), [&] {
         return fmt::format("{}{}\n", study_text(whitted_report(record)), (line.out / "index.html").string());
     });
