@@ -17,9 +17,11 @@
 namespace umbra {
 namespace {
 
-struct SilhouetteOptions {
-    std::uint64_t directions = 0;  ///< 0: not asked for
-    std::uint64_t seed       = 1;
+struct InspectLine {
+    std::string scene;
+    std::uint64_t silhouettes = 0;  ///< random directions of light; 0: not asked for
+    std::uint64_t seed        = 1;
+    bool as_json              = false;
 };
 
 struct ServedRecord {
@@ -76,15 +78,15 @@ std::string what_is_off(const ObjectRecord& o) {
     return text;
 }
 
-InspectRecord inspect_record(const Scene& scene, const SceneFacts& facts, const SilhouetteOptions& silhouettes) {
+InspectRecord inspect_record(const Scene& scene, const SceneFacts& facts, const InspectLine& line) {
     InspectRecord record{.version = std::string(version()),
                          .scene   = scene_record(scene),
                          .facts   = facts_record(facts),
                          .lights  = light_records(facts)};
     for (const MethodInfo* info : methods())
         record.methods.push_back({std::string(info->name), service_record(verdict(*info->make(), facts))});
-    if (silhouettes.directions > 0)
-        for (const SilhouetteStatistics& s : silhouette_statistics(scene, silhouettes.directions, silhouettes.seed))
+    if (line.silhouettes > 0)
+        for (const SilhouetteStatistics& s : silhouette_statistics(scene, line.silhouettes, line.seed))
             record.silhouettes.push_back({s.object, s.mean, s.standard_error, s.directions});
     return record;
 }
@@ -122,16 +124,10 @@ std::string inspect_text(const InspectRecord& record) {
     return text;
 }
 
-struct InspectLine {
-    std::string scene;
-    SilhouetteOptions silhouettes;
-    bool as_json = false;
-};
-
 int inspect(const InspectLine& line, const Common& common) {
     const PreparedScene prepared =
         prepare_scene(scene_file(line.scene, common.up), {});  // with what only the picture shows
-    const InspectRecord record = inspect_record(prepared.scene, prepared.facts, line.silhouettes);
+    const InspectRecord record = inspect_record(prepared.scene, prepared.facts, line);
     print_out("{}", line.as_json ? json_text(to_record(record)) : without_controls(inspect_text(record)) + "\n");
     return kDone;
 }
@@ -143,11 +139,11 @@ Action inspect_command(CLI::App& app, const Common& common) {
     app.add_option("SCENE", line->scene, "Scene: a file (.json .gltf .glb .obj .nff .ply .off .stl) or a scene's name")
         ->type_name("")
         ->required();
-    app.add_option("--silhouettes", line->silhouettes.directions,
+    app.add_option("--silhouettes", line->silhouettes,
                    "Also give the mean number of silhouette edges over N random light directions")
         ->check(CLI::Range(std::uint64_t{2}, std::uint64_t{10'000'000}))
         ->type_name("N");
-    app.add_option("--seed", line->silhouettes.seed, "Seed of these directions")->type_name("N");
+    app.add_option("--seed", line->seed, "Seed of these directions")->type_name("N");
     app.add_flag("--json", line->as_json, "Print JSON");
     return [line, &common] { return inspect(*line, common); };
 }

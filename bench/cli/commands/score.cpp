@@ -25,9 +25,7 @@ Action score_command(CLI::App& app, const Common& common) {
         const std::vector<ScoreRecord> scores = score(line->set, answers);
         Json record                           = to_record(head_record(common.command));
         for (const ScoreRecord& each : scores) record["scores"].push_back(to_record(each));
-        Common aloud = common;  // the table is the result
-        aloud.quiet  = false;
-        print_record(line->as_json, aloud, record, [&] {
+        print_record(line->as_json, {}, record, [&] {  // aloud: the table is the result
             std::string text =
                 fmt::format("{:<16} {:<24} {:<12} {:>8} {:>9} {:>7} {:>7} {:>6} {:>8} {:>8} {:>9}\n", "answers",
                             "scene", "light", "points", "undefined", "shadow", "light", "edge", "mae", "rmse", "bias");

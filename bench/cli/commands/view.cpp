@@ -8,7 +8,6 @@
 
 #include "umbra/bench/cli/names.h"
 #include "umbra/bench/cli/options.h"
-#include "umbra/bench/cli/streams.h"
 #include "umbra/bench/view/view_server.h"
 #include "umbra/core/base/error.h"
 
@@ -19,24 +18,6 @@ struct ViewLine {
     std::string scene;
     bool open = false;
     ViewerOptions options;
-};
-
-/// The signals that end the program, kept from all threads that begin while this lives, for one that waits for them.
-class EndSignals {
-public:
-    EndSignals() {
-        sigemptyset(&signals_);
-        sigaddset(&signals_, SIGINT);
-        sigaddset(&signals_, SIGTERM);
-        pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-    }
-    void wait() const {
-        int which = 0;
-        sigwait(&signals_, &which);
-    }
-
-private:
-    sigset_t signals_{};
 };
 
 int view(ViewLine line, const Common& common) {
@@ -50,7 +31,11 @@ int view(ViewLine line, const Common& common) {
         throw UsageError(fmt::format("--methods: {} methods, expected one or two", options.methods.size()));
     for (const std::string& method : options.methods) static_cast<void>(parse_method(method).make());
     if (options.methods.empty()) options.methods = {"shadow_zbuffer"};
-    const EndSignals signals;
+    sigset_t end_signals{};  // kept from all threads that begin from here on, for one that waits for them
+    sigemptyset(&end_signals);
+    sigaddset(&end_signals, SIGINT);
+    sigaddset(&end_signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &end_signals, nullptr);
     ViewServer server(options);
     print_out("{}\n", server.address());
     flush_out();
@@ -59,9 +44,10 @@ int view(ViewLine line, const Common& common) {
         print_error("no browser was opened: open the address by hand\n");
     std::atomic<bool> ended = false;
     const std::jthread ends([&] {
-        signals.wait();
+        int which = 0;
+        sigwait(&end_signals, &which);
         server.stop();
-        signals.wait();  // a second time, while a method still works: nobody waits for it
+        sigwait(&end_signals, &which);  // a second time, while a method still works: nobody waits for it
         if (!ended) std::_Exit(128 + SIGINT);
     });
     server.serve();

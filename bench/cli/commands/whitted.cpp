@@ -24,14 +24,10 @@ std::string refusal(const MethodChoice& choice, const SceneFacts& facts) {
     return service ? refusal_of(*choice.info) : service.why;
 }
 
-EyePlaces places_named(const std::string& name) {
-    return *std::ranges::find(kEyePlaces, name, [](EyePlaces places) { return to_string(places); });
-}
-
 int whitted(const WhittedLine& line, const Common& common) {
     WhittedOptions options = line.options;
-    options.places         = places_named(line.places);
-    options.method         = line.method.choice();
+    options.places = *std::ranges::find(kEyePlaces, line.places, [](EyePlaces places) { return to_string(places); });
+    options.method = line.method.choice();
     PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size, 1, Work::picture);
     correct_warnings(prepared.scene);
     if (options.method)
