@@ -71,37 +71,7 @@ bool names_methods(const CLI::App& app, const std::string& command) {
            (has("--methods") || has("--with") || std::ranges::find(kOthers, command) != kOthers.end());
 }
 
-int parse_and_run(int argc, const char* const* argv, std::string& help) {
-    CLI::App app;
-    Common common;
-    const std::vector<Action> actions = define_commands(app, common);
-    common.command                    = "umbra";
-    for (int i = 1; i < argc; ++i) common.command += fmt::format(" {}", argv[i]);
-
-    const std::string command = check_command(argc, argv);
-    if (names_methods(app, command))
-        for (const std::string& problem : add_contenders()) print_error("warning: {}\n", problem);
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        const auto parsed = app.get_subcommands();
-        if (!parsed.empty()) help = parsed.front()->get_name() + " --help";
-        throw UsageError(explain(app, parsed.empty() ? app : *parsed.front(), error));
-    }
-    const ThreadLimit limit(common.threads);
-    const std::string name = app.get_subcommands().front()->get_name();
-    help                   = name + " --help";
-    refuse_empty_values(*app.get_subcommands().front());
-    for (std::size_t i = 0; i < kCommands.size(); ++i)
-        if (kCommands[i].name == name) return actions[i]();
-    return kInternal;
-}
-
-}  // namespace
-
-std::span<const Command> commands() { return kCommands; }
-
+/// Defines the whole command line on an empty `app`; returns the action of each command, in the order of kCommands.
 std::vector<Action> define_commands(CLI::App& app, Common& common) {
     app.description(
         "Umbra compares shadow algorithms: one scene, many methods, one question: which fraction of each light does "
@@ -141,6 +111,37 @@ std::vector<Action> define_commands(CLI::App& app, Common& common) {
         "The script ./umbra also has: setup, test, bench, oracle, mutants, faults, check, fuzz.");
     return actions;
 }
+
+int parse_and_run(int argc, const char* const* argv, std::string& help) {
+    CLI::App app;
+    Common common;
+    const std::vector<Action> actions = define_commands(app, common);
+    common.command                    = "umbra";
+    for (int i = 1; i < argc; ++i) common.command += fmt::format(" {}", argv[i]);
+
+    const std::string command = check_command(argc, argv);
+    if (names_methods(app, command))
+        for (const std::string& problem : add_contenders()) print_error("warning: {}\n", problem);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        const auto parsed = app.get_subcommands();
+        if (!parsed.empty()) help = parsed.front()->get_name() + " --help";
+        throw UsageError(explain(app, parsed.empty() ? app : *parsed.front(), error));
+    }
+    const ThreadLimit limit(common.threads);
+    const std::string name = app.get_subcommands().front()->get_name();
+    help                   = name + " --help";
+    refuse_empty_values(*app.get_subcommands().front());
+    for (std::size_t i = 0; i < kCommands.size(); ++i)
+        if (kCommands[i].name == name) return actions[i]();
+    return kInternal;
+}
+
+}  // namespace
+
+std::span<const Command> commands() { return kCommands; }
 
 int run_command_line(int argc, const char* const* argv) {
     keep_freed_memory();

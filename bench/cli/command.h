@@ -35,9 +35,6 @@ struct Command {
 #include "umbra/bench/cli/commands.def"
 #undef COMMAND
 
-/// Defines the whole command line on an empty `app`; returns the action of each command, in the order of commands().
-[[nodiscard]] std::vector<Action> define_commands(CLI::App& app, Common& common);
-
 /// Parses and runs. Prints errors to standard error and returns the exit code; does not throw.
 int run_command_line(int argc, const char* const* argv);
 

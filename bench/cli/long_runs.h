@@ -15,8 +15,8 @@ struct CompareOutput {
     Language language = Language::english;                       ///< of the page of the lectures
     bool as_json      = false;  ///< prints each scene's record instead of the first page's path
 };
-/// Compares the scenes and writes the pages of the results, the first page also in between. Prints to standard error the messages of the scenes that
-/// failed.
+/// Compares the scenes and writes the pages of the results, the first page also in between. Prints to standard error the
+/// messages of the scenes that failed.
 ScenesDone compare_on_terminal(const std::vector<std::filesystem::path>& files, CompareOptions options,
                                const Common& common, const CompareOutput& output = {});
 

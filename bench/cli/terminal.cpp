@@ -31,7 +31,7 @@ Terminal::~Terminal() {
 void Terminal::progress(std::string_view what) const {
     if (!shows_progress_) return;
     std::fputs(kClearLine, stderr);
-    write_error(without_controls(std::string(what.substr(0, columns() - 1))));
+    write_error(what.substr(0, columns() - 1));
 }
 
 void Terminal::warn(std::string_view what) const {
