@@ -12,32 +12,14 @@
 #include "umbra/core/base/error.h"
 
 namespace umbra {
-namespace {
-
-struct CompareLine {
-    std::vector<std::string> scenes;
-    bool as_json = false;
-    CompareOptions options;
-};
-
-int compare(CompareLine line, const Common& common) {
-    return_scenes(line.options.methods, line.scenes);
-    if (line.scenes.empty()) throw UsageError("compare: SCENE is required");
-    if (line.scenes.size() > 1 &&
-        std::ranges::any_of(line.options.choices, [](const auto& c) { return !c.info->is_timed; }))
-        throw UsageError(fmt::format("--answers: a file is of one scene, and there are {}", line.scenes.size()));
-    check_writable_beside(line.options.out);
-    const PlaceLock lock = PlaceLock::inside(line.options.out);
-    const ScenesDone done =
-        compare_on_terminal(scene_files(line.scenes, common.up), line.options, common, {.as_json = line.as_json});
-    const int code = exit_code(done);
-    return code == kDone && !done.missing.empty() ? kUnreadable : code;
-}
-
-}  // namespace
 
 Action compare_command(CLI::App& app, const Common& common) {
-    const auto line         = std::make_shared<CompareLine>();
+    struct Line {
+        std::vector<std::string> scenes;
+        bool as_json = false;
+        CompareOptions options;
+    };
+    const auto line         = std::make_shared<Line>();
     CompareOptions& options = line->options;
     add_scenes(app, line->scenes);
     add_methods(app, options.methods);
@@ -49,7 +31,19 @@ Action compare_command(CLI::App& app, const Common& common) {
     add_budget(app, options.budget);
     add_json(app, line->as_json, "a line");
     add_output(app, options.out);
-    return [line, &common] { return compare(*line, common); };
+    return [line, &common] {
+        return_scenes(line->options.methods, line->scenes);
+        if (line->scenes.empty()) throw UsageError("compare: SCENE is required");
+        if (line->scenes.size() > 1 &&
+            std::ranges::any_of(line->options.choices, [](const auto& c) { return !c.info->is_timed; }))
+            throw UsageError(fmt::format("--answers: a file is of one scene, and there are {}", line->scenes.size()));
+        check_writable_beside(line->options.out);
+        const PlaceLock lock  = PlaceLock::inside(line->options.out);
+        const ScenesDone done = compare_on_terminal(scene_files(line->scenes, common.up), line->options, common,
+                                                    {.as_json = line->as_json});
+        const int code        = exit_code(done);
+        return code == kDone && !done.missing.empty() ? kUnreadable : code;
+    };
 }
 
 }  // namespace umbra

@@ -223,7 +223,7 @@ Action completion_command(CLI::App& app, const Common& /*common*/) {
         "zsh: source <(umbra completion zsh) after compinit, in ~/.zshrc to keep it.");
     return [shell, &app] {
         print_out("{}", completion_script(*app.get_parent(), *shell));
-        return int{kDone};
+        return kDone;
     };
 }
 

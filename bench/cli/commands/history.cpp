@@ -7,35 +7,29 @@
 #include "umbra/bench/out/staged_files.h"
 
 namespace umbra {
-namespace {
-
-struct HistoryLine {
-    std::vector<std::filesystem::path> folders;
-    std::filesystem::path html;
-};
-
-int write_history(const HistoryLine& line) {
-    const History history = read_history(line.folders);
-    if (!line.html.empty()) {
-        StagedFiles staged;
-        staged.write(line.html, history_page(history));
-        staged.commit();
-    }
-    print_out("{}", history_text(history));
-    return kDone;
-}
-
-}  // namespace
 
 Action history_command(CLI::App& app, const Common&) {
-    const auto line = std::make_shared<HistoryLine>();
+    struct Line {
+        std::vector<std::filesystem::path> folders;
+        std::filesystem::path html;
+    };
+    const auto line = std::make_shared<Line>();
     app.add_option("DIR", line->folders,
                    "A folder a commit that compare wrote, the oldest first; its name is the commit's")
         ->type_name("")
         ->required();
     app.add_option("--html", line->html, "Write a page: rows of scenes and methods, a column a commit")
         ->type_name("FILE");
-    return [line] { return write_history(*line); };
+    return [line] {
+        const History history = read_history(line->folders);
+        if (!line->html.empty()) {
+            StagedFiles staged;
+            staged.write(line->html, history_page(history));
+            staged.commit();
+        }
+        print_out("{}", history_text(history));
+        return kDone;
+    };
 }
 
 }  // namespace umbra

@@ -4,24 +4,13 @@
 #include "umbra/bench/ladders/ladder_record.h"
 
 namespace umbra {
-namespace {
-
-struct LadderLine {
-    LadderOptions options;
-    bool as_json = false;
-};
-
-int ladder(LadderLine line, const Common& common) {
-    return_ladders(line.options.methods, line.options.names);
-    const LaddersRecord record = climb_on_terminal(line.options, common);
-    print_record(line.as_json, common, to_record(record), [&] { return ladder_table(record.ladders); });
-    return record.failed.empty() ? kDone : kInternal;
-}
-
-}  // namespace
 
 Action ladder_command(CLI::App& app, const Common& common) {
-    const auto line = std::make_shared<LadderLine>();
+    struct Line {
+        LadderOptions options;
+        bool as_json = false;
+    };
+    const auto line = std::make_shared<Line>();
     app.add_option("LADDER", line->options.names,
                    "Ladders, or files of your own (docs/report.md; default: all of ours; umbra list names them)")
         ->type_name("");
@@ -32,7 +21,12 @@ Action ladder_command(CLI::App& app, const Common& common) {
     add_budget(app, line->options.budget);
     add_output(app, line->options.out);
     add_json(app, line->as_json);
-    return [line, &common] { return ladder(*line, common); };
+    return [line, &common] {
+        return_ladders(line->options.methods, line->options.names);
+        const LaddersRecord record = climb_on_terminal(line->options, common);
+        print_record(line->as_json, common, to_record(record), [&] { return ladder_table(record.ladders); });
+        return record.failed.empty() ? kDone : kInternal;
+    };
 }
 
 }  // namespace umbra

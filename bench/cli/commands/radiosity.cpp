@@ -5,31 +5,16 @@
 #include "umbra/bench/studies/radiosity/light_exchange.h"
 
 namespace umbra {
-namespace {
-
-struct RadiosityLine {
-    std::string scene;
-    Size size;
-    std::filesystem::path out;
-    bool as_json = false;
-    ExchangeOptions options;
-};
-
-int radiosity(const RadiosityLine& line, const Common& common) {
-    ExchangeOptions options      = line.options;
-    const PreparedScene prepared = prepare_scene(scene_file(line.scene, common.up), line.size);
-    const ExchangeRecord record  = on_terminal(
-         common, options, [&] { return write_study(line.out, exchange_light, exchange_report, prepared, options); });
-    print_record(line.as_json, common, to_record(record), [&] {
-        return fmt::format("{}{}\n", study_text(exchange_report(record)), (line.out / "index.html").string());
-    });
-    return kDone;
-}
-
-}  // namespace
 
 Action radiosity_command(CLI::App& app, const Common& common) {
-    const auto line          = std::make_shared<RadiosityLine>();
+    struct Line {
+        std::string scene;
+        Size size;
+        std::filesystem::path out;
+        bool as_json = false;
+        ExchangeOptions options;
+    };
+    const auto line          = std::make_shared<Line>();
     ExchangeOptions& options = line->options;
     add_scene(app, line->scene)->required();
     add_number(app, "--patch", options.size, "Longest edge of a patch, in scene diagonals", 0.001, 1, "SIZE");
@@ -40,7 +25,16 @@ Action radiosity_command(CLI::App& app, const Common& common) {
     add_size(app, line->size);
     add_json(app, line->as_json, "a line");
     add_output(app, line->out);
-    return [line, &common] { return radiosity(*line, common); };
+    return [line, &common] {
+        const PreparedScene prepared = prepare_scene(scene_file(line->scene, common.up), line->size);
+        const ExchangeRecord record  = on_terminal(common, line->options, [&] {
+            return write_study(line->out, exchange_light, exchange_report, prepared, line->options);
+        });
+        print_record(line->as_json, common, to_record(record), [&] {
+            return fmt::format("{}{}\n", study_text(exchange_report(record)), (line->out / "index.html").string());
+        });
+        return kDone;
+    };
 }
 
 }  // namespace umbra

@@ -6,30 +6,13 @@
 #include "umbra/core/base/error.h"
 
 namespace umbra {
-namespace {
-
-struct RenderLine {
-    std::string scene;
-    RenderOptions options;
-};
-
-int render(const RenderLine& line, const Common& common) {
-    RenderOptions options    = line.options;
-    const std::string ending = options.out.extension().string();
-    if (ending != ".exr" && ending != ".png")
-        throw UsageError(
-            fmt::format("-o {}: not a picture format, expected FILE.exr or FILE.png", options.out.string()));
-    const Service service =
-        on_terminal(common, options, [&] { return render_scene(scene_file(line.scene, common.up), options); });
-    if (service) return kDone;
-    print_error("{} does not serve this scene: {}\n", options.method, service.why);
-    return kNo;
-}
-
-}  // namespace
 
 Action render_command(CLI::App& app, const Common& common) {
-    const auto line = std::make_shared<RenderLine>();
+    struct Line {
+        std::string scene;
+        RenderOptions options;
+    };
+    const auto line = std::make_shared<Line>();
     add_scene(app, line->scene)->required();
     add_method(app, line->options.method, "Method, with settings");
     add_size(app, line->options.size);
@@ -38,7 +21,18 @@ Action render_command(CLI::App& app, const Common& common) {
     app.add_flag("--geometry", line->options.with_geometry,
                  "Also write surface points, ids and cameras to the EXR (docs/exr.md)");
     app.add_option("-o,--output", line->options.out, "FILE.exr or FILE.png")->type_name("FILE")->required();
-    return [line, &common] { return render(*line, common); };
+    return [line, &common] {
+        RenderOptions& options   = line->options;
+        const std::string ending = options.out.extension().string();
+        if (ending != ".exr" && ending != ".png")
+            throw UsageError(
+                fmt::format("-o {}: not a picture format, expected FILE.exr or FILE.png", options.out.string()));
+        const Service service =
+            on_terminal(common, options, [&] { return render_scene(scene_file(line->scene, common.up), options); });
+        if (service) return kDone;
+        print_error("{} does not serve this scene: {}\n", options.method, service.why);
+        return kNo;
+    };
 }
 
 }  // namespace umbra

@@ -35,7 +35,7 @@ Action score_command(CLI::App& app, const Common& common) {
                                     s.edge, s.mae, s.rmse, s.bias);
             return text;
         });
-        return static_cast<int>(kDone);
+        return kDone;
     };
 }
 

@@ -34,7 +34,7 @@ Action truth_command(CLI::App& app, const Common& common) {
             print_out("{}",
                       without_controls(fmt::format("{}: {} scene{}, {} pairs of point and light\n", order.out.string(),
                                                    set.scenes.size(), set.scenes.size() == 1 ? "" : "s", asked)));
-        return static_cast<int>(kDone);
+        return kDone;
     };
 }
 
