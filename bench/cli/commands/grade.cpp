@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <set>
+#include <algorithm>
 
 #include "umbra/bench/cli/course_command.h"
 
@@ -22,8 +22,8 @@ int grade_class(const GradeLine& line, const Common& common) {
             "grade: bubblewrap (bwrap) is not there or may not keep programs apart from files and network here, so what "
             "was handed in would run with your rights: install bubblewrap, or say --unprotected where something else, "
             "such as a container, keeps it apart");
-    std::set<std::string> names;
     std::vector<Submission> all;
+    std::vector<std::string> folders;  // theirs, below the output folder
     int code = kDone;
     for (const std::string& folder : line.folders) {
         if (!fs::is_directory(folder)) {
@@ -32,21 +32,17 @@ int grade_class(const GradeLine& line, const Common& common) {
             continue;
         }
         all.push_back(folder_handed_in(folder));
-        if (!names.insert(folder_name(all.back().name)).second)
+        folders.push_back(folder_name(all.back().name));
+        if (std::ranges::count(folders, folders.back()) > 1)
             throw UsageError(fmt::format("{}: two folders are called {}", folder, all.back().name));
     }
     const std::string key = rubric_key(rubric);
     std::vector<GradeRecord> grades;
-    std::vector<std::string> folders;
-    for (const Submission& one : all) {
-        folders.push_back(folder_name(one.name));
-        grades.push_back(judge_on_terminal(one, rubric,
-                                           {.out     = line.course.out / folders.back(),
-                                            .protect = !line.unprotected,
-                                            .embed   = line.course.embed,
-                                            .key     = key},
-                                           common));
-    }
+    for (std::size_t k = 0; k < all.size(); ++k)
+        grades.push_back(judge_on_terminal(
+            all[k], rubric,
+            {.out = line.course.out / folders[k], .protect = !line.unprotected, .embed = line.course.embed, .key = key},
+            common));
     const ClassRecord record = write_class(rubric.record, grades, folders, common.command, line.course.out);
     print_record(line.course.as_json, common, to_record(record), [&] {
         std::string text;

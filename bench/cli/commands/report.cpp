@@ -108,8 +108,8 @@ void study_topic(const LectureShow& show, const fs::path& file, const fs::path& 
 }
 
 /// The studies that show topics of the lectures. Returns their folders; a study that fails is printed to standard error
-/// and counted. Where the folder of scenes has not a study's scene, it is left out.
-std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& common, int& failed) {
+/// and makes `whole` false. Where the folder of scenes has not a study's scene, it is left out.
+std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& common, bool& whole) {
     std::vector<fs::path> folders;
     for (const LectureRow& row : lecture_rows()) {
         const LectureShow* show = lecture_show(row.id);
@@ -124,7 +124,7 @@ std::vector<fs::path> study_on_terminal(const fs::path& out, const Common& commo
             folders.push_back(folder);
         } catch (const std::exception& error) {
             print_error("{}: {}\n", name, error.what());
-            ++failed;
+            whole = false;
         }
     }
     return folders;
@@ -153,9 +153,7 @@ int run_everything(const fs::path& out, Language language, const Budget& budget,
             print_error("{}: {}: {}\n", failed.scene, failed.method, failed.failure.message);
             whole = false;
         }
-        int failed = 0;
-        for (fs::path& folder : study_on_terminal(out, common, failed)) folders.push_back(std::move(folder));
-        whole = whole && failed == 0;
+        for (fs::path& folder : study_on_terminal(out, common, whole)) folders.push_back(std::move(folder));
         return folders;
     };
     CompareOptions options;
