@@ -53,13 +53,6 @@ inline void add_close_floor(Scene& scene, double window) {
     scene.camera.target     = vec3(0);
 }
 
-inline void add_sun(Scene& scene, vec3 direction) {
-    Light& sun    = scene.lights.emplace_back();
-    sun.name      = "sun";
-    sun.kind      = LightKind::directional;
-    sun.direction = direction;
-}
-
 inline void add_close_light(Scene& scene) { add_point_light(scene, vec3(kCloseLight)); }
 
 /// A light beyond `rim`, a point on the outer edge of an occluder: the shadow of that edge runs through the middle of

@@ -35,11 +35,7 @@ Scene eye_near_volume_side(double rung) {
     Scene scene = empty_stage();
     add_body(scene, "floor", make_plane(8, 8));
     add_body(scene, "box", make_box(vec3(2)), at({-1, 4, 0}));
-    Light sun;
-    sun.name      = "sun";
-    sun.kind      = LightKind::directional;
-    sun.direction = {0, -1, 0};
-    scene.lights.push_back(sun);
+    add_sun(scene, {0, -1, 0});
     look(scene, {float(8 * rung), 2, 3.5f}, {0.25f, 0, -0.25f}, 80);
     return scene;
 }
@@ -76,11 +72,7 @@ Scene near_to_far(double rung) {
         add_body(scene, "box " + std::to_string(i + 1), make_box({0.4f * d, 0.4f * d, 0.2f * d}),
                  at({(i % 2 ? 0.35f : -0.35f) * d, 0.2f * d, -d}));
     }
-    Light sun;
-    sun.name      = "sun";
-    sun.kind      = LightKind::directional;
-    sun.direction = {0.8f, -0.6f, 0.3f};
-    scene.lights.push_back(sun);
+    add_sun(scene, {0.8f, -0.6f, 0.3f});
     look(scene, {0, 0.8f, 0.5f}, {0, 0, -1.5f}, 60);
     return scene;
 }
@@ -101,11 +93,7 @@ Scene gap(double rung) {
         p = place(0.3 + 2 * wide + 6 * (double(p.x) - 0.5), low + 1 + 2 * double(p.y),
                   0.25 * wide * (double(p.z) - 0.5));
     add_body(scene, "wall", wall);
-    Light sun;
-    sun.name      = "sun";
-    sun.kind      = LightKind::directional;
-    sun.direction = {0.2f, -0.55f, 1};
-    scene.lights.push_back(sun);
+    add_sun(scene, {0.2f, -0.55f, 1});
     scene.camera = {.projection = Projection::orthographic,
                     .eye        = vec3(foot + dvec3(0.3, 1.5, 2.5)),
                     .target     = vec3(foot + dvec3(0.3, 0, 1.2 * wide)),
@@ -122,11 +110,7 @@ Scene aligned_lattice(double rung) {
     Mesh sheet = make_plane(9.6f, 9.6f, int(rung));
     // Aside by 24 pixels: the left quarter of the picture is lit.
     add_body(scene, "sheet", sheet, at({2.45f, 2, 0.05f}));
-    Light sun;
-    sun.name      = "sun";
-    sun.kind      = LightKind::directional;
-    sun.direction = {0, -1, 0};
-    scene.lights.push_back(sun);
+    add_sun(scene, {0, -1, 0});
     // From under the sheet, so that the picture's pixels are 0.1 wide, the cells a multiple or a half of that.
     scene.camera = {.projection = Projection::orthographic,
                     .eye        = {0, 1, 0},

@@ -26,11 +26,7 @@ Scene streak_stage() {
 
 Scene grazing_sun(double rung) {
     Scene scene = streak_stage();
-    Light sun;
-    sun.name      = "sun";
-    sun.kind      = LightKind::directional;
-    sun.direction = {1, -float(rung), 0.03f};
-    scene.lights.push_back(sun);
+    add_sun(scene, {1, -float(rung), 0.03f});
     return scene;
 }
 
@@ -43,8 +39,7 @@ Scene grazing_tilted(double rung) {
     for (vec3& p : scene.positions) move(p);
     for (vec3& n : scene.normals) move(n);
     move(scene.camera.eye), move(scene.camera.target), move(scene.camera.up);
-    Light& light   = add_point_light(scene, vec3(0));
-    light.position = vec3(turn * dvec4(-40, 40 * rung, 0.3, 1));
+    add_point_light(scene, vec3(turn * dvec4(-40, 40 * rung, 0.3, 1)));
     return scene;
 }
 

@@ -1,4 +1,4 @@
-// What the scenes of the ladders are put together from: bodies, a point light, a camera that sees the floor.
+// What the scenes of the ladders are put together from: bodies, a point light, the sun, a camera that sees the floor.
 #pragma once
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -29,6 +29,13 @@ inline Light& add_point_light(Scene& scene, vec3 position) {
     light.name     = scene.lights.empty() ? "light" : "light_" + std::to_string(scene.lights.size() + 1);
     light.position = position;
     return scene.lights.emplace_back(light);
+}
+
+inline void add_sun(Scene& scene, vec3 direction) {
+    Light& sun    = scene.lights.emplace_back();
+    sun.name      = "sun";
+    sun.kind      = LightKind::directional;
+    sun.direction = direction;
 }
 
 inline void look(Scene& scene, vec3 eye, vec3 target, float fov_y = 45) {
