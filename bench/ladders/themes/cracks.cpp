@@ -50,9 +50,8 @@ Scene lattice_scene(double beside) {
     constexpr int kCells      = 60;
     constexpr double kSpacing = 1.0 / 32;
     const dvec3 light(vec3(1.7f, 2.9f, 1.3f));
-    Scene scene = empty_stage();
+    Scene scene = floor_stage(3);
     scene.width = scene.height = 80;
-    add_body(scene, "floor", make_plane(3, 3));
     // Lines through pixels, except the first and the last, which are between them: the shadow's border is at none.
     const auto line = [](int k) { return kSpacing * (k - 0.5 * kCells + (k == 0 ? 0.0 : k == kCells ? 1.0 : 0.5)); };
     Mesh sheet;

@@ -46,8 +46,7 @@ constexpr std::array kLayers = {1e0, 1e1, 1e2, 2.55e2, 2.56e2, 2.57e2, 1e3, 1e4}
 
 /// Sheets one over the other, each a little aside, so that every edge of every shadow is apart.
 Scene layers_scene(double count) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(6, 6));
+    Scene scene = floor_stage(6);
     Chance chance;
     Mesh sheets;
     for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) {
@@ -69,8 +68,7 @@ constexpr std::array kLeaves = {1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4};
 
 /// Triangles of random orientation: every edge is a silhouette.
 Scene leaves_scene(double count) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(6, 6));
+    Scene scene = floor_stage(6);
     Chance chance;
     Mesh leaves;
     const double half = 0.3 * std::max(1.0, std::sqrt(100 / count));  // few cover as much as a hundred

@@ -15,9 +15,8 @@ constexpr std::array kCells   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 96.0, 192
 
 /// The eye under a stack of sheets, lit from above: it is in as many shadow volumes as there are sheets.
 Scene eye_in_volumes(double rung) {
-    Scene scene = empty_stage();
+    Scene scene = floor_stage(12);
     const int n = int(rung);
-    add_body(scene, "floor", make_plane(12, 12));
     for (int i = 0; i < n; ++i) {
         // From 4 to 5 above the floor, each a little smaller and turned a little.
         const double share = n == 1 ? 0 : double(i) / (n - 1);
@@ -32,8 +31,7 @@ Scene eye_in_volumes(double rung) {
 
 /// The eye at this distance from the side of a box's shadow volume, outside it; on the last rung in its plane.
 Scene eye_near_volume_side(double rung) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(8, 8));
+    Scene scene = floor_stage(8);
     add_body(scene, "box", make_box(vec3(2)), at({-1, 4, 0}));
     add_sun(scene, {0, -1, 0});
     look(scene, {float(8 * rung), 2, 3.5f}, {0.25f, 0, -0.25f}, 80);
@@ -101,17 +99,10 @@ Scene gap(double rung) {
     return scene;
 }
 
-/// A closed sheet of cells over most of the picture, whose corners and edges lie over its points, except for
-/// rounding: a method that lets a ray pass between two triangles that share an edge lets light through.
-Scene aligned_lattice(double rung) {
-    Scene scene = empty_stage();
+/// A floor seen from 1 above it, so that the picture's pixels are 0.1 wide there.
+Scene aligned_stage() {
+    Scene scene = floor_stage(12);
     scene.width = 96, scene.height = 96;
-    add_body(scene, "floor", make_plane(12, 12));
-    Mesh sheet = make_plane(9.6f, 9.6f, int(rung));
-    // Aside by 24 pixels: the left quarter of the picture is lit.
-    add_body(scene, "sheet", sheet, at({2.45f, 2, 0.05f}));
-    add_sun(scene, {0, -1, 0});
-    // From under the sheet, so that the picture's pixels are 0.1 wide, the cells a multiple or a half of that.
     scene.camera = {.projection = Projection::orthographic,
                     .eye        = {0, 1, 0},
                     .target     = {0, 0, 0},
@@ -120,16 +111,23 @@ Scene aligned_lattice(double rung) {
     return scene;
 }
 
+/// A closed sheet of cells over most of the picture, whose corners and edges lie over its points, except for
+/// rounding: a method that lets a ray pass between two triangles that share an edge lets light through.
+Scene aligned_lattice(double rung) {
+    Scene scene = aligned_stage();
+    // Above the eye, with cells of a multiple or a half of a pixel, and aside by 24 pixels: the left quarter of the
+    // picture is lit.
+    add_body(scene, "sheet", make_plane(9.6f, 9.6f, int(rung)), at({2.45f, 2, 0.05f}));
+    add_sun(scene, {0, -1, 0});
+    return scene;
+}
+
 /// The same for a point light at twice the sheet's height, under which the sheet's shadow is twice as large.
 Scene aligned_light(double rung) {
-    Scene scene = aligned_lattice(1);
-    Scene made  = empty_stage();
-    made.width = 96, made.height = 96;
-    made.camera = scene.camera;
-    add_body(made, "floor", make_plane(12, 12));
-    add_body(made, "sheet", make_plane(4.8f, 4.8f, int(rung)), at({1.225f, 2, 0.025f}));
-    add_point_light(made, {0, 4, 0});
-    return made;
+    Scene scene = aligned_stage();
+    add_body(scene, "sheet", make_plane(4.8f, 4.8f, int(rung)), at({1.225f, 2, 0.025f}));
+    add_point_light(scene, {0, 4, 0});
+    return scene;
 }
 
 }  // namespace

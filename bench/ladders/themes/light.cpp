@@ -17,8 +17,7 @@ constexpr std::array kLights   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 2
 
 /// A floor of cells with a post on its left half, for light that comes along x: the right half stays lit.
 Scene streak_stage() {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(8, 8, 8));
+    Scene scene = floor_stage(8, 8);
     add_body(scene, "post", make_box({0.7f, 2.1f, 2.3f}), at({-2.9f, 1.05f, -1.6f}));
     look(scene, {0.3f, 9, 6.5f}, {0.2f, 0, 0.1f}, 48);
     return scene;
@@ -51,10 +50,9 @@ Scene light_near_receiver(double rung) {
 
 /// A lid at a distance below the light with its rim 0.1 times that beside the light: half of the floor is always dark.
 Scene light_near_occluder(double rung) {
-    Scene scene      = empty_stage();
+    Scene scene      = floor_stage(8);
     const vec3 light = {0.31f, 6.13f, 0.17f};
     const double gap = 6 * rung, low = double(light.y) - gap;
-    add_body(scene, "floor", make_plane(8, 8));
     add_object(scene, "lid",
                {vec3(dvec3(-3.1, low, -3.3)), vec3(dvec3(double(light.x) + 0.1 * gap, low, -3.3)),
                 vec3(dvec3(double(light.x) + 0.1 * gap, low, 3.2)), vec3(dvec3(-3.1, low, 3.2))},
@@ -66,11 +64,10 @@ Scene light_near_occluder(double rung) {
 
 /// One light inside a closed box, which occludes it on all sides, and one outside it that lights the floor.
 Scene light_in_box(double rung) {
-    Scene scene       = empty_stage();
+    Scene scene       = floor_stage(8);
     const dvec3 place = {0.37, 3.11, 0.23};
     const dvec3 half  = 10 * rung * dvec3(1, 0.8, 0.9);
-    add_body(scene, "floor", make_plane(8, 8));
-    Mesh box = make_box(vec3(2));
+    Mesh box          = make_box(vec3(2));
     for (vec3& p : box.positions) p = vec3(place + half * dvec3(p));
     add_body(scene, "box", box);
     add_point_light(scene, vec3(place + half * dvec3(0.3, -0.2, 0.1)));
@@ -81,8 +78,7 @@ Scene light_in_box(double rung) {
 
 /// The light is at this height above the plane of the box's lid; on the last rung it lies in the plane.
 Scene light_near_face_plane(double rung) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(9, 9));
+    Scene scene = floor_stage(9);
     add_body(scene, "wall", make_box({0.3f, 5.3f, 6.1f}), at({-3.9f, 2.65f, 0}));
     const float top = 2.3f;
     add_object(scene, "box",

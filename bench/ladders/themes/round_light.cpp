@@ -61,8 +61,7 @@ Scene growing_disk_scene(double diameter) { return smaller(disk_of(diameter)); }
 
 /// A floor of cells with a post, for light from close above the floor.
 Scene low_stage() {
-    Scene scene = small(empty_stage());
-    add_body(scene, "floor", make_plane(8, 8, 4));
+    Scene scene = small(floor_stage(8, 4));
     add_body(scene, "post", make_box({0.7f, 2.1f, 2.3f}), at({-2.4f, 1.05f, -1.6f}));
     look(scene, {0.3f, 9, 6.5f}, {0.2f, 0, 0.1f}, 48);
     return scene;
@@ -92,8 +91,7 @@ Scene sphere_touches_receiver_scene(double rung) {
 
 /// A box with its lid at the height 2 and a wall behind it, for a light beside the box.
 Scene lid_stage() {
-    Scene scene = small(empty_stage());
-    add_body(scene, "floor", make_plane(9, 9));
+    Scene scene = small(floor_stage(9));
     add_body(scene, "wall", make_box({0.5f, 5, 6}), at({-3.75f, 2.5f, 0}));
     add_body(scene, "box", make_box(vec3(2)), at({0, 1, 0}));
     look(scene, {6.5f, 6.2f, 7.1f}, {-1.1f, 1.3f, 0}, 45);
@@ -117,8 +115,7 @@ Scene disk_in_face_plane_scene(double rung) {
 
 /// A disk that shines down, and below it a lid whose rim runs across under its middle.
 Scene disk_touches_occluder_scene(double rung) {
-    Scene scene = small(empty_stage());
-    add_body(scene, "floor", make_plane(8, 8));
+    Scene scene      = small(floor_stage(8));
     const double low = 6 - 6 * rung;
     add_object(
         scene, "lid",

@@ -62,8 +62,7 @@ constexpr std::array kAngles = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
 
 /// Triangles with sides as 8 : 7 : 1 that the sun sees almost edge-on, all turned about its direction.
 Scene edge_on_scene(double angle) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(8, 8));
+    Scene scene     = floor_stage(8);
     const dvec3 sun = glm::normalize(dvec3(-0.5, -1, -0.25));
     const dvec3 u = glm::normalize(glm::cross(sun, dvec3(0, 0, 1))), v = glm::cross(u, sun);
     Chance chance;
@@ -90,9 +89,8 @@ constexpr std::array kCounts = {0.0, 1e0, 1e1, 1e2, 1e3, 1e4};
 
 /// On, beside and above a ball: points, repeated corners and corners on one line (multiples of 1/8, so exactly).
 Scene zero_area_scene(double count) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(4, 4));
-    Mesh ball = transformed(make_sphere(0.5f, 32, 16), at({0, 1, 0}));
+    Scene scene = floor_stage(4);
+    Mesh ball   = transformed(make_sphere(0.5f, 32, 16), at({0, 1, 0}));
     ball.normals.clear();
     Chance chance;
     const auto on_grid = [&] {  // multiples of 1/8

@@ -69,8 +69,7 @@ constexpr std::array kSolids = {5e0, 1e1, 2e1, 5e1, 1e2, 2e2, 5e2, 1e3};
 
 /// Boxes of random orientation at one position, which interpenetrate each other and the floor.
 Scene interpenetrating_scene(double count) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(4, 4));
+    Scene scene = floor_stage(4);
     Chance chance;
     for (int i = 0; i < count; ++i) {
         const vec3 axis   = glm::normalize(vec3(chance.in_box(dvec3(1))));

@@ -22,6 +22,14 @@ inline void add_body(Scene& scene, const std::string& name, const Mesh& mesh, co
     const Mesh moved = transformed(mesh, placed);
     add_object(scene, name, moved.positions, moved.normals, moved.triangles, 0);
 }
+
+/// An empty stage with a square floor in y = 0, cut into this many cells a side.
+inline Scene floor_stage(float side, int cells = 1) {
+    Scene scene = empty_stage();
+    add_body(scene, "floor", make_plane(side, side, cells));
+    return scene;
+}
+
 inline mat4 at(vec3 place) { return glm::translate(mat4(1), place); }
 
 inline Light& add_point_light(Scene& scene, vec3 position) {
@@ -47,8 +55,7 @@ inline void look(Scene& scene, vec3 eye, vec3 target, float fov_y = 45) {
 /// A floor of 8 x 8, on it a box of 2 x 2 x 2 and above it a tetrahedron in the air, one light; all coordinates are
 /// multiples of 1/2, so that the shape survives rough rounding.
 inline Scene harmless_stage() {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(8, 8));
+    Scene scene = floor_stage(8);
     add_body(scene, "box", make_box(vec3(2)), at({-1, 1, 0}));
     add_object(scene, "tetrahedron", {{1, 2, -1}, {3, 2, -1}, {2, 2, 1}, {2, 4, 0}}, {},
                {{0, 1, 2}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}, 0);

@@ -12,9 +12,8 @@ constexpr std::array kLongitudes = {8e0, 1.6e1, 3.2e1, 6.4e1, 1.28e2, 2.56e2, 5.
 
 /// A ball with smooth normals under the sun: most of what the picture shows is near the terminator.
 Scene ball_scene(double longitudes) {
-    Scene scene = empty_stage();
+    Scene scene = floor_stage(6);
     const int n = static_cast<int>(longitudes);
-    add_body(scene, "floor", make_plane(6, 6));
     add_body(scene, "ball", make_sphere(1, n, n / 2), at({0, 1.25f, 0}));
     add_sun(scene, {-1, -0.5f, 0.125f});
     look(scene, {0.5f, 2, 4}, {0, 1.2f, 0});
@@ -25,8 +24,7 @@ constexpr std::array kPages = {1e0, 2e0, 3e0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3};
 
 /// `count` triangles that share one edge.
 Scene pages_scene(double count) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(6, 6));
+    Scene scene = floor_stage(6);
     const dvec3 low(-0.75, 0.75, -0.5), high(0.75, 1.25, 0.5), spine = glm::normalize(high - low);
     const dvec3 u = glm::normalize(glm::cross(spine, dvec3(0, 1, 0))), v = glm::cross(spine, u);
     Mesh book{{vec3(low), vec3(high)}, {}, {}};
@@ -45,8 +43,7 @@ constexpr std::array kSizes = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
 
 /// A box on a floor of two triangles, which is scaled by `size`.
 Scene large_floor_scene(double size) {
-    Scene scene = empty_stage();
-    add_body(scene, "floor", make_plane(static_cast<float>(8 * size), static_cast<float>(8 * size)));
+    Scene scene = floor_stage(static_cast<float>(8 * size));
     add_body(scene, "box", make_box({1, 2, 1}), glm::rotate(at({0.2f, 1, -0.3f}), 0.4f, {0, 1, 0}));
     add_point_light(scene, {2.5f, 4, 1.5f});
     look(scene, {0, 3, 7}, {0, 0, 0});
