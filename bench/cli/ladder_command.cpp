@@ -148,8 +148,7 @@ LaddersRecord climb_ladders(const LadderOptions& options) {
                          .breaking_share = kBreakingShare,
                          .budget         = budget_record(options.budget)};
     const auto add_failed = [&](const Ladder& ladder, const std::string& method) {
-        record.failed.push_back(
-            {.ladder = std::string(ladder.name), .method = method, .failure = {.message = current_message()}});
+        record.failed.push_back({.ladder = ladder.name, .method = method, .failure = {.message = current_message()}});
     };
     std::vector<TextbookBreak> textbook(methods_chosen.size());  // by method
     StagedFolder staged(options.out);

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "umbra/core/image/image.h"
 #include "umbra/core/scene/scene.h"
@@ -15,11 +16,11 @@
 namespace umbra {
 
 struct Ladder {
-    std::string_view name;   ///< as typed: "far_from_origin"
-    std::string_view title;  ///< "Distance from the origin"
-    std::string_view about;  ///< one or two sentences: what grows, and what it hurts
-    std::string_view unit;   ///< of a rung's value, as read after the number: "scene sizes"; empty for pure numbers
-    std::span<const double> rungs;            ///< harmless first; an array that outlives the program's work
+    std::string name;           ///< as typed: "far_from_origin"
+    std::string title;          ///< "Distance from the origin"
+    std::string about;          ///< one or two sentences: what grows, and what it hurts
+    std::string unit{};         ///< of a rung's value, as read after the number: "scene sizes"; empty for pure numbers
+    std::vector<double> rungs;  ///< harmless first
     std::function<Scene(double rung)> scene;  ///< with lights, camera, picture size; the same bits each time
 
     /// Ladders over the sum, where S_j is correct: the error in the picture of that rung (scene-linear R G B,

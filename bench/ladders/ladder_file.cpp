@@ -20,13 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// What a ladder of a file refers to.
-struct ReadLadder {
-    LadderFileRecord record;
-    std::string name;
-    Ladder ladder;
-};
-
 /// Growing, or shrinking.
 bool are_in_order(const std::vector<double>& rungs) {
     return rungs.size() > 1 && std::ranges::all_of(rungs, [](double rung) { return std::isfinite(rung); }) &&
@@ -50,9 +43,9 @@ bool is_ladder_file(const std::string& word) { return fs::path(word).extension()
 
 const Ladder& read_ladder(const fs::path& file, const FindScene& find) {
     if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no file", file.string()));
-    static std::deque<ReadLadder> all;
+    static std::deque<Ladder> all;
     const Field root  = parse_json(bytes_of(file), file.string());
-    auto record       = from_strict_record<LadderFileRecord>(root);
+    const auto record = from_strict_record<LadderFileRecord>(root);
     const fs::path at = scene_beside(root["scene"], file, find);
     if (at.extension() != ".json") root["scene"].refuse("a native scene (.json), whose numbers \"set\" can name");
     static_cast<void>(load_scene(at));  // what is wrong with the scene has a line in its own file
@@ -60,23 +53,20 @@ const Ladder& read_ladder(const fs::path& file, const FindScene& find) {
     if (record.set.empty()) root["set"].refuse("a list with the JSON Pointer of at least one number of the scene");
     for (const Field& pointer : root["set"].items()) check_pointer(pointer, scene, at);
     if (!are_in_order(record.rungs)) root["rungs"].refuse("at least two numbers, growing or shrinking");
-    ReadLadder& read = all.emplace_back();
-    read.record      = std::move(record);
-    read.name        = folder_name(file.stem().string());
-    if (read.record.title.empty()) read.record.title = in_words(read.name);
-    if (read.record.about.empty())
-        read.record.about = fmt::format("{} of {} changes.", fmt::join(read.record.set, ", "), at.filename().string());
-    read.ladder = {.name  = read.name,
-                   .title = read.record.title,
-                   .about = read.record.about,
-                   .unit  = read.record.unit,
-                   .rungs = read.record.rungs,
-                   .scene = [at, scene, set = read.record.set](double rung) {
-                       json changed = scene;
-                       for (const std::string& pointer : set) changed[json::json_pointer(pointer)] = rung;
-                       return load_scene(at, changed.dump(2));
-                   }};
-    return read.ladder;
+    Ladder ladder{.name  = folder_name(file.stem().string()),
+                  .title = record.title,
+                  .about = record.about,
+                  .unit  = record.unit,
+                  .rungs = record.rungs,
+                  .scene = [at, scene, set = record.set](double rung) {
+                      json changed = scene;
+                      for (const std::string& pointer : set) changed[json::json_pointer(pointer)] = rung;
+                      return load_scene(at, changed.dump(2));
+                  }};
+    if (ladder.title.empty()) ladder.title = in_words(ladder.name);
+    if (ladder.about.empty())
+        ladder.about = fmt::format("{} of {} changes.", fmt::join(record.set, ", "), at.filename().string());
+    return all.emplace_back(std::move(ladder));
 }
 
 }  // namespace umbra

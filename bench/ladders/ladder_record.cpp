@@ -65,15 +65,11 @@ ClimbRecord climb_record(const LadderRun& run, std::size_t m) {
     return record;
 }
 
-LadderWordsRecord words_of(const Ladder& ladder) {
-    return {std::string(ladder.name), std::string(ladder.title), std::string(ladder.about), std::string(ladder.unit)};
-}
+LadderWordsRecord words_of(const Ladder& ladder) { return {ladder.name, ladder.title, ladder.about, ladder.unit}; }
 
 }  // namespace
 
-LadderInfoRecord ladder_info(const Ladder& ladder) {
-    return {words_of(ladder), {ladder.rungs.begin(), ladder.rungs.end()}};
-}
+LadderInfoRecord ladder_info(const Ladder& ladder) { return {words_of(ladder), ladder.rungs}; }
 
 LadderRecord ladder_record(const LadderRun& run) {
     LadderRecord record{words_of(*run.ladder), run.rungs, run.ladder->rungs.size() - run.rungs.size(), {}};
@@ -102,7 +98,7 @@ std::vector<ListedFailureRecord> failed_climbs(const LadderRun& run) {
     std::vector<ListedFailureRecord> all;
     const auto add = [&](double rung, const std::string& method, const std::optional<std::string>& light,
                          const std::string& message) {
-        all.push_back({.ladder  = std::string(run.ladder->name),
+        all.push_back({.ladder  = run.ladder->name,
                        .rung    = rung,
                        .method  = method,
                        .failure = {.light = light, .message = message}});

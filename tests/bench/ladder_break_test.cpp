@@ -34,8 +34,7 @@ Scene wall(double) {
     const TemporaryFolder folder;
     return load_scene(folder.write("wall.json", kWall));
 }
-constexpr double kRungs[] = {1, 2};
-const Ladder kLadder{.name = "wall", .title = "A wall", .about = "None.", .unit = "m", .rungs = kRungs, .scene = wall};
+const Ladder kLadder{.name = "wall", .title = "A wall", .about = "None.", .unit = "m", .rungs = {1, 2}, .scene = wall};
 
 /// Wrong under the sun at 25 points that it calls lit, under "top" at 5 that it calls dark.
 bool is_wrong(LightId light, std::size_t x, std::size_t y) {

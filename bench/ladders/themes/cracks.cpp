@@ -1,5 +1,4 @@
 // Ladders over where a surface is not closed, or only just: cracks, T-junctions, rays that pass by edges and vertices.
-#include <array>
 #include <cmath>
 
 #include "umbra/bench/ladders/ladder.h"
@@ -7,8 +6,6 @@
 
 namespace umbra {
 namespace {
-
-constexpr std::array kGaps = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
 
 /// A sheet, 1 long, in two halves with a crack of this width between them; without one they share the edge.
 Scene crack_scene(double width) {
@@ -40,8 +37,6 @@ Scene t_junction_scene(double gap) {
     if (gap == 0) add_rim_light(scene, 0.5 * (on_edge + kAcross + b));
     return scene;
 }
-
-constexpr std::array kBesides = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0};
 
 /// A hilly sheet of right-angled triangles, whose vertices the light projects onto a square grid in the floor; the eye,
 /// below it and looking straight down, has its pixels there, except for a fraction of the grid's spacing. Ten pixels at
@@ -87,7 +82,7 @@ const Ladder crack_ladder{
         "share an edge and the sheet is closed. The picture shows only the stripe, and on the last rung what a second "
         "light throws past the sheet's rim.",
     .unit  = "of the sheet's half width",
-    .rungs = kGaps,
+    .rungs = tenths_to_0(),
     .scene = crack_scene};
 
 const Ladder t_junction_ladder{
@@ -98,7 +93,7 @@ const Ladder t_junction_ladder{
         "error, and leaves a slit. Everything beside the slit is in shadow, except what a second light throws past the "
         "sheet's rim on the last rung.",
     .unit  = "of the sheet's half width",
-    .rungs = kGaps,
+    .rungs = tenths_to_0(),
     .scene = t_junction_scene};
 
 const Ladder beside_edges_ladder{.name  = "beside_edges",
@@ -108,7 +103,7 @@ const Ladder beside_edges_ladder{.name  = "beside_edges",
                                      "vertices at this fraction of an edge length, on the last rung at the rounding "
                                      "error. Users of ray tracers report rays that slip through there.",
                                  .unit  = "of an edge length",
-                                 .rungs = kBesides,
+                                 .rungs = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 0.0},
                                  .scene = lattice_scene};
 
 }  // namespace umbra

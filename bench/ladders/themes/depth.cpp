@@ -1,6 +1,5 @@
 // Ladders over what is thin, and over how much lies behind one another.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "umbra/bench/ladders/ladder.h"
@@ -9,8 +8,6 @@
 
 namespace umbra {
 namespace {
-
-constexpr std::array kThicknesses = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
 
 /// A closed room, 4 wide, with walls of this fraction of it, the sun outside, a point light and the eye inside.
 Scene thin_walls_scene(double thickness) {
@@ -40,9 +37,6 @@ Scene needles_scene(double width) {
     add_close_light(scene);
     return scene;
 }
-constexpr std::array kWidths = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
-
-constexpr std::array kLayers = {1e0, 1e1, 1e2, 2.55e2, 2.56e2, 2.57e2, 1e3, 1e4};
 
 /// Sheets one over the other, each a little aside, so that every edge of every shadow is apart.
 Scene layers_scene(double count) {
@@ -63,8 +57,6 @@ Scene layers_scene(double count) {
     look(scene, {0, 3, 4.5f}, {0, 0.2f, 0});
     return scene;
 }
-
-constexpr std::array kLeaves = {1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4};
 
 /// Triangles of random orientation: every edge is a silhouette.
 Scene leaves_scene(double count) {
@@ -92,7 +84,7 @@ const Ladder thin_walls_ladder{
         "A closed room has walls of this thickness, the sun is outside, a point light and the eye are inside: no "
         "sunlight may enter. A bias that keeps surfaces from shadowing themselves can let light through walls.",
     .unit  = "of the room's width",
-    .rungs = kThicknesses,
+    .rungs = powers_of_ten(-1, -8),
     .scene = thin_walls_scene};
 
 const Ladder needles_ladder{.name  = "needles",
@@ -101,7 +93,7 @@ const Ladder needles_ladder{.name  = "needles",
                                 "Five parallel rods; this is their width and the distance between them. The picture "
                                 "shows only the stripes of their shadow, however thin.",
                             .unit  = "of their half length",
-                            .rungs = kWidths,
+                            .rungs = powers_of_ten(-1, -7),
                             .scene = needles_scene};
 
 const Ladder depth_complexity_ladder{.name  = "depth_complexity",
@@ -110,7 +102,7 @@ const Ladder depth_complexity_ladder{.name  = "depth_complexity",
                                          "N sheets lie above one another, and the floor below them is inside N shadow "
                                          "volumes: 8-bit counters overflow at 256.",
                                      .unit  = "layers",
-                                     .rungs = kLayers,
+                                     .rungs = {1e0, 1e1, 1e2, 2.55e2, 2.56e2, 2.57e2, 1e3, 1e4},
                                      .scene = layers_scene};
 
 const Ladder silhouette_edges_ladder{
@@ -118,7 +110,7 @@ const Ladder silhouette_edges_ladder{
     .title = "Silhouette edges",
     .about = "N triangles with random orientation hang over a floor, and all their edges are silhouettes.",
     .unit  = "triangles",
-    .rungs = kLeaves,
+    .rungs = {1e1, 3e1, 1e2, 3e2, 1e3, 3e3, 1e4},
     .scene = leaves_scene};
 
 }  // namespace umbra

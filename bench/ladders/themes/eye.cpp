@@ -1,6 +1,6 @@
 // Ladders over the eye, and over what exactly aligned or nearly touching things do to rays and volumes.
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/ladders/themes/stage.h"
@@ -8,10 +8,7 @@
 namespace umbra {
 namespace {
 
-constexpr std::array kSheets  = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0};
-constexpr std::array kDownTo0 = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
-constexpr std::array kUp      = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
-constexpr std::array kCells   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 96.0, 192.0};
+const std::vector<double> kCells = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 96.0, 192.0};
 
 /// The eye under a stack of sheets, lit from above: it is in as many shadow volumes as there are sheets.
 Scene eye_in_volumes(double rung) {
@@ -138,7 +135,7 @@ const Ladder eye_in_volumes_ladder{.name  = "eye_in_volumes",
                                        "The eye is in the shadow of more and more sheets. A count that starts at the "
                                        "eye must start with their number, and hardware counters overflow at 255.",
                                    .unit  = "sheets",
-                                   .rungs = kSheets,
+                                   .rungs = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0},
                                    .scene = eye_in_volumes};
 
 const Ladder eye_near_volume_side_ladder{
@@ -148,7 +145,7 @@ const Ladder eye_near_volume_side_ladder{
         "The eye approaches the side of a shadow volume; on the last rung it lies in the plane of that side. It sees "
         "the side edge-on, and a method may count it at one side of a pixel and not at the other.",
     .unit  = "scene sizes",
-    .rungs = kDownTo0,
+    .rungs = tenths_to_0(),
     .scene = eye_near_volume_side};
 
 const Ladder far_eye_ladder{.name  = "far_eye",
@@ -157,7 +154,7 @@ const Ladder far_eye_ladder{.name  = "far_eye",
                                 "The camera moves away while its field of view narrows, so that the picture stays the "
                                 "same: the directions of neighbouring pixels differ by fewer and fewer float steps.",
                             .unit  = "scene sizes",
-                            .rungs = kUp,
+                            .rungs = powers_of_ten(1, 9),
                             .scene = far_eye};
 
 const Ladder near_to_far_ladder{.name  = "near_to_far",
@@ -166,7 +163,7 @@ const Ladder near_to_far_ladder{.name  = "near_to_far",
                                     "Boxes on one floor, from close to the eye to the horizon, with sizes proportional "
                                     "to their distances: one light casts shadows of very different sizes.",
                                 .unit  = "farthest to nearest distance",
-                                .rungs = kUp,
+                                .rungs = powers_of_ten(1, 9),
                                 .scene = near_to_far};
 
 const Ladder gap_ladder{.name  = "gap",
@@ -175,7 +172,7 @@ const Ladder gap_ladder{.name  = "gap",
                             "A wall approaches the floor while the camera zooms in, so that the light through the gap "
                             "stays visible; on the last rung the wall touches the floor. Bias closes or opens gaps.",
                         .unit  = "scene sizes",
-                        .rungs = kDownTo0,
+                        .rungs = tenths_to_0(),
                         .scene = gap};
 
 const Ladder aligned_lattice_ladder{

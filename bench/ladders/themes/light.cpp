@@ -1,6 +1,6 @@
 // Ladders over positions of lights (close to receivers or occluders, far away, grazing) and over their number.
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/ladders/themes/stage.h"
@@ -8,12 +8,8 @@
 namespace umbra {
 namespace {
 
-constexpr std::array kDown     = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
-constexpr std::array kDownTo0  = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
-constexpr std::array kFineDown = {1e-1, 3.2e-2, 1e-2, 3.2e-3, 1e-3, 3.2e-4, 1e-4, 3.2e-5,
-                                  1e-5, 3.2e-6, 1e-6, 3.2e-7, 1e-7, 3.2e-8, 1e-8};
-constexpr std::array kUp       = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12};
-constexpr std::array kLights   = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0};
+const std::vector<double> kFineDown = {1e-1, 3.2e-2, 1e-2, 3.2e-3, 1e-3, 3.2e-4, 1e-4, 3.2e-5,
+                                       1e-5, 3.2e-6, 1e-6, 3.2e-7, 1e-7, 3.2e-8, 1e-8};
 
 /// A floor of cells with a post on its left half, for light that comes along x: the right half stays lit.
 Scene streak_stage() {
@@ -125,9 +121,6 @@ Scene rectangle_light(double rung) {
     return scene;
 }
 
-constexpr std::array kLightShrinks = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
-constexpr std::array kLightGrows   = {1e0, 3.2, 1e1, 3.2e1, 1e2, 1e4, 1e6, 1e9};
-
 Scene many_lights(double rung) {
     Scene scene  = harmless_stage();
     scene.width  = 64;
@@ -161,7 +154,7 @@ const Ladder grazing_tilted_ladder{
         "A light sinks to the plane of a floor of cells, each rounded to floats. In the end the light grazes the "
         "unevenness that rounding leaves, and cells shadow their neighbours.",
     .unit  = "radians above the floor",
-    .rungs = kDown,
+    .rungs = powers_of_ten(-1, -7),
     .scene = grazing_tilted};
 
 const Ladder light_near_receiver_ladder{.name  = "light_near_receiver",
@@ -170,7 +163,7 @@ const Ladder light_near_receiver_ladder{.name  = "light_near_receiver",
                                             "A point light sinks onto the floor that it lights: it is close to the "
                                             "floor at one end of the picture, and grazing at the other.",
                                         .unit  = "scene sizes above the floor",
-                                        .rungs = kDown,
+                                        .rungs = powers_of_ten(-1, -7),
                                         .scene = light_near_receiver};
 
 const Ladder light_near_occluder_ladder{
@@ -190,7 +183,7 @@ const Ladder light_in_box_ladder{
         "A closed box shrinks around the light inside it. None of that light may reach the "
         "floor; a second light outside the box shows what is lit.",
     .unit  = "scene sizes",
-    .rungs = kDown,
+    .rungs = powers_of_ten(-1, -7),
     .scene = light_in_box};
 
 const Ladder light_near_face_plane_ladder{
@@ -200,7 +193,7 @@ const Ladder light_near_face_plane_ladder{
         "A light sinks to the plane of a box's lid; on the last rung it lies in that plane. Faces turn from lit to "
         "unlit, silhouettes jump, and shadow volumes become flat.",
     .unit  = "scene sizes above the plane",
-    .rungs = kDownTo0,
+    .rungs = tenths_to_0(),
     .scene = light_near_face_plane};
 
 const Ladder far_light_ladder{
@@ -210,7 +203,7 @@ const Ladder far_light_ladder{
         "A point light moves away until it acts as a sun: depths measured from the light lose "
         "the differences inside the scene.",
     .unit  = "scene sizes",
-    .rungs = kUp,
+    .rungs = powers_of_ten(1, 12),
     .scene = far_light};
 
 const Ladder shrinking_light_ladder{
@@ -220,7 +213,7 @@ const Ladder shrinking_light_ladder{
         "A square light shrinks until its penumbra is narrower than a pixel: the result "
         "must converge to that of the point light.",
     .unit  = "light side (floor side = 8)",
-    .rungs = kLightShrinks,
+    .rungs = powers_of_ten(0, -12),
     .scene = rectangle_light};
 
 const Ladder growing_light_ladder{.name  = "growing_light",
@@ -229,7 +222,7 @@ const Ladder growing_light_ladder{.name  = "growing_light",
                                       "A square light grows far beyond the scene: the umbra vanishes, and most of the "
                                       "light is seen at grazing angles.",
                                   .unit  = "light side (floor side = 8)",
-                                  .rungs = kLightGrows,
+                                  .rungs = {1e0, 3.2, 1e1, 3.2e1, 1e2, 1e4, 1e6, 1e9},
                                   .scene = rectangle_light};
 
 const Ladder many_lights_ladder{
@@ -237,7 +230,7 @@ const Ladder many_lights_ladder{
     .title = "Number of lights",
     .about = "More and more point lights in a spiral above the scene, each with its own shadows.",
     .unit  = "lights",
-    .rungs = kLights,
+    .rungs = {1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0},
     .scene = many_lights};
 
 }  // namespace umbra

@@ -1,5 +1,4 @@
 // Ladders over where a scene lies and how large it is.
-#include <array>
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/ladders/themes/stage.h"
@@ -18,17 +17,11 @@ Scene mapped(Scene scene, const Map& map) {
     return scene;
 }
 
-constexpr std::array kDistances = {1e0,   3.2e0, 1e1,   3.2e1, 1e2,   3.2e2, 1e3,   3.2e3, 1e4,
-                                   3.2e4, 1e5,   3.2e5, 1e6,   3.2e6, 1e7,   3.2e7, 1e8};
-
 Scene far_scene(double rung) {
     // A direction that is along no axis and in no plane of two.
     const dvec3 offset = 8 * rung * dvec3(0.75, 0.25, -0.6);
     return mapped(harmless_stage(), [&](dvec3 p) { return p + offset; });
 }
-
-constexpr std::array kSmaller = {1e0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12};
-constexpr std::array kLarger  = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12};
 
 Scene scaled_scene(double rung) {
     return mapped(harmless_stage(), [&](dvec3 p) { return rung * p; });
@@ -43,7 +36,7 @@ const Ladder far_from_origin_ladder{
         "The whole scene moves away from the origin, with its lights and the camera. Float coordinates are coarse "
         "there: the shape itself is rounded, and differences of coordinates lose significant digits.",
     .unit  = "scene sizes",
-    .rungs = kDistances,
+    .rungs = {1e0, 3.2e0, 1e1, 3.2e1, 1e2, 3.2e2, 1e3, 3.2e3, 1e4, 3.2e4, 1e5, 3.2e5, 1e6, 3.2e6, 1e7, 3.2e7, 1e8},
     .scene = far_scene};
 
 const Ladder tiny_scene_ladder{
@@ -52,8 +45,7 @@ const Ladder tiny_scene_ladder{
     .about =
         "The whole scene shrinks, with its lights and the camera. Constants in world units become large compared with "
         "it, and squares and products of its lengths underflow in floats.",
-    .unit  = "",
-    .rungs = kSmaller,
+    .rungs = powers_of_ten(0, -12),
     .scene = scaled_scene};
 
 const Ladder huge_scene_ladder{.name  = "huge_scene",
@@ -61,8 +53,7 @@ const Ladder huge_scene_ladder{.name  = "huge_scene",
                                .about =
                                    "The whole scene grows, with its lights and the camera. Constants in world units "
                                    "become small compared with it, and products of its lengths overflow in floats.",
-                               .unit  = "",
-                               .rungs = kLarger,
+                               .rungs = powers_of_ten(0, 12),
                                .scene = scaled_scene};
 
 }  // namespace umbra

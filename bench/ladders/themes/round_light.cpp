@@ -1,7 +1,7 @@
 // Ladders over lights that are disks and spheres: how large they are, how close they come to receivers and occluders,
 // and what touches them.
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "umbra/bench/ladders/ladder.h"
 #include "umbra/bench/ladders/themes/stage.h"
@@ -9,11 +9,11 @@
 namespace umbra {
 namespace {
 
-constexpr std::array kShrinks = {1e0, 1e-1, 1e-2, 1e-4, 1e-8, 1e-12};
-constexpr std::array kGrows   = {1e0, 3.2, 1e1, 1e2, 1e4, 1e8};
-constexpr std::array kDown    = {1e-1, 1e-2, 1e-4, 1e-6};
-constexpr std::array kDownTo0 = {1e-1, 1e-2, 1e-4, 1e-6, 0.0};
-constexpr dvec3 kLightAt      = {4, 6, 1.5};  // in harmless_stage
+const std::vector<double> kShrinks = {1e0, 1e-1, 1e-2, 1e-4, 1e-8, 1e-12};
+const std::vector<double> kGrows   = {1e0, 3.2, 1e1, 1e2, 1e4, 1e8};
+const std::vector<double> kDown    = {1e-1, 1e-2, 1e-4, 1e-6};
+const std::vector<double> kDownTo0 = {1e-1, 1e-2, 1e-4, 1e-6, 0.0};
+constexpr dvec3 kLightAt           = {4, 6, 1.5};  // in harmless_stage
 
 /// About half as many pixels as other ladders have: the visible part of an area light takes `exact` longer.
 Scene small(Scene scene) {

@@ -1,6 +1,5 @@
 // Ladders over bad triangles: slivers, in the occluder, in the receiver and seen edge-on by the light, and triangles
 // without area.
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,8 +10,7 @@
 namespace umbra {
 namespace {
 
-constexpr std::array kAspects = {1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9};
-constexpr int kStrips         = 4;
+constexpr int kStrips = 4;
 
 /// Lines along z of this length in y = height, one at each coordinate x; from each to the next a strip of two
 /// triangles.
@@ -58,8 +56,6 @@ Scene sliver_receiver_scene(double aspect) {
     return scene;
 }
 
-constexpr std::array kAngles = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
-
 /// Triangles with sides as 8 : 7 : 1 that the sun sees almost edge-on, all turned about its direction.
 Scene edge_on_scene(double angle) {
     Scene scene     = floor_stage(8);
@@ -84,8 +80,6 @@ Scene edge_on_scene(double angle) {
     look(scene, {1, 6, 8}, {0, 0, 0});
     return scene;
 }
-
-constexpr std::array kCounts = {0.0, 1e0, 1e1, 1e2, 1e3, 1e4};
 
 /// On, beside and above a ball: points, repeated corners and corners on one line (multiples of 1/8, so exactly).
 Scene zero_area_scene(double count) {
@@ -123,7 +117,7 @@ const Ladder sliver_occluder_ladder{
         "The edge of a sheet consists of triangles with this ratio of length to width. The picture shows only the end "
         "of their shadow, which must equal the shadow of an undivided sheet.",
     .unit  = "length to width",
-    .rungs = kAspects,
+    .rungs = powers_of_ten(1, 9),
     .scene = sliver_occluder_scene};
 
 const Ladder sliver_receiver_ladder{
@@ -133,7 +127,7 @@ const Ladder sliver_receiver_ladder{
         "Where the edge of a shadow crosses the floor, the floor consists of triangles with this ratio of length to "
         "width: barycentrics, and normals computed from short sides, lose significant digits.",
     .unit  = "length to width",
-    .rungs = kAspects,
+    .rungs = powers_of_ten(1, 9),
     .scene = sliver_receiver_scene};
 
 const Ladder edge_on_slivers_ladder{
@@ -145,7 +139,7 @@ const Ladder edge_on_slivers_ladder{
         "board below them throws "
         "the shadow that they are too thin for.",
     .unit  = "radians",
-    .rungs = kAngles,
+    .rungs = tenths_to_0(),
     .scene = edge_on_scene};
 
 const Ladder zero_area_ladder{
@@ -155,7 +149,7 @@ const Ladder zero_area_ladder{
         "Triangles that are points, repeat a corner or have their corners on one line lie among the triangles of a "
         "ball and around it. They are not a surface and must not change anything.",
     .unit  = "triangles",
-    .rungs = kCounts,
+    .rungs = {0.0, 1e0, 1e1, 1e2, 1e3, 1e4},
     .scene = zero_area_scene};
 
 }  // namespace umbra

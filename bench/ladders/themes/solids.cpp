@@ -1,5 +1,4 @@
 // Ladders over surfaces that coincide, touch and pass through each other.
-#include <array>
 #include <cmath>
 
 #include "umbra/bench/ladders/ladder.h"
@@ -8,8 +7,6 @@
 
 namespace umbra {
 namespace {
-
-constexpr std::array kCounts = {1e0, 2e0, 5e0, 1e1, 2e1, 5e1, 1e2};
 
 /// `count` copies of every triangle of a mesh, each with its own corners and every second one flipped.
 Mesh repeated(const Mesh& mesh, double count) {
@@ -34,8 +31,6 @@ Scene duplicate_scene(double count) {
     return scene;
 }
 
-constexpr std::array kGaps = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 0.0};
-
 /// Two solids whose facing sides the rays of light run along: light that falls between them meets the floor in a
 /// stripe.
 Scene touching_scene(double gap) {
@@ -48,8 +43,6 @@ Scene touching_scene(double gap) {
     if (gap == 0) add_rim_light(scene, kHalfway + kAcross);
     return scene;
 }
-
-constexpr std::array kHeights = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7};
 
 /// A slab is sunk into a tilted floor, except for this height.
 Scene sunken_scene(double height) {
@@ -64,8 +57,6 @@ Scene sunken_scene(double height) {
     look(scene, {1.5f, 2.5f, 3}, {0.2f, 0, 0});
     return scene;
 }
-
-constexpr std::array kSolids = {5e0, 1e1, 2e1, 5e1, 1e2, 2e2, 5e2, 1e3};
 
 /// Boxes of random orientation at one position, which interpenetrate each other and the floor.
 Scene interpenetrating_scene(double count) {
@@ -92,7 +83,7 @@ const Ladder duplicate_faces_ladder{
         "Every triangle of a tilted floor and of a box exists N times, bit-equal, with either orientation. The result "
         "must not change: a surface does not shadow its own copy.",
     .unit  = "copies",
-    .rungs = kCounts,
+    .rungs = {1e0, 2e0, 5e0, 1e1, 2e1, 5e1, 1e2},
     .scene = duplicate_scene};
 
 const Ladder touching_solids_ladder{
@@ -104,7 +95,7 @@ const Ladder touching_solids_ladder{
         "second "
         "light falls past the outer rim.",
     .unit  = "of their width",
-    .rungs = kGaps,
+    .rungs = tenths_to_0(),
     .scene = touching_scene};
 
 const Ladder sunken_slab_ladder{.name  = "sunken_slab",
@@ -113,7 +104,7 @@ const Ladder sunken_slab_ladder{.name  = "sunken_slab",
                                     "A slab is sunk into a tilted floor except for this height. The floor passes at "
                                     "this distance below the top of the slab and must not shadow it.",
                                 .unit  = "of its length",
-                                .rungs = kHeights,
+                                .rungs = powers_of_ten(-1, -7),
                                 .scene = sunken_scene};
 
 const Ladder interpenetrating_solids_ladder{.name  = "interpenetrating_solids",
@@ -122,7 +113,7 @@ const Ladder interpenetrating_solids_ladder{.name  = "interpenetrating_solids",
                                                 "N boxes interpenetrate at one position: at each crease, surfaces come "
                                                 "closer than a pixel, and no mesh has an edge there.",
                                             .unit  = "boxes",
-                                            .rungs = kSolids,
+                                            .rungs = {5e0, 1e1, 2e1, 5e1, 1e2, 2e2, 5e2, 1e3},
                                             .scene = interpenetrating_scene};
 
 }  // namespace umbra

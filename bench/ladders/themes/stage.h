@@ -3,6 +3,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <string>
+#include <vector>
 
 #include "umbra/core/scene/primitives.h"
 #include "umbra/core/scene/scene.h"
@@ -62,6 +63,21 @@ inline Scene harmless_stage() {
     add_point_light(scene, {4, 6, 1.5f});
     look(scene, {-1, 8, 7}, {0, 0.5f, 0}, 38);
     return scene;
+}
+
+/// Rungs 10^first, and so on to 10^last, growing or shrinking; each as a literal is rounded.
+inline std::vector<double> powers_of_ten(int first, int last) {
+    std::vector<double> rungs;
+    const int step = first < last ? 1 : -1;
+    for (int n = first; n != last + step; n += step) rungs.push_back(std::stod("1e" + std::to_string(n)));
+    return rungs;
+}
+
+/// From 0.1 to 10^-7, and then 0.
+inline std::vector<double> tenths_to_0() {
+    std::vector<double> rungs = powers_of_ten(-1, -7);
+    rungs.push_back(0);
+    return rungs;
 }
 
 }  // namespace umbra

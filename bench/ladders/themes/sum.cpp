@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "umbra/bench/ladders/ladder.h"
@@ -53,8 +52,6 @@ Scene middle_stage(double k_d, double k_s) {
 
 // ---- (R.V)^n --------------------------------------------------------------------------------------------------------
 
-constexpr std::array kExponents = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
-
 /// Degrees that hold most of cos^n.
 float angle_of_lobe(double n) { return static_cast<float>(std::min(50.0, 500 / std::sqrt(n))); }
 
@@ -85,8 +82,6 @@ Scene spot_scene(double n) {
 
 // ---- f_att ----------------------------------------------------------------------------------------------------------
 
-constexpr std::array kDistances = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9};
-
 /// The most that f_att may be, where it is not limited to 1 (core/scene/lights.h).
 constexpr double kMostAttenuation = 1e30;
 
@@ -100,8 +95,6 @@ Scene near_light_scene(double distance) {
 std::string wrong_near_light(double distance, const Scene&, const Image& linear) {
     return wrong_around_middle(linear, 0.75 / (distance * distance), Falls::always);
 }
-
-constexpr std::array kCoefficients = {1e0, 1e-4, 1e-8, 1e-12, 1e-16, 1e-20, 1e-24, 1e-28, 1e-32, 1e-36};
 
 Scene coefficients_scene(double c) {
     Scene scene = middle_stage(0.75, 0);
@@ -122,8 +115,7 @@ const Ladder shininess_ladder{.name  = "shininess",
                               .about =
                                   "The exponent of a highlight. If a cosine near 1 has an error of one float step, its "
                                   "power with exponent 1000000 has an error of 5 %.",
-                              .unit      = "",
-                              .rungs     = kExponents,
+                              .rungs     = powers_of_ten(0, 6),
                               .scene     = shininess_scene,
                               .wrong_sum = wrong_lobe};
 
@@ -132,8 +124,7 @@ const Ladder spot_exponent_ladder{.name  = "spot_exponent",
                                   .about =
                                       "The intensity of a spot light falls off with the angle from its axis: this is "
                                       "the same power of a cosine near 1.",
-                                  .unit      = "",
-                                  .rungs     = kExponents,
+                                  .rungs     = powers_of_ten(0, 6),
                                   .scene     = spot_scene,
                                   .wrong_sum = wrong_lobe};
 
@@ -143,7 +134,7 @@ const Ladder attenuation_distance_ladder{.name  = "attenuation_distance",
                                              "A light whose intensity falls off with the square of the distance is at "
                                              "this distance from the floor: the factor grows without limit.",
                                          .unit      = "from the light",
-                                         .rungs     = kDistances,
+                                         .rungs     = powers_of_ten(-1, -9),
                                          .scene     = near_light_scene,
                                          .wrong_sum = wrong_near_light};
 
@@ -151,8 +142,7 @@ const Ladder attenuation_coefficients_ladder{
     .name  = "attenuation_coefficients",
     .title = "Attenuation with coefficients near 0",
     .about = "All three coefficients of the attenuation have this value; the factor, 1 divided by their sum, grows.",
-    .unit  = "",
-    .rungs = kCoefficients,
+    .rungs = {1e0, 1e-4, 1e-8, 1e-12, 1e-16, 1e-20, 1e-24, 1e-28, 1e-32, 1e-36},
     .scene = coefficients_scene,
     .wrong_sum = wrong_coefficients};
 

@@ -1,5 +1,4 @@
 // Ladders over how finely, and how, surfaces are cut into triangles.
-#include <array>
 #include <cmath>
 
 #include "umbra/bench/ladders/ladder.h"
@@ -7,8 +6,6 @@
 
 namespace umbra {
 namespace {
-
-constexpr std::array kLongitudes = {8e0, 1.6e1, 3.2e1, 6.4e1, 1.28e2, 2.56e2, 5.12e2, 1.024e3};
 
 /// A ball with smooth normals under the sun: most of what the picture shows is near the terminator.
 Scene ball_scene(double longitudes) {
@@ -19,8 +16,6 @@ Scene ball_scene(double longitudes) {
     look(scene, {0.5f, 2, 4}, {0, 1.2f, 0});
     return scene;
 }
-
-constexpr std::array kPages = {1e0, 2e0, 3e0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3};
 
 /// `count` triangles that share one edge.
 Scene pages_scene(double count) {
@@ -38,8 +33,6 @@ Scene pages_scene(double count) {
     look(scene, {1, 3.5f, 5}, {0, 0.4f, 0});
     return scene;
 }
-
-constexpr std::array kSizes = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7};
 
 /// A box on a floor of two triangles, which is scaled by `size`.
 Scene large_floor_scene(double size) {
@@ -59,7 +52,7 @@ const Ladder sphere_tessellation_ladder{
         "A ball with smooth normals has N facets around it: with few facets the terminator is visibly stepped; with "
         "many, they are small and edge-on to the light there.",
     .unit  = "facets around",
-    .rungs = kLongitudes,
+    .rungs = {8e0, 1.6e1, 3.2e1, 6.4e1, 1.28e2, 2.56e2, 5.12e2, 1.024e3},
     .scene = ball_scene};
 
 const Ladder shared_edge_ladder{.name  = "shared_edge",
@@ -68,7 +61,7 @@ const Ladder shared_edge_ladder{.name  = "shared_edge",
                                     "N triangles share one edge, like pages at a spine, with either orientation: this "
                                     "is not a 2-manifold and has no silhouette in the usual sense.",
                                 .unit  = "triangles",
-                                .rungs = kPages,
+                                .rungs = {1e0, 2e0, 3e0, 1e1, 3e1, 1e2, 3e2, 1e3, 3e3},
                                 .scene = pages_scene};
 
 const Ladder large_floor_ladder{
@@ -78,7 +71,7 @@ const Ladder large_floor_ladder{
         "The floor, two triangles, is scaled by this factor; the box on it is not. Barycentrics are coarse there, and "
         "tolerances relative to the scene size miss the small objects.",
     .unit  = "times",
-    .rungs = kSizes,
+    .rungs = powers_of_ten(0, 7),
     .scene = large_floor_scene};
 
 }  // namespace umbra
