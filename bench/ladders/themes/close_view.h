@@ -13,12 +13,22 @@ namespace umbra {
 inline constexpr dvec3 kCloseLight{1, 2, 0.5};
 inline constexpr dvec3 kHalfway = 0.5 * kCloseLight;
 
-/// A floor of 8 x 8 in y = 0, except around the origin: there is a tile, four times the window wide, and nothing else
-/// near it, so that barycentrics are fine there and eye rays, whose tolerance grows with a triangle, meet no other. The
-/// camera sees `window` world units from top to bottom of the picture, from close by, below the occluder.
+/// The camera sees `window` world units around the origin, at most 0.375, from top to bottom of the picture, from close
+/// by, below the occluder.
+inline void look_closely(Scene& scene, double window) {
+    const float w           = static_cast<float>(std::min(window, 0.375));
+    scene.camera.projection = Projection::orthographic;
+    scene.camera.height     = w;
+    scene.camera.eye        = w * vec3(0.5f, 2, 1.5f);
+    scene.camera.target     = vec3(0);
+}
+
+/// The same, and a floor of 8 x 8 in y = 0, except around the origin: there is a tile, four times the window wide, and
+/// nothing else near it, so that barycentrics are fine there and eye rays, whose tolerance grows with a triangle, meet
+/// no other.
 inline void add_close_floor(Scene& scene, double window) {
-    const float w = static_cast<float>(std::min(window, 0.375));
-    const float t = 2 * w, n = std::max(t, 0.5f), r = 4;
+    look_closely(scene, window);
+    const float t = 2 * scene.camera.height, n = std::max(t, 0.5f), r = 4;
     const Mesh floor{{{-t, 0, -t},
                       {t, 0, -t},
                       {t, 0, t},
@@ -47,10 +57,6 @@ inline void add_close_floor(Scene& scene, double window) {
                       {15, 4, 8},
                       {15, 11, 4}}};  // side
     add_body(scene, "floor", floor);
-    scene.camera.projection = Projection::orthographic;
-    scene.camera.height     = w;
-    scene.camera.eye        = w * vec3(0.5f, 2, 1.5f);
-    scene.camera.target     = vec3(0);
 }
 
 inline void add_close_light(Scene& scene) { add_point_light(scene, vec3(kCloseLight)); }

@@ -49,10 +49,7 @@ Scene light_near_occluder(double rung) {
     Scene scene      = floor_stage(8);
     const vec3 light = {0.31f, 6.13f, 0.17f};
     const double gap = 6 * rung, low = double(light.y) - gap;
-    add_object(scene, "lid",
-               {vec3(dvec3(-3.1, low, -3.3)), vec3(dvec3(double(light.x) + 0.1 * gap, low, -3.3)),
-                vec3(dvec3(double(light.x) + 0.1 * gap, low, 3.2)), vec3(dvec3(-3.1, low, 3.2))},
-               {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+    add_lid(scene, {-3.1, low, -3.3}, {double(light.x) + 0.1 * gap, low, 3.2});
     add_point_light(scene, light);
     look(scene, {0.3f, 4.5f, 9}, {0.2f, 0, 0.1f}, 42);
     return scene;

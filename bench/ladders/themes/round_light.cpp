@@ -68,24 +68,21 @@ Scene low_stage() {
 }
 
 Scene sphere_near_receiver_scene(double rung) {
-    Scene scene  = low_stage();
-    Light& light = add_point_light(scene, {-3.41f, float(8 * rung), -0.93f});
-    make_sphere_light(light, 4 * rung);
+    Scene scene = low_stage();
+    make_sphere_light(add_point_light(scene, {-3.41f, float(8 * rung), -0.93f}), 4 * rung);
     return scene;
 }
 
 Scene disk_near_receiver_scene(double rung) {
-    Scene scene  = low_stage();
-    Light& light = add_point_light(scene, {-3.41f, float(8 * rung), -0.93f});
-    make_disk_light(light, 4 * rung, {1, -0.3f, 0.1f});
+    Scene scene = low_stage();
+    make_disk_light(add_point_light(scene, {-3.41f, float(8 * rung), -0.93f}), 4 * rung, {1, -0.3f, 0.1f});
     return scene;
 }
 
 /// A sphere above the floor, which it touches on the last rung.
 Scene sphere_touches_receiver_scene(double rung) {
-    Scene scene  = low_stage();
-    Light& light = add_point_light(scene, {-3.35f, float(0.5 + 8 * rung), -0.93f});
-    make_sphere_light(light, 0.5);
+    Scene scene = low_stage();
+    make_sphere_light(add_point_light(scene, {-3.35f, float(0.5 + 8 * rung), -0.93f}), 0.5);
     return scene;
 }
 
@@ -99,17 +96,15 @@ Scene lid_stage() {
 }
 
 Scene sphere_in_face_plane_scene(double rung) {
-    Scene scene  = lid_stage();
-    Light& light = add_point_light(scene, {3.7f, float(2 + 8 * rung), 0.21f});
-    make_sphere_light(light, 0.25);
+    Scene scene = lid_stage();
+    make_sphere_light(add_point_light(scene, {3.7f, float(2 + 8 * rung), 0.21f}), 0.25);
     return scene;
 }
 
 /// The disk is parallel to the lid, and on the last rung in its plane.
 Scene disk_in_face_plane_scene(double rung) {
-    Scene scene  = lid_stage();
-    Light& light = add_point_light(scene, {3.7f, float(2 + 8 * rung), 0.21f});
-    make_disk_light(light, 0.5, {0, -1, 0});
+    Scene scene = lid_stage();
+    make_disk_light(add_point_light(scene, {3.7f, float(2 + 8 * rung), 0.21f}), 0.5, {0, -1, 0});
     return scene;
 }
 
@@ -117,22 +112,17 @@ Scene disk_in_face_plane_scene(double rung) {
 Scene disk_touches_occluder_scene(double rung) {
     Scene scene      = small(floor_stage(8));
     const double low = 6 - 6 * rung;
-    add_object(
-        scene, "lid",
-        {vec3(dvec3(-3, low, -3)), vec3(dvec3(0.125, low, -3)), vec3(dvec3(0.125, low, 3)), vec3(dvec3(-3, low, 3))},
-        {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+    add_lid(scene, {-3, low, -3}, {0.125, low, 3});
     add_body(scene, "box", make_box({1.5f, 3.5f, 2.5f}), at({1.7f, 1.75f, 0}));
-    Light& light = add_point_light(scene, {0.25f, 6, 0.25f});
-    make_disk_light(light, 0.5, {0, -1, 0});
+    make_disk_light(add_point_light(scene, {0.25f, 6, 0.25f}), 0.5, {0, -1, 0});
     look(scene, {0.3f, 4.5f, 9}, {0.2f, 0, 0.1f}, 42);
     return scene;
 }
 
 /// A sphere beside a box that it touches on the last rung.
 Scene sphere_touches_occluder_scene(double rung) {
-    Scene scene  = lid_stage();
-    Light& light = add_point_light(scene, {float(1.5 + 8 * rung), 1.25f, 0.25f});
-    make_sphere_light(light, 0.5);
+    Scene scene = lid_stage();
+    make_sphere_light(add_point_light(scene, {float(1.5 + 8 * rung), 1.25f, 0.25f}), 0.5);
     return scene;
 }
 

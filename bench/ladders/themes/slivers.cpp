@@ -42,9 +42,7 @@ Scene sliver_occluder_scene(double aspect) {
 /// The floor is cut into slivers where the edge of a shadow runs across it.
 Scene sliver_receiver_scene(double aspect) {
     Scene scene = empty_stage();
-    add_close_floor(scene, 4 * kStrips / aspect);
-    scene.objects.clear(), scene.positions.clear(), scene.normals.clear();
-    scene.triangles.clear(), scene.triangle_object.clear();
+    look_closely(scene, 4 * kStrips / aspect);
     std::vector<double> x = {-2};
     for (int k = -2 * kStrips; k <= 2 * kStrips; ++k) x.push_back(k / aspect);
     x.push_back(2);

@@ -31,6 +31,12 @@ inline Scene floor_stage(float side, int cells = 1) {
     return scene;
 }
 
+/// A rectangle that faces up, between two opposite corners of one height, that with the smaller x and z first.
+inline void add_lid(Scene& scene, dvec3 from, dvec3 to) {
+    const dvec3 right{to.x, from.y, from.z}, left{from.x, from.y, to.z};
+    add_object(scene, "lid", {vec3(from), vec3(right), vec3(to), vec3(left)}, {}, {{0, 2, 1}, {0, 3, 2}}, 0);
+}
+
 inline mat4 at(vec3 place) { return glm::translate(mat4(1), place); }
 
 inline Light& add_point_light(Scene& scene, vec3 position) {
