@@ -16,7 +16,6 @@
 #include "umbra/bench/ladders/ladder_page.h"
 #include "umbra/bench/ladders/ladder_record.h"
 #include "umbra/bench/ladders/ladder_run.h"
-#include "umbra/bench/ladders/ladder_times.h"
 #include "umbra/bench/out/files.h"
 #include "umbra/bench/out/own_files.h"
 #include "umbra/bench/out/staged_folder.h"
@@ -175,7 +174,7 @@ LaddersRecord climb_ladders(const LadderOptions& options) {
             LadderRun& run = *climbed[i].run;
             if (run.methods.size() > 1) {
                 steps.show(fmt::format("{}: times", ladder->name));
-                run.first_rung_ms = time_first_rung(*ladder, run.methods, {.most = options.budget});
+                run.first_rung_ms = time_first_rung(*ladder, run.methods, options.budget);
             }
             LadderRecord entry = ladder_record(run);
             std::ranges::move(failed_climbs(run), std::back_inserter(record.failed));

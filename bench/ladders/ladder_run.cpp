@@ -6,7 +6,9 @@
 #include <ctime>
 #include <iterator>
 
+#include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/reference.h"
+#include "umbra/bench/time/turns.h"
 #include "umbra/core/base/error.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
@@ -201,6 +203,17 @@ LadderRun climb_ladder(const Ladder& ladder, const std::vector<MethodChoice>& me
         }
     }
     return run;
+}
+
+std::vector<std::vector<double>> time_first_rung(const Ladder& ladder, const std::vector<MethodChoice>& methods,
+                                                 const Budget& budget) {
+    const PreparedScene scene = prepare_scene(ladder.scene(ladder.rungs.front()), ladder.name, {});
+    TurnOptions options{.rounds = 6, .budget_ms = 600, .share_builds = false, .most = budget};
+    options.calibration_loop = [] {};  // ratios within one run need none
+    std::vector<std::vector<double>> times;
+    for (const TurnTimes& t : time_in_turns(scene, methods, options).settings)
+        times.push_back(t.failed.empty() && !t.only_cold ? totals(t) : std::vector<double>{});
+    return times;
 }
 
 }  // namespace umbra

@@ -105,4 +105,12 @@ struct RungStage {
                                      const std::function<void(const std::string&)>& progress = {},
                                      double patience_s = double(kInfinity), const Budget& budget = {});
 
+/// Times on the first rung, of all methods in turns, so that their ratios mean something: [method][round],
+/// milliseconds of build, aim and visibility over all lights, as time_in_turns measures them: samples with one index
+/// are of one round. Empty for a method that does not serve the scene, that throws there, or a run of which takes longer
+/// than the budget.
+[[nodiscard]] std::vector<std::vector<double>> time_first_rung(const Ladder& ladder,
+                                                               const std::vector<MethodChoice>& methods,
+                                                               const Budget& budget = {});
+
 }  // namespace umbra

@@ -10,7 +10,6 @@
 
 #include "umbra/bench/cli/ladder_command.h"
 #include "umbra/bench/ladders/ladder_page.h"
-#include "umbra/bench/ladders/ladder_times.h"
 #include "umbra/core/base/error.h"
 #include "umbra/shadows/method.h"
 #include "umbra/tests/support/html_table.h"
