@@ -31,7 +31,7 @@ struct GoldenScene {
     explicit GoldenScene(const fs::path& file)
         : planes(prepare_scene(file, kPlaneSize)), figures(prepare_scene(file, kFigureSize)) {
         const Reference reference = default_reference(figures.facts);
-        if (reference.exact) exact = run_method(reference.choice, figures.scene, figures.facts, figures.points);
+        if (reference.exact) exact = run_once(reference.choice, figures);
     }
 };
 
@@ -42,10 +42,9 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
     const std::string& name = scene.planes.scene.name;
     const fs::path file     = options.folder / name / (method + ".exr");
     const bool kept         = accepted.methods.contains(method) || fs::exists(file);
-    GoldenChange change;
-    change.name = fmt::format("{}/{}", name, method);
+    GoldenChange change{.name = fmt::format("{}/{}", name, method)};
 
-    const MethodRun run = run_method(choice, scene.planes.scene, scene.planes.facts, scene.planes.points);
+    const MethodRun run = run_once(choice, scene.planes);
     if (!run.service) {
         if (!kept) return std::nullopt;
         change.kind  = GoldenChange::Kind::removed;
@@ -63,19 +62,13 @@ std::optional<GoldenChange> method_change(const GoldenScene& scene, const Method
     const std::size_t plane_lines = changes.lines.size();
 
     Json figures = Json::object();
-    if (scene.exact)
-        figures = figures_of(scene.figures,
-                             run_method(choice, scene.figures.scene, scene.figures.facts, scene.figures.points),
-                             *scene.exact);
+    if (scene.exact) figures = figures_of(scene.figures, run_once(choice, scene.figures), *scene.exact);
     add_figure_changes(accepted.methods.value(method, Json::object()), figures, changes);
     if (changes.lines.empty()) return std::nullopt;
 
     change.kind     = kept ? GoldenChange::Kind::changed : GoldenChange::Kind::added;
     change.rounding = kept && changes.at_edges_alone && accepted.machine != rounding_machine();
-    if (!options.pictures.empty() && !changes.planes.empty()) {
-        change.pictures = options.pictures / fmt::format("{}.{}", name, method);
-        leave_pictures(change.pictures, scene.planes, before, now, changes.planes);
-    }
+    change.pictures = leave_pictures(options.pictures, method, scene.planes, before, now, changes.planes);
     if (options.renew && plane_lines > 0) {
         if (now.channels.empty())
             staged.remove(file);
@@ -104,11 +97,9 @@ std::vector<GoldenChange> method_leftovers(const std::string& scene, const Golde
     for (const MethodInfo* info : methods()) names.erase(std::string(info->name));
     std::vector<GoldenChange> changes;
     for (const std::string& name : names) {
-        GoldenChange change;
-        change.name  = fmt::format("{}/{}", scene, name);
-        change.kind  = GoldenChange::Kind::removed;
-        change.lines = {"unknown method"};
-        changes.push_back(std::move(change));
+        changes.push_back({.name  = fmt::format("{}/{}", scene, name),
+                           .kind  = GoldenChange::Kind::removed,
+                           .lines = {"unknown method"}});
         if (options.renew) staged.remove(options.folder / scene / (name + ".exr"));
     }
     return changes;
@@ -120,7 +111,7 @@ bool is_wanted(const GoldenOptions& options, const std::string& scene, std::stri
     const auto is_it = [&](const std::string& name) {
         return name == scene || name == method || name == fmt::format("{}/{}", scene, method);
     };
-    return options.names.empty() || std::any_of(options.names.begin(), options.names.end(), is_it);
+    return options.names.empty() || std::ranges::any_of(options.names, is_it);
 }
 
 std::string_view to_string(GoldenChange::Kind kind) {
@@ -160,11 +151,7 @@ std::vector<GoldenChange> golden_changes(const fs::path& file, const GoldenOptio
     if (all) std::ranges::move(method_leftovers(name, options, accepted, staged), std::back_inserter(changes));
     const std::size_t others = changes.size();
     const auto fail          = [&](const std::string& what) {
-        GoldenChange change;
-        change.name  = what;
-        change.kind  = GoldenChange::Kind::failed;
-        change.lines = {current_message()};
-        changes.push_back(std::move(change));
+        changes.push_back({.name = what, .kind = GoldenChange::Kind::failed, .lines = {current_message()}});
     };
     std::optional<GoldenScene> scene;
     try {
@@ -199,14 +186,9 @@ std::vector<GoldenChange> golden_leftovers(const std::vector<fs::path>& scenes, 
     if (!options.names.empty() || !fs::exists(options.folder)) return changes;
     for (const auto& entry : fs::directory_iterator(options.folder)) {
         const std::string name = entry.path().filename().string();
-        const bool known =
-            std::any_of(scenes.begin(), scenes.end(), [&](const fs::path& scene) { return scene.stem() == name; });
+        const bool known = std::ranges::any_of(scenes, [&](const fs::path& scene) { return scene.stem() == name; });
         if (known || !entry.is_directory()) continue;
-        GoldenChange change;
-        change.name  = name;
-        change.kind  = GoldenChange::Kind::removed;
-        change.lines = {"unknown teaching scene"};
-        changes.push_back(std::move(change));
+        changes.push_back({.name = name, .kind = GoldenChange::Kind::removed, .lines = {"unknown teaching scene"}});
         if (options.renew) fs::remove_all(entry.path());
     }
     return changes;
@@ -214,15 +196,12 @@ std::vector<GoldenChange> golden_leftovers(const std::vector<fs::path>& scenes, 
 
 void check_golden_names(const std::vector<fs::path>& scenes, const GoldenOptions& options) {
     for (const std::string& name : options.names) {
-        const bool known = std::any_of(scenes.begin(), scenes.end(), [&](const fs::path& scene) {
+        const bool known = std::ranges::any_of(scenes, [&](const fs::path& scene) {
             const std::string stem = scene.stem().string();
-            if (name == "compared" || name == stem + "/compared") return true;
-            if (std::ranges::any_of(golden_settings(), [&](const GoldenSetting& s) {
-                    return s.scene == stem && (name == s.method || name == stem + "/" + std::string(s.method));
-                }))
-                return true;
-            return std::any_of(methods().begin(), methods().end(),
-                               [&](const MethodInfo* info) { return is_wanted({.names = {name}}, stem, info->name); });
+            const auto is_it      = [&](std::string_view golden) { return is_wanted({.names = {name}}, stem, golden); };
+            const auto is_setting = [&](const GoldenSetting& s) { return s.scene == stem && is_it(s.method); };
+            return is_it("compared") || std::ranges::any_of(golden_settings(), is_setting) ||
+                   std::ranges::any_of(methods(), is_it, &MethodInfo::name);
         });
         if (known) continue;
         std::vector<std::string> there;

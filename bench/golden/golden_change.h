@@ -27,8 +27,8 @@ struct GoldenChange {
     enum class Kind : std::uint8_t { changed, added, removed, failed };
     std::string name;  ///< "SCENE/METHOD"; "SCENE" where the reference failed
     Kind kind = Kind::changed;
-    std::vector<std::string> lines;  ///< what changed, a sentence each
-    std::filesystem::path pictures;  ///< where reference, result and difference lie; empty: nowhere
+    std::vector<std::string> lines{};  ///< what changed, a sentence each
+    std::filesystem::path pictures{};  ///< where reference, result and difference lie; empty: nowhere
     /// The golden was made by another compiler or on another kind of machine, and nothing but points in the edge band
     /// changed: rounding, most likely.
     bool rounding = false;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <set>
 
 #include "umbra/bench/compare/compare.h"
@@ -60,7 +59,7 @@ void run_comparison(const fs::path& scene, const Compared& compared, const fs::p
     options.points        = compared.points;
     options.size          = kGoldenSize;
     options.out           = folder;
-    options.repeats       = {1, 0};
+    options.repeats       = kOnce;
     const Results results = compare_scene(scene, options);
     const fs::path of     = folder / results.scene.name;
     write_image(of / kLinear, linear_colours(of / "reference.exr"));
@@ -80,10 +79,7 @@ std::set<std::string> kept_files(const fs::path& folder) {
     return names;
 }
 
-Json read_record(const fs::path& file) {
-    std::ifstream in(file);
-    return Json::parse(in, nullptr, false);
-}
+Json read_record(const fs::path& file) { return Json::parse(bytes_of(file), nullptr, false); }
 
 /// Figures that differ by more than the last digits of pow and exp, which libraries round as they like.
 void add_record_changes(const Json& before, const Json& now, std::vector<std::string>& lines) {

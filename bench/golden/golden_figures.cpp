@@ -102,8 +102,7 @@ Json with_ranges(Json figures, const PreparedScene& prepared, const MethodChoice
     for (int k = 0; k < kRangeSeeds; ++k) {
         MethodChoice seeded = choice;
         seeded.settings.set(choice.info->seed, 1000 + k);
-        samples.push_back(
-            figures_of(prepared, run_method(seeded, prepared.scene, prepared.facts, prepared.points), exact));
+        samples.push_back(figures_of(prepared, run_once(seeded, prepared), exact));
     }
     for (const Light& light : lights) {
         if (!is_sampled(choice, light)) continue;

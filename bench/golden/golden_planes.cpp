@@ -17,7 +17,7 @@ namespace {
 constexpr float kOnBoundaryCode = -1;
 
 std::optional<std::size_t> channel_named(const Image& image, const std::string& name) {
-    const auto at = std::find(image.channels.begin(), image.channels.end(), name);
+    const auto at = std::ranges::find(image.channels, name);
     if (at == image.channels.end()) return std::nullopt;
     return static_cast<std::size_t>(at - image.channels.begin());
 }
@@ -53,7 +53,11 @@ Image change_picture(const Image& before, const Image& now, const ChangedPlane& 
 
 bool is_sampled(const MethodChoice& choice, const Light& light) {
     const auto is_seed = [](const Parameter& p) { return p.name == "seed"; };
-    return is_area(light.kind) && std::any_of(choice.info->parameters.begin(), choice.info->parameters.end(), is_seed);
+    return is_area(light.kind) && std::ranges::any_of(choice.info->parameters, is_seed);
+}
+
+MethodRun run_once(const MethodChoice& choice, const PreparedScene& prepared) {
+    return run_method(choice, prepared.scene, prepared.facts, prepared.points);
 }
 
 Image coded_planes(const PreparedScene& prepared, const MethodRun& run, bool sampled_too) {
@@ -133,8 +137,10 @@ Changes plane_changes(const Image& before, const Image& now, const PreparedScene
     return changes;
 }
 
-void leave_pictures(const fs::path& folder, const PreparedScene& prepared, const Image& before, const Image& now,
-                    const std::vector<ChangedPlane>& changed) {
+fs::path leave_pictures(const fs::path& pictures, const std::string& golden, const PreparedScene& prepared,
+                        const Image& before, const Image& now, const std::vector<ChangedPlane>& changed) {
+    if (pictures.empty() || changed.empty()) return {};
+    const fs::path folder = pictures / fmt::format("{}.{}", prepared.scene.name, golden);
     fs::remove_all(folder);
     fs::create_directories(folder);
     const auto write = [&](const std::string& name, const Image& picture) {
@@ -150,6 +156,7 @@ void leave_pictures(const fs::path& folder, const PreparedScene& prepared, const
     }
     if (!before.channels.empty()) write_image(folder / "reference.exr", before);
     if (!now.channels.empty()) write_image(folder / "result.exr", now);
+    return folder;
 }
 
 }  // namespace umbra

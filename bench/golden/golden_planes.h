@@ -14,6 +14,9 @@ namespace umbra {
 /// The method's answer is an estimate that depends on a seed.
 [[nodiscard]] bool is_sampled(const MethodChoice& choice, const Light& light);
 
+/// Each phase once.
+[[nodiscard]] MethodRun run_once(const MethodChoice& choice, const PreparedScene& prepared);
+
 /// A channel S.<light> for each light: S_j, NaN where undefined, -1 on a shadow boundary. Lights whose answers are
 /// sampled have none, unless `sampled_too`.
 [[nodiscard]] Image coded_planes(const PreparedScene& prepared, const MethodRun& run, bool sampled_too = false);
@@ -41,9 +44,11 @@ struct Changes {
 
 [[nodiscard]] Changes plane_changes(const Image& before, const Image& now, const PreparedScene& prepared);
 
-/// Replaces `folder`: reference.S.<light>.png, result.S.<light>.png and difference.S.<light>.png of each changed plane,
-/// four pixels a point, and both images as EXR. Throws InputError.
-void leave_pictures(const std::filesystem::path& folder, const PreparedScene& prepared, const Image& before,
-                    const Image& now, const std::vector<ChangedPlane>& changed);
+/// Replaces PICTURES/SCENE.GOLDEN: reference.S.<light>.png, result.S.<light>.png and difference.S.<light>.png of each
+/// changed plane, four pixels a point, and both images as EXR. Returns that folder; nothing is written, and the path is
+/// empty, where `pictures` is or no plane changed. Throws InputError.
+std::filesystem::path leave_pictures(const std::filesystem::path& pictures, const std::string& golden,
+                                     const PreparedScene& prepared, const Image& before, const Image& now,
+                                     const std::vector<ChangedPlane>& changed);
 
 }  // namespace umbra

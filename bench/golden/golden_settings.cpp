@@ -56,25 +56,23 @@ std::string file_name(std::string_view method) {
 
 std::optional<GoldenChange> setting_change(const PreparedScene& prepared, std::string_view method,
                                            const GoldenOptions& options) {
-    const std::string& name   = prepared.scene.name;
-    const fs::path file       = options.folder / name / "settings" / file_name(method);
-    const MethodChoice choice = parse_method(method);
-    const Image now = coded_planes(prepared, run_method(choice, prepared.scene, prepared.facts, prepared.points), true);
-    const bool kept = fs::exists(file);
-    const Image before = kept ? read_image(file).image : Image(now.width, now.height, {});
-    Changes changes    = plane_changes(before, now, prepared);
+    const std::string& name = prepared.scene.name;
+    const fs::path file     = options.folder / name / "settings" / file_name(method);
+    const Image now         = coded_planes(prepared, run_once(parse_method(method), prepared), true);
+    const bool kept         = fs::exists(file);
+    const Image before      = kept ? read_image(file).image : Image(now.width, now.height, {});
+    Changes changes         = plane_changes(before, now, prepared);
     if (changes.lines.empty()) return std::nullopt;
 
-    GoldenChange change;
-    change.name        = fmt::format("{}/{}", name, method);
-    change.kind        = kept ? GoldenChange::Kind::changed : GoldenChange::Kind::added;
     const auto made_on = before.metadata.find("umbra:machine");
-    change.rounding =
+    const bool rounding =
         kept && changes.at_edges_alone && made_on != before.metadata.end() && made_on->second != rounding_machine();
-    if (!options.pictures.empty() && !changes.planes.empty()) {
-        change.pictures = options.pictures / fmt::format("{}.{}", name, file.stem().string());
-        leave_pictures(change.pictures, prepared, before, now, changes.planes);
-    }
+    GoldenChange change{
+        .name     = fmt::format("{}/{}", name, method),
+        .kind     = kept ? GoldenChange::Kind::changed : GoldenChange::Kind::added,
+        .lines    = std::move(changes.lines),
+        .pictures = leave_pictures(options.pictures, file.stem().string(), prepared, before, now, changes.planes),
+        .rounding = rounding};
     if (options.renew) {
         fs::create_directories(file.parent_path());
         Image accepted                     = now;
@@ -82,7 +80,6 @@ std::optional<GoldenChange> setting_change(const PreparedScene& prepared, std::s
         accepted.metadata["umbra:machine"] = rounding_machine();
         write_image(file, accepted);
     }
-    change.lines = std::move(changes.lines);
     return change;
 }
 
@@ -107,11 +104,9 @@ std::vector<GoldenChange> setting_changes(const fs::path& scene, const GoldenOpt
     if (!options.names.empty() || !fs::exists(folder)) return changes;
     for (const auto& entry : fs::directory_iterator(folder)) {
         if (files.contains(entry.path().filename().string())) continue;
-        GoldenChange change;
-        change.name  = fmt::format("{}/settings/{}", name, entry.path().filename().string());
-        change.kind  = GoldenChange::Kind::removed;
-        change.lines = {"unknown settings"};
-        changes.push_back(std::move(change));
+        changes.push_back({.name  = fmt::format("{}/settings/{}", name, entry.path().filename().string()),
+                           .kind  = GoldenChange::Kind::removed,
+                           .lines = {"unknown settings"}});
         if (options.renew) fs::remove(entry.path());
     }
     return changes;
