@@ -91,8 +91,7 @@ int main(int argc, char** argv) {
     for (const char* name : {"stairs", "umbra_penumbra", "light_sizes"}) {
         Stage& s       = stages.emplace_back(Stage{name, line.size});
         const auto add = [&](const char* pass, void (*function)(benchmark::State&, Stage&)) {
-            benchmark::RegisterBenchmark(fmt::format("{}/{}", pass, name).c_str(),
-                                         [&s, function](benchmark::State& state) { function(state, s); })
+            benchmark::RegisterBenchmark(fmt::format("{}/{}", pass, name).c_str(), function, std::ref(s))
                 ->UseRealTime()
                 ->Unit(benchmark::kMillisecond)
                 ->MinTime(2);

@@ -5,35 +5,22 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <memory>
+#include <deque>
+#include <functional>
 #include <optional>
 
 #include "umbra/bench/speed/speed_scenes.h"
 #include "umbra/bench/speed/timed_loop.h"
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/predicates.h"
-#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
-#include "umbra/core/scene/facts.h"
 
 namespace umbra {
 namespace {
 
 constexpr int kWidth = 640, kHeight = 360;
 
-struct Stage {
-    std::string name;
-    Scene scene;
-    std::optional<RayScene> rays{};
-    PointBatch points{};
-
-    Stage(std::string stage, Scene made) : name(std::move(stage)), scene(std::move(made)) {
-        rays.emplace(scene);
-        points = primary_points(*rays, scene, scene.camera, kWidth, kHeight);
-    }
-};
-
-void time_tree(benchmark::State& state, const Stage& stage) {
+void time_tree(benchmark::State& state, const SpeedStage& stage) {
     std::optional<RayScene> rays;
     timed_loop(
         state, [&] { rays.emplace(stage.scene); }, [&] { rays.reset(); });
@@ -41,9 +28,9 @@ void time_tree(benchmark::State& state, const Stage& stage) {
 }
 
 /// Checked: each point lies on its pixel's ray, within a pixel.
-void time_camera_rays(benchmark::State& state, const Stage& stage) {
+void time_camera_rays(benchmark::State& state, const SpeedStage& stage) {
     PointBatch batch;
-    const auto work = [&] { primary_points(*stage.rays, stage.scene, stage.scene.camera, kWidth, kHeight, batch); };
+    const auto work = [&] { stage.find_points(batch); };
     work();
     const CameraFrame f = *batch.raster;
     for (std::size_t i = 0; i < batch.size(); i += 97) {
@@ -97,8 +84,7 @@ bool blocks(const Scene& scene, const RaySpace& space, TriangleId t, const Verti
 using Blocked = std::vector<std::uint8_t>;  ///< one a ray
 
 /// Checked: 64 of the rays against every triangle.
-template <class Trace>
-void time_shadow_rays(benchmark::State& state, const Stage& stage, const Trace& trace) {
+void time_shadow_rays(benchmark::State& state, const SpeedStage& stage, void (*trace)(const RayScene&, Blocked&)) {
     Blocked blocked(kRays);
     trace(*stage.rays, blocked);
     for (std::size_t k = 7; k < kRays; k += kRays / 64 + 1) {
@@ -165,7 +151,7 @@ void time_signs(benchmark::State& state, float lift, int expected) {
     state.SetItemsProcessed(state.iterations() * 4096);
 }
 
-void time_facing(benchmark::State& state, const Stage& stage) {
+void time_facing(benchmark::State& state, const SpeedStage& stage) {
     PointBatch points = stage.points;
     for (auto& of : points.facing) of.assign(points.size(), Facing::none);
     face_lights(points, stage.scene);
@@ -174,7 +160,7 @@ void time_facing(benchmark::State& state, const Stage& stage) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
 }
 
-void time_facts(benchmark::State& state, const Stage& stage) {
+void time_facts(benchmark::State& state, const SpeedStage& stage) {
     if (find_facts(stage.scene).triangles != stage.scene.triangles.size())
         return state.SkipWithError("the number of triangles is wrong");
     timed_loop(state, [&] { benchmark::DoNotOptimize(find_facts(stage.scene)); });
@@ -183,7 +169,7 @@ void time_facts(benchmark::State& state, const Stage& stage) {
 
 /// Checked: lights add light, so that no pixel is darker where all of them are seen than where none is, and some are
 /// brighter.
-void time_shading(benchmark::State& state, const Stage& stage) {
+void time_shading(benchmark::State& state, const SpeedStage& stage) {
     const std::size_t lights = stage.scene.lights.size();
     std::vector<VisibilityPlane> umbra(lights, VisibilityPlane(stage.points.size())), lit = umbra;
     for (VisibilityPlane& plane : lit) plane.s.assign(plane.size(), 1.0f);
@@ -204,27 +190,24 @@ void time_shading(benchmark::State& state, const Stage& stage) {
 int main(int argc, char** argv) {
     using namespace umbra;
     keep_freed_memory();  // as `umbra` does
-    std::vector<std::unique_ptr<Stage>> stages;
-    stages.push_back(std::make_unique<Stage>("small", simple_scene()));
-    stages.push_back(std::make_unique<Stage>("medium", tori_scene(32, 16)));
-    stages.push_back(std::make_unique<Stage>("million", tori_scene(125, 64)));
-    const auto add = [](const std::string& name, auto&& function) {
-        benchmark::RegisterBenchmark(name.c_str(), function)->UseManualTime()->Unit(benchmark::kMillisecond);
-    };
+    std::deque<SpeedStage> stages;
     add_calibration();
-    for (const auto& made : stages) {
-        const Stage& s   = *made;
-        const auto named = [&](const char* kernel) { return fmt::format("{}/{}", s.name, kernel); };
-        add(named("tree"), [&](benchmark::State& state) { time_tree(state, s); });
-        add(named("camera_rays"), [&](benchmark::State& state) { time_camera_rays(state, s); });
-        add(named("ray_packets"), [&](benchmark::State& state) { time_shadow_rays(state, s, trace_packets); });
-        add(named("ray_lists"), [&](benchmark::State& state) { time_shadow_rays(state, s, trace_lists); });
-        add(named("first_hits"), [&](benchmark::State& state) { time_shadow_rays(state, s, trace_first_hits); });
-        add(named("facing"), [&](benchmark::State& state) { time_facing(state, s); });
-        add(named("facts"), [&](benchmark::State& state) { time_facts(state, s); });
-        add(named("shading"), [&](benchmark::State& state) { time_shading(state, s); });
+    for (const auto& [name, make] : scenes_of_three_sizes()) {
+        SpeedStage& s = stages.emplace_back(SpeedStage{name, make, kWidth, kHeight});
+        s.prepare();
+        const auto add = [&](const char* kernel, auto function, auto... more) {
+            add_benchmark(fmt::format("{}/{}", s.name, kernel), function, std::cref(s), more...);
+        };
+        add("tree", time_tree);
+        add("camera_rays", time_camera_rays);
+        add("ray_packets", time_shadow_rays, trace_packets);
+        add("ray_lists", time_shadow_rays, trace_lists);
+        add("first_hits", time_shadow_rays, trace_first_hits);
+        add("facing", time_facing);
+        add("facts", time_facts);
+        add("shading", time_shading);
     }
-    add("signs/clear", [](benchmark::State& state) { time_signs(state, 1, 1); });
-    add("signs/in_plane", [](benchmark::State& state) { time_signs(state, 0, 0); });
+    add_benchmark("signs/clear", time_signs, 1.0f, 1);
+    add_benchmark("signs/in_plane", time_signs, 0.0f, 0);
     return run_benchmarks({argv, argv + argc});
 }

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <functional>
 
 #include "umbra/bench/speed/in_turns.h"
@@ -23,7 +24,6 @@
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/tiles.h"
 #include "umbra/shadows/method.h"
 
@@ -261,24 +261,15 @@ struct BareShadows {
 // ---- the passes ----------------------------------------------------------------------------------------------------
 
 /// One scene with what all passes need, made at the first use.
-struct Bench {
-    std::string name;
-    std::function<Scene()> make;
-    int width = 1920, height = 1080;
-    bool ready = false;
-    Scene scene;
-    std::unique_ptr<RayScene> rays;
-    std::unique_ptr<Bare> fast, robust;
-    PointBatch points;
-    BareGBuffer bare_points;
+struct Bench : SpeedStage {
+    std::unique_ptr<Bare> fast{}, robust{};
+    BareGBuffer bare_points{};
 
     void prepare() {
-        if (std::exchange(ready, true)) return;
-        scene  = make();
-        rays   = std::make_unique<RayScene>(scene);
+        if (rays) return;
+        SpeedStage::prepare();
         fast   = std::make_unique<Bare>(scene, RTC_SCENE_FLAG_NONE);
         robust = std::make_unique<Bare>(scene, RTC_SCENE_FLAG_ROBUST);
-        points = primary_points(*rays, scene, scene.camera, width, height);
         bare_gbuffer(*fast, *points.raster, bare_points, true);
     }
 };
@@ -302,8 +293,7 @@ void time_gbuffer(benchmark::State& state, Bench& bench, bool claims) {
     BareGBuffer scratch;
     PointBatch points;
     const CameraFrame f = *bench.points.raster;
-    in_turns(state, bench.name + (claims ? "/gbuffer_claimed" : "/gbuffer"),
-             [&] { primary_points(*bench.rays, bench.scene, bench.scene.camera, bench.width, bench.height, points); },
+    in_turns(state, bench.name + (claims ? "/gbuffer_claimed" : "/gbuffer"), [&] { bench.find_points(points); },
              {{"bare", [&] { bare_gbuffer(*bench.fast, f, scratch, claims); }},
               {"robust", [&] { bare_gbuffer(*bench.robust, f, scratch, claims); }}});
     state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * bench.points.size()));
@@ -312,12 +302,10 @@ void time_gbuffer(benchmark::State& state, Bench& bench, bool claims) {
 /// `across`: light samples are across times across.
 void time_visibility(benchmark::State& state, Bench& bench, LightId light, int across) {
     bench.prepare();
-    const int samples         = across * across;
-    const MethodChoice choice = parse_method(fmt::format("ray_traced:samples={}", samples));
-    const SceneFacts facts    = find_facts(bench.scene);
-    const auto method         = choice.make();
-    const auto built          = method->build(bench.scene, facts);
-    const auto aimed          = method->aim(*built, light);
+    const int samples = across * across;
+    const auto method = parse_method(fmt::format("ray_traced:samples={}", samples)).make();
+    const auto built  = method->build(bench.scene, bench.facts);
+    const auto aimed  = method->aim(*built, light);
     VisibilityPlane plane(bench.points.size());
     const std::vector<float>& s = plane.s;
     const CameraFrame f         = *bench.points.raster;
@@ -374,9 +362,7 @@ void time_gbuffer_touched(benchmark::State& state, Bench& bench) {
         });
         benchmark::ClobberMemory();
     };
-    in_turns(state, bench.name + "/gbuffer_touched",
-             [&] { primary_points(*bench.rays, bench.scene, bench.scene.camera, bench.width, bench.height, points); },
-             {{"touch", touch}});
+    in_turns(state, bench.name + "/gbuffer_touched", [&] { bench.find_points(points); }, {{"touch", touch}});
     state.counters["bytes_a_point"] =
         sizeof(TriangleId) + 8 * sizeof(float) + 1 + static_cast<double>(touched.facing.size());
 }
@@ -384,11 +370,9 @@ void time_gbuffer_touched(benchmark::State& state, Bench& bench) {
 /// Against a loop that reads triangle, position and facing of each point, and writes S_j.
 void time_visibility_touched(benchmark::State& state, Bench& bench, const char* text) {
     bench.prepare();
-    const MethodChoice choice = parse_method(text);
-    const SceneFacts facts    = find_facts(bench.scene);
-    const auto method         = choice.make();
-    if (!verdict(*method, facts)) return state.SkipWithError("does not serve");
-    const auto built  = method->build(bench.scene, facts);
+    const auto method = parse_method(text).make();
+    if (!verdict(*method, bench.facts)) return state.SkipWithError("does not serve");
+    const auto built  = method->build(bench.scene, bench.facts);
     const auto aimed  = method->aim(*built, 0);
     const auto looked = method->look(*built, bench.points);
     VisibilityPlane plane(bench.points.size());
@@ -414,46 +398,30 @@ void time_visibility_touched(benchmark::State& state, Bench& bench, const char* 
 int main(int argc, char** argv) {
     using namespace umbra;
     keep_freed_memory();  // as `umbra` does
-    std::vector<std::unique_ptr<Bench>> benches;
+    std::deque<Bench> benches;
     const SpeedLine line(argc, argv);
-    const auto scene = [&](std::string name, std::function<Scene()> make) {
-        benches.push_back(std::make_unique<Bench>());
-        benches.back()->name = std::move(name);
-        benches.back()->make = std::move(make);
-    };
-    scene("simple", simple_scene);
-    scene("tori", [] { return tori_scene(125, 64); });
-    for (const std::string& file : line.scenes) scene("file", [file] { return file_scene(file); });
-    for (const auto& bench : benches) {
-        Bench& b = *bench;
-        b.width  = std::max(1, line.size.width / kTileWidth) * kTileWidth;  // the bare loops know whole tiles only
-        b.height = std::max(1, line.size.height / kTileHeight) * kTileHeight;
-        const auto add = [&](const char* pass, auto&& function, int rounds) {
-            benchmark::RegisterBenchmark((b.name + "/" + pass).c_str(), function)
-                ->UseManualTime()
-                ->Unit(benchmark::kMillisecond)
-                ->Iterations(rounds);
+    // The bare loops know whole tiles only.
+    const int width      = std::max(1, line.size.width / kTileWidth) * kTileWidth;
+    const int height     = std::max(1, line.size.height / kTileHeight) * kTileHeight;
+    const auto add_bench = [&](const char* name, std::function<Scene()> make) {
+        Bench& bench   = benches.emplace_back(Bench{{name, std::move(make), width, height}});
+        const auto add = [&](const std::string& pass, int rounds, auto function, auto... more) {
+            add_benchmark(bench.name + "/" + pass, function, std::ref(bench), more...)->Iterations(rounds);
         };
-        add(
-            "build", [&b](benchmark::State& s) { time_build(s, b); }, 5);
-        add(
-            "gbuffer", [&b](benchmark::State& s) { time_gbuffer(s, b, false); }, 11);
-        add(
-            "gbuffer_claimed", [&b](benchmark::State& s) { time_gbuffer(s, b, true); }, 11);
-        add(
-            "point", [&b](benchmark::State& s) { time_visibility(s, b, 0, 1); }, 11);
-        add(
-            "area16", [&b](benchmark::State& s) { time_visibility(s, b, 1, 4); }, 5);
-        add(
-            "area64", [&b](benchmark::State& s) { time_visibility(s, b, 1, 8); }, 5);
-        add(
-            "gbuffer_touched", [&b](benchmark::State& s) { time_gbuffer_touched(s, b); }, 11);
+        add("build", 5, time_build);
+        add("gbuffer", 11, time_gbuffer, false);
+        add("gbuffer_claimed", 11, time_gbuffer, true);
+        add("point", 11, time_visibility, LightId{0}, 1);
+        add("area16", 5, time_visibility, LightId{1}, 4);
+        add("area64", 5, time_visibility, LightId{1}, 8);
+        add("gbuffer_touched", 11, time_gbuffer_touched);
         for (const char* text : {"ray_traced", "shadow_zbuffer", "shadow_zbuffer:filter=pcf", "planar_projection",
                                  "exact", "shadow_volumes", "shadow_volumes:counting=depth_fail"})
-            add(
-                fmt::format("touched/{}", text).c_str(),
-                [&b, text](benchmark::State& s) { time_visibility_touched(s, b, text); }, 9);
-    }
+            add(fmt::format("touched/{}", text), 9, time_visibility_touched, text);
+    };
+    add_bench("simple", simple_scene);
+    add_bench("tori", [] { return tori_scene(125, 64); });
+    for (const std::string& file : line.scenes) add_bench("file", [file] { return file_scene(file); });
     const int code = run_benchmarks(line.rest);
     print_ratios();
     return code;

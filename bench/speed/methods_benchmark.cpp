@@ -36,31 +36,18 @@ constexpr LightId kPoint = 0, kArea = 1;
 constexpr std::size_t kChecked = 512;   ///< points that answers are compared at
 constexpr std::size_t kSampled = 2048;  ///< points that a slow method is asked for
 
-struct Size {
-    int width = 640, height = 360;
-};
+constexpr Size kUsual{640, 360};
 
-/// A scene with what all methods share, made at the first use.
-struct Stage {
-    std::string name;
-    std::function<Scene()> make;
-    Scene scene{};
-    SceneFacts facts{};
-    std::unique_ptr<RayScene> rays{};
-    std::map<int, PointBatch> points{};             ///< by width
+/// A scene with what all methods share.
+struct Stage : SpeedStage {
+    std::map<int, PointBatch> other_points{};       ///< at other sizes, by width
     std::map<LightId, VisibilityPlane> expected{};  ///< at `checked`
     std::vector<std::uint32_t> checked{};
     std::map<std::string, std::optional<std::string>> verdicts{};  ///< of "METHOD LIGHT": what is wrong with it
 
-    void prepare() {
-        if (rays) return;
-        scene = make();
-        facts = find_facts(scene);
-        rays  = std::make_unique<RayScene>(scene);
-    }
     const PointBatch& at(Size size) {
-        prepare();
-        auto [found, added] = points.try_emplace(size.width);
+        if (size.width == width) return points;
+        auto [found, added] = other_points.try_emplace(size.width);
         if (added) found->second = primary_points(*rays, scene, scene.camera, size.width, size.height);
         return found->second;
     }
@@ -107,7 +94,7 @@ VisibilityPlane answers(const Stage& stage, const MethodInfo& info, const PointB
 /// 1 % of the points may be off by half. The worst method of the report, the shadow z-buffer, has 0.04 % of its points
 /// wrong; one that answers at random has 50 %.
 std::optional<std::string> what_is_wrong(Stage& stage, const MethodInfo& info, LightId light) {
-    const PointBatch& all = stage.at({});
+    const PointBatch& all = stage.points;
     if (stage.checked.empty()) stage.checked = spread(all, kChecked);
     const PointBatch checked = pick(all, stage.checked);
     auto [expected, unknown] = stage.expected.try_emplace(light);
@@ -158,7 +145,7 @@ void time_aim(benchmark::State& state, Stage& stage, const MethodInfo& info) {
 
 void time_look(benchmark::State& state, Stage& stage, const MethodInfo& info) {
     if (refused(state, stage, info, kPoint)) return;
-    const PointBatch points = points_for(stage, info, kPoint, {});
+    const PointBatch points = points_for(stage, info, kPoint, kUsual);
     const auto method       = info.make();
     const auto built        = build(*method, stage);
     std::unique_ptr<const Looked> looked;
@@ -188,25 +175,22 @@ void time_visibility(benchmark::State& state, Stage& stage, const MethodInfo& in
 }
 
 void add_method(Stage& stage, const MethodInfo& info) {
-    const auto add = [&](const std::string& what, auto&& function) {
-        return benchmark::RegisterBenchmark(fmt::format("{}/{}/{}", stage.name, info.name, what).c_str(), function)
-            ->UseManualTime()
-            ->Unit(benchmark::kMillisecond);
+    const auto add = [&](const std::string& what, auto function, auto... more) {
+        return add_benchmark(fmt::format("{}/{}/{}", stage.name, info.name, what), function, std::ref(stage),
+                             std::cref(info), more...);
     };
-    add("build", [&](benchmark::State& s) { time_build(s, stage, info); });
-    add("aim", [&](benchmark::State& s) { time_aim(s, stage, info); });
-    add("look", [&](benchmark::State& s) { time_look(s, stage, info); })->MinTime(0.1);  // most have nothing to do
-    add("point", [&](benchmark::State& s) { time_visibility(s, stage, info, kPoint, {}, 0); });
-    if (stage.scene.lights.size() > kArea)
-        add("area", [&](benchmark::State& s) { time_visibility(s, stage, info, kArea, {}, 0); });
+    add("build", time_build);
+    add("aim", time_aim);
+    add("look", time_look)->MinTime(0.1);  // most have nothing to do
+    add("point", time_visibility, kPoint, kUsual, 0);
+    if (stage.scene.lights.size() > kArea) add("area", time_visibility, kArea, kUsual, 0);
     if (stage.name != "medium") return;
     const int most = static_cast<int>(std::thread::hardware_concurrency());
     for (int threads = 1; threads < 2 * most; threads *= 2)  // all of them last, whether a power of two or not
-        add(fmt::format("point/threads:{}", std::min(threads, most)),
-            [&, n = std::min(threads, most)](benchmark::State& s) { time_visibility(s, stage, info, kPoint, {}, n); });
+        add(fmt::format("point/threads:{}", std::min(threads, most)), time_visibility, kPoint, kUsual,
+            std::min(threads, most));
     for (const Size size : {Size{320, 180}, Size{1280, 720}})
-        add(fmt::format("point/{}x{}", size.width, size.height),
-            [&, size](benchmark::State& s) { time_visibility(s, stage, info, kPoint, size, 0); });
+        add(fmt::format("point/{}x{}", size.width, size.height), time_visibility, kPoint, size, 0);
 }
 
 }  // namespace
@@ -214,20 +198,12 @@ void add_method(Stage& stage, const MethodInfo& info) {
 
 int main(int argc, char** argv) {
     using namespace umbra;
-    keep_freed_memory();  // as `umbra` does
-    const std::vector<std::pair<std::string, std::function<Scene()>>> scenes{
-        {"small", simple_scene}, {"medium", [] { return tori_scene(32, 16); }}, {"million", [] {
-                                                                                     return tori_scene(125, 64);
-                                                                                 }}};
+    keep_freed_memory();       // as `umbra` does
     std::deque<Stage> stages;  // of each scene with both lights, and with the point light alone
     add_calibration();
-    for (const auto& [name, make] : scenes) {
-        Stage& both = stages.emplace_back(Stage{name, make});
-        Stage& hard = stages.emplace_back(Stage{name, [make = make] {
-                                                    Scene scene = make();
-                                                    scene.lights.resize(kPoint + 1);
-                                                    return scene;
-                                                }});
+    for (const auto& [name, make] : scenes_of_three_sizes()) {
+        Stage& both = stages.emplace_back(Stage{{name, make, kUsual.width, kUsual.height}});
+        Stage& hard = stages.emplace_back(Stage{{name, with_point_light_alone(make), kUsual.width, kUsual.height}});
         both.prepare();
         hard.prepare();
         for (const MethodInfo* info : methods())

@@ -8,8 +8,8 @@
 
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string_view>
 
 #include "umbra/bench/speed/in_turns.h"
@@ -18,42 +18,21 @@
 #include "umbra/core/base/memory.h"
 #include "umbra/core/base/parallel.h"
 #include "umbra/core/io/scene_io.h"
-#include "umbra/core/render/gbuffer.h"
 #include "umbra/core/render/shade.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
 namespace {
 
-/// A scene with its point light alone, and what all passes share, made at the first use.
-struct Stage {
-    std::string name;
-    std::function<Scene()> make;
-    int width = 1920, height = 1080;
-    Scene scene{};
-    SceneFacts facts{};
-    std::unique_ptr<RayScene> rays{};
-    PointBatch points{};
-
-    void prepare() {
-        if (rays) return;
-        scene = make();
-        scene.lights.resize(1);
-        facts  = find_facts(scene);
-        rays   = std::make_unique<RayScene>(scene);
-        points = primary_points(*rays, scene, scene.camera, width, height);
-    }
-};
-
 /// A method that is ready to answer. `stage` must outlive it.
 struct Ready {
-    const Stage& stage;
+    const SpeedStage& stage;
     std::unique_ptr<const Method> method;
     std::unique_ptr<const Built> built{};
     std::unique_ptr<const Aimed> aimed{};
     VisibilityPlane plane;
 
-    Ready(const Stage& s, std::string_view settings)
+    Ready(const SpeedStage& s, std::string_view settings)
         : stage(s), method(parse_method(settings).make()), plane(s.points.size()) {
         build();
         aim();
@@ -87,65 +66,38 @@ bool agree(benchmark::State& state, const Ready& a, const Ready& b, double allow
     return false;
 }
 
-/// S_j of one method over that of another.
-void time_see(benchmark::State& state, Stage& stage, std::string_view one, std::string_view other, double allowed) {
+/// A method, the name of its work in the table, and the work.
+struct Side {
+    std::string_view settings;
+    std::string name;
+    void (*work)(Ready&);
+    void (*answer)(Ready&) = work;  ///< the work, and S_j where that is no part of it
+};
+void see(Ready& ready) { ready.see(); }
+void all(Ready& ready) { ready.all(); }
+
+/// One method's work over that of another, whose answers may differ by `allowed` on average.
+void time_pair(benchmark::State& state, SpeedStage& stage, const Side& one, const Side& other, double allowed) {
     stage.prepare();
-    for (const std::string_view settings : {one, other})
-        if (!parse_method(settings).make()->serves(stage.facts))
-            return state.SkipWithError(fmt::format("{} does not serve this scene", settings).c_str());
-    Ready a(stage, one), b(stage, other);
-    a.see(), b.see();
+    for (const Side* side : {&one, &other})
+        if (!parse_method(side->settings).make()->serves(stage.facts))
+            return state.SkipWithError(fmt::format("{} does not serve this scene", side->settings).c_str());
+    Ready a(stage, one.settings), b(stage, other.settings);
+    one.answer(a), other.answer(b);
     if (!agree(state, a, b, allowed)) return;
-    in_turns(state, fmt::format("{}: S_j of {}", stage.name, one), [&] { a.see(); },
-             {{std::string(other), [&] { b.see(); }}});
+    in_turns(state, fmt::format("{}: {}", stage.name, one.name), [&] { one.work(a); },
+             {{other.name, [&] { other.work(b); }}});
 }
 
-/// Build, aim and S_j of one method over those of another.
-void time_all(benchmark::State& state, Stage& stage, std::string_view one, std::string_view other, double allowed) {
-    stage.prepare();
-    Ready a(stage, one), b(stage, other);
-    a.see(), b.see();
-    if (!agree(state, a, b, allowed)) return;
-    in_turns(state, fmt::format("{}: build, aim, S_j of {}", stage.name, one), [&] { a.all(); },
-             {{std::string(other), [&] { b.all(); }}});
-}
-
-/// What a light that moved costs before S_j is asked for, over a moved object's frame.
-void time_aim(benchmark::State& state, Stage& stage, std::string_view settings) {
-    stage.prepare();
-    if (!parse_method(settings).make()->serves(stage.facts))
-        return state.SkipWithError(fmt::format("{} does not serve this scene", settings).c_str());
-    Ready aimed(stage, settings), all(stage, settings);
-    aimed.aim();  // once more, as below
-    aimed.see(), all.all();
-    if (!agree(state, aimed, all, 0)) return;
-    in_turns(state, fmt::format("{}: aim of {}", stage.name, settings), [&] { aimed.aim(); },
-             {{"build, aim, S_j", [&] { all.all(); }}});
-}
-
-/// The sum over the G-buffer.
-void time_sum(benchmark::State& state, Stage& stage) {
-    stage.prepare();
-    Ready rays(stage, "ray_traced");
-    rays.see();
-    PointBatch points;
-    in_turns(state, stage.name + ": the sum",
-             [&] {
-                 const Image picture = shade(stage.scene, stage.points, {&rays.plane, 1});
-                 benchmark::DoNotOptimize(&picture);
-             },
-             {{"G-buffer", [&] {
-                   primary_points(*stage.rays, stage.scene, stage.scene.camera, stage.width, stage.height, points);
-               }}});
-}
-
-/// The sum over a loop that reads the same planes and writes the same picture, and computes nothing.
-void time_sum_of_memory(benchmark::State& state, Stage& stage) {
+/// The sum over the G-buffer, or over a loop that reads the same planes and writes the same picture, and computes
+/// nothing.
+void time_sum(benchmark::State& state, SpeedStage& stage, bool over_memory) {
     stage.prepare();
     Ready rays(stage, "ray_traced");
     rays.see();
     const PointBatch& p = stage.points;
-    const auto touch    = [&] {
+    PointBatch points;
+    const auto touch = [&] {
         Image picture(stage.width, stage.height, {"R", "G", "B"});
         float* const to = picture.data.data();
         parallel_ranges(p.size(), 16384, [&](std::size_t begin, std::size_t end) {
@@ -157,57 +109,52 @@ void time_sum_of_memory(benchmark::State& state, Stage& stage) {
         });
         benchmark::DoNotOptimize(picture.data.data());
     };
-    in_turns(state, stage.name + ": the sum, over its memory",
-             [&] {
-                 const Image picture = shade(stage.scene, p, {&rays.plane, 1});
-                 benchmark::DoNotOptimize(picture.data.data());
-             },
-             {{"reading and writing", touch}});
+    const auto sum = [&] {
+        const Image picture = shade(stage.scene, p, {&rays.plane, 1});
+        benchmark::DoNotOptimize(picture.data.data());
+    };
+    if (over_memory)
+        in_turns(state, stage.name + ": the sum, over its memory", sum, {{"reading and writing", touch}});
+    else
+        in_turns(state, stage.name + ": the sum", sum, {{"G-buffer", [&] { stage.find_points(points); }}});
 }
 
-/// One thread over two.
-void time_threads(benchmark::State& state, Stage& stage, std::string_view settings) {
-    stage.prepare();
-    if (!parse_method(settings).make()->serves(stage.facts))
-        return state.SkipWithError(fmt::format("{} does not serve this scene", settings).c_str());
-    Ready one(stage, settings), two(stage, settings);
-    const auto see = [](Ready& ready, int threads) {
-        const ThreadLimit limit(threads);
-        ready.see();
-    };
-    see(one, 1), see(two, 2);
-    if (!agree(state, one, two, 0)) return;
-    in_turns(state, fmt::format("{}: S_j of {}, one thread", stage.name, settings), [&] { see(one, 1); },
-             {{"two threads", [&] { see(two, 2); }}});
+void see_on_threads(Ready& ready, int threads) {
+    const ThreadLimit limit(threads);
+    ready.see();
 }
 
-void add_stage(Stage& s) {
-    const auto add = [&](const std::string& pass, auto&& function) {
-        benchmark::RegisterBenchmark((s.name + "/" + pass).c_str(), function)
-            ->UseManualTime()
-            ->Unit(benchmark::kMillisecond)
-            ->Iterations(5);
+void add_stage(SpeedStage& s) {
+    const auto add = [&](const std::string& pass, auto function, auto... more) {
+        add_benchmark(s.name + "/" + pass, function, std::ref(s), more...)->Iterations(5);
     };
-    const auto see = [&](const std::string& pass, const char* one, const char* other, double allowed) {
-        add(pass, [&s, one, other, allowed](benchmark::State& state) { time_see(state, s, one, other, allowed); });
+    const auto add_see = [&](const char* pass, const char* one, const char* other, double allowed) {
+        add(pass, time_pair, Side{one, fmt::format("S_j of {}", one), see}, Side{other, other, see}, allowed);
     };
-    add("sum/gbuffer", [&s](benchmark::State& state) { time_sum(state, s); });
-    add("sum/memory", [&s](benchmark::State& state) { time_sum_of_memory(state, s); });
-    see("pcf/nearest", "shadow_zbuffer:filter=pcf", "shadow_zbuffer", 0.05);
-    see("depth_fail/depth_pass", "shadow_volumes:counting=depth_fail", "shadow_volumes", 1e-5);
-    see("planar/rays", "planar_projection", "ray_traced", 0.002);
-    add("planar/rays/object_moved",
-        [&s](benchmark::State& state) { time_all(state, s, "planar_projection", "ray_traced", 0.002); });
-    see("exact/rays", "exact", "ray_traced", 0.002);
-    see("alias_free/rays", "alias_free", "ray_traced", 0.002);
-    add("alias_free/rays/object_moved",
-        [&s](benchmark::State& state) { time_all(state, s, "alias_free", "ray_traced", 0.002); });
+    const auto add_all = [&](const char* pass, const char* one, const char* other, double allowed) {
+        add(pass, time_pair, Side{one, fmt::format("build, aim, S_j of {}", one), all}, Side{other, other, all},
+            allowed);
+    };
+    add("sum/gbuffer", time_sum, false);
+    add("sum/memory", time_sum, true);
+    add_see("pcf/nearest", "shadow_zbuffer:filter=pcf", "shadow_zbuffer", 0.05);
+    add_see("depth_fail/depth_pass", "shadow_volumes:counting=depth_fail", "shadow_volumes", 1e-5);
+    add_see("planar/rays", "planar_projection", "ray_traced", 0.002);
+    add_all("planar/rays/object_moved", "planar_projection", "ray_traced", 0.002);
+    add_see("exact/rays", "exact", "ray_traced", 0.002);
+    add_see("alias_free/rays", "alias_free", "ray_traced", 0.002);
+    add_all("alias_free/rays/object_moved", "alias_free", "ray_traced", 0.002);
+    // A light that moved, before S_j is asked for, over a moved object's frame.
     for (const char* settings : {"shadow_zbuffer:resolution=2048", "shadow_volumes"})
-        add(fmt::format("aim/{}", settings), [&s, settings](benchmark::State& state) { time_aim(state, s, settings); });
+        add(fmt::format("aim/{}", settings), time_pair,
+            Side{settings, fmt::format("aim of {}", settings), [](Ready& r) { r.aim(); },
+                 [](Ready& r) { r.aim(), r.see(); }},
+            Side{settings, "build, aim, S_j", all}, 0.0);
     for (const char* settings : {"planar_projection", "shadow_volumes", "shadow_zbuffer", "shadow_zbuffer:filter=pcf",
                                  "alias_free", "ray_traced", "exact"})
-        add(fmt::format("threads/{}", settings),
-            [&s, settings](benchmark::State& state) { time_threads(state, s, settings); });
+        add(fmt::format("threads/{}", settings), time_pair,
+            Side{settings, fmt::format("S_j of {}, one thread", settings), [](Ready& r) { see_on_threads(r, 1); }},
+            Side{settings, "two threads", [](Ready& r) { see_on_threads(r, 2); }}, 0.0);
 }
 
 }  // namespace
@@ -217,14 +164,14 @@ int main(int argc, char** argv) {
     using namespace umbra;
     keep_freed_memory();  // as `umbra` does
     const SpeedLine line(argc, argv);
-    std::deque<Stage> stages;
-    stages.push_back({"simple", simple_scene});
-    stages.push_back({"tori", [] { return tori_scene(125, 64); }});
-    for (const std::string& file : line.scenes) stages.push_back({"file", [file] { return load_scene(file); }});
-    for (Stage& s : stages) {
-        s.width = line.size.width, s.height = line.size.height;
-        add_stage(s);
-    }
+    std::deque<SpeedStage> stages;
+    const auto add = [&](const char* name, std::function<Scene()> make) {
+        stages.push_back({name, with_point_light_alone(std::move(make)), line.size.width, line.size.height});
+        add_stage(stages.back());
+    };
+    add("simple", simple_scene);
+    add("tori", [] { return tori_scene(125, 64); });
+    for (const std::string& file : line.scenes) add("file", [file] { return load_scene(file); });
     const int code = run_benchmarks(line.rest);
     print_ratios();
     return code;

@@ -4,8 +4,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "umbra/core/render/gbuffer.h"
+#include "umbra/core/scene/facts.h"
 #include "umbra/core/scene/primitives.h"
 #include "umbra/core/scene/scene.h"
 
@@ -69,5 +75,41 @@ inline Scene tori_scene(int around, int tube) {
     add_lights(scene, {3, 5, 2}, scene.camera.target, 1);
     return scene;
 }
+
+/// 9,000, 65,000 and 1,024,000 triangles.
+inline std::vector<std::pair<std::string, std::function<Scene()>>> scenes_of_three_sizes() {
+    const auto tori = [](int around, int tube) { return [=] { return tori_scene(around, tube); }; };
+    return {{"small", simple_scene}, {"medium", tori(32, 16)}, {"million", tori(125, 64)}};
+}
+
+/// The same scenes without the area light.
+inline std::function<Scene()> with_point_light_alone(std::function<Scene()> make) {
+    return [make = std::move(make)] {
+        Scene scene = make();
+        scene.lights.resize(1);
+        return scene;
+    };
+}
+
+/// A scene with what its benchmarks share, made at the first use.
+struct SpeedStage {
+    std::string name;
+    std::function<Scene()> make;
+    int width = 1920, height = 1080;
+    Scene scene{};
+    SceneFacts facts{};
+    std::unique_ptr<RayScene> rays{};
+    PointBatch points{};
+
+    void prepare() {
+        if (rays) return;
+        scene = make();
+        facts = find_facts(scene);
+        rays  = std::make_unique<RayScene>(scene);
+        find_points(points);
+    }
+    /// The G-buffer, into `batch`.
+    void find_points(PointBatch& batch) const { primary_points(*rays, scene, scene.camera, width, height, batch); }
+};
 
 }  // namespace umbra

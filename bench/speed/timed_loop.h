@@ -29,12 +29,18 @@ inline void timed_loop(benchmark::State& state, const std::function<void()>& wor
     }
 }
 
+/// Registers function(state, arguments...), which times itself (UseManualTime); milliseconds.
+template <class Function, class... Arguments>
+benchmark::internal::Benchmark* add_benchmark(const std::string& name, Function function, Arguments... arguments) {
+    return benchmark::RegisterBenchmark(name.c_str(), function, arguments...)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
+}
+
 /// "calibration" and, as a control, the same again: what times of two runs of a program are relative to.
 inline void add_calibration() {
     for (const char* name : {"calibration", "calibration/again"})
-        benchmark::RegisterBenchmark(name, [](benchmark::State& state) { timed_loop(state, calibration_work); })
-            ->UseManualTime()
-            ->Unit(benchmark::kMillisecond);
+        add_benchmark(name, [](benchmark::State& state) { timed_loop(state, calibration_work); });
 }
 
 /// The options that are not Google Benchmark's: --size=WxH, and --scene=FILE, any number of times.
