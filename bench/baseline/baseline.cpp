@@ -6,11 +6,11 @@
 #include <cmath>
 #include <fstream>
 
+#include "umbra/bench/record/json.h"
 #include "umbra/core/base/error.h"
 
 namespace umbra {
 
-using Json   = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 namespace {
@@ -144,8 +144,7 @@ std::optional<double> slowest(const BaselineReport& report) {
 }
 
 Json baseline_json(const BaselineReport& report) {
-    const auto number = [](double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); };
-    Json changes      = Json::array();
+    Json changes = Json::array();
     for (const BenchmarkChange& c : report.changes) {
         Json entry = {{"name", c.name}, {"change", word(c.change)}};
         if (c.ratio.pairs > 0) {
