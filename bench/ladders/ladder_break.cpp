@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "umbra/bench/compare/explained_points.h"
 #include "umbra/bench/compare/pictures.h"
 #include "umbra/bench/out/files.h"
@@ -38,12 +40,10 @@ BreakRecord write_break(const std::filesystem::path& folder, const std::string& 
     std::vector<Explained> explained;
     MethodRun run{method};
     const RungOutcome o = outcome(*stage, method, &explained, &run);
-    LightId worst       = 0;
-    const auto interior = [&](LightId j) {
-        return explained[j].error.false_shadow.interior + explained[j].error.false_light.interior;
+    const auto interior = [](const Explained& light) {
+        return light.error.false_shadow.interior + light.error.false_light.interior;
     };
-    for (LightId j = 1; j < explained.size(); ++j)
-        if (interior(j) > interior(worst)) worst = j;
+    const auto worst = LightId(std::ranges::max_element(explained, {}, interior) - explained.begin());
 
     const auto file = [&](const char* ending) { return name + ending; };
     write_text(folder / file(".json"), native_text(scene));

@@ -29,33 +29,14 @@ inline void look_closely(Scene& scene, double window) {
 inline void add_close_floor(Scene& scene, double window) {
     look_closely(scene, window);
     const float t = 2 * scene.camera.height, n = std::max(t, 0.5f), r = 4;
-    const Mesh floor{{{-t, 0, -t},
-                      {t, 0, -t},
-                      {t, 0, t},
-                      {-t, 0, t},
-                      {-n, 0, -n},
-                      {n, 0, -n},
-                      {n, 0, n},
-                      {-n, 0, n},
-                      {-r, 0, -n},
-                      {n, 0, -r},
-                      {r, 0, n},
-                      {-n, 0, r},
-                      {-r, 0, -r},
-                      {r, 0, -r},
-                      {r, 0, r},
-                      {-r, 0, r}},
-                     {},
-                     {{0, 2, 1},
-                      {0, 3, 2},  // the tile
-                      {12, 5, 9},
-                      {12, 8, 5},
-                      {13, 6, 10},
-                      {13, 9, 6},  // and around it, turning, a strip a
-                      {14, 7, 11},
-                      {14, 10, 7},
-                      {15, 4, 8},
-                      {15, 11, 4}}};  // side
+    Mesh floor{{}, {}, {{0, 2, 1}, {0, 3, 2}}};  // the tile, and around it, turning, a strip a side
+    for (vec2 p : {vec2(-t, -t), vec2(-n, -n), vec2(-r, -n), vec2(-r, -r)})
+        for (int turn = 0; turn < 4; ++turn, p = {-p.y, p.x}) floor.positions.emplace_back(p.x, 0, p.y);
+    for (unsigned side = 0; side < 4; ++side) {
+        const unsigned next = (side + 1) % 4;
+        floor.triangles.push_back({12 + side, 4 + next, 8 + next});
+        floor.triangles.push_back({12 + side, 8 + side, 4 + next});
+    }
     add_body(scene, "floor", floor);
 }
 

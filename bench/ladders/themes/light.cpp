@@ -74,29 +74,16 @@ Scene light_near_face_plane(double rung) {
     Scene scene = floor_stage(9);
     add_body(scene, "wall", make_box({0.3f, 5.3f, 6.1f}), at({-3.9f, 2.65f, 0}));
     const float top = 2.3f;
-    add_object(scene, "box",
-               {{-1.1f, 0.3f, -1.3f},
-                {0.9f, 0.3f, -1.3f},
-                {0.9f, 0.3f, 0.7f},
-                {-1.1f, 0.3f, 0.7f},
-                {-1.1f, top, -1.3f},
-                {0.9f, top, -1.3f},
-                {0.9f, top, 0.7f},
-                {-1.1f, top, 0.7f}},
-               {},
-               {{0, 1, 2},
-                {0, 2, 3},
-                {4, 6, 5},
-                {4, 7, 6},
-                {0, 4, 5},
-                {0, 5, 1},
-                {1, 5, 6},
-                {1, 6, 2},
-                {2, 6, 7},
-                {2, 7, 3},
-                {3, 7, 4},
-                {3, 4, 0}},
-               0);
+    Mesh box{{}, {}, {{0, 1, 2}, {0, 2, 3}, {4, 6, 5}, {4, 7, 6}}};  // the bottom and the lid
+    for (const float y : {0.3f, top})
+        for (const vec2 p : {vec2(-1.1f, -1.3f), vec2(0.9f, -1.3f), vec2(0.9f, 0.7f), vec2(-1.1f, 0.7f)})
+            box.positions.emplace_back(p.x, y, p.y);
+    for (unsigned side = 0; side < 4; ++side) {
+        const unsigned next = (side + 1) % 4;
+        box.triangles.push_back({side, 4 + side, 4 + next});
+        box.triangles.push_back({side, 4 + next, next});
+    }
+    add_body(scene, "box", box);
     add_point_light(scene, {3.7f, float(double(top) + 8 * rung), 0.21f});
     look(scene, {6.5f, 6.2f, 7.1f}, {-1.1f, 1.3f, 0}, 45);
     return scene;

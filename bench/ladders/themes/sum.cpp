@@ -17,14 +17,13 @@ enum class Falls : std::uint8_t { never_rises, always };
 /// it falls always, neighbours are not equal either, down to a millionth of the peak.
 std::string wrong_around_middle(const Image& linear, double peak, Falls falls) {
     const int x0 = linear.width / 2, y0 = linear.height / 2;
+    const auto width = static_cast<std::size_t>(linear.width);
     const auto value = [&](int x, int y) {
-        return linear.at(
-            static_cast<std::size_t>(y) * static_cast<std::size_t>(linear.width) + static_cast<std::size_t>(x), 0);
+        return linear.at(static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x), 0);
     };
     for (std::size_t i = 0; i < linear.pixels(); ++i)
         if (!std::isfinite(linear.at(i, 0)) || linear.at(i, 0) < 0)
-            return fmt::format("pixel {}, {} is {}, expected a finite number >= 0",
-                               i % static_cast<std::size_t>(linear.width), i / static_cast<std::size_t>(linear.width),
+            return fmt::format("pixel {}, {} is {}, expected a finite number >= 0", i % width, i / width,
                                linear.at(i, 0));
     if (!(std::abs(static_cast<double>(value(x0, y0)) - peak) <= 1e-4 * peak))
         return fmt::format("the middle pixel is {}, expected {}", value(x0, y0), peak);
