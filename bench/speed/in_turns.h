@@ -63,13 +63,11 @@ inline void in_turns(benchmark::State& state, const std::string& name, const std
         }
         ++round;
         for (std::size_t k = 0; k < all.size(); ++k) wall[k].push_back(costs[k].wall);
-        const auto fastest = [&](double Cost::*member) {
-            double least = costs[1].*member;
-            for (std::size_t k = 2; k < all.size(); ++k) least = std::min(least, costs[k].*member);
-            return least;
+        const auto ratio = [&](double Cost::*of) {
+            return costs[0].*of / ((*std::ranges::min_element(costs.begin() + 1, costs.end(), {}, of)).*of);
         };
-        ratios.push_back(costs[0].wall / fastest(&Cost::wall));
-        cpu_ratios.push_back(costs[0].cpu / fastest(&Cost::cpu));
+        ratios.push_back(ratio(&Cost::wall));
+        cpu_ratios.push_back(ratio(&Cost::cpu));
         state.SetIterationTime(costs[0].wall / 1e3);
     }
     std::size_t fastest = 1;

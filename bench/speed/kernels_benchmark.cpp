@@ -23,8 +23,7 @@ constexpr int kWidth = 640, kHeight = 360;
 void time_tree(benchmark::State& state, const SpeedStage& stage) {
     std::optional<RayScene> rays;
     timed_loop(
-        state, [&] { rays.emplace(stage.scene); }, [&] { rays.reset(); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.scene.triangles.size()));
+        state, stage.scene.triangles.size(), [&] { rays.emplace(stage.scene); }, [&] { rays.reset(); });
 }
 
 /// Checked: each point lies on its pixel's ray, within a pixel.
@@ -43,8 +42,7 @@ void time_camera_rays(benchmark::State& state, const SpeedStage& stage) {
         if (std::abs(x - static_cast<double>(column) - 0.5) > 1 || std::abs(y - static_cast<double>(row) - 0.5) > 1)
             return state.SkipWithError(fmt::format("point {} is not on its pixel's ray", i).c_str());
     }
-    timed_loop(state, work);
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(batch.size()));
+    timed_loop(state, batch.size(), work);
 }
 
 constexpr std::size_t kRays = std::size_t{1} << 16;
@@ -94,8 +92,7 @@ void time_shadow_rays(benchmark::State& state, const SpeedStage& stage, void (*t
             expected = blocks(stage.scene, stage.rays->space(), t, ray);
         if (expected != (blocked[k] != 0)) return state.SkipWithError(fmt::format("ray {} is wrong", k).c_str());
     }
-    timed_loop(state, [&] { trace(*stage.rays, blocked); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(kRays));
+    timed_loop(state, kRays, [&] { trace(*stage.rays, blocked); });
 }
 
 void trace_packets(const RayScene& scene, Blocked& blocked) {
@@ -147,8 +144,7 @@ void time_signs(benchmark::State& state, float lift, int expected) {
         return sum;
     };
     if (work() != 4096 * expected) return state.SkipWithError("a sign is wrong");
-    timed_loop(state, [&] { benchmark::DoNotOptimize(work()); });
-    state.SetItemsProcessed(state.iterations() * 4096);
+    timed_loop(state, 4096, [&] { benchmark::DoNotOptimize(work()); });
 }
 
 void time_facing(benchmark::State& state, const SpeedStage& stage) {
@@ -156,15 +152,13 @@ void time_facing(benchmark::State& state, const SpeedStage& stage) {
     for (auto& of : points.facing) of.assign(points.size(), Facing::none);
     face_lights(points, stage.scene);
     if (points.facing != stage.points.facing) return state.SkipWithError("differs from the first answer");
-    timed_loop(state, [&] { face_lights(points, stage.scene); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+    timed_loop(state, points.size(), [&] { face_lights(points, stage.scene); });
 }
 
 void time_facts(benchmark::State& state, const SpeedStage& stage) {
     if (find_facts(stage.scene).triangles != stage.scene.triangles.size())
         return state.SkipWithError("the number of triangles is wrong");
-    timed_loop(state, [&] { benchmark::DoNotOptimize(find_facts(stage.scene)); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.scene.triangles.size()));
+    timed_loop(state, stage.scene.triangles.size(), [&] { benchmark::DoNotOptimize(find_facts(stage.scene)); });
 }
 
 /// Checked: lights add light, so that no pixel is darker where all of them are seen than where none is, and some are
@@ -180,8 +174,7 @@ void time_shading(benchmark::State& state, const SpeedStage& stage) {
         brighter = brighter || bright.data[i] > dark.data[i];
     }
     if (!brighter) return state.SkipWithError("lights add nothing");
-    timed_loop(state, [&] { benchmark::DoNotOptimize(shade(stage.scene, stage.points, lit)); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.points.size()));
+    timed_loop(state, stage.points.size(), [&] { benchmark::DoNotOptimize(shade(stage.scene, stage.points, lit)); });
 }
 
 }  // namespace

@@ -127,9 +127,8 @@ void time_build(benchmark::State& state, Stage& stage, const MethodInfo& info) {
     const auto method = info.make();
     std::unique_ptr<const Built> built;
     timed_loop(
-        state, [&] { built = method->build(stage.scene, stage.facts); },
+        state, stage.scene.triangles.size(), [&] { built = method->build(stage.scene, stage.facts); },
         [&] { built.reset(), method->warm_up(stage.scene, stage.facts); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(stage.scene.triangles.size()));
     state.counters["memory_bytes"] = static_cast<double>(built->memory_bytes());
 }
 
@@ -139,7 +138,7 @@ void time_aim(benchmark::State& state, Stage& stage, const MethodInfo& info) {
     const auto built  = build(*method, stage);
     std::unique_ptr<const Aimed> aimed;
     timed_loop(
-        state, [&] { aimed = method->aim(*built, kPoint); }, [&] { aimed.reset(); });
+        state, 0, [&] { aimed = method->aim(*built, kPoint); }, [&] { aimed.reset(); });
     state.counters["memory_bytes"] = static_cast<double>(built->memory_bytes() + aimed->memory_bytes());
 }
 
@@ -150,8 +149,7 @@ void time_look(benchmark::State& state, Stage& stage, const MethodInfo& info) {
     const auto built        = build(*method, stage);
     std::unique_ptr<const Looked> looked;
     timed_loop(
-        state, [&] { looked = method->look(*built, points); }, [&] { looked.reset(); });
-    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
+        state, points.size(), [&] { looked = method->look(*built, points); }, [&] { looked.reset(); });
     state.counters["memory_bytes"] = static_cast<double>(looked->memory_bytes());
     if (is_slow(info, kPoint)) state.SetLabel(fmt::format("{} points", points.size()));
 }
@@ -166,11 +164,10 @@ void time_visibility(benchmark::State& state, Stage& stage, const MethodInfo& in
     const auto aimed        = method->aim(*built, light);
     const auto looked       = method->look(*built, points);
     VisibilityPlane plane(points.size());
-    timed_loop(
-        state, [&] { method->visibility(*aimed, *looked, plane.out()); }, [&] { plane.clear(); });
-    std::int64_t asked = 0;
+    std::size_t asked = 0;
     for (std::size_t i = 0; i < points.size(); ++i) asked += points.asks(light, i);
-    state.SetItemsProcessed(state.iterations() * asked);
+    timed_loop(
+        state, asked, [&] { method->visibility(*aimed, *looked, plane.out()); }, [&] { plane.clear(); });
     if (is_slow(info, light)) state.SetLabel(fmt::format("{} points", points.size()));
 }
 
