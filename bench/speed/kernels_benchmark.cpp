@@ -52,15 +52,12 @@ constexpr std::size_t kRays = std::size_t{1} << 16;
 struct VerticalRay {
     vec3 origin;
     float rise;
-
-    VerticalRay(const RaySpace& space, std::size_t k)
-        : VerticalRay(space, k, static_cast<float>(k % 256), static_cast<float>(k >> 8)) {}
-
-private:
-    VerticalRay(const RaySpace& space, std::size_t k, float column, float row)
-        : origin(space.point(vec3(6 * column / 256 - 3, 0.1f, 6 * row / 256 - 3))),
-          rise(static_cast<float>(k % 2 == 0 ? 3 : -1) * space.scale) {}
 };
+VerticalRay vertical_ray(const RaySpace& space, std::size_t k) {
+    const auto column = static_cast<float>(k % 256), row = static_cast<float>(k >> 8);
+    return {space.point(vec3(6 * column / 256 - 3, 0.1f, 6 * row / 256 - 3)),
+            static_cast<float>(k % 2 == 0 ? 3 : -1) * space.scale};
+}
 
 /// Whether a triangle blocks a vertical ray, in double: the origin's x and z are inside the triangle's, and the height
 /// there is on the way.
@@ -86,8 +83,8 @@ void time_shadow_rays(benchmark::State& state, const SpeedStage& stage, void (*t
     Blocked blocked(kRays);
     trace(*stage.rays, blocked);
     for (std::size_t k = 7; k < kRays; k += kRays / 64 + 1) {
-        const VerticalRay ray(stage.rays->space(), k);
-        bool expected = false;
+        const VerticalRay ray = vertical_ray(stage.rays->space(), k);
+        bool expected         = false;
         for (TriangleId t = 0; t < stage.scene.triangles.size() && !expected; ++t)
             expected = blocks(stage.scene, stage.rays->space(), t, ray);
         if (expected != (blocked[k] != 0)) return state.SkipWithError(fmt::format("ray {} is wrong", k).c_str());
@@ -100,7 +97,7 @@ void trace_packets(const RayScene& scene, Blocked& blocked) {
     for (std::size_t first = 0; first < blocked.size(); first += 8) {
         ShadowPacket packet;
         for (std::size_t k = 0; k < 8; ++k) {
-            const VerticalRay ray(scene.space(), first + k);
+            const VerticalRay ray = vertical_ray(scene.space(), first + k);
             packet.org_x[k] = ray.origin.x, packet.org_y[k] = ray.origin.y, packet.org_z[k] = ray.origin.z;
             packet.dir_y[k] = ray.rise, packet.tfar[k] = 1, packet.id[k] = kNoTriangle, packet.valid[k] = -1;
         }
@@ -114,8 +111,8 @@ void trace_lists(const RayScene& scene, Blocked& blocked) {
     std::vector<ShadowRay> list(128);
     for (std::size_t first = 0; first < blocked.size(); first += list.size()) {
         for (std::size_t k = 0; k < list.size(); ++k) {
-            const VerticalRay ray(scene.space(), first + k);
-            list[k] = {ray.origin.x, ray.origin.y, ray.origin.z, 0, 0, ray.rise, 0, 0, 1};
+            const VerticalRay ray = vertical_ray(scene.space(), first + k);
+            list[k]               = {ray.origin.x, ray.origin.y, ray.origin.z, 0, 0, ray.rise, 0, 0, 1};
         }
         scene.occluded(list);
         for (std::size_t k = 0; k < list.size(); ++k) blocked[first + k] = list[k].tfar < 0;
@@ -125,7 +122,7 @@ void trace_lists(const RayScene& scene, Blocked& blocked) {
 void trace_first_hits(const RayScene& scene, Blocked& blocked) {
     const FlushDenormals flush;
     for (std::size_t k = 0; k < blocked.size(); ++k) {
-        const VerticalRay ray(scene.space(), k);
+        const VerticalRay ray = vertical_ray(scene.space(), k);
         blocked[k] =
             scene.first_hit({ray.origin.x, ray.origin.y, ray.origin.z, 0, 0, ray.rise, 0, 0, 1}) != kNoTriangle;
     }
