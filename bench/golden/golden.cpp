@@ -8,7 +8,6 @@
 #include <optional>
 #include <set>
 
-#include "umbra/bench/golden/golden_change.h"
 #include "umbra/bench/golden/golden_figures.h"
 #include "umbra/bench/golden/golden_planes.h"
 #include "umbra/bench/out/place_lock.h"

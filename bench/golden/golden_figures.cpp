@@ -128,24 +128,19 @@ Json with_ranges(Json figures, const PreparedScene& prepared, const MethodChoice
 Figures read_figures(const fs::path& file) {
     std::ifstream in(file);
     if (!in) return {};
-    const Json record = Json::parse(in, nullptr, false);
-    const auto wrong  = [&](bool is) {
-        if (is)
-            throw InputError(
-                 fmt::format("{}: expected the figures of methods and lights; remove the file and run umbra accept to "
-                              "write it again",
-                             file.string()));
+    const Json record    = Json::parse(in, nullptr, false);
+    const auto object_of = [](const auto& is_member) {
+        return
+            [=](const Json& value) { return value.is_object() && std::all_of(value.begin(), value.end(), is_member); };
     };
-    wrong(!record.is_object() || !record.contains("machine") || !record["machine"].is_string() ||
-          !record.contains("methods") || !record["methods"].is_object());
-    for (const auto& method : record["methods"].items()) {
-        wrong(!method.value().is_object());
-        for (const auto& light : method.value().items()) {
-            wrong(!light.value().is_object());
-            for (const auto& figure : light.value().items())
-                wrong(!figure.value().is_number() && !is_range(figure.value()));
-        }
-    }
+    const auto is_figure  = [](const Json& value) { return value.is_number() || is_range(value); };
+    const auto is_methods = object_of(object_of(object_of(is_figure)));
+    if (!record.is_object() || !record.value("machine", Json()).is_string() ||
+        !is_methods(record.value("methods", Json())))
+        throw InputError(
+            fmt::format("{}: expected the figures of methods and lights; remove the file and run umbra accept to "
+                        "write it again",
+                        file.string()));
     return {record["machine"], record["methods"]};
 }
 

@@ -1,4 +1,4 @@
-#include "umbra/bench/golden/golden_change.h"
+#include "umbra/bench/golden/golden.h"
 
 #include <fmt/format.h>
 
