@@ -107,8 +107,8 @@ struct RungStage {
 
 /// Times on the first rung, of all methods in turns, so that their ratios mean something: [method][round],
 /// milliseconds of build, aim and visibility over all lights, as time_in_turns measures them: samples with one index
-/// are of one round. Empty for a method that does not serve the scene, that throws there, or a run of which takes longer
-/// than the budget.
+/// are of one round. Empty for a method that does not serve the scene, that throws there, or that takes longer than the
+/// budget.
 [[nodiscard]] std::vector<std::vector<double>> time_first_rung(const Ladder& ladder,
                                                                const std::vector<MethodChoice>& methods,
                                                                const Budget& budget = {});

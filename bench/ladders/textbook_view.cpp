@@ -91,9 +91,7 @@ json tally_view(const Tally& tally) {
             {"range", n > 1 ? fmt::format("{}–{}", score(ratios[n / 4]), score(ratios[3 * n / 4])) : ""}};
 }
 
-std::string rungs_in_words(int rungs) {
-    return fmt::format("{}{} rung{}", rungs > 0 ? "+" : "−", std::abs(rungs), std::abs(rungs) == 1 ? "" : "s");
-}
+std::string rungs_in_words(int rungs) { return (rungs > 0 ? "+" : "−") + counted(std::abs(rungs), "rung"); }
 
 json cell_view(const LadderRecord& ladder, const Twins& twins) {
     const TextbookClimb c = compare_with_textbook(ladder, *twins.textbook, *twins.by_default);
