@@ -39,7 +39,7 @@ FrameTruth::FrameTruth(const Reference& reference, const Scene& scene, const Sce
 
 FrameErrors FrameTruth::errors(const std::vector<VisibilityPlane>& planes) const {
     FrameErrors errors;
-    double squares = 0;
+    double squares = 0, most = 0;
     for (LightId j = 0; j < planes_.size(); ++j) {
         const bool area              = is_area(scene_->lights[j].kind);
         const VisibilityPlane &truth = planes_[j], &plane = planes.at(j);
@@ -54,12 +54,12 @@ FrameErrors FrameTruth::errors(const std::vector<VisibilityPlane>& planes) const
             const double difference = std::abs(static_cast<double>(plane.s[i]) - static_cast<double>(truth.s[k]));
             ++errors.points;
             squares += difference * difference;
-            errors.max = std::max(errors.max, difference);
+            most = std::max(most, difference);
             errors.wrong += terminator_[j][i] == ErrorClass::right &&
                             difference > static_cast<double>(tolerance + truth.half_width[k]);
         }
     }
-    errors.rmse = errors.points > 0 ? std::sqrt(squares / static_cast<double>(errors.points)) : 0;
+    if (errors.points > 0) errors.rmse = std::sqrt(squares / static_cast<double>(errors.points)), errors.max = most;
     if (!sampled_) {
         errors.interior = 0;
         for (LightId j = 0; j < planes_.size(); ++j) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "umbra/bench/record/record.h"
 #include "umbra/bench/run/reference.h"
 #include "umbra/core/errors/error_classes.h"
 
@@ -14,11 +15,19 @@ namespace umbra {
 /// method and `on_boundary` are no error anywhere.
 struct FrameErrors {
     std::uint64_t points = 0, undefined = 0;
-    std::uint64_t wrong = 0;                ///< |s - truth| above the tolerance of the kind of light, and not at the
-                                            ///< terminator, as in umbra compare
-    std::optional<std::uint64_t> interior;  ///< of them, outside the edge band; none where a light is sampled
-    double rmse = 0, max = 0;
+    std::uint64_t wrong = 0;                 ///< |s - truth| above the tolerance of the kind of light, and not at the
+                                             ///< terminator, as in umbra compare
+    std::optional<std::uint64_t> interior;   ///< of them, outside the edge band; none where a light is sampled
+    double rmse = kUnknown, max = kUnknown;  ///< NaN where no point is compared
 };
+DESCRIBE(FrameErrors) {
+    of(MEMBER(points), "compared, all lights together");
+    MEMBERS(undefined);
+    of(MEMBER(wrong), "beyond the tolerance of the kind of light, not at the terminator");
+    MEMBERS(interior);
+    of(MEMBER(rmse), "of the points that the method answers; null where it answers none", kFraction);
+    of(MEMBER(max), "", kFraction);
+}
 
 /// What a frame is compared with.
 class FrameTruth {

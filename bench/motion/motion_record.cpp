@@ -9,20 +9,6 @@ RatioRecord ratio_record(const Ratio& ratio) {
     return record;
 }
 
-FrameRecord frame_record(const MotionFrame& frame) {
-    const FrameErrors& e = frame.errors;
-    FrameRecord record{.build_ms      = frame.times.build,
-                       .look_ms       = frame.times.look,
-                       .aim_ms        = frame.times.aim,
-                       .visibility_ms = frame.times.visibility,
-                       .points        = e.points,
-                       .undefined     = e.undefined,
-                       .wrong         = e.wrong,
-                       .interior      = e.interior};
-    if (e.points > 0) record.rmse = e.rmse, record.max = e.max;
-    return record;
-}
-
 MovedRecord moved_record(const SceneMotion& motion, const MethodMotion& method, Movement movement) {
     const std::vector<double> times = frame_times(method, movement);
     const double model              = model_ms(motion, method, movement);
@@ -30,7 +16,8 @@ MovedRecord moved_record(const SceneMotion& motion, const MethodMotion& method, 
     const auto n                    = static_cast<double>(times.size());
     double sum                      = 0;
     for (const double ms : times) sum += ms;
-    MovedRecord record{.sum_ms              = sum,
+    MovedRecord record{.frames              = method.of(movement),
+                       .sum_ms              = sum,
                        .mean_ms             = sum / n,
                        .median_ms           = median(times),
                        .model_ms            = model * n,
@@ -40,7 +27,6 @@ MovedRecord moved_record(const SceneMotion& motion, const MethodMotion& method, 
                        .worst_rmse       = errors.worst_rmse.value_or(kUnknown),
                        .undefined        = errors.undefined};
     if (!motion.sampled) record.interior = errors.interior;
-    for (const MotionFrame& frame : method.of(movement)) record.frames.push_back(frame_record(frame));
     return record;
 }
 
@@ -72,21 +58,13 @@ std::optional<WinnerRecord> winner_record(const SceneMotion& motion, const std::
     return record;
 }
 
-MovementRecord movement_record(const MovementRun& run, Movement movement) {
-    MovementRecord record{.movement = std::string(to_string(movement)), .cannot = run.cannot};
-    if (!run.cannot.empty()) return record;
-    record.what      = run.what;
-    record.points_ms = run.points_ms, record.facts_ms = run.facts_ms, record.truth_ms = run.truth_ms;
-    return record;
-}
-
 }  // namespace
 
 std::optional<double> MovedRecord::answered() const {
     double answered = 0, asked = 0;
-    for (const FrameRecord& frame : frames) {
-        answered += static_cast<double>(frame.points);
-        asked += static_cast<double>(frame.points + frame.undefined);
+    for (const MotionFrame& frame : frames) {
+        answered += static_cast<double>(frame.errors.points);
+        asked += static_cast<double>(frame.errors.points + frame.errors.undefined);
     }
     return asked > 0 ? std::optional(answered / asked) : std::nullopt;
 }
@@ -101,11 +79,10 @@ SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse
                       .exact   = motion.reference->exact,
                       .note    = motion.reference->note,
                       .sampled = motion.sampled},
-        .noise_bar = motion.noise_bar};
+        .noise_bar = motion.noise_bar,
+        .movements = {motion.movements.begin(), motion.movements.end()}};
     for (const Light& light : motion.lights)
         record.lights.push_back({.name = light.name, .kind = std::string(to_string(light.kind))});
-    for (const Movement movement : kMovements)
-        record.movements.push_back(movement_record(motion.of(movement), movement));
     for (const MethodMotion& method : motion.methods) record.methods.push_back(method_record(motion, method));
     const std::vector<std::size_t> all = complete(motion), good = within(motion, max_rmse);
     for (const Mix& mix : canonical_mixes()) {

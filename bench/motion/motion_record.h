@@ -29,43 +29,9 @@ DESCRIBE(RatioRecord) {
        kFraction);
 }
 
-struct MovementRecord {
-    std::string movement{}, what{}, cannot{};
-    double points_ms = kUnknown, facts_ms = kUnknown, truth_ms = kUnknown;
-};
-DESCRIBE(MovementRecord) {
-    of(MEMBER(movement), "", one_of({"camera", "light", "object"}));
-    of.may(MEMBER(what), "moves, in words");
-    of.may(MEMBER(cannot), "why the scene cannot have it; then there is nothing else");
-    of.may(MEMBER(points_ms), "new surface points, median of the frames; in no method's time", at_least(0));
-    of.may(MEMBER(facts_ms), "", at_least(0));
-    of.may(MEMBER(truth_ms), "", at_least(0));
-}
-
-struct FrameRecord {
-    double build_ms = 0, look_ms = 0;
-    std::vector<double> aim_ms{}, visibility_ms{};
-    std::uint64_t points = 0, undefined = 0, wrong = 0;
-    std::optional<std::uint64_t> interior{};
-    double rmse = kUnknown, max = kUnknown;
-};
-DESCRIBE(FrameRecord) {
-    of.name("frame");
-    of(MEMBER(build_ms), "0 where the movement does not repeat it", at_least(0));
-    of(MEMBER(aim_ms), "one a light");
-    of(MEMBER(look_ms), "once for all lights; 0 where the movement does not repeat it", at_least(0));
-    of(MEMBER(visibility_ms), "one a light");
-    of(MEMBER(points), "compared, all lights together");
-    MEMBERS(undefined);
-    of(MEMBER(wrong), "beyond the tolerance of the kind of light, not at the terminator");
-    MEMBERS(interior);
-    of(MEMBER(rmse), "of the points that the method answers; null where it answers none", kFraction);
-    of(MEMBER(max), "", kFraction);
-}
-
 /// The frames of a movement under one method.
 struct MovedRecord {
-    std::vector<FrameRecord> frames{};
+    std::vector<MotionFrame> frames{};
     double sum_ms = kUnknown, mean_ms = kUnknown, median_ms = kUnknown, model_ms = kUnknown,
            measured_over_model = kUnknown;
     RatioRecord frame_over_model{};

@@ -96,9 +96,10 @@ private:
 
     void run_movement(Movement movement) {
         const Animation animation(scene_, facts_, movement);
-        MovementRun& shared = result_.movements[static_cast<std::size_t>(movement)];
-        shared.what         = animation.what();
-        shared.cannot       = animation.cannot();
+        MovementRecord& shared = result_.movements[static_cast<std::size_t>(movement)];
+        shared.movement        = to_string(movement);
+        shared.what            = animation.what();
+        shared.cannot          = animation.cannot();
         if (!shared.cannot.empty()) return;
         if (movement == Movement::light) result_.moved = animation.light();
 

@@ -23,10 +23,22 @@ struct MotionOptions {
     std::function<void(const std::string&)> progress{};  ///< may be empty
 };
 
+DESCRIBE(RunTimes) {
+    of("build_ms", &R::build, "0 where the movement does not repeat it", at_least(0));
+    of("aim_ms", &R::aim, "one a light");
+    of("look_ms", &R::look, "once for all lights; 0 where the movement does not repeat it", at_least(0));
+    of("visibility_ms", &R::visibility, "one a light");
+}
+
 struct MotionFrame {
-    RunTimes times;
-    FrameErrors errors;
+    RunTimes times{};
+    FrameErrors errors{};
 };
+DESCRIBE(MotionFrame) {
+    of.name("frame");
+    of.all(&R::times);
+    of.all(&R::errors);
+}
 
 /// One method. Frames end where it failed.
 struct MethodMotion {
@@ -41,10 +53,18 @@ struct MethodMotion {
 };
 
 /// One movement of the scene. What all methods share is no part of their times: medians over the frames, milliseconds.
-struct MovementRun {
-    std::string what, cannot;  ///< as of Animation
-    double points_ms = 0, facts_ms = 0, truth_ms = 0;
+struct MovementRecord {
+    std::string movement{}, what{}, cannot{};  ///< as of Animation; `what` is empty where the scene cannot
+    double points_ms = kUnknown, facts_ms = kUnknown, truth_ms = kUnknown;
 };
+DESCRIBE(MovementRecord) {
+    of(MEMBER(movement), "", one_of({"camera", "light", "object"}));
+    of.may(MEMBER(what), "moves, in words");
+    of.may(MEMBER(cannot), "why the scene cannot have it; then there is nothing else");
+    of.may(MEMBER(points_ms), "new surface points, median of the frames; in no method's time", at_least(0));
+    of.may(MEMBER(facts_ms), "", at_least(0));
+    of.may(MEMBER(truth_ms), "", at_least(0));
+}
 
 struct SceneMotion {
     std::string name, title;
@@ -54,11 +74,11 @@ struct SceneMotion {
     LightId moved = 0;  ///< the light that moves
     std::optional<Reference> reference;
     bool sampled = false;  ///< whether errors are those at a sample of the points (MotionOptions::area_points)
-    std::array<MovementRun, kMovements.size()> movements;
+    std::array<MovementRecord, kMovements.size()> movements;
     double noise_bar = 0;  ///< as of Turns
     std::vector<MethodMotion> methods;
 
-    [[nodiscard]] const MovementRun& of(Movement movement) const {
+    [[nodiscard]] const MovementRecord& of(Movement movement) const {
         return movements[static_cast<std::size_t>(movement)];
     }
 };

@@ -108,7 +108,7 @@ std::vector<std::size_t> complete(const SceneMotion& motion) {
 }
 
 std::vector<std::size_t> within(const SceneMotion& motion, double max_rmse) {
-    return those(motion, [&](const FrameErrors& e) { return e.undefined == 0 && e.rmse <= max_rmse; });
+    return those(motion, [&](const FrameErrors& e) { return e.undefined == 0 && !(e.rmse > max_rmse); });
 }
 
 std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors, const Mix& mix) {
