@@ -1,32 +1,35 @@
 #include "umbra/bench/motion/motion_record.h"
 
+#include <algorithm>
+#include <numeric>
+
+#include "umbra/bench/motion/motion_summary.h"
+
 namespace umbra {
 namespace {
-
-RatioRecord ratio_record(const Ratio& ratio) {
-    RatioRecord record{.median = ratio.median, .pairs = static_cast<std::uint64_t>(ratio.pairs)};
-    if (ratio.has_interval()) record.interval = ends(ratio.interval), record.coverage = ratio.coverage;
-    return record;
-}
 
 MovedRecord moved_record(const SceneMotion& motion, const MethodMotion& method, Movement movement) {
     const std::vector<double> times = frame_times(method, movement);
     const double model              = model_ms(motion, method, movement);
-    const ErrorSummary errors       = summarise_errors(method.of(movement));
     const auto n                    = static_cast<double>(times.size());
-    double sum                      = 0;
-    for (const double ms : times) sum += ms;
+    const double sum                = std::accumulate(times.begin(), times.end(), 0.0);
     MovedRecord record{.frames              = method.of(movement),
                        .sum_ms              = sum,
                        .mean_ms             = sum / n,
                        .median_ms           = median(times),
                        .model_ms            = model * n,
                        .measured_over_model = sum / (model * n),
-                       .frame_over_model = ratio_record(paired_ratio(times, std::vector<double>(times.size(), model))),
-                       .mean_rmse        = errors.mean_rmse.value_or(kUnknown),
-                       .worst_rmse       = errors.worst_rmse.value_or(kUnknown),
-                       .undefined        = errors.undefined};
-    if (!motion.sampled) record.interior = errors.interior;
+                       .frame_over_model = ratio_record(paired_ratio(times, std::vector<double>(times.size(), model)))};
+    std::vector<double> rmse;
+    if (!motion.sampled) record.interior = 0;
+    for (const MotionFrame& frame : record.frames) {
+        if (frame.errors.points > 0) rmse.push_back(frame.errors.rmse);
+        record.undefined += frame.errors.undefined;
+        if (record.interior) *record.interior += frame.errors.interior.value_or(0);
+    }
+    if (rmse.empty()) return record;
+    record.mean_rmse  = std::accumulate(rmse.begin(), rmse.end(), 0.0) / static_cast<double>(rmse.size());
+    record.worst_rmse = std::ranges::max(rmse);
     return record;
 }
 
@@ -47,18 +50,13 @@ MovedMethodRecord method_record(const SceneMotion& motion, const MethodMotion& m
     return record;
 }
 
-std::string text(const SceneMotion& motion, std::size_t method) { return motion.methods[method].still.choice.text(); }
+}  // namespace
 
-std::optional<WinnerRecord> winner_record(const SceneMotion& motion, const std::optional<Winner>& won) {
-    if (!won) return std::nullopt;
-    WinnerRecord record{.method = text(motion, won->method), .ms = won->ms};
-    for (const std::size_t m : won->ties) record.ties.push_back(text(motion, m));
-    if (won->runner_up)
-        record.runner_up = text(motion, *won->runner_up), record.runner_up_over_winner = ratio_record(won->behind);
+RatioRecord ratio_record(const Ratio& ratio) {
+    RatioRecord record{.median = ratio.median, .pairs = static_cast<std::uint64_t>(ratio.pairs)};
+    if (ratio.has_interval()) record.interval = ends(ratio.interval), record.coverage = ratio.coverage;
     return record;
 }
-
-}  // namespace
 
 std::optional<double> MovedRecord::answered() const {
     double answered = 0, asked = 0;
@@ -90,17 +88,11 @@ SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse
         MixRecord row{.mix = std::string(mix.name)};
         for (const Movement movement : kMovements)
             row.share(to_string(movement)) = mix.share[static_cast<std::size_t>(movement)];
-        row.complete = winner_record(motion, winner(motion, all, mix));
-        row.within   = winner_record(motion, winner(motion, good, mix));
+        row.complete = winner(motion, all, mix);
+        row.within   = winner(motion, good, mix);
         record.winners.push_back(std::move(row));
     }
-    for (const BreakEven& pair : break_evens(motion, all))
-        record.break_even.push_back({.method   = text(motion, pair.slow),
-                                     .over     = text(motion, pair.fast),
-                                     .setup_ms = pair.setup_ms,
-                                     .saves_ms = pair.saves_ms,
-                                     .frames   = pair.frames,
-                                     .rounds   = ends(pair.interval)});
+    record.break_even = break_evens(motion, all);
     return record;
 }
 

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "umbra/bench/motion/motion_summary.h"
+#include "umbra/bench/motion/motion_run.h"
 #include "umbra/bench/run/describe.h"
+#include "umbra/bench/statistics/statistics.h"
 
 namespace umbra {
 
@@ -179,6 +180,7 @@ DESCRIBE(MotionRecord) {
     MEMBERS(failed);
 }
 
+[[nodiscard]] RatioRecord ratio_record(const Ratio& ratio);
 /// With the winners and break-even points of the scene.
 [[nodiscard]] SceneMotionRecord scene_motion_record(const SceneMotion& motion, double max_rmse);
 [[nodiscard]] Json motion_schema();  ///< JSON Schema, draft 4

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <ranges>
 
 #include "umbra/bench/time/workload.h"
@@ -13,21 +12,13 @@ namespace {
 
 std::size_t index(Movement movement) { return static_cast<std::size_t>(movement); }
 
-bool ran_all_frames(const SceneMotion& motion, const MethodMotion& method) {
-    return method.ran() && std::ranges::all_of(kMovements, [&](Movement movement) {
-               return !motion.of(movement).cannot.empty() || !method.of(movement).empty();
-           });
-}
-
-std::vector<std::size_t> those(const SceneMotion& motion, const auto& condition) {
-    std::vector<std::size_t> chosen;
-    for (std::size_t m = 0; m < motion.methods.size(); ++m)
-        if (ran_all_frames(motion, motion.methods[m]) &&
-            std::ranges::all_of(motion.methods[m].frames, [&](const auto& frames) {
-                return std::ranges::all_of(frames, [&](const MotionFrame& f) { return condition(f.errors); });
-            }))
-            chosen.push_back(m);
-    return chosen;
+/// Milliseconds of a frame of the mix: the weighted sum of the medians of its movements' frames.
+double mix_ms(const MethodMotion& method, const Mix& mix) {
+    double ms = 0;
+    for (const Movement movement : kMovements)
+        if (const double share = mix.share[index(movement)]; share > 0)
+            ms += share * median(frame_times(method, movement));
+    return ms;
 }
 
 /// The weighted sums of the frames of one index: all methods took turns in each of them.
@@ -62,20 +53,6 @@ double model_ms(const SceneMotion& motion, const MethodMotion& method, Movement 
     return frame_cost_ms(workload, {median(still.build), aim, median(still.look), median(still.visibility)});
 }
 
-ErrorSummary summarise_errors(const std::vector<MotionFrame>& frames) {
-    ErrorSummary summary;
-    std::vector<double> rmse;
-    for (const MotionFrame& frame : frames) {
-        if (frame.errors.points > 0) rmse.push_back(frame.errors.rmse);
-        summary.undefined += frame.errors.undefined;
-        summary.interior += frame.errors.interior.value_or(0);
-    }
-    if (rmse.empty()) return summary;
-    summary.mean_rmse  = std::accumulate(rmse.begin(), rmse.end(), 0.0) / static_cast<double>(rmse.size());
-    summary.worst_rmse = std::ranges::max(rmse);
-    return summary;
-}
-
 std::vector<Mix> canonical_mixes() {
     constexpr double third = 1.0 / 3, sixtieth = 1.0 / 60;
     return {{"camera", {1, 0, 0}},
@@ -95,45 +72,46 @@ bool has(const SceneMotion& motion, const Mix& mix) {
     });
 }
 
-double mix_ms(const MethodMotion& method, const Mix& mix) {
-    double ms = 0;
-    for (const Movement movement : kMovements)
-        if (const double share = mix.share[index(movement)]; share > 0)
-            ms += share * median(frame_times(method, movement));
-    return ms;
-}
-
-std::vector<std::size_t> complete(const SceneMotion& motion) {
-    return those(motion, [](const FrameErrors& e) { return e.undefined == 0; });
-}
-
 std::vector<std::size_t> within(const SceneMotion& motion, double max_rmse) {
-    return those(motion, [&](const FrameErrors& e) { return e.undefined == 0 && !(e.rmse > max_rmse); });
+    const auto is_good = [&](const MotionFrame& f) { return f.errors.undefined == 0 && !(f.errors.rmse > max_rmse); };
+    std::vector<std::size_t> chosen;
+    for (std::size_t m = 0; m < motion.methods.size(); ++m) {
+        const MethodMotion& method = motion.methods[m];
+        if (method.ran() && std::ranges::all_of(kMovements, [&](Movement movement) {
+                const std::vector<MotionFrame>& frames = method.of(movement);
+                return frames.empty() ? !motion.of(movement).cannot.empty() : std::ranges::all_of(frames, is_good);
+            }))
+            chosen.push_back(m);
+    }
+    return chosen;
 }
 
-std::optional<Winner> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors, const Mix& mix) {
+std::optional<WinnerRecord> winner(const SceneMotion& motion, const std::vector<std::size_t>& competitors,
+                                   const Mix& mix) {
     struct Entry {
-        std::size_t method;
+        std::string method;
         double ms;
         std::vector<double> times;  // of each frame of the mix
     };
     std::vector<Entry> entries;
-    for (const std::size_t m : competitors)
-        entries.push_back({m, mix_ms(motion.methods[m], mix), mixed_frames(motion.methods[m], mix)});
+    for (const std::size_t m : competitors) {
+        const MethodMotion& method = motion.methods[m];
+        entries.push_back({method.still.choice.text(), mix_ms(method, mix), mixed_frames(method, mix)});
+    }
     if (entries.empty()) return std::nullopt;
     std::ranges::stable_sort(entries, {}, &Entry::ms);
-    Winner won{entries[0].method, entries[0].ms, {}, {}, {}};
+    WinnerRecord won{.method = entries[0].method, .ms = entries[0].ms};
     for (std::size_t k = 1; k < entries.size(); ++k) {
         const Ratio ratio = paired_ratio(entries[k].times, entries[0].times);
-        if (k == 1) won.runner_up = entries[k].method, won.behind = ratio;
+        if (k == 1) won.runner_up = entries[k].method, won.runner_up_over_winner = ratio_record(ratio);
         if (ratio.median < 1 || !differs(ratio, motion.noise_bar)) won.ties.push_back(entries[k].method);
     }
     return won;
 }
 
-std::vector<BreakEven> break_evens(const SceneMotion& motion, const std::vector<std::size_t>& competitors) {
+std::vector<BreakEvenRecord> break_evens(const SceneMotion& motion, const std::vector<std::size_t>& competitors) {
     constexpr double never = std::numeric_limits<double>::infinity();
-    std::vector<BreakEven> pairs;
+    std::vector<BreakEvenRecord> pairs;
     if (is_too_noisy(motion.noise_bar)) return pairs;
     for (const std::size_t slow : competitors)
         for (const std::size_t fast : competitors) {
@@ -143,13 +121,13 @@ std::vector<BreakEven> break_evens(const SceneMotion& motion, const std::vector<
             const double noise = 1 + motion.noise_bar;
             if (!(start(a) > start(b) * noise && frame(b) > frame(a) * noise)) continue;
             const double setup = start(a) - start(b), saves = frame(b) - frame(a);
-            BreakEven pair{slow, fast, setup, saves, std::ceil(setup / saves), {}};
-            pair.interval = {pair.frames, pair.frames};
+            const double frames = std::ceil(setup / saves);
+            BreakEvenRecord pair{a.choice.text(), b.choice.text(), setup, saves, frames, {frames, frames}};
             for (std::size_t r = 0; r < std::min(a.build.size(), b.build.size()); ++r) {
                 const double longer  = a.build[r] + a.aim[r] - b.build[r] - b.aim[r];
                 const double shorter = b.look[r] + b.visibility[r] - a.look[r] - a.visibility[r];
-                const double frames  = shorter > 0 ? std::max(0.0, std::ceil(longer / shorter)) : never;
-                pair.interval        = {std::min(pair.interval.low, frames), std::max(pair.interval.high, frames)};
+                const double needed  = shorter > 0 ? std::max(0.0, std::ceil(longer / shorter)) : never;
+                pair.rounds          = {std::min(pair.rounds[0], needed), std::max(pair.rounds[1], needed)};
             }
             pairs.push_back(pair);
         }

@@ -419,7 +419,8 @@ TEST(Motion, AreaLightsAreComparedAtASampleOfEachFrame) {
 
 // ---- Winners
 
-/// Two or more methods with these times of build, aim, look, visibility at rest and a frame, always the same.
+/// Methods "planted", "planted:seed=1", ... with these times of build, aim, look, visibility at rest and a frame, always
+/// the same.
 SceneMotion made_up(const std::vector<std::array<double, 4>>& phases) {
     static const MethodInfo info = planted_method();
     SceneMotion motion;
@@ -427,6 +428,7 @@ SceneMotion made_up(const std::vector<std::array<double, 4>>& phases) {
     motion.lights.resize(1);
     for (const auto& [build, aim, look, visibility] : phases) {
         MethodMotion method{.still = {.choice = MethodChoice(info)}};
+        method.still.choice.settings.set("seed", double(motion.methods.size()));
         method.still.build = std::vector<double>(4, build);
         method.still.aim = std::vector<double>(4, aim), method.still.light_aim = {method.still.aim};
         method.still.look       = std::vector<double>(4, look);
@@ -442,17 +444,18 @@ SceneMotion made_up(const std::vector<std::array<double, 4>>& phases) {
 TEST(MotionSummary, WinnersFollowWhatMoves) {
     const SceneMotion motion = made_up({{10, 0, 0.5, 0.5}, {0, 4, 0, 2}, {0, 0, 1, 2}});
     const auto first         = [&](const std::array<double, 3>& share) {
-        const std::optional<Winner> won = winner(motion, complete(motion), {"", share});
+        const std::optional<WinnerRecord> won = winner(motion, complete(motion), {"", share});
         return std::pair(won->method, won->ms);
     };
-    EXPECT_EQ(first({1, 0, 0}), std::pair(std::size_t{0}, 1.0));
-    EXPECT_EQ(first({0, 1, 0}), std::pair(std::size_t{0}, 0.5)) << "a light that moves repeats no look";
-    EXPECT_EQ(first({0, 0, 1}), std::pair(std::size_t{2}, 3.0));
-    EXPECT_EQ(first({0.5, 0, 0.5}), std::pair(std::size_t{2}, 3.0));
-    EXPECT_EQ(first({0.9, 0, 0.1}), std::pair(std::size_t{0}, 2.0));
-    const std::optional<Winner> won = winner(motion, complete(motion), {"", {1, 0, 0}});
-    EXPECT_EQ(won->runner_up, std::size_t{1});
-    EXPECT_EQ(won->behind.median, 2);
+    const std::string one = "planted", three = "planted:seed=2";
+    EXPECT_EQ(first({1, 0, 0}), std::pair(one, 1.0));
+    EXPECT_EQ(first({0, 1, 0}), std::pair(one, 0.5)) << "a light that moves repeats no look";
+    EXPECT_EQ(first({0, 0, 1}), std::pair(three, 3.0));
+    EXPECT_EQ(first({0.5, 0, 0.5}), std::pair(three, 3.0));
+    EXPECT_EQ(first({0.9, 0, 0.1}), std::pair(one, 2.0));
+    const std::optional<WinnerRecord> won = winner(motion, complete(motion), {"", {1, 0, 0}});
+    EXPECT_EQ(won->runner_up, "planted:seed=1");
+    EXPECT_EQ(won->runner_up_over_winner->median, 2);
     EXPECT_TRUE(won->ties.empty());
     EXPECT_FALSE(winner(motion, {}, {"", {1, 0, 0}}));
 }
@@ -467,21 +470,23 @@ TEST(MotionSummary, OneStatisticSaysWhoWinsAndByHowMuch) {
     for (MethodMotion& method : motion.methods)
         for (auto& frames : method.frames) frames.resize(16, frames.front());
     motion.methods[0].frames[0].back().times.visibility = {29.5};
-    const std::optional<Winner> won                     = winner(motion, complete(motion), {"", {1, 0, 0}});
-    EXPECT_EQ(won->method, 0u);
+    const std::optional<WinnerRecord> won               = winner(motion, complete(motion), {"", {1, 0, 0}});
+    const RatioRecord& behind                           = won->runner_up_over_winner.value();
+    EXPECT_EQ(won->method, "planted");
     EXPECT_EQ(won->ms, 1);
-    EXPECT_EQ(won->runner_up, std::size_t{1});
-    EXPECT_EQ(won->behind.median, 2) << "its time over the winner's";
-    EXPECT_LE(won->behind.interval.low, 2);
-    EXPECT_GE(won->behind.interval.high, 2);
-    EXPECT_EQ(won->behind.pairs, 16);
+    EXPECT_EQ(won->runner_up, "other");
+    EXPECT_EQ(behind.median, 2) << "its time over the winner's";
+    EXPECT_LE(behind.interval[0], 2);
+    EXPECT_GE(behind.interval[1], 2);
+    EXPECT_EQ(behind.pairs, 16u);
     // Half of the frames move the light: 0.5 * 1 + 0.5 * 0.5 against 0.5 * 2 + 0.5 * 6.
-    const std::optional<Winner> mixed = winner(motion, complete(motion), {"", {0.5, 0.5, 0}});
+    const std::optional<WinnerRecord> mixed = winner(motion, complete(motion), {"", {0.5, 0.5, 0}});
     EXPECT_EQ(mixed->ms, 0.75);
-    EXPECT_NEAR(mixed->behind.median, 4 / 0.75, 1e-12);
+    EXPECT_NEAR(mixed->runner_up_over_winner->median, 4 / 0.75, 1e-12);
     // One in ten: 0.9 * 1 + 0.1 * 0.5 against 0.9 * 2 + 0.1 * 6, frame by frame.
-    EXPECT_NEAR(winner(motion, complete(motion), {"", {0.9, 0.1, 0}})->behind.median, 2.4 / 0.95, 1e-12);
-    EXPECT_NEAR(won->behind.coverage, 1 - 2 * (1 + 16 + 120 + 560) / 65536.0, 1e-12) << "the fourth least of 16";
+    EXPECT_NEAR(winner(motion, complete(motion), {"", {0.9, 0.1, 0}})->runner_up_over_winner->median, 2.4 / 0.95,
+                1e-12);
+    EXPECT_NEAR(behind.coverage, 1 - 2 * (1 + 16 + 120 + 560) / 65536.0, 1e-12) << "the fourth least of 16";
 
     motion.reference   = Reference{motion.methods[0].still.choice, true, ""};
     const Json json    = to_record(scene_motion_record(motion, 0.02));
@@ -533,14 +538,9 @@ TEST(MotionSummary, ErrorsAreTheMeanAndTheWorstOfTheFrames) {
     SceneMotion motion               = made_up({{1, 1, 1, 1}});
     std::vector<MotionFrame>& frames = motion.methods[0].frames[0];
     frames.resize(3);
-    frames[0].errors           = {.points = 10, .undefined = 1, .wrong = 2, .interior = 3, .rmse = 0.1, .max = 0.2};
-    frames[1].errors           = {.points = 10, .undefined = 2, .wrong = 2, .interior = 4, .rmse = 0.4, .max = 0.5};
-    frames[2].errors           = {.points = 10, .undefined = 4, .wrong = 2, .interior = 5, .rmse = 0.1, .max = 0.2};
-    const ErrorSummary summary = summarise_errors(frames);
-    EXPECT_NEAR(summary.mean_rmse.value(), 0.2, 1e-15);
-    EXPECT_EQ(summary.worst_rmse, 0.4);
-    EXPECT_EQ(summary.undefined, 7u);
-    EXPECT_EQ(summary.interior, 12u);
+    frames[0].errors = {.points = 10, .undefined = 1, .wrong = 2, .interior = 3, .rmse = 0.1, .max = 0.2};
+    frames[1].errors = {.points = 10, .undefined = 2, .wrong = 2, .interior = 4, .rmse = 0.4, .max = 0.5};
+    frames[2].errors = {.points = 10, .undefined = 4, .wrong = 2, .interior = 5, .rmse = 0.1, .max = 0.2};
     motion.reference = Reference{motion.methods[0].still.choice, true, ""};
     const Json json  = to_record(scene_motion_record(motion, 0.02))["methods"][0]["movements"]["camera"];
     EXPECT_NEAR(json["mean_rmse"].get<double>(), 0.2, 1e-15);
@@ -608,16 +608,15 @@ TEST(MotionSummary, WhatTheNoiseBarCoversIsATie) {
 }
 
 TEST(MotionSummary, ABuildPaysOffAfterItsFrames) {
-    const SceneMotion motion           = made_up({{10, 1, 0.5, 0.5}, {0, 1, 1.5, 2}, {20, 0, 0, 4}});
-    const std::vector<BreakEven> pairs = break_evens(motion, complete(motion));
+    const SceneMotion motion                 = made_up({{10, 1, 0.5, 0.5}, {0, 1, 1.5, 2}, {20, 0, 0, 4}});
+    const std::vector<BreakEvenRecord> pairs = break_evens(motion, complete(motion));
     ASSERT_EQ(pairs.size(), 1u) << "the third is behind the others in both";
-    EXPECT_EQ(pairs[0].slow, 0u);
-    EXPECT_EQ(pairs[0].fast, 1u);
+    EXPECT_EQ(pairs[0].method, "planted");
+    EXPECT_EQ(pairs[0].over, "planted:seed=1");
     EXPECT_EQ(pairs[0].setup_ms, 10);
     EXPECT_EQ(pairs[0].saves_ms, 2.5);
     EXPECT_EQ(pairs[0].frames, 4);
-    EXPECT_EQ(pairs[0].interval.low, 4);
-    EXPECT_EQ(pairs[0].interval.high, 4);
+    EXPECT_EQ(pairs[0].rounds, (std::vector<double>{4, 4}));
 }
 
 /// 11 against 9.2 until the first frame: 1.196 times as long.
