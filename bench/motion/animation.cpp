@@ -26,12 +26,6 @@ dvec3 unit_axis(int coordinate) {
     return axis;
 }
 
-dvec3 turned(dvec3 v, dvec3 axis, double time) {
-    return dvec3(glm::rotate(dmat4(1), glm::radians(kArc) * time, axis) * dvec4(v, 0));
-}
-
-vec3 turned_direction(vec3 v, dvec3 axis, double time) { return vec3(turned(dvec3(v), axis, time)); }
-
 }  // namespace
 
 dvec3 vertical_axis(const Scene& scene) { return unit_axis(largest_coordinate(scene.camera.up)); }
@@ -47,12 +41,8 @@ std::vector<std::uint32_t> owners(const Scene& scene) {
 }
 
 std::string_view to_string(Movement movement) {
-    switch (movement) {
-        case Movement::camera: return "camera";
-        case Movement::light: return "light";
-        case Movement::object: return "object";
-    }
-    return "";
+    constexpr std::string_view kNames[]{"camera", "light", "object"};
+    return kNames[static_cast<std::size_t>(movement)];
 }
 
 Animation::Animation(const Scene& start, const SceneFacts& facts, Movement movement)
@@ -60,6 +50,7 @@ Animation::Animation(const Scene& start, const SceneFacts& facts, Movement movem
     pivot_ = dvec3(camera_.target);
     axis_  = unit_axis(vertical_);
     if (movement == Movement::camera) {
+        what_ = fmt::format("the eye turns by {:g} degrees about its target", kArc);
         if (camera_.eye == camera_.target) cannot_ = "the eye is at its target";
         for (const Light& light : start.lights)
             if (light.camera_pose)
@@ -75,10 +66,11 @@ Animation::Animation(const Scene& start, const SceneFacts& facts, Movement movem
         const double sideways = glm::length(arm - axis_ * glm::dot(arm, axis_));
         if (sideways < kAbove * glm::length(arm)) axis_ = frame(camera_, 1, 1).right;
         if (glm::length(arm) == 0) cannot_ = fmt::format("light {} is at the camera's target", light_.name);
+        what_ = fmt::format("light {} turns by {:g} degrees about {}", light_.name, kArc,
+                            light_.kind == LightKind::directional ? "the scene" : "the camera's target");
     } else {
         choose_object(start, facts);
     }
-    if (cannot_.empty()) describe(start);
 }
 
 void Animation::choose_object(const Scene& start, const SceneFacts& facts) {
@@ -120,30 +112,21 @@ void Animation::choose_object(const Scene& start, const SceneFacts& facts) {
     sideways[vertical_] = 0;
     if (glm::length(sideways) < kAbove) sideways = unit_axis((vertical_ + 1) % 3);
     slide_ = glm::normalize(sideways) * (kSlide * static_cast<double>(box.diagonal()));
-    what_  = fmt::format("object {}", start.objects[*best].name);
-}
-
-void Animation::describe(const Scene& start) {
-    switch (movement_) {
-        case Movement::camera: what_ = fmt::format("the eye turns by {:g} degrees about its target", kArc); break;
-        case Movement::light:
-            what_ = fmt::format("light {} turns by {:g} degrees about {}", start.lights[light()].name, kArc,
-                                light_.kind == LightKind::directional ? "the scene" : "the camera's target");
-            break;
-        case Movement::object:
-            what_ += fmt::format(" moves sideways by {:g} of its diagonal and turns by {:g} degrees", kSlide, kArc);
-            break;
-    }
+    what_  = fmt::format("object {} moves sideways by {:g} of its diagonal and turns by {:g} degrees",
+                         start.objects[*best].name, kSlide, kArc);
 }
 
 void Animation::pose(Scene& scene, double time) const {
-    const bool start = time == 0;
+    const bool start     = time == 0;
+    const dmat4 turn     = glm::rotate(dmat4(1), glm::radians(kArc) * time, axis_);
+    const auto direction = [&](vec3 v) { return vec3(turn * dvec4(v, 0)); };
+    const auto point     = [&](vec3 p) { return pivot_ + dvec3(turn * dvec4(dvec3(p) - pivot_, 0)); };
     switch (movement_) {
         case Movement::camera: {
             scene.camera = camera_;
             if (start) return;
-            scene.camera.eye = vec3(pivot_ + turned(dvec3(camera_.eye) - pivot_, axis_, time));
-            scene.camera.up  = turned_direction(camera_.up, axis_, time);
+            scene.camera.eye = vec3(point(camera_.eye));
+            scene.camera.up  = direction(camera_.up);
             return;
         }
         case Movement::light: {
@@ -151,12 +134,12 @@ void Animation::pose(Scene& scene, double time) const {
             light        = light_;
             if (start) return;
             light.camera_pose.reset();  // it leaves the camera
-            light.along     = turned_direction(light_.along, axis_, time);
-            light.direction = turned_direction(light_.direction, axis_, time);
+            light.along     = direction(light_.along);
+            light.direction = direction(light_.direction);
             if (light.kind == LightKind::directional) return;
-            light.position = vec3(pivot_ + turned(dvec3(light_.position) - pivot_, axis_, time));
-            light.edge_u   = turned_direction(light_.edge_u, axis_, time);
-            light.edge_v   = turned_direction(light_.edge_v, axis_, time);
+            light.position = vec3(point(light_.position));
+            light.edge_u   = direction(light_.edge_u);
+            light.edge_v   = direction(light_.edge_v);
             if (light.kind == LightKind::rectangle)
                 light.direction = vec3(glm::normalize(glm::cross(dvec3(light.edge_u), dvec3(light.edge_v))));
             return;
@@ -166,11 +149,11 @@ void Animation::pose(Scene& scene, double time) const {
                 vec3& position = scene.positions[vertices_[i]];
                 position       = positions_[i];
                 if (!start) {
-                    position = vec3(pivot_ + turned(dvec3(positions_[i]) - pivot_, axis_, time) + time * slide_);
+                    position            = vec3(point(positions_[i]) + time * slide_);
                     position[vertical_] = positions_[i][vertical_];
                 }
                 if (vertices_[i] < scene.normals.size())
-                    scene.normals[vertices_[i]] = start ? normals_[i] : turned_direction(normals_[i], axis_, time);
+                    scene.normals[vertices_[i]] = start ? normals_[i] : direction(normals_[i]);
             }
             return;
     }

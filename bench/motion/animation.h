@@ -28,7 +28,7 @@ public:
     [[nodiscard]] Movement movement() const { return movement_; }
     /// Why the scene cannot have it; empty where it can.
     [[nodiscard]] const std::string& cannot() const { return cannot_; }
-    /// What moves and how far, a sentence.
+    /// What moves and how far, a sentence; of a movement that the scene can have.
     [[nodiscard]] const std::string& what() const { return what_; }
     [[nodiscard]] LightId light() const { return 0; }  ///< the one that moves, where a light does
 
@@ -38,7 +38,6 @@ public:
 
 private:
     void choose_object(const Scene& start, const SceneFacts& facts);
-    void describe(const Scene& start);
 
     Movement movement_;
     std::string cannot_, what_;

@@ -98,9 +98,9 @@ private:
         const Animation animation(scene_, facts_, movement);
         MovementRecord& shared = result_.movements[static_cast<std::size_t>(movement)];
         shared.movement        = to_string(movement);
-        shared.what            = animation.what();
         shared.cannot          = animation.cannot();
         if (!shared.cannot.empty()) return;
+        shared.what = animation.what();
         if (movement == Movement::light) result_.moved = animation.light();
 
         const SceneFacts facts_at_start  = facts_;
