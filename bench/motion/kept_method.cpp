@@ -29,12 +29,6 @@ MethodRun KeptMethod::as_run() const {
     return run;
 }
 
-double KeptMethod::timed(const std::function<void()>& work) const {
-    const double start = clock_();
-    work();
-    return clock_() - start;
-}
-
 RunTimes KeptMethod::run(const FrameWork& work, const PointBatch& points) {
     const std::size_t lights = planes_.size();
     work_.limit(most_);
@@ -42,21 +36,21 @@ RunTimes KeptMethod::run(const FrameWork& work, const PointBatch& points) {
     if (work.build) {
         work_.forget_build();
         work_.warm_up();
-        times.build = timed([&] { work_.build(); });
+        times.build = timed_by(clock_, [&] { work_.build(); });
     }
     if (work.look) {
         work_.forget_look();
-        times.look = timed([&] { work_.look(points); });
+        times.look = timed_by(clock_, [&] { work_.look(points); });
     }
     // Light by light: where aims take more memory than is kept for them, only the last ones are there.
     for (LightId j = 0; j < lights; ++j) {
         if (work.aim[j]) work_.forget_aim(j);
-        times.aim[j] = timed([&] { static_cast<void>(work_.aimed(j)); });
+        times.aim[j] = timed_by(clock_, [&] { work_.aimed(j); });
         if (planes_[j].size() == points.size() && planes_[j].colour.empty() != facts_.has_coloured_filters)
             planes_[j].clear();
         else
             planes_[j] = VisibilityPlane(points.size(), facts_.has_coloured_filters);
-        times.visibility[j] = timed([&] { work_.visibility(j, planes_[j].out()); });
+        times.visibility[j] = timed_by(clock_, [&] { work_.visibility(j, planes_[j].out()); });
         check_contract(choice().info->name, planes_[j], points, j);
     }
     return times;

@@ -51,8 +51,6 @@ public:
     [[nodiscard]] std::size_t memory_bytes() const { return work_.memory_bytes() + work_.points_bytes(); }
 
 private:
-    [[nodiscard]] double timed(const std::function<void()>& work) const;
-
     MethodAtWork work_;
     const SceneFacts& facts_;
     std::function<double()> clock_;

@@ -3,26 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <ranges>
 
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/random_bits.h"
 #include "umbra/core/render/gbuffer.h"
 #include "umbra/core/scene/view_facts.h"
 
 namespace umbra {
 namespace {
-
-/// 0, 1, ... in a random order.
-std::vector<std::size_t> shuffled(std::size_t n, std::uint64_t& state) {
-    std::vector<std::size_t> order(n);
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    for (std::size_t i = n; i > 1; --i) std::swap(order[i - 1], order[mixed_bits(state++) % i]);
-    return order;
-}
 
 Turns still_times(const PreparedScene& prepared, const std::vector<MethodChoice>& choices,
                   const MotionOptions& options) {
@@ -46,7 +36,7 @@ public:
           scene_(std::move(prepared.scene)),
           facts_(std::move(prepared.facts)),
           points_(std::move(prepared.points)),
-          random_(mixed_bits(options.still.seed)) {
+          dice_(options.still.seed) {
         result_.name      = scene_.name;
         result_.title     = scene_.title;
         result_.triangles = scene_.triangles.size();
@@ -57,6 +47,7 @@ public:
         result_.sampled   = std::ranges::any_of(scene_.lights, [](const Light& l) { return is_area(l.kind); });
         result_.noise_bar = turns_.noise_bar;
         for (TurnTimes& still : turns_.settings) {
+            order_.push_back(order_.size());
             const bool runs = still.service && still.failed.empty();
             kept_.push_back(runs ? std::make_unique<KeptMethod>(still.choice, scene_, facts_, options.still.clock,
                                                                 options.still.most)
@@ -77,7 +68,8 @@ private:
     /// Calls `work(m)` for each method that still runs, in a random order; one that throws runs no more.
     template <class Work>
     void in_turns(const std::string& where, const Work& work) {
-        for (const std::size_t m : shuffled(kept_.size(), random_)) {
+        dice_.shuffle(order_);
+        for (const std::size_t m : order_) {
             if (!kept_[m]) continue;
             try {
                 work(m);
@@ -87,12 +79,6 @@ private:
             }
         }
     }
-
-    void show(const std::string& what) const {
-        if (options_.progress) options_.progress(fmt::format("{}: {}", scene_.name, what));
-    }
-
-    [[nodiscard]] FrameWork everything() const { return frame_work(Movement::object, scene_.lights.size(), 0); }
 
     void run_movement(Movement movement) {
         const Animation animation(scene_, facts_, movement);
@@ -106,13 +92,14 @@ private:
         const SceneFacts facts_at_start  = facts_;
         const PointBatch points_at_start = points_;
         rays_.emplace(scene_);
+        const FrameWork everything = frame_work(Movement::object, scene_.lights.size(), 0);
         in_turns(fmt::format("before the first frame of {}", to_string(movement)),
-                 [&](std::size_t m) { (void)kept_[m]->run(everything(), points_); });
+                 [&](std::size_t m) { (void)kept_[m]->run(everything, points_); });
         const FrameWork work = frame_work(movement, scene_.lights.size(), animation.light());
         std::vector<double> points_ms, facts_ms, truth_ms;
         for (int frame = 1; frame <= options_.frames; ++frame) {
             const std::string where = fmt::format("{}, frame {}", to_string(movement), frame);
-            show(fmt::format("{} of {}", where, options_.frames));
+            if (options_.progress) options_.progress(fmt::format("{}: {} of {}", scene_.name, where, options_.frames));
             animation.pose(scene_, static_cast<double>(frame) / options_.frames);
             facts_ms.push_back(timed_ms([&] { update_facts(movement); }));
             points_ms.push_back(timed_ms([&] { update_points(animation); }));
@@ -158,7 +145,8 @@ private:
     SceneFacts facts_;
     PointBatch points_;
     std::optional<RayScene> rays_;
-    std::uint64_t random_;
+    Shuffler dice_;
+    std::vector<std::size_t> order_;                 ///< of methods, as of the last turns
     std::vector<std::unique_ptr<KeptMethod>> kept_;  ///< null where it does not serve or has failed
     SceneMotion result_;
 };

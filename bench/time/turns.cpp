@@ -11,27 +11,11 @@
 #include "umbra/bench/statistics/statistics.h"
 #include "umbra/bench/time/pinned_threads.h"
 #include "umbra/core/base/error.h"
-#include "umbra/core/base/parallel.h"
-#include "umbra/core/base/random_bits.h"
 
 namespace umbra {
 namespace {
 
 constexpr std::size_t kFewestRounds = 3;  ///< those that the whole budget pays for
-
-/// The order of each round: a permutation by Fisher and Yates, from a counter.
-class Dice {
-public:
-    explicit Dice(std::uint32_t seed) : counter_(std::uint64_t{seed} << 32) {}
-    template <class T>
-    void shuffle(std::vector<T>& items) {
-        for (std::size_t n = items.size(); n > 1; --n)
-            std::swap(items[n - 1], items[((mixed_bits(counter_++) >> 32) * n) >> 32]);
-    }
-
-private:
-    std::uint64_t counter_;
-};
 
 /// One thing that takes turns: a setting, or the control's twin.
 struct Entry {
@@ -97,9 +81,7 @@ public:
             std::vector<Group> order = groups([](const Entry& e) { return e.playing; });
             if (order.empty()) return;
             tell(fmt::format("round {} of {}", round + 1, options_.rounds));
-            const double start = options_.clock();
-            options_.calibration_loop();
-            turns_.calibration.push_back(options_.clock() - start);
+            turns_.calibration.push_back(timed_by(options_.clock, options_.calibration_loop));
             for (Group& group : order) dice_.shuffle(group);
             dice_.shuffle(order);
             int position = 0;
@@ -117,7 +99,7 @@ public:
             t.order      = std::move(e.order);
             t.order.resize(std::min(t.order.size(), e.runs.size()));  // it may have failed within a round
             if (e.runs.empty() && t.failed.empty() && !e.twin) {
-                e.runs.push_back(cold_[e.setting]);
+                e.runs.push_back(t.cold);
                 t.only_cold = true;
             }
             keep_samples(t, e.runs);
@@ -188,13 +170,6 @@ private:
         return groups;
     }
 
-    template <class Work>
-    double timed(Work&& work) const {
-        const double start = options_.clock();
-        work();
-        return options_.clock() - start;
-    }
-
     /// One build, then aim and visibility of each member. One that throws is out of all later rounds; those behind it
     /// in the group get a build of their own.
     void run_group(const Group& group, bool cold) {
@@ -208,19 +183,19 @@ private:
                     work.emplace(choice_of(e), prepared_.scene, prepared_.facts);
                     work->limit(options_.most);
                     work->warm_up();
-                    build = timed([&] { work->build(); });
+                    build = timed_by(options_.clock, [&] { work->build(); });
                 } else {
                     work->set(choice_of(e));
                     work->limit(options_.most);
                 }
                 RunTimes run{.build = build};
                 work->forget_look();
-                run.look = timed([&] { work->look(prepared_.points); });
+                run.look = timed_by(options_.clock, [&] { work->look(prepared_.points); });
                 for (LightId j = 0; j < prepared_.scene.lights.size(); ++j) {
                     plane_.clear();
                     work->forget_aims();
-                    run.aim.push_back(timed([&] { work->aim(j); }));
-                    run.visibility.push_back(timed([&] { work->visibility(j, plane_.out()); }));
+                    run.aim.push_back(timed_by(options_.clock, [&] { work->aim(j); }));
+                    run.visibility.push_back(timed_by(options_.clock, [&] { work->visibility(j, plane_.out()); }));
                 }
                 turns_.settings[e.setting].memory_bytes = work->memory_bytes();
                 if (cold)
@@ -245,8 +220,6 @@ private:
     }
 
     void keep_cold(Entry& e, const RunTimes& run) {
-        cold_.resize(turns_.settings.size());
-        cold_[e.setting]                = run;
         turns_.settings[e.setting].cold = run;
         e.latest                        = run.all();
     }
@@ -260,10 +233,9 @@ private:
     const PreparedScene& prepared_;
     const TurnOptions& options_;
     Turns& turns_;
-    Dice dice_;
+    Shuffler dice_;
     VisibilityPlane plane_;
     std::vector<Entry> entries_;
-    std::vector<RunTimes> cold_;
     double share_ = 0, share_of_others_ = 0;  ///< of the budget, of one setting
 };
 
@@ -287,8 +259,6 @@ std::vector<double> totals(const TurnTimes& times) {
 }
 
 Turns time_in_turns(const PreparedScene& prepared, std::span<const MethodChoice> choices, const TurnOptions& options) {
-    std::optional<ThreadLimit> limit;
-    if (options.threads > 0) limit.emplace(options.threads);
     const PinnedThreads pinned;
     Turns turns;
     turns.pinned = pinned.pinned();

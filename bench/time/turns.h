@@ -6,18 +6,42 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "umbra/bench/run/describe.h"
 #include "umbra/bench/run/prepare.h"
 #include "umbra/bench/run/run.h"
 #include "umbra/bench/time/calibration.h"
+#include "umbra/core/base/random_bits.h"
 #include "umbra/shadows/method.h"
 
 namespace umbra {
 
 /// Milliseconds of wall clock.
 [[nodiscard]] double wall_clock_ms();
+
+/// How long `work` takes by a clock of milliseconds.
+template <class Work>
+double timed_by(const std::function<double()>& clock, const Work& work) {
+    const double start = clock();
+    work();
+    return clock() - start;
+}
+
+/// Random orders: permutations by Fisher and Yates, from a counter.
+class Shuffler {
+public:
+    explicit Shuffler(std::uint32_t seed) : counter_(std::uint64_t{seed} << 32) {}
+    template <class T>
+    void shuffle(std::vector<T>& items) {
+        for (std::size_t n = items.size(); n > 1; --n)
+            std::swap(items[n - 1], items[((mixed_bits(counter_++) >> 32) * n) >> 32]);
+    }
+
+private:
+    std::uint64_t counter_;
+};
 
 inline constexpr double kPartOfOthers = 0.25;  ///< of TurnOptions::budget_ms
 
@@ -29,7 +53,6 @@ struct TurnOptions {
     std::size_t ranked = ~std::size_t{0};
     std::uint32_t seed = 1;     ///< of the order
     bool share_builds  = true;  ///< false: every setting has a build of its own in each round
-    int threads        = 0;     ///< 0: as the process has it
     Budget most{};              ///< of each run of a setting: one that takes more has failed
     std::function<void(const std::string&)> progress{};
     /// First runs that have already happened, one a setting (nothing for one that does not serve): they are not run
