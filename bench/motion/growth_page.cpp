@@ -8,6 +8,7 @@
 
 #include "report_assets.h"
 #include "umbra/bench/motion/record_view.h"
+#include "umbra/bench/pages/chart_parts.h"
 #include "umbra/bench/pages/page_template.h"
 #include "umbra/bench/pages/report_chart.h"
 #include "umbra/bench/pages/report_text.h"
@@ -20,31 +21,18 @@ using nlohmann::json;
 // The chart, in units of its viewBox.
 constexpr double kLeft = 52, kRight = 430, kTop = 12, kBottom = 250;
 
-std::string coordinate(double v) { return fmt::format("{:.1f}", v); }
-
 /// 1000 as 10³; 0.1 and 1 as they are.
 std::string decade(int exponent) {
     return exponent >= -1 && exponent <= 2 ? fmt::format("{:g}", std::pow(10, exponent)) : "10" + superscript(exponent);
 }
 
-/// Whole decades around the values.
-struct LogScale {
-    int low = 0, high = 1;
-    double from = 0, to = 1;
-
-    LogScale(const std::vector<double>& values, double from_, double to_) : from(from_), to(to_) {
-        const auto [least, most] = std::ranges::minmax(values);
-        low                      = static_cast<int>(std::floor(std::log10(least)));
-        high                     = std::max(low + 1, static_cast<int>(std::ceil(std::log10(most) - 1e-9)));
-    }
-    double operator()(double v) const { return from + (std::log10(v) - low) / (high - low) * (to - from); }
-    json ticks() const {
-        json all = json::array();
-        for (int e = low; e <= high; ++e)
-            all.push_back({{"at", coordinate((*this)(std::pow(10.0, e)))}, {"label", decade(e)}});
-        return all;
-    }
-};
+/// A tick at every decade of the axis.
+json decade_ticks(const chart::LogAxis& axis) {
+    json all = json::array();
+    for (double e = axis.low; e <= axis.high; ++e)
+        all.push_back({{"at", chart::coordinate(axis(std::pow(10, e)))}, {"label", decade(static_cast<int>(e))}});
+    return all;
+}
 
 /// The least time of the rounds at one size, in milliseconds, as the fits take it; below a clock's step there is no
 /// logarithm to draw.
@@ -67,14 +55,14 @@ json chart_view(const FamilyRecord& family, bool whole_frame, const std::string&
             ys.push_back(at(point, whole_frame));
         }
     if (xs.empty()) return {{"any", false}};
-    const LogScale x(xs, kLeft, kRight), y(ys, kBottom, kTop);
+    const chart::LogAxis x(xs, 1, kLeft, kRight), y(ys, 1, kBottom, kTop);
     json lines = json::array();
     for (std::size_t m = 0; m < family.methods.size(); ++m) {
         const GrowthSeriesRecord& method = family.methods[m];
         std::string path;
         json dots = json::array();
         for (const GrowthPointRecord& point : method.points) {
-            const std::string px = coordinate(x(point.x)), py = coordinate(y(at(point, whole_frame)));
+            const std::string px = chart::coordinate(x(point.x)), py = chart::coordinate(y(at(point, whole_frame)));
             path += fmt::format("{}{} {}", path.empty() ? "M" : "L", px, py);
             dots.push_back({{"x", px}, {"y", py}});
         }
@@ -85,8 +73,12 @@ json chart_view(const FamilyRecord& family, bool whole_frame, const std::string&
                          {"dots", std::move(dots)},
                          {"method", method.text}});
     }
-    return {{"any", true},          {"caption", caption},   {"unit", family.unit},
-            {"x_ticks", x.ticks()}, {"y_ticks", y.ticks()}, {"lines", std::move(lines)}};
+    return {{"any", true},
+            {"caption", caption},
+            {"unit", family.unit},
+            {"x_ticks", decade_ticks(x)},
+            {"y_ticks", decade_ticks(y)},
+            {"lines", std::move(lines)}};
 }
 
 json fit_row(const GrowthSeriesRecord& method, const QuantityRecord& of) {

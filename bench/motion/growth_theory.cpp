@@ -86,15 +86,8 @@ constexpr Row kRows[] = {
 }  // namespace
 
 std::string_view to_string(Quantity quantity) {
-    switch (quantity) {
-        case Quantity::build: return "build";
-        case Quantity::aim: return "aim";
-        case Quantity::camera_frame: return "camera_frame";
-        case Quantity::light_frame: return "light_frame";
-        case Quantity::object_frame: return "object_frame";
-        case Quantity::memory: return "memory";
-    }
-    return "";
+    constexpr std::string_view kNames[]{"build", "aim", "camera_frame", "light_frame", "object_frame", "memory"};
+    return kNames[static_cast<std::size_t>(quantity)];
 }
 
 std::optional<Theory> growth_theory(std::string_view family, std::string_view method, Quantity quantity) {
