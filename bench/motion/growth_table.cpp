@@ -6,7 +6,6 @@
 namespace umbra {
 namespace {
 
-std::string fixed(double value) { return known(value) ? fmt::format("{:.2f}", value) : "-"; }
 std::string general(double value) { return known(value) ? fmt::format("{:.3g}", value) : "none"; }
 
 std::string times_of(const FamilyRecord& family) {
@@ -16,8 +15,9 @@ std::string times_of(const FamilyRecord& family) {
         for (const GrowthPointRecord& point : method.points) {
             const TimesRecord& times = point.times.phases;
             table += fmt::format("  {:36} {:>12.0f} {:>10} {:>10} {:>10} {:>10} {:>10.2f}\n", method.text, point.x,
-                                 fixed(times.build_ms->min), fixed(times.aim_ms->min), fixed(times.look_ms->min),
-                                 fixed(times.visibility_ms->min), static_cast<double>(point.memory_bytes) / 1e6);
+                                 number_text(times.build_ms->min), number_text(times.aim_ms->min),
+                                 number_text(times.look_ms->min), number_text(times.visibility_ms->min),
+                                 static_cast<double>(point.memory_bytes) / 1e6);
         }
         if (!method.left_out.empty()) table += fmt::format("  {:36} {}\n", method.text, method.left_out);
     }
@@ -33,8 +33,9 @@ std::string fits_of(const FamilyRecord& family) {
             const bool fitted    = fit.points > 0;
             table += fmt::format(
                 "  {:36} {:12} {:>8} {:>16} {:>12}  {:10} {}{}\n", method.text, of.quantity,
-                fitted ? fixed(fit.exponent) : "-",
-                fitted ? fmt::format("{} to {}", fixed(fit.interval[0]), fixed(fit.interval[1])) : "too short",
+                fitted ? number_text(fit.exponent) : "-",
+                fitted ? fmt::format("{} to {}", number_text(fit.interval[0]), number_text(fit.interval[1]))
+                       : "too short",
                 of.theory ? fmt::format("{} to {}", general(of.theory->interval[0]), general(of.theory->interval[1]))
                           : "-",
                 of.verdict.empty() ? "-" : of.verdict,
@@ -62,12 +63,12 @@ std::string external_of(const FamilyRecord& family) {
     const ExternalRecord& check = *family.external;
     std::string lines = "  shadow volumes of silhouettes over those of single triangles, aim and visibility:\n   ";
     for (const SizeRatioRecord& r : check.ours)
-        lines += fmt::format(" {:.2g}: {} ({});", r.pixels, fixed(r.ratio),
-                             known(r.interval[0]) ? fmt::format("{} to {}, {}", fixed(r.interval[0]),
-                                                                fixed(r.interval[1]), coverage_text(r.coverage))
+        lines += fmt::format(" {:.2g}: {} ({});", r.pixels, number_text(r.ratio),
+                             known(r.interval[0]) ? fmt::format("{} to {}, {}", number_text(r.interval[0]),
+                                                                number_text(r.interval[1]), coverage_text(r.coverage))
                                                   : "fewer than six rounds");
     lines += fmt::format("\n    {}:", check.source);
-    for (const SizeRatioRecord& r : check.theirs) lines += fmt::format(" {:.2g}: {};", r.pixels, fixed(r.ratio));
+    for (const SizeRatioRecord& r : check.theirs) lines += fmt::format(" {:.2g}: {};", r.pixels, number_text(r.ratio));
     lines += check.our_crossings.empty()
                  ? "\n    they cross between 4.2e+06 and 1.7e+07 pixels; here not in this range\n"
                  : "\n    they cross between 4.2e+06 and 1.7e+07 pixels; here too, see above\n";

@@ -10,10 +10,6 @@
 namespace umbra {
 namespace {
 
-std::string number_text(double value, int digits = 2) {
-    return known(value) ? fmt::format("{:.{}f}", value, digits) : "-";
-}
-
 std::string noise_text(double bar) {
     if (!known(bar)) return "not ranked: without a control no two times differ";
     return fmt::format("{}times that differ by less than {:.0f} % are equal{}", is_too_noisy(bar) ? "not ranked: " : "",

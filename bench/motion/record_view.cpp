@@ -13,10 +13,12 @@ std::string interval_in_words(const std::vector<double>& interval, double covera
 
 std::string coverage_text(double coverage) { return coverage > 0 ? fmt::format("{:.1f} %", 100 * coverage) : "-"; }
 
+std::string number_text(double value, int digits) { return known(value) ? fmt::format("{:.{}f}", value, digits) : "-"; }
+
 std::string machine_line(const MachineRecord& machine, const LoadRecord& load) {
-    const auto fixed = [](double value) { return known(value) ? fmt::format("{:.2f}", value) : "-"; };
     return fmt::format("{}, {}, load average {} to {}\n", machine.cpu,
-                       counted(static_cast<double>(machine.threads), "thread"), fixed(load.before), fixed(load.after));
+                       counted(static_cast<double>(machine.threads), "thread"), number_text(load.before),
+                       number_text(load.after));
 }
 
 nlohmann::json record_view(const HeadRecord& head, const MachineRecord& machine, const LoadRecord& load,

@@ -14,6 +14,9 @@ namespace umbra {
 /// "97.9 %"; "-" where an interval has no coverage.
 [[nodiscard]] std::string coverage_text(double coverage);
 
+/// With so many digits behind the point; "-" where it is unknown.
+[[nodiscard]] std::string number_text(double value, int digits = 2);
+
 /// "AMD EPYC, 2 threads, load average 0.10 to 2.00": the last line of a table.
 [[nodiscard]] std::string machine_line(const MachineRecord& machine, const LoadRecord& load);
 
