@@ -5,20 +5,15 @@
 namespace umbra {
 namespace {
 
-double dot(const Shares& a, const Shares& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-
 /// What is left of the polygon where plane . shares >= 0.
 /// [Ivan Sutherland, Gary Hodgman, Reentrant Polygon Clipping, 1974]
 std::vector<Shares> clipped(const std::vector<Shares>& polygon, const Shares& plane) {
     std::vector<Shares> kept;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Shares &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const double at_a = dot(plane, a), at_b = dot(plane, b);
+        const double at_a = glm::dot(plane, a), at_b = glm::dot(plane, b);
         if (at_a >= 0) kept.push_back(a);
-        if ((at_a > 0 && at_b < 0) || (at_a < 0 && at_b > 0)) {
-            const double t = at_a / (at_a - at_b);
-            kept.push_back({a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])});
-        }
+        if ((at_a > 0 && at_b < 0) || (at_a < 0 && at_b > 0)) kept.push_back(a + at_a / (at_a - at_b) * (b - a));
     }
     return kept;
 }
@@ -28,7 +23,7 @@ double area(const std::vector<Shares>& polygon) {
     double sum = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
         const Shares &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        sum += a[1] * b[2] - a[2] * b[1];
+        sum += a.y * b.z - a.z * b.y;
     }
     return std::abs(sum);
 }
@@ -42,9 +37,7 @@ std::vector<MixRegion> mix_regions(const std::vector<CornerTimes>& methods) {
         bool doubled = false;  // an earlier method has the same times
         for (std::size_t n = 0; n < methods.size(); ++n) {
             doubled = doubled || (n < m && methods[n] == methods[m]);
-            if (n != m)
-                polygon = clipped(polygon, {methods[n][0] - methods[m][0], methods[n][1] - methods[m][1],
-                                            methods[n][2] - methods[m][2]});
+            if (n != m) polygon = clipped(polygon, methods[n] - methods[m]);
         }
         const double size = area(polygon);
         if (!doubled && size > 0) regions.push_back({m, std::move(polygon), size});

@@ -1,16 +1,17 @@
 // The triangle of mixes: which method is fastest where, exactly, since the time of a mix is linear in its shares.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
+
+#include "umbra/core/base/math.h"
 
 namespace umbra {
 
 /// Shares of the frames in which the camera alone, a light, an object moves; they add up to 1.
-using Shares = std::array<double, 3>;
+using Shares = dvec3;
 /// Mean milliseconds of a frame of each of the three movements.
-using CornerTimes = std::array<double, 3>;
+using CornerTimes = dvec3;
 
 /// A convex polygon of mixes in which no other method is faster, and its share of the triangle's area.
 struct MixRegion {

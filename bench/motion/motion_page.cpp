@@ -1,9 +1,7 @@
 #include "umbra/bench/motion/motion.h"
 
 #include <fmt/format.h>
-
-#include <algorithm>
-#include <array>
+#include <fmt/ranges.h>
 
 #include "report_assets.h"
 #include "umbra/bench/motion/animation.h"
@@ -20,35 +18,27 @@ namespace {
 using nlohmann::json;
 
 /// Corners of the triangle in the units of its viewBox: camera, light, object.
-constexpr std::array<std::array<double, 2>, 3> kCorners{{{40, 300}, {400, 300}, {220, 28}}};
-
-std::array<double, 2> place(const Shares& shares) {
-    std::array<double, 2> at{0, 0};
-    for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t c = 0; c < 2; ++c) at[c] += shares[k] * kCorners[k][c];
-    return at;
-}
+constexpr dvec2 kCamera{40, 300}, kLight{400, 300}, kObject{220, 28};
 
 /// Methods that ran every movement and answered every point, in the order of the record. None where the scene lacks a
 /// movement: there is no triangle then.
 struct Competitor {
     std::string text;
     CornerTimes times;
-    std::size_t style;
+    std::size_t style;  ///< its index among the methods
 };
 std::vector<Competitor> competitors(const SceneMotionRecord& scene, double max_rmse) {
     std::vector<Competitor> all;
-    std::size_t style = 0;
-    for (const MovedMethodRecord& method : scene.methods) {
-        const std::size_t own = style++;
+    for (std::size_t own = 0; own < scene.methods.size(); ++own) {
+        const MovedMethodRecord& method = scene.methods[own];
         if (method.movements.empty() || !method.failed.empty()) continue;
         Competitor c{method.text, {}, own};
         bool competes = true;
-        for (std::size_t k = 0; k < kMovements.size(); ++k) {
-            const MovedRecord* m = method.movements.find(to_string(kMovements[k]));
+        for (int k = 0; const Movement movement : kMovements) {
+            const MovedRecord* m = method.movements.find(to_string(movement));
             if (m == nullptr) return {};  // the scene has no such corner
-            c.times[k] = m->median_ms;
-            competes   = competes && m->undefined == 0 && known(m->worst_rmse).value_or(0) <= max_rmse;
+            c.times[k++] = m->median_ms;
+            competes     = competes && m->undefined == 0 && known(m->worst_rmse).value_or(0) <= max_rmse;
         }
         if (competes) all.push_back(std::move(c));
     }
@@ -62,18 +52,18 @@ json triangle_view(const SceneMotionRecord& scene, double max_rmse, const std::s
     json regions = json::array();
     for (const MixRegion& region : mix_regions(times)) {
         std::string path;
-        std::array<double, 2> middle{0, 0};
+        dvec2 middle(0);
         for (const Shares& corner : region.corners) {
-            const auto at = place(corner);
-            path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", at[0], at[1]);
-            for (std::size_t c = 0; c < 2; ++c) middle[c] += at[c] / static_cast<double>(region.corners.size());
+            const dvec2 at = corner.x * kCamera + corner.y * kLight + corner.z * kObject;
+            path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", at.x, at.y);
+            middle += at / static_cast<double>(region.corners.size());
         }
         const Competitor& c = all[region.method];
         regions.push_back({{"path", path + "z"},
                            {"colour", std::to_string(mark_style(c.style).colour)},
                            {"label", region.area > 0.08 ? c.text : ""},
-                           {"x", fmt::format("{:.1f}", middle[0])},
-                           {"y", fmt::format("{:.1f}", middle[1])},
+                           {"x", fmt::format("{:.1f}", middle.x)},
+                           {"y", fmt::format("{:.1f}", middle.y)},
                            {"method", c.text},
                            {"share", region.area < 0.001 ? "< 0.1" : percent(region.area)}});
     }
@@ -83,8 +73,8 @@ json triangle_view(const SceneMotionRecord& scene, double max_rmse, const std::s
 json winner_view(const std::optional<WinnerRecord>& winner, bool ranked) {
     if (!winner || !ranked)
         return {{"none", winner ? "not ranked" : "none"}, {"method", ""}, {"ms", ""}, {"ties", ""}, {"next", ""}};
-    std::string ties, next;
-    for (const std::string& tie : winner->ties) ties += (ties.empty() ? "" : ", ") + tie;
+    const std::string ties = fmt::format("{}", fmt::join(winner->ties, ", "));
+    std::string next;
     if (ties.empty() && winner->runner_up)
         next = fmt::format("{} × {}", *winner->runner_up, score(known(winner->runner_up_over_winner->median)));
     return {{"none", false},
