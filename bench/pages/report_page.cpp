@@ -294,6 +294,18 @@ json run_view(const HeadRecord& head, const MachineRecord& machine) {
             {"version", head.version}};
 }
 
+void add_run(json& runs, const HeadRecord& head, const MachineRecord& machine) {
+    json view = run_view(head, machine);
+    for (json& known : runs) {
+        if (known["machine"] != view["machine"] || known["version"] != view["version"]) continue;
+        json& commands = known["commands"];
+        if (std::find(commands.begin(), commands.end(), view["commands"][0]) == commands.end())
+            commands.push_back(view["commands"][0]);
+        return;
+    }
+    runs.push_back(std::move(view));
+}
+
 json reference_view(const ReferenceRecord& reference) {
     return {{"title", reference.title.empty() ? in_words(reference.name) : reference.title},
             {"text", reference.text},

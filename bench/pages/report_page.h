@@ -129,6 +129,8 @@ struct Totals {
 /// Commands (one here), machine and version; title, text, exact and note of the reference. Of absolute paths the
 /// command shows only the last part.
 [[nodiscard]] nlohmann::json run_view(const HeadRecord& head, const MachineRecord& machine);
+/// Adds that to a list in which runs of one machine and version share an entry, which lists their commands.
+void add_run(nlohmann::json& runs, const HeadRecord& head, const MachineRecord& machine);
 [[nodiscard]] nlohmann::json reference_view(const ReferenceRecord& reference);
 
 }  // namespace umbra

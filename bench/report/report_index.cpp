@@ -97,17 +97,6 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                            {"paper", setting.paper},
                            {"summary", setting.summary},
                            {"name", setting_text(setting)}});
-    // Scenes that one machine and version compared share an entry, which lists their commands.
-    const auto add_run = [](json& list, json view) {
-        for (json& known : list) {
-            if (known["machine"] != view["machine"] || known["version"] != view["version"]) continue;
-            json& commands = known["commands"];
-            if (std::find(commands.begin(), commands.end(), view["commands"][0]) == commands.end())
-                commands.push_back(view["commands"][0]);
-            return;
-        }
-        list.push_back(std::move(view));
-    };
     // Notes on one scene are shown on its own page only.
     const auto add_reference = [](json& list, json view) {
         for (json& known : list)
@@ -140,7 +129,7 @@ json index_view(const std::vector<ScenePage>& scenes, const std::vector<SceneFil
                         {"loud", noise && is_too_noisy(*noise)},
                         {"cells", std::move(cells)}});
         cards.push_back(std::move(card));
-        add_run(runs, run_view(scene.results.head, scene.results.machine));
+        add_run(runs, scene.results.head, scene.results.machine);
         add_reference(references, reference_view(scene.results.reference));
     }
     return {{"title", title},

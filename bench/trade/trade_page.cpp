@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "report_assets.h"
@@ -40,24 +38,6 @@ json failures_of(const std::vector<SweptScene>& scenes) {
     return failures;
 }
 
-/// Scenes that one machine and version swept share an entry, which lists their commands.
-json runs_of(const std::vector<SweptScene>& scenes) {
-    json runs = json::array();
-    for (const SweptScene& scene : scenes) {
-        json run   = run_view(scene.head, scene.machine);
-        bool known = false;
-        for (json& other : runs) {
-            if (other["machine"] != run["machine"] || other["version"] != run["version"]) continue;
-            known          = true;
-            json& commands = other["commands"];
-            if (std::find(commands.begin(), commands.end(), run["commands"][0]) == commands.end())
-                commands.push_back(run["commands"][0]);
-        }
-        if (!known) runs.push_back(std::move(run));
-    }
-    return runs;
-}
-
 }  // namespace
 
 std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_json, const fs::path& folder,
@@ -71,11 +51,12 @@ std::vector<TradeLine> write_trade_page(const std::vector<fs::path>& results_jso
                             {"scene_count", counted(double(scenes.size()), "scene")},
                             {"method_count", counted(double(methods.size()), "method")},
                             {"scenes", json::array()},
-                            {"runs", runs_of(scenes)}};
+                            {"runs", json::array()}};
     std::size_t settings = 0;
     std::vector<TradeLine> lines;
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         settings += scenes[k].settings.size();
+        add_run(view["runs"], scenes[k].head, scenes[k].machine);
         json scene        = swept_scene_view(scenes[k], methods, fmt::format("scene-{}", k + 1));
         scene["file"]     = url(below(root, scenes[k], folder, k, staged).lexically_relative(folder));
         const auto metric = scene["metric"].get<std::string>();
