@@ -98,8 +98,7 @@ json fixed_errors_view(const std::vector<SweptScene>& scenes, const std::vector<
     std::string loud;
     for (const SweptScene& scene : scenes)
         if (is_loud(scene)) loud += (loud.empty() ? "" : ", ") + scene.title;
-    if (std::none_of(problems.begin(), problems.end(), [](const FixedError& p) { return std::isfinite(p.least); }))
-        return false;
+    if (std::ranges::none_of(problems, [](const FixedError& p) { return std::isfinite(p.least); })) return false;
 
     json columns = json::array(), groups = json::array(), means = json::array();
     for (std::size_t m = 0; m < methods.size(); ++m)

@@ -64,23 +64,22 @@ std::optional<FrameCost> cost_of(const Workload& workload, const SweptSettingRec
     const TimingRecord build = phase(times.build_ms), aim = phase(times.aim_ms),
                        look = phase(times.look_ms),  // none in records of older versions
         visibility          = phase(times.visibility_ms);
+    const auto cost_by      = [&](const auto& ms) {
+        return frame_cost_ms(workload, {ms(build), ms(aim), ms(look), ms(visibility)});
+    };
     std::vector<double> rounds;
     if (build.samples.size() == visibility.samples.size() && aim.samples.size() == visibility.samples.size())
         for (std::size_t r = 0; r < visibility.samples.size(); ++r)
-            rounds.push_back(
-                frame_cost_ms(workload, {build.samples[r], aim.samples[r],
-                                         r < look.samples.size() ? look.samples[r] : 0, visibility.samples[r]}));
+            rounds.push_back(cost_by([&](const TimingRecord& t) { return r < t.samples.size() ? t.samples[r] : 0; }));
     if (!rounds.empty()) {
         cost.low  = std::min(*setting.cost_ms, quantile(rounds, 0.25));
         cost.high = std::max(*setting.cost_ms, quantile(rounds, 0.75));
-    } else {
-        const auto end = [&](double TimingRecord::*of) {
-            const auto ms = [&](const TimingRecord& timing) { return known(timing.*of).value_or(0); };
-            return frame_cost_ms(workload, {ms(build), ms(aim), ms(look), ms(visibility)});
-        };
-        if (known(visibility.min)) cost.low = std::min(*setting.cost_ms, end(&TimingRecord::min));
-        if (known(visibility.max)) cost.high = std::max(*setting.cost_ms, end(&TimingRecord::max));
+        return cost;
     }
+    if (known(visibility.min))
+        cost.low = std::min(*setting.cost_ms, cost_by([](const TimingRecord& t) { return known(t.min).value_or(0); }));
+    if (known(visibility.max))
+        cost.high = std::max(*setting.cost_ms, cost_by([](const TimingRecord& t) { return known(t.max).value_or(0); }));
     return cost;
 }
 
@@ -129,27 +128,26 @@ SweptScene read_swept_scene(const std::filesystem::path& file) {
     return scene;
 }
 
+bool is_timed_on(const SweptScene& scene, const SweptMethod& method) {
+    return std::ranges::any_of(scene.settings,
+                               [&](const SweptSetting& s) { return s.method == method.name && s.cost; });
+}
+
 std::vector<SweptMethod> swept_methods(const std::vector<SweptScene>& scenes) {
     std::vector<SweptMethod> methods;
     for (const SweptScene& scene : scenes)
         for (const SweptSetting& s : scene.settings)
-            if (std::none_of(methods.begin(), methods.end(), [&](const SweptMethod& m) { return m.name == s.method; }))
-                methods.push_back({s.method, s.title});
+            if (index_of(methods, s.method) == methods.size()) methods.push_back({s.method, s.title});
     const auto scenes_of = [&](const SweptMethod& m) {
-        return std::count_if(scenes.begin(), scenes.end(), [&](const SweptScene& scene) {
-            return std::any_of(scene.settings.begin(), scene.settings.end(),
-                               [&](const SweptSetting& s) { return s.method == m.name && s.cost; });
-        });
+        return std::ranges::count_if(scenes, [&](const SweptScene& scene) { return is_timed_on(scene, m); });
     };
-    std::stable_sort(methods.begin(), methods.end(),
-                     [&](const SweptMethod& a, const SweptMethod& b) { return scenes_of(a) > scenes_of(b); });
+    std::ranges::stable_sort(methods,
+                             [&](const SweptMethod& a, const SweptMethod& b) { return scenes_of(a) > scenes_of(b); });
     return methods;
 }
 
 std::size_t index_of(const std::vector<SweptMethod>& methods, const std::string& name) {
-    return std::size_t(
-        std::find_if(methods.begin(), methods.end(), [&](const SweptMethod& m) { return m.name == name; }) -
-        methods.begin());
+    return std::size_t(std::ranges::find(methods, name, &SweptMethod::name) - methods.begin());
 }
 
 }  // namespace umbra

@@ -67,6 +67,8 @@ struct SweptMethod {
     std::string name, title;
 };
 [[nodiscard]] std::vector<SweptMethod> swept_methods(const std::vector<SweptScene>& scenes);
+[[nodiscard]] bool is_timed_on(const SweptScene& scene, const SweptMethod& method);
+/// The number of methods where none has the name.
 [[nodiscard]] std::size_t index_of(const std::vector<SweptMethod>& methods, const std::string& name);
 
 }  // namespace umbra

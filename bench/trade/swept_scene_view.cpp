@@ -65,8 +65,7 @@ json plot_view(const SweptScene& scene, const std::vector<SweptMethod>& methods,
 json legend_of(const SweptScene& scene, const std::vector<SweptMethod>& methods) {
     json legend = json::array();
     for (std::size_t k = 0; k < methods.size(); ++k)
-        if (std::any_of(scene.settings.begin(), scene.settings.end(),
-                        [&](const SweptSetting& s) { return s.method == methods[k].name && s.cost; }))
+        if (is_timed_on(scene, methods[k]))
             legend.push_back({{"label", methods[k].title},
                               {"colour", std::to_string(mark_style(k).colour)},
                               {"key", chart::mark_path(k, 14, 9)}});

@@ -52,16 +52,10 @@ bool costs_more(const SweptScene& scene, double dearer, double cheaper) {
 std::vector<std::size_t> front_of(const SweptScene& scene, std::size_t metric) {
     if (is_loud(scene)) return {};
     std::vector<CostError> points;
-    std::vector<std::size_t> settings;
-    for (std::size_t i = 0; i < scene.settings.size(); ++i) {
-        const SweptSetting& s = scene.settings[i];
-        if (!takes_part(s, metric)) continue;
-        points.push_back({s.cost->median, s.errors[metric]->worst});
-        settings.push_back(i);
-    }
-    std::vector<std::size_t> front;
-    for (const std::size_t i : pareto_front(points)) front.push_back(settings[i]);
-    return front;
+    for (const SweptSetting& s : scene.settings)
+        points.push_back(takes_part(s, metric) ? CostError{s.cost->median, s.errors[metric]->worst}
+                                               : CostError{kNever, kNever});  // not finite: on no front
+    return pareto_front(points);
 }
 
 std::string staircase_in_words(const SweptScene& scene, std::size_t metric) {
@@ -126,8 +120,7 @@ std::vector<FixedError> at_fixed_errors(const std::vector<SweptScene>& scenes, c
     std::vector<FixedError> all;
     for (std::size_t k = 0; k < scenes.size(); ++k) {
         const SweptScene& scene = scenes[k];
-        const auto column       = std::find_if(scene.metrics.begin(), scene.metrics.end(),
-                                               [&](const SweptMetric& m) { return m.name == metric; });
+        const auto column       = std::ranges::find(scene.metrics, metric, &SweptMetric::name);
         if (column == scene.metrics.end()) continue;
         for (const double error : errors) {
             FixedError row{k, error, {}, {}, kNever};
