@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "umbra/bench/out/staged_files.h"
 #include "umbra/bench/run/chosen.h"
 #include "umbra/core/base/error.h"
@@ -16,12 +18,6 @@ std::vector<MethodChoice> methods_on(const PreparedScene& prepared, const std::f
     if (command.methods.empty() && command.choices.empty() && !prepared.facts.hard_lights_only)
         std::erase_if(chosen, [](const MethodChoice& choice) { return choice.make()->measures() != Measure::area; });
     return chosen;
-}
-
-bool shows_a_surface(const PreparedScene& prepared) {
-    for (const TriangleId t : prepared.points.triangle)
-        if (t != kNoTriangle) return true;
-    return false;
 }
 
 }  // namespace
@@ -44,7 +40,7 @@ MotionRecord measure_motion(const std::vector<std::filesystem::path>& files, con
     for (const auto& [file, name, folder] : scenes) {
         try {
             PreparedScene prepared = prepare_scene(file, command.size);
-            if (!shows_a_surface(prepared))
+            if (std::ranges::all_of(prepared.points.triangle, [](TriangleId t) { return t == kNoTriangle; }))
                 throw InputError(fmt::format("{}: no surface is in view, so that no point is compared", file.string()));
             prepared.scene.name      = name;
             const auto chosen        = methods_on(prepared, file, command);
