@@ -105,11 +105,6 @@ std::string times_a_second(double n) {
 
 }  // namespace
 
-std::string workload_in_words(const Workload& w) {
-    return fmt::format("The camera moves {}, a light {}, an object {}.", times_a_second(w.camera),
-                       times_a_second(w.light), times_a_second(w.object));
-}
-
 json swept_scene_view(const SweptScene& scene, const std::vector<SweptMethod>& methods, const std::string& id) {
     std::vector<std::vector<std::size_t>> fronts;
     json plots = json::array(), columns = json::array();
@@ -133,7 +128,9 @@ json swept_scene_view(const SweptScene& scene, const std::vector<SweptMethod>& m
             {"triangles", count(scene.triangles)},
             {"views", counted(scene.views, "view")},
             {"settings", counted(double(scene.settings.size()), "setting")},
-            {"workload", workload_in_words(scene.workload)},
+            {"workload",
+             fmt::format("The camera moves {}, a light {}, an object {}.", times_a_second(scene.workload.camera),
+                         times_a_second(scene.workload.light), times_a_second(scene.workload.object))},
             {"noise_bar", scene.noise_bar && std::isfinite(*scene.noise_bar)
                               ? fmt::format("{:.0f}", std::ceil(100 * *scene.noise_bar))
                               : ""},

@@ -35,6 +35,18 @@ void add_as_cheap(const SweptScene& scene, std::size_t metric, std::size_t i, st
     }
 }
 
+/// The cheapest setting of `method` whose error is at most `error` in every view; nothing where none is.
+std::optional<std::size_t> cheapest_within(const SweptScene& scene, std::size_t metric, double error,
+                                           const std::string& method) {
+    std::optional<std::size_t> cheapest;
+    for (std::size_t i = 0; i < scene.settings.size(); ++i) {
+        const SweptSetting& s = scene.settings[i];
+        if (s.method != method || !takes_part(s, metric) || s.errors[metric]->worst > error) continue;
+        if (!cheapest || s.cost->median < scene.settings[*cheapest].cost->median) cheapest = i;
+    }
+    return cheapest;
+}
+
 std::string as_cheap_in_words(const std::vector<std::string>& titles) {
     return titles.empty() ? "" : fmt::format(" (as cheap, as far as noise tells: {})", fmt::join(titles, ", "));
 }
@@ -102,17 +114,6 @@ std::string staircase_in_words(const SweptScene& scene, std::size_t metric) {
                        costs_more(scene, cost(*exact), cost(*before))
                            ? fmt::format("at {} times the cost of the step before", score(cost(*exact) / cost(*before)))
                            : "at a cost that noise does not tell from that of the step before");
-}
-
-std::optional<std::size_t> cheapest_within(const SweptScene& scene, std::size_t metric, double error,
-                                           const std::string& method) {
-    std::optional<std::size_t> cheapest;
-    for (std::size_t i = 0; i < scene.settings.size(); ++i) {
-        const SweptSetting& s = scene.settings[i];
-        if (s.method != method || !takes_part(s, metric) || s.errors[metric]->worst > error) continue;
-        if (!cheapest || s.cost->median < scene.settings[*cheapest].cost->median) cheapest = i;
-    }
-    return cheapest;
 }
 
 std::vector<FixedError> at_fixed_errors(const std::vector<SweptScene>& scenes, const std::vector<SweptMethod>& methods,

@@ -28,10 +28,6 @@ namespace umbra {
 /// where there is no staircase.
 [[nodiscard]] std::string staircase_in_words(const SweptScene& scene, std::size_t metric);
 
-/// The cheapest setting of `method` whose error is at most `error` in every view; nothing where none is.
-[[nodiscard]] std::optional<std::size_t> cheapest_within(const SweptScene& scene, std::size_t metric, double error,
-                                                         const std::string& method);
-
 /// One problem of the comparison at fixed errors: a scene and an error, and the cheapest setting of each method.
 struct FixedError {
     std::size_t scene = 0;

@@ -13,9 +13,6 @@ namespace umbra {
 [[nodiscard]] nlohmann::json swept_scene_view(const SweptScene& scene, const std::vector<SweptMethod>& methods,
                                               const std::string& id);
 
-/// "The camera moves 60 times a second, a light once a second, objects never."
-[[nodiscard]] std::string workload_in_words(const Workload& workload);
-
 /// The table of ratios to the cheapest method at errors from 0.1 to 0 of the first metric, its geometric means and
 /// performance profile; false where no scene has a setting that takes part.
 [[nodiscard]] nlohmann::json fixed_errors_view(const std::vector<SweptScene>& scenes,
