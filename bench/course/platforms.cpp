@@ -107,21 +107,16 @@ std::string classroom50_text(const GradeRecord& grade, std::int64_t now) {
 }
 
 std::string grade_junit(const GradeRecord& grade) {
-    const bool runs  = grade.failed.empty();
-    const auto lost  = std::ranges::count_if(grade.items, [](const GradedItemRecord& item) { return !full(item); });
-    std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-        "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
-        xml_text(grade.rubric), grade.items.size(), runs ? lost : 0, runs ? 0 : lost);
-    for (const GradedItemRecord& item : grade.items) {
-        text += fmt::format("<testcase classname=\"{}\" name=\"{}\"", xml_text(grade.handed_in), xml_text(item.name));
-        const char* kind = runs ? "failure" : "error";
-        text += full(item)
-                    ? "/>\n"
-                    : fmt::format(">\n<{} type=\"points\" message=\"{:g} of {:g} points\">{}</{}>\n</testcase>\n", kind,
-                                  item.points, item.max, xml_text(item.sentence), kind);
-    }
-    return text + "</testsuite>\n</testsuites>\n";
+    const std::string lost = grade.failed.empty() ? "failure" : "error";
+    std::vector<JunitCase> cases;
+    for (const GradedItemRecord& item : grade.items)
+        cases.push_back({.classname = grade.handed_in,
+                         .name      = item.name,
+                         .problem   = full(item) ? "" : lost,
+                         .type      = "points",
+                         .message   = fmt::format("{:g} of {:g} points", item.points, item.max),
+                         .text      = item.sentence});
+    return junit_text(grade.rubric, cases);
 }
 
 }  // namespace umbra

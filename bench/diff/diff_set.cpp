@@ -138,21 +138,14 @@ nlohmann::json diff_set_json(const DiffSet& set) {
 }
 
 std::string diff_set_junit(const DiffSet& set) {
-    std::string text = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-        "<testsuite name=\"umbra diff\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
-        set.images.size(), set.count(Verdict::differs) + set.count(Verdict::unlike), set.count(Verdict::unreadable));
+    std::vector<JunitCase> cases;
     for (const DiffResult& image : set.images) {
-        text += fmt::format("<testcase classname=\"umbra.diff\" name=\"{}\"", xml_text(image.name));
-        if (image.verdict <= Verdict::close) {
-            text += "/>\n";
-            continue;
-        }
-        const char* element = image.verdict == Verdict::unreadable ? "error" : "failure";
-        text += fmt::format(">\n<{} type=\"{}\" message=\"{}\">{}</{}>\n</testcase>\n", element,
-                            to_string(image.verdict), xml_text(diff_line(image)), xml_text(diff_text(image)), element);
+        JunitCase& one = cases.emplace_back(JunitCase{.classname = "umbra.diff", .name = image.name});
+        if (image.verdict <= Verdict::close) continue;
+        one.problem = image.verdict == Verdict::unreadable ? "error" : "failure";
+        one.type = to_string(image.verdict), one.message = diff_line(image), one.text = diff_text(image);
     }
-    return text + "</testsuite>\n</testsuites>\n";
+    return junit_text("umbra diff", cases);
 }
 
 }  // namespace umbra

@@ -133,4 +133,20 @@ std::string xml_text(const std::string& text) {
     return escaped;
 }
 
+std::string junit_text(const std::string& suite, const std::vector<JunitCase>& cases) {
+    const auto with  = [&](const char* problem) { return std::ranges::count(cases, problem, &JunitCase::problem); };
+    std::string text = fmt::format(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
+        "<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\">\n",
+        xml_text(suite), cases.size(), with("failure"), with("error"));
+    for (const JunitCase& one : cases) {
+        text += fmt::format("<testcase classname=\"{}\" name=\"{}\"", xml_text(one.classname), xml_text(one.name));
+        text += one.problem.empty()
+                    ? "/>\n"
+                    : fmt::format(">\n<{0} type=\"{1}\" message=\"{2}\">{3}</{0}>\n</testcase>\n", one.problem,
+                                  xml_text(one.type), xml_text(one.message), xml_text(one.text));
+    }
+    return text + "</testsuite>\n</testsuites>\n";
+}
+
 }  // namespace umbra

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace umbra {
 
@@ -47,6 +48,15 @@ inline constexpr const char* kNone = "–";  ///< where there is no number
 /// Text for an element or an attribute of XML: markup and line ends are escaped, other control characters become "?",
 /// and what is not UTF-8 becomes U+FFFD.
 [[nodiscard]] std::string xml_text(const std::string& text);
+
+/// A test case of JUnit XML.
+struct JunitCase {
+    std::string classname, name;
+    std::string problem{};                  ///< "failure" or "error"; empty: it is passed
+    std::string type{}, message{}, text{};  ///< of the problem: its kind, one line, all of it
+};
+/// JUnit XML of one suite.
+[[nodiscard]] std::string junit_text(const std::string& suite, const std::vector<JunitCase>& cases);
 
 /// A relative path for an attribute: every byte with a meaning in a URL is encoded.
 [[nodiscard]] std::string url(const std::filesystem::path& path);
