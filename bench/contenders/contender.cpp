@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <deque>
 #include <memory>
 
 #include "umbra/bench/out/files.h"
@@ -31,16 +30,10 @@ private:
     Measure measure_;
 };
 
-/// What the views of a MethodInfo look into.
-struct AnswersFile {
-    std::string name, title, summary, file;
-    MethodInfo info{};
+struct AnswersFile final : OutsideMethod {
+    fs::path file;
+    [[nodiscard]] std::string text() const override { return summary + bytes_of(file); }
 };
-
-std::deque<AnswersFile>& all_answers() {
-    static std::deque<AnswersFile> all;
-    return all;
-}
 
 std::vector<fs::path> folders_of_contenders() {
     std::vector<fs::path> folders{"contenders"};
@@ -60,13 +53,6 @@ std::optional<fs::path> contender_file(const std::string& name) {
     for (const fs::path& folder : folders_of_contenders())
         if (const fs::path file = folder / (name + ".json"); fs::is_regular_file(file)) return file;
     return std::nullopt;
-}
-
-std::string text_of_outside(const MethodInfo& method) {
-    for (const AnswersFile& answers : all_answers())
-        if (&answers.info == &method) return answers.summary + bytes_of(answers.file);
-    const std::string text = text_of_library(method);
-    return text.empty() ? text_of_program(method) : text;
 }
 
 ContenderRecord read_contender(const fs::path& file) {
@@ -111,28 +97,27 @@ std::vector<std::string> add_contenders() {
 }
 
 const MethodInfo& answers_method(const NamedAnswers& given) {
-    const std::string name = given.name, file = given.where.string();
-    const Measure measure = given.measure;
-    check_method_name(name);
-    if (!fs::is_regular_file(file)) throw InputError(fmt::format("{}: is not there, or is no regular file", file));
-    AnswersFile& made = all_answers().emplace_back();
-    made.name         = name;
-    made.file         = file;
-    made.title        = fmt::format("{} (a file)", name);
-    made.summary      = fmt::format("S_j as the file {} has it, of the share of {}. Not timed.",
-                                    fs::path(file).filename().string(), to_string(measure));
-    made.info         = {.name         = made.name,
-                         .title        = made.title,
+    check_method_name(given.name);
+    if (!fs::is_regular_file(given.where))
+        throw InputError(fmt::format("{}: is not there, or is no regular file", given.where.string()));
+    auto made         = std::make_unique<AnswersFile>();
+    made->file        = given.where;
+    made->name        = given.name;
+    made->title       = fmt::format("{} (a file)", given.name);
+    made->summary     = fmt::format("S_j as the file {} has it, of the share of {}. Not timed.",
+                                    given.where.filename().string(), to_string(given.measure));
+    made->info        = {.name         = made->name,
+                         .title        = made->title,
                          .paper        = "Answers in a file, which were made elsewhere",
-                         .summary      = made.summary,
+                         .summary      = made->summary,
                          .by_default   = false,
                          .needs_raster = true,
-                         .create       = [file, measure](const Settings&) -> std::unique_ptr<const Method> {
-                     return std::make_unique<AnswersMethod>(file, measure);
-                 },
-                         .outside  = "file of answers",
-                         .is_timed = false};
-    return made.info;
+                         .outside      = "file of answers",
+                         .is_timed     = false};
+    made->info.create = [given](const Settings&) -> std::unique_ptr<const Method> {
+        return std::make_unique<AnswersMethod>(given.where, given.measure);
+    };
+    return keep_outside(std::move(made));
 }
 
 MethodChoice add_answers(const std::string& text) {

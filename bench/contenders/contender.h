@@ -36,21 +36,9 @@ DESCRIBE(ContenderRecord) {
 [[nodiscard]] const MethodInfo& program_method(const std::string& name, const ContenderRecord& contender,
                                                const std::filesystem::path& folder);
 
-/// Ends the programs of all such methods that wait for a question.
-void end_idle_programs();
-
 /// The answers of a file as a method, in a list of those that live as long as the process. Throws InputError where there
 /// is no such file, and UsageError where its name is none of a method.
 [[nodiscard]] const MethodInfo& answers_method(const NamedAnswers& given);
-
-/// Everything that the answers of a method from outside depend on and that can be seen from here: what its file says, and
-/// the bytes of the files that its command names, of a script those of the scripts beside it, too (of a library or a file of
-/// answers: that file). Empty of all other methods.
-[[nodiscard]] std::string text_of_outside(const MethodInfo& method);
-
-/// The same of programs alone, and of libraries in C alone.
-[[nodiscard]] std::string text_of_program(const MethodInfo& method);
-[[nodiscard]] std::string text_of_library(const MethodInfo& method);
 
 /// Loads a shared library that exports umbra_contender() (include/umbra/contender.h) and makes a method of it, called as it
 /// says. Throws InputError: the file, what was found, what is expected.

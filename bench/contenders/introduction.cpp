@@ -16,6 +16,11 @@
 namespace umbra {
 namespace {
 
+std::vector<std::unique_ptr<OutsideMethod>>& outside_methods() {
+    static std::vector<std::unique_ptr<OutsideMethod>> all;
+    return all;
+}
+
 constexpr std::array kTypes{Parameter::Type::integer, Parameter::Type::real, Parameter::Type::choice,
                             Parameter::Type::boolean, Parameter::Type::text};
 constexpr std::array kPhases{Phase::build, Phase::aim, Phase::look, Phase::visibility};
@@ -127,6 +132,20 @@ void OutsideMethod::introduce(const std::string& as, const IntroductionRecord& s
     for (const ParameterRecord& p : says.parameters) info.parameters.push_back(parameter_of(*this, p));
     for (const Parameter& p : info.parameters)
         if (p.name == says.seed) info.seed = p.name;
+}
+
+const MethodInfo& keep_outside(std::unique_ptr<OutsideMethod> method) {
+    return outside_methods().emplace_back(std::move(method))->info;
+}
+
+std::string text_of_outside(const MethodInfo& method) {
+    for (const auto& outside : outside_methods())
+        if (&outside->info == &method) return outside->text();
+    return "";
+}
+
+void end_idle_programs() {
+    for (const auto& outside : outside_methods()) outside->end_idle();
 }
 
 Service serves_by_kind(const IntroductionRecord& says, const std::string& kind, const SceneFacts& facts) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <deque>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,12 +43,29 @@ struct OutsideMethod {
     MethodInfo info{};
 
     OutsideMethod()                                = default;
+    virtual ~OutsideMethod()                       = default;
     OutsideMethod(const OutsideMethod&)            = delete;
     OutsideMethod& operator=(const OutsideMethod&) = delete;
+
+    /// Everything that its answers depend on and that can be seen from here: what its file says, and the bytes of the
+    /// files that its command names, of a script those of the scripts beside it, too (of a library or a file of
+    /// answers: that file).
+    [[nodiscard]] virtual std::string text() const = 0;
+    /// Ends programs that wait for a question.
+    virtual void end_idle() {}
     /// All of `info` but `create`; the title names `as` where another method has it. `kind` as in MethodInfo::outside.
     /// Throws InputError where what it says cannot be a method.
     void introduce(const std::string& as, const IntroductionRecord& says, const std::string& kind);
 };
+
+/// Takes it into the list of those that live as long as the process.
+const MethodInfo& keep_outside(std::unique_ptr<OutsideMethod> method);
+
+/// OutsideMethod::text; empty of all other methods.
+[[nodiscard]] std::string text_of_outside(const MethodInfo& method);
+
+/// Ends all programs that wait for a question.
+void end_idle_programs();
 
 /// Whether it serves the lights of a scene, by the kinds that it names.
 [[nodiscard]] Service serves_by_kind(const IntroductionRecord& says, const std::string& kind, const SceneFacts& facts);

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstring>
-#include <deque>
+#include <memory>
 #include <mutex>
 
 #include "umbra/bench/contenders/answers_file.h"
@@ -24,13 +24,13 @@ namespace {
 static_assert(sizeof(vec3) == 3 * sizeof(float) && sizeof(uvec3) == 3 * sizeof(std::uint32_t),
               "arrays are handed over as they are");
 
-/// All that lives as long as the process.
-struct Library {
-    OutsideMethod method;
+struct Library final : OutsideMethod {
     fs::path file;
-    const umbra_contender_info* info = nullptr;
+    const umbra_contender_info* in_c = nullptr;
     IntroductionRecord says{};
     std::mutex mutex{};  ///< one call at a time
+
+    [[nodiscard]] std::string text() const override { return bytes_of(file); }
 };
 
 // What a library is doing, for the handler of signals: a pointer to text that lives on.
@@ -160,7 +160,7 @@ public:
         c.object = of.triangle_object.data(), c.blocks = blocks_.data();
         const Box box = bounds(of);
         if (!box.empty()) copy(c.low, box.min), copy(c.high, box.max);
-        kept.make(library.info->build, library.info->drop_built, question(), "build");
+        kept.make(library.in_c->build, library.in_c->drop_built, question(), "build");
     }
     [[nodiscard]] umbra_question question() const {
         umbra_question known{};
@@ -180,7 +180,7 @@ public:
         : Aimed(from, at), light(in_c(source())), kept(library, settings) {
         umbra_question question = as<LibraryBuilt>(from).question();
         question.light          = &light;
-        kept.make(library.info->aim, library.info->drop_aimed, question, "aim");
+        kept.make(library.in_c->aim, library.in_c->drop_aimed, question, "aim");
     }
     const umbra_light light;
     Kept kept;
@@ -192,7 +192,7 @@ public:
         : Looked(at), points_in_c(in_c(at)), kept(library, settings) {
         umbra_question question = as<LibraryBuilt>(from).question();
         question.points         = &points_in_c;
-        kept.make(library.info->look, library.info->drop_looked, question, "look");
+        kept.make(library.in_c->look, library.in_c->drop_looked, question, "look");
     }
     const umbra_points points_in_c;
     Kept kept;
@@ -207,7 +207,7 @@ public:
         return serves_by_kind(library_.says, "library", facts);
     }
     [[nodiscard]] Measure measures() const override {
-        return (library_.info->flags & UMBRA_IRRADIANCE) != 0 ? Measure::irradiance : Measure::area;
+        return (library_.in_c->flags & UMBRA_IRRADIANCE) != 0 ? Measure::irradiance : Measure::area;
     }
     [[nodiscard]] std::unique_ptr<const Built> build(const Scene& scene, const SceneFacts& facts) const override {
         return std::make_unique<LibraryBuilt>(scene, facts, library_, settings_);
@@ -231,12 +231,12 @@ public:
         std::vector<float> s(points.size(), std::numeric_limits<float>::quiet_NaN());
         const auto ask = [&](std::size_t begin, std::size_t end) {
             char why[UMBRA_WHY]{};
-            if (library_.info->visibility(&question, begin, end, s.data(), why) == 0) Kept::fail("visibility", why);
+            if (library_.in_c->visibility(&question, begin, end, s.data(), why) == 0) Kept::fail("visibility", why);
         };
         {
             const std::lock_guard lock(library_.mutex);
             const Running now(library_);
-            if ((library_.info->flags & UMBRA_THREADS) != 0)
+            if ((library_.in_c->flags & UMBRA_THREADS) != 0)
                 parallel_ranges(points.size(), 64, ask);
             else
                 ask(0, points.size());
@@ -253,20 +253,15 @@ private:
     Table settings_;
 };
 
-std::deque<Library>& all_libraries() {
-    static std::deque<Library> all;
-    return all;
-}
-
-constexpr const char* kTypeNames[]{"integer", "real", "choice", "boolean", "text"};
+static_assert(UMBRA_TEXT == static_cast<int>(Parameter::Type::text));
 
 ParameterRecord record_of(const umbra_parameter& p, const std::string& from) {
     const auto text = [](const char* t) { return std::string(t == nullptr ? "" : t); };
-    if (p.type >= std::size(kTypeNames))
-        throw InputError(fmt::format("{}: parameter {:?}: type {}, expected UMBRA_INTEGER to UMBRA_TEXT, 0 to {}", from,
-                                     text(p.name), p.type, std::size(kTypeNames) - 1));
+    if (p.type > UMBRA_TEXT)
+        throw InputError(fmt::format("{}: parameter {:?}: type {}, expected UMBRA_INTEGER to UMBRA_TEXT, 0 to 4", from,
+                                     text(p.name), p.type));
     ParameterRecord record{.name     = text(p.name),
-                           .type     = kTypeNames[p.type],
+                           .type     = std::string(to_string(static_cast<Parameter::Type>(p.type))),
                            .fallback = text(p.fallback),
                            .phase    = text(p.phase),
                            .doc      = text(p.doc),
@@ -326,24 +321,18 @@ const MethodInfo& library_method(const fs::path& file) {
     std::call_once(once, [] {
         for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) std::signal(signal, say_who_crashed);
     });
-    Library& library = all_libraries().emplace_back();
+    auto made        = std::make_unique<Library>();
+    Library& library = *made;
     library.file     = file;
     const Running now(library);
-    library.info = entry();
-    if (library.info == nullptr) throw InputError(fmt::format("{}: umbra_contender() returns NULL", file.string()));
-    library.says = introduction_of(*library.info, file.string());
-    library.method.introduce(library.info->name, library.says, "library");
-    MethodInfo& info = library.method.info;
-    info.create      = [&library](const Settings& settings) -> std::unique_ptr<const Method> {
+    library.in_c = entry();
+    if (library.in_c == nullptr) throw InputError(fmt::format("{}: umbra_contender() returns NULL", file.string()));
+    library.says = introduction_of(*library.in_c, file.string());
+    library.introduce(library.in_c->name, library.says, "library");
+    library.info.create = [&library](const Settings& settings) -> std::unique_ptr<const Method> {
         return std::make_unique<LibraryMethod>(library, settings);
     };
-    return info;
-}
-
-std::string text_of_library(const MethodInfo& method) {
-    for (const Library& library : all_libraries())
-        if (&library.method.info == &method) return bytes_of(library.file);
-    return "";
+    return keep_outside(std::move(made));
 }
 
 void add_library_method(const fs::path& file) {

@@ -29,13 +29,12 @@ public:
     void tell(const std::string& line);
 
     [[nodiscard]] bool is_alive() const { return pid_ > 0; }
-    /// The last lines of its stderr, at most 2 KiB: " It wrote: ...", or nothing.
-    [[nodiscard]] std::string last_words() const;
-    /// Ends the program and its group at once.
-    void end();
+    /// Ends the program and its group at once, and throws MethodError: `what`, and the last lines of its stderr.
+    [[noreturn]] void fail(const std::string& what);
 
 private:
-    [[noreturn]] void fail(const std::string& what);
+    void end();
+    [[nodiscard]] std::string last_words() const;  ///< of its stderr, at most 2 KiB; or nothing
     void read_some(int& from, std::string& into, std::size_t most);
 
     int pid_ = -1, to_ = -1, from_ = -1, errors_ = -1;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,9 +17,23 @@ namespace umbra {
 namespace fs = std::filesystem;
 namespace {
 
-/// All that lives as long as the process: the record that the views of `info` look into, and idle programs.
-struct Contender {
-    OutsideMethod method;
+bool is_script(const fs::path& file) {
+    return fs::is_regular_file(file) && (file.extension() == ".py" || file.extension() == ".js");
+}
+
+/// Bytes of a word that is a file. What a script imports is not known: all scripts beside it count.
+std::string text_of_word(const fs::path& word) {
+    if (!is_script(word)) return fs::is_regular_file(word) ? bytes_of(word) : "";
+    std::vector<fs::path> scripts;
+    for (const auto& entry : fs::directory_iterator(word.parent_path()))
+        if (is_script(entry.path())) scripts.push_back(entry.path());
+    std::ranges::sort(scripts);
+    std::string text = word.filename().string();
+    for (const fs::path& script : scripts) text += bytes_of(script);
+    return text;
+}
+
+struct Contender final : OutsideMethod {
     ContenderRecord record;
     fs::path folder;
     std::mutex mutex{};  ///< guards what follows
@@ -37,17 +50,11 @@ struct Contender {
             }
         }
         auto session = std::make_unique<ProgramSession>(record.command, folder, record.timeout_s);
-        IntroductionRecord says;
-        try {
-            says = from_record<IntroductionRecord>(session->hello());
-        } catch (const InputError& e) {
-            throw MethodError(e.what());
-        }
-        if (says.version != record.says.version)
+        if (const IntroductionRecord& says = session->says(); says.version != record.says.version)
             throw MethodError(
                 fmt::format("the program says that it is version {}, but {} was checked: check it again "
                             "(umbra contender check {})",
-                            says.version, record.says.version, method.name));
+                            says.version, record.says.version, name));
         return session;
     }
     void give_back(std::unique_ptr<ProgramSession> session) {
@@ -55,6 +62,15 @@ struct Contender {
         if (!session->is_alive()) return;
         const std::lock_guard lock(mutex);
         idle.push_back(std::move(session));
+    }
+    [[nodiscard]] std::string text() const override {
+        std::string text = json_text(to_record(record));
+        for (const std::string& word : record.command) text += text_of_word(folder / word);
+        return text;
+    }
+    void end_idle() override {
+        const std::lock_guard lock(mutex);
+        idle.clear();
     }
 };
 
@@ -186,66 +202,24 @@ private:
     mutable std::unique_ptr<ProgramSession> ready_{};
 };
 
-std::deque<Contender>& all_programs() {
-    static std::deque<Contender> all;
-    return all;
-}
-
-bool is_script(const fs::path& file) {
-    return fs::is_regular_file(file) && (file.extension() == ".py" || file.extension() == ".js");
-}
-
-/// Bytes of a word that is a file. What a script imports is not known: all scripts beside it count.
-std::string text_of_word(const fs::path& word) {
-    if (!is_script(word)) return fs::is_regular_file(word) ? bytes_of(word) : "";
-    std::vector<fs::path> scripts;
-    for (const auto& entry : fs::directory_iterator(word.parent_path()))
-        if (is_script(entry.path())) scripts.push_back(entry.path());
-    std::ranges::sort(scripts);
-    std::string text = word.filename().string();
-    for (const fs::path& script : scripts) text += bytes_of(script);
-    return text;
-}
-
 }  // namespace
 
-std::string text_of_program(const MethodInfo& method) {
-    std::string text;
-    for (const Contender& contender : all_programs()) {
-        if (&contender.method.info != &method) continue;
-        text = json_text(to_record(contender.record));
-        for (const std::string& word : contender.record.command) text += text_of_word(contender.folder / word);
-    }
-    return text;
-}
-
 const MethodInfo& program_method(const std::string& name, const ContenderRecord& record, const fs::path& folder) {
-    std::deque<Contender>& all = all_programs();
     check_introduction(record.says, name);
     if (record.command.empty()) throw InputError(fmt::format("{}: \"command\" is missing or empty", name));
-    Contender& contender = all.emplace_back();
-    contender.record     = record;
-    contender.folder     = folder.empty() ? fs::path(".") : folder;
-    contender.method.introduce(name, record.says, "program");
-    MethodInfo& info = contender.method.info;
-    info.create      = [&contender](const Settings& settings) -> std::unique_ptr<const Method> {
+    auto made    = std::make_unique<Contender>();
+    made->record = record;
+    made->folder = folder.empty() ? fs::path(".") : folder;
+    made->introduce(name, record.says, "program");
+    made->info.create = [&contender = *made](const Settings& settings) -> std::unique_ptr<const Method> {
         return std::make_unique<Program>(contender, settings);
     };
-    return info;
-}
-
-void end_idle_programs() {
-    for (Contender& contender : all_programs()) {
-        const std::lock_guard lock(contender.mutex);
-        contender.idle.clear();
-    }
+    return keep_outside(std::move(made));
 }
 
 IntroductionRecord introduction(const std::vector<std::string>& command, const fs::path& folder, double timeout_s) {
-    const ProgramSession session(command, folder, timeout_s);
-    IntroductionRecord says;
+    IntroductionRecord says = ProgramSession(command, folder, timeout_s).says();
     try {
-        says = from_record<IntroductionRecord>(session.hello());
         check_introduction(says, "answer to hello");
     } catch (const InputError& e) {
         throw MethodError(e.what());

@@ -81,21 +81,18 @@ ProgramSession::ProgramSession(const std::vector<std::string>& command, const fs
     : folder_(folder_of_a_run()),
       timeout_s_(std::isnan(timeout_s) ? 120 : timeout_s),
       process_(placed(command, folder()), where, made(folder() / "temporary")) {
-    hello_ = ask(hello_message(folder()));
+    try {
+        says_ = from_record<IntroductionRecord>(ask(hello_message(folder())));
+    } catch (const InputError& e) {
+        throw MethodError(e.what());
+    }
 }
 
 ProgramSession::~ProgramSession() {
     try {
-        if (is_alive()) process_.tell(Json{{"message", "end"}}.dump());
+        process_.tell(Json{{"message", "end"}}.dump());
     } catch (...) {  // it is ended all the same
-        process_.end();
     }
-}
-
-void ProgramSession::fail(const std::string& what) {
-    const std::string words = process_.last_words();
-    process_.end();
-    throw MethodError(what + words);
 }
 
 Field ProgramSession::ask(const Json& message) {
@@ -109,8 +106,8 @@ Field ProgramSession::ask(const Json& message) {
             throw MethodError(
                 fmt::format("the program answers \"{}\" with the error: {}", kind, answer["error"].text()));
     } catch (const InputError& e) {
-        fail(fmt::format("the program wrote {:?} to stdout, where one line of JSON is expected ({}).",
-                         text.substr(0, 200), e.what()));
+        process_.fail(fmt::format("the program wrote {:?} to stdout, where one line of JSON is expected ({}).",
+                                  text.substr(0, 200), e.what()));
     }
     return answer;
 }
@@ -126,7 +123,7 @@ double ProgramSession::send(const Json& message) {
     try {
         return time_of(answer);
     } catch (const InputError& e) {
-        fail(e.what() + std::string("."));
+        process_.fail(e.what() + std::string("."));
     }
 }
 
@@ -140,13 +137,13 @@ double ProgramSession::answers(const Json& message, const Scene& scene, const Po
         const std::string named = answer["answers"].text();
         const fs::path file     = folder() / (named.empty() ? expected : named);
         if (named.find('/') != std::string::npos)
-            fail(fmt::format("the program names the file {}, expected one in its folder.", named));
+            process_.fail(fmt::format("the program names the file {}, expected one in its folder.", named));
         if (fs::symlink_status(file).type() != fs::file_type::regular)
-            fail(fmt::format("the program answered, but wrote no file {}.", named.empty() ? expected : named));
+            process_.fail(fmt::format("the program answered, but wrote no file {}.", named.empty() ? expected : named));
         read_answers(file, scene, points, light, true, out);
         return time_of(answer);
     } catch (const InputError& e) {
-        fail(e.what() + std::string("."));
+        process_.fail(e.what() + std::string("."));
     }
 }
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "umbra/bench/contenders/introduction.h"
 #include "umbra/bench/contenders/line_process.h"
 #include "umbra/bench/out/scratch_folder.h"
-#include "umbra/bench/record/field.h"
 #include "umbra/core/render/points.h"
 #include "umbra/core/render/visibility.h"
 #include "umbra/core/scene/scene.h"
@@ -34,7 +34,7 @@ public:
     ProgramSession(const ProgramSession&)            = delete;
     ProgramSession& operator=(const ProgramSession&) = delete;
 
-    [[nodiscard]] const Field& hello() const { return hello_; }
+    [[nodiscard]] const IntroductionRecord& says() const { return says_; }  ///< its answer to `hello`
     [[nodiscard]] bool is_alive() const { return process_.is_alive(); }
     [[nodiscard]] const std::filesystem::path& folder() const { return folder_.path(); }
 
@@ -51,12 +51,11 @@ public:
 private:
     [[nodiscard]] static double time_of(const Field& answer);
     [[nodiscard]] Field ask(const Json& message);
-    [[noreturn]] void fail(const std::string& what);
 
     ScratchFolder folder_;  // outlives the program
     double timeout_s_;
     LineProcess process_;
-    Field hello_;
+    IntroductionRecord says_;
 };
 
 }  // namespace umbra
